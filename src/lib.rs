@@ -1,0 +1,20 @@
+//! bhr, the embeddable black-hole renderer. The map of the crate, from left to right as a frame flows:
+//!
+//! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.
+//! - [`scene`]: what to draw, as plain validated data.
+//! - [`renderer`]: one scene and one tracer; the safe Rust face.
+//! - `cpu`, `gpu`: the two tracers, with one behaviour: scene -> linear radiance.
+//! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
+//! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
+
+#[doc(hidden)]
+pub mod capi;
+pub mod cpu;
+pub mod error;
+pub mod film;
+pub mod gpu;
+pub mod image;
+pub mod physics;
+pub mod renderer;
+pub mod scene;
+pub mod sky;

@@ -1,0 +1,242 @@
+//! A renderer: one scene, one tracer, and the frames they make. The safe Rust face of the crate; `capi` wraps it in a lock.
+//! Chooses the adapter; knows no pixel layout beyond handing tiles to the target, and nothing of C.
+
+use crate::cpu::CpuTracer;
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::{self, GpuTracer};
+use crate::image::{ImageMut, PixelFormat};
+use crate::scene::{Hit, Ray, Region, Scene, View};
+use std::time::Instant;
+
+/// The interfaces a tracer may run on (`BHR_BACKEND_*`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Backend {
+    Cpu = 1,
+    Vulkan = 2,
+    Metal = 3,
+    D3d12 = 4,
+    Gl = 5,
+}
+
+/// What a tracer runs on.
+#[derive(Clone, Debug)]
+pub struct AdapterInfo {
+    pub backend: Backend,
+    /// A GPU with memory of its own.
+    pub discrete: bool,
+    /// No hardware behind it: a software driver, or the CPU tracer.
+    pub software: bool,
+    pub vendor_id: u32,
+    pub device_id: u32,
+    pub name: String,
+    pub driver: String,
+}
+
+/// How to make a [`Renderer`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RendererOptions {
+    /// `None`: the best GPU, else a software GPU, else the CPU tracer.
+    pub backend: Option<Backend>,
+    /// Index into [`adapters`]; `None`: the first that `backend` allows.
+    pub adapter_index: Option<u32>,
+    /// Threads of the CPU tracer; 0: one per core this process may use.
+    pub cpu_threads: u32,
+    /// Ask the driver's validation layers to report.
+    pub validation: bool,
+}
+
+/// Numbers about the last finished frame. Times in nanoseconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FrameStats {
+    /// 1 for the first frame of a renderer; 0: none finished yet.
+    pub frame_index: u64,
+    pub rays: u64,
+    pub steps: u64,
+    pub cpu_ns: u64,
+    /// 0: the adapter has no timestamps.
+    pub gpu_ns: u64,
+    pub readback_ns: u64,
+    /// Device memory held by this renderer.
+    pub device_bytes: u64,
+}
+
+/// Every adapter on this machine, best first; the CPU tracer, always there, is last.
+pub fn adapters() -> Vec<AdapterInfo> {
+    let mut list = gpu::adapters(false).into_iter().map(|a| a.info).collect::<Vec<_>>();
+    list.push(crate::cpu::adapter_info());
+    list
+}
+
+/// A part of the target, in its own pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    pub x: u32,
+    pub y: u32,
+    pub width: u32,
+    pub height: u32,
+}
+
+/// What a tracer is asked for: a width x height image, part of the frame that `region` describes.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameRequest {
+    pub width: u32,
+    pub height: u32,
+    pub region: Region,
+    pub format: PixelFormat,
+    /// Premultiplied alpha = 1 - the sky's share, sky left out.
+    pub transparent: bool,
+}
+
+/// Takes a finished tile: packed pixels, rows `bytes_per_row` apart.
+pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + 'a;
+
+/// Hears how much of the frame is done, 0 .. 1; false cancels.
+pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;
+
+enum Tracer {
+    Cpu(CpuTracer),
+    Gpu(Box<GpuTracer>),
+}
+
+/// One scene, one tracer.
+pub struct Renderer {
+    /// What the next frame shows. A frame works on the scene as it is when the frame is asked for.
+    pub scene: Scene,
+    options: RendererOptions,
+    tracer: Tracer,
+    stats: FrameStats,
+}
+
+impl Renderer {
+    /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), whatever opening a device gives.
+    pub fn new(options: RendererOptions) -> Result<Self> {
+        let tracer = Self::open(&options)?;
+        Ok(Self { scene: Scene::default(), options, tracer, stats: FrameStats::default() })
+    }
+
+    fn open(options: &RendererOptions) -> Result<Tracer> {
+        let cpu = || CpuTracer::new(options.cpu_threads).map(Tracer::Cpu);
+        if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {
+            return cpu();
+        }
+        let found = gpu::adapters(options.validation);
+        let count = found.len() as u32 + 1;
+        if let Some(index) = options.adapter_index {
+            if index >= count {
+                return Err(Error::new(
+                    ErrorKind::NoAdapter,
+                    format!("adapter_index is {index}; this machine has {count} adapters"),
+                ));
+            }
+            let backend = found.get(index as usize).map_or(Backend::Cpu, |a| a.info.backend);
+            if options.backend.is_some_and(|wanted| wanted != backend) {
+                return Err(Error::new(
+                    ErrorKind::NoAdapter,
+                    format!("adapter {index} is of backend {backend:?}, not {:?}", options.backend),
+                ));
+            }
+            return match found.into_iter().nth(index as usize) {
+                Some(adapter) => GpuTracer::new(adapter).map(|t| Tracer::Gpu(Box::new(t))),
+                None => cpu(),
+            };
+        }
+        let mut reasons = Vec::new();
+        for adapter in found.into_iter().filter(|a| options.backend.is_none_or(|wanted| wanted == a.info.backend)) {
+            let name = adapter.info.name.clone();
+            match GpuTracer::new(adapter) {
+                Ok(tracer) => return Ok(Tracer::Gpu(Box::new(tracer))),
+                Err(error) => {
+                    log::warn!("adapter {name} passed over: {error}");
+                    reasons.push(format!("{name}: {error}"));
+                }
+            }
+        }
+        match options.backend {
+            None => {
+                log::info!("no usable GPU adapter; tracing on the CPU");
+                cpu()
+            }
+            Some(backend) => Err(Error::new(
+                ErrorKind::NoAdapter,
+                format!(
+                    "no usable adapter of backend {backend:?} ({}); BHR_BACKEND_AUTO falls back to the CPU tracer",
+                    if reasons.is_empty() { "none found".into() } else { reasons.join("; ") }
+                ),
+            )),
+        }
+    }
+
+    /// Opens the device anew after it was lost; the scene stays.
+    pub fn recover(&mut self) -> Result<()> {
+        self.tracer = Self::open(&self.options)?;
+        Ok(())
+    }
+
+    pub fn adapter(&self) -> &AdapterInfo {
+        match &self.tracer {
+            Tracer::Cpu(t) => t.adapter(),
+            Tracer::Gpu(t) => t.adapter(),
+        }
+    }
+
+    /// Numbers about the last finished frame.
+    pub fn stats(&self) -> FrameStats {
+        self.stats
+    }
+
+    /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
+    ///
+    /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
+    /// INVALID_STATE where the camera's motion cannot be; CANCELLED when `progress` returns false (tiles not yet begun are
+    /// untouched); whatever the device reports.
+    pub fn render(
+        &mut self,
+        target: &mut ImageMut<'_>,
+        transparent: bool,
+        region: Option<Region>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        let start = Instant::now();
+        let (width, height) = (target.width(), target.height());
+        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
+        region.check_image(width, height)?;
+        let format = target.format();
+        match (self.scene.view, format) {
+            (View::Light, PixelFormat::R32F) => {
+                return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
+            }
+            (view, PixelFormat::Rgba16F | PixelFormat::Rgba32F) if view != View::Light => {
+                return Err(Error::argument(format!("view {view:?} goes into 8-bit formats or R32F, not {format:?}")));
+            }
+            _ => {}
+        }
+        let request = FrameRequest { width, height, region, format, transparent };
+        let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
+            target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
+        };
+        let mut stats = match &mut self.tracer {
+            Tracer::Cpu(t) => t.render(&self.scene, &request, &mut sink, progress),
+            Tracer::Gpu(t) => t.render(&self.scene, &request, &mut sink, progress),
+        }?;
+        stats.frame_index = self.stats.frame_index + 1;
+        stats.cpu_ns = start.elapsed().as_nanos() as u64;
+        self.stats = stats;
+        Ok(())
+    }
+
+    /// Traces `rays`; `hits` is as long. A ray that is not valid becomes `Fate::Invalid`.
+    pub fn trace_rays(&mut self, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
+        match &mut self.tracer {
+            Tracer::Cpu(t) => t.trace_rays(&self.scene, rays, hits),
+            Tracer::Gpu(t) => t.trace_rays(&self.scene, rays, hits),
+        }
+    }
+
+    /// The curve a ray follows: x, y, z, t (scene axes and lengths; t <= 0, backward) per point, at most `capacity` (>= 2)
+    /// points, the last one its end. Always traced in f64 on the CPU.
+    /// Errors: INVALID_ARGUMENT for a ray that is not valid.
+    pub fn trace_path(&self, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
+        crate::cpu::trace_path(&self.scene, ray, capacity)
+    }
+}

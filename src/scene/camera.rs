@@ -1,0 +1,107 @@
+//! The camera: an observer with a lens. Checks only itself; what the hole forbids is found when a frame is asked for
+//! (`frame::Observer`).
+
+use super::hole::unit;
+use crate::error::{Error, Result};
+use glam::{DMat3, DVec3};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Projection {
+    Perspective = 0,
+    Fisheye = 1,
+    Equirect = 2,
+    Cube = 3,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Motion {
+    /// At rest; the ZAMO when the hole spins.
+    Static = 0,
+    /// Radially from rest at infinity.
+    FreeFall = 1,
+    /// Along +phi on a circle.
+    Orbit = 2,
+    /// `Camera::velocity`.
+    Velocity = 3,
+}
+
+/// Position and axes in scene axes and lengths. `forward` and `up` keep the length the host gave them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    pub projection: Projection,
+    /// Default (0, -30, 5).
+    pub position: DVec3,
+    /// Default: towards the hole.
+    pub forward: DVec3,
+    /// Default +z.
+    pub up: DVec3,
+    /// Full vertical angle, radians, in (0, pi) for `Perspective`. Default pi / 3.
+    pub fov_y: f64,
+    pub motion: Motion,
+    /// v / c against the local static observer, |v| < 1; components as for a direction given at `position` (bhr.h).
+    pub velocity: DVec3,
+}
+
+impl Default for Camera {
+    fn default() -> Self {
+        let position = DVec3::new(0.0, -30.0, 5.0);
+        Self {
+            projection: Projection::Perspective,
+            position,
+            forward: -position,
+            up: DVec3::Z,
+            fov_y: std::f64::consts::FRAC_PI_3,
+            motion: Motion::Static,
+            velocity: DVec3::ZERO,
+        }
+    }
+}
+
+impl Camera {
+    /// Errors: a number not finite, position 0, forward or up zero or parallel, fov_y out of range, |velocity| >= 1.
+    pub fn check(&self) -> Result<()> {
+        let named = [("position", self.position), ("forward", self.forward), ("up", self.up), ("velocity", self.velocity)];
+        for (name, v) in named {
+            if !v.is_finite() {
+                return Err(Error::argument(format!("camera {name} is ({}, {}, {}); it must be finite", v.x, v.y, v.z)));
+            }
+        }
+        if unit(self.position).is_none() {
+            return Err(Error::argument("camera position is (0, 0, 0), the hole's centre; no observer is there"));
+        }
+        self.axes()?;
+        let (limit, closed) = match self.projection {
+            Projection::Perspective => (std::f64::consts::PI, false),
+            _ => (std::f64::consts::TAU, true),
+        };
+        let ignored = matches!(self.projection, Projection::Equirect | Projection::Cube);
+        let inside = self.fov_y > 0.0 && (self.fov_y < limit || (closed && self.fov_y == limit));
+        if !ignored && !inside {
+            let bracket = if closed { ']' } else { ')' };
+            return Err(Error::argument(format!("camera fov_y is {}; it must lie in (0, {limit}{bracket}", self.fov_y)));
+        }
+        if self.velocity.length() >= 1.0 {
+            return Err(Error::argument(format!(
+                "camera velocity has length {} c; it must be less than 1",
+                self.velocity.length()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Unit camera axes in scene axes, as columns right, up, forward: right = forward x up, then up = right x forward.
+    /// Errors: forward or up of zero length, or parallel.
+    pub fn axes(&self) -> Result<DMat3> {
+        let forward = unit(self.forward).ok_or_else(|| Error::argument("camera forward has zero length"))?;
+        let up = unit(self.up).ok_or_else(|| Error::argument("camera up has zero length"))?;
+        let right = forward.cross(up);
+        // 1e-9 rad: below it, rounding of the host's own numbers decides where "up" is.
+        if right.length() < 1e-9 {
+            return Err(Error::argument("camera forward and up are parallel; up must point elsewhere"));
+        }
+        let right = right.normalize();
+        Ok(DMat3::from_cols(right, right.cross(forward), forward))
+    }
+}

@@ -1,0 +1,74 @@
+//! The black hole as the host states it: mass, spin, axis, and the rotation between scene axes and the hole's chart.
+
+use crate::error::{Error, Result};
+use glam::{DMat3, DQuat, DVec3};
+
+/// Largest |a / M| the tracers accept.
+pub const MAX_SPIN: f64 = 0.999;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hole {
+    /// M in scene lengths, > 0. Default 1.
+    pub mass: f64,
+    /// a / M in [-0.999, 0.999]; < 0: the hole turns towards -phi. Default 0.
+    pub spin: f64,
+    /// Spin axis and disk normal, scene axes, unit. Default +z.
+    pub axis: DVec3,
+}
+
+impl Default for Hole {
+    fn default() -> Self {
+        Self { mass: 1.0, spin: 0.0, axis: DVec3::Z }
+    }
+}
+
+impl Hole {
+    /// Errors: `mass` not finite or not > 0.
+    pub fn check_mass(mass: f64) -> Result<f64> {
+        if mass.is_finite() && mass > 0.0 {
+            return Ok(mass);
+        }
+        Err(Error::argument(format!("mass is {mass}; it must be finite and greater than 0 (scene lengths)")))
+    }
+
+    /// Errors: `spin` not finite or |spin| > 0.999.
+    pub fn check_spin(spin: f64) -> Result<f64> {
+        if spin.abs() <= MAX_SPIN {
+            return Ok(spin);
+        }
+        Err(Error::argument(format!("spin is {spin}; a / M must lie in [-{MAX_SPIN}, {MAX_SPIN}]")))
+    }
+
+    /// The unit vector along `axis`. Errors: a component not finite, or zero length.
+    pub fn check_axis(axis: DVec3) -> Result<DVec3> {
+        unit(axis).ok_or_else(|| {
+            Error::argument(format!(
+                "axis is ({}, {}, {}); it must be finite and of non-zero length",
+                axis.x, axis.y, axis.z
+            ))
+        })
+    }
+
+    /// Takes vectors in scene axes to the hole's chart, whose +z is the spin axis: the inverse of the shortest rotation from
+    /// +z to the axis, about +x for -z (bhr.h, Conventions).
+    pub fn scene_to_chart(&self) -> DMat3 {
+        if self.axis == DVec3::Z {
+            return DMat3::IDENTITY;
+        }
+        if self.axis.z < 0.0 && self.axis.x == 0.0 && self.axis.y == 0.0 {
+            return DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0));
+        }
+        DMat3::from_quat(DQuat::from_rotation_arc(DVec3::Z, self.axis)).transpose()
+    }
+}
+
+/// `v` scaled to unit length without overflow or underflow on the way; `None` when it is zero or not finite.
+pub fn unit(v: DVec3) -> Option<DVec3> {
+    let largest = v.abs().max_element();
+    if !v.is_finite() || largest == 0.0 {
+        return None;
+    }
+    let scaled = v / largest;
+    // A subnormal `largest` leaves `scaled` inexact but never zero: its largest component is 1.
+    scaled.is_finite().then(|| scaled.normalize())
+}

@@ -1,0 +1,87 @@
+//! How exactly to trace, as the host states it.
+
+use crate::error::{Error, Result};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Method {
+    /// The fastest that meets the stated accuracy (Nystrom, order 5).
+    Auto = 0,
+    /// Fixed-step classic fourth-order Runge-Kutta.
+    Rk4 = 1,
+    /// Embedded Runge-Kutta 5(4) with error control.
+    Adaptive = 2,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    pub method: Method,
+    /// 1 (default) .. 256.
+    pub samples_per_pixel: u32,
+    /// Per ray, 16 .. 100000. Default 2000. A ray that needs more is unresolved.
+    pub max_steps: u32,
+    /// RK4, in sigma = S tau: 1e-3 .. 0.5; 0: the default, 0.1.
+    pub step: f64,
+    /// ADAPTIVE, relative: 1e-14 .. 1e-3; 0: the default, 1e-10.
+    pub tolerance: f64,
+    /// Images of the disk to follow: 0 direct only .. 15. Default 3.
+    pub max_disk_order: u32,
+    /// Windows: traced size / window size, 0.1 .. 1. Default 1.
+    pub render_scale: f64,
+}
+
+impl Default for Quality {
+    fn default() -> Self {
+        Self {
+            method: Method::Auto,
+            samples_per_pixel: 1,
+            max_steps: 2000,
+            step: 0.0,
+            tolerance: 0.0,
+            max_disk_order: 3,
+            render_scale: 1.0,
+        }
+    }
+}
+
+impl Quality {
+    pub const DEFAULT_STEP: f64 = 0.1;
+    pub const DEFAULT_TOLERANCE: f64 = 1e-10;
+    pub const MAX_DISK_ORDER: u32 = 15;
+
+    /// Errors: a value outside its range.
+    pub fn check(&self) -> Result<()> {
+        let bad = |name: &str, value: f64, range: &str| {
+            Err(Error::argument(format!("quality {name} is {value}; it must lie in {range}")))
+        };
+        if !(1..=256).contains(&self.samples_per_pixel) {
+            return bad("samples_per_pixel", self.samples_per_pixel.into(), "[1, 256]");
+        }
+        if !(16..=100_000).contains(&self.max_steps) {
+            return bad("max_steps", self.max_steps.into(), "[16, 100000]");
+        }
+        if self.step != 0.0 && !(1e-3..=0.5).contains(&self.step) {
+            return bad("step", self.step, "[0.001, 0.5], or be 0 for the default");
+        }
+        if self.tolerance != 0.0 && !(1e-14..=1e-3).contains(&self.tolerance) {
+            return bad("tolerance", self.tolerance, "[1e-14, 1e-3], or be 0 for the default");
+        }
+        if self.max_disk_order > Self::MAX_DISK_ORDER {
+            return bad("max_disk_order", self.max_disk_order.into(), "[0, 15]");
+        }
+        if !(0.1..=1.0).contains(&self.render_scale) {
+            return bad("render_scale", self.render_scale, "[0.1, 1]");
+        }
+        Ok(())
+    }
+
+    /// `step`, or its default.
+    pub fn rk4_step(&self) -> f64 {
+        if self.step == 0.0 { Self::DEFAULT_STEP } else { self.step }
+    }
+
+    /// `tolerance`, or its default.
+    pub fn adaptive_tolerance(&self) -> f64 {
+        if self.tolerance == 0.0 { Self::DEFAULT_TOLERANCE } else { self.tolerance }
+    }
+}

@@ -1,0 +1,56 @@
+//! Rays and what becomes of them, in scene units, as a host asks for them directly. Field by field as in `bhr.h`.
+
+use glam::DVec3;
+
+/// Crossings that a [`Hit`] lists.
+pub const MAX_CROSSINGS: usize = 4;
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ray {
+    /// Scene axes and lengths.
+    pub position: DVec3,
+    /// Where the eye looks, opposite to the photon's momentum; components along the local frame, placed on the Euclidean unit
+    /// vectors of spherical coordinates (bhr.h, Conventions), scene axes.
+    pub direction: DVec3,
+    /// nu(camera) / nu(observer of the local frame), > 0.
+    pub frequency_ratio: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+#[repr(i32)]
+pub enum Fate {
+    Captured = 0,
+    Escaped = 1,
+    /// max_steps ran out.
+    Unresolved = 2,
+    /// The ray's input is not valid.
+    #[default]
+    Invalid = 3,
+}
+
+/// A crossing of the equatorial plane outside the horizon.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Crossing {
+    /// Scene lengths.
+    pub radius: f64,
+    /// In the chart, (-pi, pi].
+    pub azimuth: f64,
+    /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
+    pub redshift: f64,
+    /// Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon.
+    pub delay: f64,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hit {
+    pub fate: Fate,
+    pub crossing_count: u32,
+    /// Asymptotic, unit, chart axes; 0 when captured.
+    pub sky_direction: DVec3,
+    /// nu(camera) / nu(at infinity).
+    pub sky_redshift: f64,
+    /// Spin 0: orbit angle from the eye to infinity, or to the horizon; spinning: NaN.
+    pub swept_angle: f64,
+    pub steps: u32,
+    pub crossings: [Crossing; MAX_CROSSINGS],
+}
