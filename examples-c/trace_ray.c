@@ -1,6 +1,6 @@
-/* trace_ray.c -- one photon around a black hole, in numbers: its path, crossings of the equatorial plane, deflection and
- * fate. The light is followed backward, from the eye of a static observer (ZAMO) into the direction it looks. Asks the
- * library for rays; makes no image. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
+/* trace_ray.c -- one photon around a black hole, in numbers: its path, crossings of the equatorial plane, deflection,
+ * fate. The light is followed backward, from the eye of a static observer (ZAMO) into the direction it looks. Asks for
+ * rays; makes no image. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
 #include "common.h"
 
 #include <math.h>
@@ -43,8 +43,8 @@ static double degrees(double radians) {
 
 /* ---- the ray ---- */
 
-/* Synge 1966: a static observer at r (in M) sees a photon of impact parameter b at the angle psi from the hole's centre,
- * sin(psi) = b sqrt(1 - 2 / r) / r. NaN where there is no such angle. */
+/* Synge 1966: a static observer at r (in M) sees a photon of impact parameter b at the angle psi from the hole's
+ * centre, sin(psi) = b sqrt(1 - 2 / r) / r. NaN where there is no such angle. */
 static double look_angle_of_impact(double impact, double distance) {
     return asin(impact * sqrt(1.0 - 2.0 / distance) / distance);
 }
@@ -67,8 +67,8 @@ static BhrRay make_ray(const Settings *s, double psi, double position_angle) {
 
 /* ---- printing ---- */
 
-/* At most `rows` points of the path, evenly chosen by index, the first and the last among them. "swept" is the angle about
- * the hole since the eye, summed over all points in between. */
+/* At most `rows` points of the path, evenly chosen by index, the first and the last among them. "swept" is the angle
+ * about the hole since the eye, summed over all points in between. */
 static void print_path(const Settings *s, const double (*points)[4], uint32_t count) {
     printf("      r / M   theta deg     phi deg   swept deg       t / M\n");
     double   swept = 0.0;
