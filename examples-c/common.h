@@ -39,8 +39,8 @@ typedef struct Option {
     const Choice *choices; /* OPTION_CHOICE: ends with a NULL name; else NULL */
 } Option;
 
-/* Reads `--name value` and `--name=value`. 0, or EXIT_USAGE after a message on stderr. Ranges are left to the library, whose
- * messages name them. */
+/* Reads `--name value` and `--name=value`. 0, or EXIT_USAGE after a message on stderr. Ranges are left to the
+ * library, whose messages name them. */
 int  options_parse(const Option *options, size_t count, int argc, char **argv);
 void options_print(FILE *out, const Option *options, size_t count);
 

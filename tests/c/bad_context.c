@@ -1,5 +1,5 @@
-/* bad_context.c -- version, status names, adapters, options and contexts, asked wrongly and rightly. Renders only to see that
- * a context is unchanged. */
+/* bad_context.c -- version, status names, adapters, options and contexts, asked wrongly and rightly. Renders only to
+ * see that a context is unchanged. */
 #include "check.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* bad_image.c -- images asked wrongly: sizes, strides, block sizes, alignment, formats, regions. Each refusal leaves the context and
- * every byte of the host's memory as it was. Files are in files.c, legal layouts in frames.c. */
+/* bad_image.c -- images asked wrongly: sizes, strides, block sizes, alignment, formats, regions. Each refusal leaves
+ * the context and every byte of the host's memory as it was. Files are in files.c, legal layouts in frames.c. */
 #include "check.h"
 
 #include <stdlib.h>

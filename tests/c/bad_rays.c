@@ -1,5 +1,6 @@
-/* bad_rays.c -- rays, paths, tensors and the camera's world line asked wrongly, and the cameras that no observer can carry, which
- * are found when a frame or rays are asked for. What right rays give is tested against golden values elsewhere. */
+/* bad_rays.c -- rays, paths, tensors and the camera's world line asked wrongly, and the cameras that no observer can
+ * carry, which are found when a frame or rays are asked for. What right rays give is tested against golden values
+ * elsewhere. */
 #include "check.h"
 
 #include <math.h>
@@ -132,6 +133,7 @@ static void trace_path(Watch *watch, BhrContext *context) {
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_count",
                   bhr_trace_path(context, &ray, CAPACITY, points[0], NULL));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "capacity", bhr_trace_path(context, &ray, 0, points[0], &count));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "capacity", bhr_trace_path(context, &ray, 1, points[0], &count));
     ray.direction[2] = NAN;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "direction",
                   bhr_trace_path(context, &ray, CAPACITY, points[0], &count));
@@ -149,8 +151,8 @@ static void trace_path(Watch *watch, BhrContext *context) {
         CHECK(count >= 2 && count <= capacities[i], "%u points for a capacity of %u", (unsigned)count,
               (unsigned)capacities[i]);
         CHECK(all_untouched(&points[count], (CAPACITY - count) * sizeof points[0]), "points beyond out_count written");
-        CHECK(fabs(points[0][0] - ray.position[0]) < 1e-9 && points[0][3] == 0.0, "the path begins at (%g, %g, %g), t %g",
-              points[0][0], points[0][1], points[0][2], points[0][3]);
+        CHECK(fabs(points[0][0] - ray.position[0]) < 1e-9 && points[0][3] == 0.0,
+              "the path begins at (%g, %g, %g), t %g", points[0][0], points[0][1], points[0][2], points[0][3]);
         for (uint32_t k = 1; k < count; k++) {
             CHECK(points[k][3] <= points[k - 1][3], "time goes forward along a backward path");
         }

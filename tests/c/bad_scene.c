@@ -1,5 +1,6 @@
-/* bad_scene.c -- every setter of the scene asked wrongly: NULL, NaN, infinities, values beyond each documented limit, unknown
- * constants, structs of other sizes. Each refusal must leave the context as it was. Values at the limits must be taken. */
+/* bad_scene.c -- every setter of the scene asked wrongly: NULL, NaN, infinities, values beyond each documented limit,
+ * unknown constants, structs of other sizes. Each refusal must leave the context as it was. Values at the limits must
+ * be taken. */
 #include "check.h"
 
 #include <math.h>
@@ -7,8 +8,8 @@
 
 static const double NOT_FINITE[] = {NAN, INFINITY, -INFINITY};
 
-/* A struct as a newer host passes it, with a tail this version does not know: `grown` has members known and tail, is filled
- * by `init`, and `set` must take it with a zero tail only. `get` must zero the tail. */
+/* A struct as a newer host passes it, with a tail this version does not know: `grown` has members known and tail, is
+ * filled by `init`, and `set` must take it with a zero tail only. `get` must zero the tail. */
 #define CHECK_STRUCT_SIZES(watch, grown, init, set, get)                                         \
     do {                                                                                         \
         memset(&(grown), UNTOUCHED, sizeof(grown));                                              \
@@ -347,10 +348,14 @@ static void sky(Watch *watch, BhrContext *context) {
 
 static void film(Watch *watch, BhrContext *context) {
     static const BadNumber bad[] = {
-        {offsetof(BhrFilm, exposure_ev), 20.01, "exposure_ev"}, {offsetof(BhrFilm, exposure_ev), -20.01, "exposure_ev"},
-        {offsetof(BhrFilm, exposure_ev), NAN, "exposure_ev"},   {offsetof(BhrFilm, exposure_ev), INFINITY, "exposure_ev"},
-        {offsetof(BhrFilm, bloom), -0.01, "bloom"},             {offsetof(BhrFilm, bloom), 1.01, "bloom"},
-        {offsetof(BhrFilm, bloom), NAN, "bloom"},               {offsetof(BhrFilm, bloom), INFINITY, "bloom"},
+        {offsetof(BhrFilm, exposure_ev), 20.01, "exposure_ev"},
+        {offsetof(BhrFilm, exposure_ev), -20.01, "exposure_ev"},
+        {offsetof(BhrFilm, exposure_ev), NAN, "exposure_ev"},
+        {offsetof(BhrFilm, exposure_ev), INFINITY, "exposure_ev"},
+        {offsetof(BhrFilm, bloom), -0.01, "bloom"},
+        {offsetof(BhrFilm, bloom), 1.01, "bloom"},
+        {offsetof(BhrFilm, bloom), NAN, "bloom"},
+        {offsetof(BhrFilm, bloom), INFINITY, "bloom"},
     };
     BhrFilm value;
     for (size_t i = 0; i < COUNT_OF(bad); i++) {

@@ -1,5 +1,5 @@
-/* callbacks.c -- the host's functions that the library calls: progress that watches, cancels or calls back in, and the log. A
- * refused call from inside leaves the frame in progress and the context as they were. */
+/* callbacks.c -- the host's functions that the library calls: progress that watches, cancels or calls back in, and
+ * the log. A refused call from inside leaves the frame in progress and the context as they were. */
 #include "check.h"
 
 #include <math.h>
@@ -99,8 +99,8 @@ static uint32_t size_with_a_middle(BhrContext *context) {
     return 0;
 }
 
-/* Cancels at `cancel_at` and looks at what the target became: every pixel is that of the whole frame or untouched, both are
- * there, and so are the bytes between the rows. */
+/* Cancels at `cancel_at` and looks at what the target became: every pixel is that of the whole frame or untouched,
+ * both are there, and so are the bytes between the rows. */
 static void cancel_halfway(BhrContext *context, uint32_t size) {
     const size_t   stride = (size_t)size * 4 + 12, bytes = stride * size;
     unsigned char *whole = malloc(bytes), *part = malloc(bytes);
@@ -163,7 +163,7 @@ static void cancel_at_once(BhrContext *context) {
     CHECK_OK(bhr_set_progress(context, on_progress, &progress));
     CHECK_FAILS(BHR_ERROR_CANCELLED, "cancel", bhr_render_image(context, &image));
     CHECK(progress.calls == 1, "called %d times after it cancelled", progress.calls);
-    CHECK(progress.cancelled_at > 0.0 || all_untouched(pixels, sizeof pixels), "cancelled at 0, but pixels are written");
+    CHECK(progress.cancelled_at > 0.0 || all_untouched(pixels, sizeof pixels), "cancelled at 0, yet pixels changed");
     CHECK_OK(bhr_frame_stats(context, &after));
     CHECK(memcmp(&before, &after, sizeof before) == 0, "a cancelled frame counts as the last finished one");
     CHECK_OK(bhr_set_progress(context, NULL, NULL));

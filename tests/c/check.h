@@ -1,7 +1,9 @@
-/* check.h -- the harness of the C tests: counted checks that print file, line and the library's message when they fail, and
- * a watch that tells whether a refused call changed its context. Knows the C API only; tests nothing by itself.
+/* check.h -- the harness of the C tests: counted checks that print file, line and the library's message when they
+ * fail, and a watch that tells whether a refused call changed its context. Knows the C API only; tests nothing by
+ * itself.
  *
- * Every program takes the backend as its first argument (cpu, vulkan) and exits with 0 only if all its checks passed. */
+ * Every program takes the backend as its first argument (cpu, vulkan) and exits with 0 only if all its checks passed.
+ */
 #ifndef BHR_CHECK_H
 #define BHR_CHECK_H
 
@@ -21,8 +23,8 @@ BhrContext *check_context(BhrBackend backend);  /* a new one, silent; ends the p
 #define CHECK(condition, ...) check_that((condition) != 0, __FILE__, __LINE__, #condition, __VA_ARGS__)
 /* The call succeeds. Its value is whether it did. */
 #define CHECK_OK(call) check_ok((call), __FILE__, __LINE__, #call)
-/* The call fails with this status and a message of its own (not an earlier call's) that holds one of `words`, separated by
- * |, or is any sentence when words is "". */
+/* The call fails with this status and a message of its own (not an earlier call's) that holds one of `words`,
+ * separated by |, or is any sentence when words is "". */
 #define CHECK_FAILS(expected, words, call) \
     (check_mark_message(), check_fails((call), (expected), (words), __FILE__, __LINE__, #call))
 /* The same, and the watched context is as it was: its getters and a small frame. */

@@ -1,5 +1,5 @@
-/* frames.c -- frames in the host's memory: every legal layout holds the same pixels and nothing else is written; tiles make the
- * whole; two runs are equal; the formats agree with each other. */
+/* frames.c -- frames in the host's memory: every legal layout holds the same pixels and nothing else is written;
+ * tiles make the whole; two runs are equal; the formats agree with each other. */
 #include "check.h"
 
 #include <math.h>
@@ -23,8 +23,8 @@ static unsigned char *packed_frame(BhrContext *context, BhrFormat format) {
 
 /* ---- layouts ---- */
 
-/* Renders with `stride` into the middle of a larger block; `flip`: bottom-up. Each row must equal the packed frame's, and every other
- * byte of the block must stay. */
+/* Renders with `stride` into the middle of a larger block; `flip`: bottom-up. Each row must equal the packed frame's,
+ * and every other byte of the block must stay. */
 static void check_layout(BhrContext *context, BhrFormat format, size_t stride, int flip, const unsigned char *packed) {
     const size_t   row = WIDTH * bytes_per_pixel(format), margin = 64;
     const size_t   needed = stride * (HEIGHT - 1) + row, bytes = needed + 2 * margin;
@@ -204,7 +204,8 @@ static void transparent(BhrContext *context) {
     CHECK_OK(bhr_set_disk(context, &disk));
 }
 
-/* A frame is of the scene as it is when asked for, so a scene set back gives the same bytes whatever was rendered between. */
+/* A frame is of the scene as it is when asked for, so a scene set back gives the same bytes whatever was rendered
+ * between. */
 static void history(BhrContext *context) {
     unsigned char *before = packed_frame(context, BHR_FORMAT_RGBA32F);
     CHECK_OK(bhr_set_spin(context, 0.9));

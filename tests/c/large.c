@@ -1,5 +1,6 @@
-/* large.c -- large frames: the peak memory of an 8192 x 8192 render into the host's buffer stays within 600 MB above that buffer,
- * and a part of a 16384 x 16384 frame can be rendered, equal to the same pixels rendered in smaller parts. */
+/* large.c -- large frames: the peak memory of an 8192 x 8192 render into the host's buffer stays within 600 MB above
+ * that buffer, and a part of a 16384 x 16384 frame can be rendered, equal to the same pixels rendered in smaller
+ * parts. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "check.h"
@@ -18,8 +19,8 @@ static long long peak_resident_bytes(void) {
     return getrusage(RUSAGE_SELF, &usage) == 0 ? (long long)usage.ru_maxrss * 1024 : -1; /* KiB on Linux */
 }
 
-/* The CPU tracer takes minutes for 67 million rays through the default scene. Without disk and stars, seen from far away, most rays end
- * after a few steps; tiles, film and the way into the buffer are the same. */
+/* The CPU tracer takes minutes for 67 million rays through the default scene. Without disk and stars, seen from far
+ * away, most rays end after a few steps; tiles, film and the way into the buffer are the same. */
 static void cheap_scene(BhrContext *context) {
     BhrCamera camera;
     CHECK_OK(bhr_camera_init(&camera, sizeof camera));
@@ -81,6 +82,8 @@ int main(int argc, char **argv) {
         cheap_scene(context);
     }
     peak_memory(context);
+    bhr_context_destroy(context);
+    context = check_context(backend);
     wide_region(context);
     bhr_context_destroy(context);
     return check_end();

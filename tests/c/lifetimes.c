@@ -1,8 +1,9 @@
-/* lifetimes.c -- creates, renders and destroys again and again, and watches the process's resident memory. Its second argument is
- * the number of cycles (default 200); below 100 nothing is measured, for valgrind, which counts better.
+/* lifetimes.c -- creates, renders and destroys again and again, and watches the process's resident memory. Its second
+ * argument is the number of cycles (default 200); below 100 nothing is measured, for valgrind, which counts better.
  *
- * The CPU tracer must not grow: what glibc's arenas keep after 40 cycles is enough for all that follow. A Vulkan driver leaks by
- * itself (lavapipe keeps compiled code of some submits), so there the bound is its own: MAX_GROWTH_OF_DRIVER a cycle. */
+ * The CPU tracer must not grow: what glibc's arenas keep after 40 cycles is enough for all that follow. A Vulkan
+ * driver leaks by itself (lavapipe keeps compiled code of some submits), so there the bound is its own:
+ * MAX_GROWTH_OF_DRIVER a cycle. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "check.h"
@@ -57,7 +58,8 @@ int main(int argc, char **argv) {
     }
     if (cycles >= 100) {
         const long after = resident_bytes();
-        const long bound = backend == BHR_BACKEND_CPU ? MAX_GROWTH_ON_CPU : MAX_GROWTH_OF_DRIVER * (long)(cycles - WARM_UP);
+        const long bound =
+            backend == BHR_BACKEND_CPU ? MAX_GROWTH_ON_CPU : MAX_GROWTH_OF_DRIVER * (long)(cycles - WARM_UP);
         printf("resident: %ld KiB after %d cycles, %ld KiB after %d\n", before >> 10, WARM_UP, after >> 10, cycles);
         CHECK(before > 0 && after > 0, "no /proc/self/statm to measure with");
         CHECK(after - before <= bound, "grew by %ld KiB; at most %ld KiB are granted", (after - before) >> 10,

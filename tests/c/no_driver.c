@@ -1,6 +1,7 @@
-/* no_driver.c -- a machine without a usable Vulkan driver: AUTO still gives a context that renders, VULKAN says NO_ADAPTER, and the
- * log says why. The runner makes such a machine: "no-vulkan" hides the drivers' manifests (another interface, GL, may be there), "cpu-only"
- * makes libvulkan and libEGL impossible to load, so that the CPU tracer is all there is. */
+/* no_driver.c -- a machine without a usable Vulkan driver: AUTO still gives a context that renders, VULKAN says
+ * NO_ADAPTER, and the log says why. The runner makes such a machine: "no-vulkan" hides the drivers' manifests
+ * (another interface, GL, may be there), "cpu-only" makes libvulkan and libEGL impossible to load, so that the CPU
+ * tracer is all there is. */
 #include "check.h"
 
 #include <stdio.h>
