@@ -3,11 +3,20 @@ use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, FrameRequest, FrameStats, Progress, TileSink};
 use crate::scene::{Hit, Ray, Scene};
 
-/// An adapter that a device can be opened on.
-pub struct Adapter {
-    pub info: AdapterInfo,
-}
-pub fn adapters(_validation: bool) -> Vec<Adapter> { Vec::new() }
+mod adapter;
+mod buffer;
+mod device;
+mod pipeline;
+mod readback;
+mod timer;
+
+pub use adapter::{Adapter, Search, adapters, forget_drivers};
+pub use buffer::Buffer;
+pub use device::Device;
+pub use pipeline::{Kernel, Loops, ProvenFinite};
+pub use readback::{Copied, Readback};
+pub use timer::GpuTimer;
+
 pub struct GpuTracer {
     adapter: AdapterInfo,
 }
