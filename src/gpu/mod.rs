@@ -26,3 +26,9 @@ impl GpuTracer {
     pub fn render(&mut self, _scene: &Scene, _request: &FrameRequest, _sink: &mut TileSink<'_>, _progress: &mut Progress<'_>) -> Result<FrameStats> { Err(Error::unsupported("skeleton")) }
     pub fn trace_rays(&mut self, _scene: &Scene, _rays: &[Ray], _hits: &mut [Hit]) -> Result<()> { Err(Error::unsupported("skeleton")) }
 }
+
+/// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL. For `tests/shaders.rs`.
+#[doc(hidden)]
+pub fn shader_sources() -> Vec<(&'static str, String)> {
+    Vec::new()
+}
