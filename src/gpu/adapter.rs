@@ -1,5 +1,6 @@
 //! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
 
+use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -18,12 +19,28 @@ pub enum Search {
 /// An adapter that a device can be opened on.
 pub struct Adapter {
     pub info: AdapterInfo,
-    raw: wgpu::Adapter,
+    handle: Handle,
 }
 
 impl Adapter {
-    pub(super) fn raw(&self) -> &wgpu::Adapter {
-        &self.raw
+    pub(super) fn raw(&self) -> Result<&wgpu::Adapter> {
+        self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
+    }
+}
+
+/// Drops a GL adapter where it may touch GL contexts.
+struct Handle {
+    /// `None` only while it is being dropped.
+    raw: Option<wgpu::Adapter>,
+    gl: bool,
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        if self.gl {
+            let raw = self.raw.take();
+            let _ = on_own_thread(move || drop(raw));
+        }
     }
 }
 
@@ -82,24 +99,25 @@ fn native(interfaces: wgpu::Backends, validation: bool) -> Vec<wgpu::Adapter> {
 }
 
 /// GL, connected anew for each search, since all adapters of one wgpu GL instance share one GL context, which two threads
-/// cannot use at once. On a thread of its own, since wgpu leaves the thread that it starts GL on without a current GL
-/// context, and the calling thread's is the host's.
+/// cannot use at once.
 fn gl(validation: bool) -> Vec<wgpu::Adapter> {
-    let work = move || {
+    on_own_thread(move || {
         guarded("GL", || {
             let instance = connect(wgpu::Backends::GL, validation);
             pollster::block_on(instance.enumerate_adapters(wgpu::Backends::GL))
         })
-    };
-    let thread = std::thread::Builder::new().name("bhr-gl-search".into()).spawn(work);
-    match thread.map(std::thread::JoinHandle::join) {
-        Ok(Ok(found)) => found,
-        Ok(Err(_)) => Vec::new(),
-        Err(error) => {
-            log::info!("GL adapters passed over: no thread to search on: {error}");
-            Vec::new()
-        }
-    }
+    })
+    .unwrap_or_else(|error| {
+        log::info!("GL adapters passed over: {error}");
+        Vec::new()
+    })
+}
+
+/// Keeps wgpu's GL off the calling thread: it leaves its thread without a current GL context, and the host may have one.
+fn on_own_thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
+    let thread = std::thread::Builder::new().name("bhr-gl".into()).spawn(work);
+    let thread = thread.map_err(|error| Error::internal(format!("no thread for GL: {error}")))?;
+    thread.join().map_err(|_| Error::internal("GL panicked"))
 }
 
 fn connect(backends: wgpu::Backends, validation: bool) -> wgpu::Instance {
@@ -165,7 +183,10 @@ fn usable(raw: wgpu::Adapter) -> Option<(Rank, Adapter)> {
         driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
         name: found.name,
     };
-    Some((rank(found.device_type, backend), Adapter { info, raw }))
+    Some((
+        rank(found.device_type, backend),
+        Adapter { info, handle: Handle { raw: Some(raw), gl: backend == Backend::Gl } },
+    ))
 }
 
 fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {

@@ -45,9 +45,13 @@ struct Health {
 impl Device {
     /// Opens a device with timestamps if the adapter has them, and no other feature.
     ///
+    /// A GL device leaves every thread that uses it without a current GL context: a host that draws with GL on the same
+    /// thread has to make its own current again.
+    ///
     /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason.
     pub fn open(adapter: &Adapter) -> Result<Self> {
-        let offered = adapter.raw().limits();
+        let raw = adapter.raw()?;
+        let offered = raw.limits();
         let limits = wgpu::Limits {
             max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
@@ -55,12 +59,12 @@ impl Device {
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("bhr"),
-            required_features: adapter.raw().features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: raw.features() & wgpu::Features::TIMESTAMP_QUERY,
             required_limits: limits.clone(),
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
         };
-        let (raw, queue) = pollster::block_on(adapter.raw().request_device(&descriptor)).map_err(|error| {
+        let (raw, queue) = pollster::block_on(raw.request_device(&descriptor)).map_err(|error| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {error}", adapter.info.name))
         })?;
         let health = Arc::new(Health::default());
@@ -136,8 +140,7 @@ impl Device {
     /// Starts what `encoder` has recorded. Errors: as [`Self::scoped`].
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
-        let index = self.scoped("submitting work", |_| queue.submit([encoder.finish()]))?;
-        Ok(index)
+        self.scoped("submitting work", |_| queue.submit([encoder.finish()]))
     }
 
     /// Waits until `submission` has run and the callbacks of its buffers were called.
