@@ -52,23 +52,27 @@ impl Drop for Handle {
 ///
 /// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
 pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
-    let mut found = match search {
-        Search::All | Search::Auto => native(native_interfaces(), validation),
-        Search::Only(Backend::Gl | Backend::Cpu) => Vec::new(),
-        Search::Only(backend) => native(wgpu_backends(backend), validation),
+    let native = || native(validation).into_iter().filter_map(usable).collect::<Vec<_>>();
+    let gl = || gl(validation);
+    let mut list = match search {
+        Search::All => [native(), gl()].into_iter().flatten().collect(),
+        Search::Auto => Some(native()).filter(|list| !list.is_empty()).unwrap_or_else(gl),
+        Search::Only(Backend::Cpu) => Vec::new(),
+        Search::Only(Backend::Gl) => gl(),
+        Search::Only(backend) => {
+            let mut list = native();
+            list.retain(|found| found.adapter.info.backend == backend);
+            list
+        }
     };
-    if matches!(search, Search::All | Search::Only(Backend::Gl)) || (search == Search::Auto && found.is_empty()) {
-        found.append(&mut gl(validation));
-    }
-    let mut usable = found.into_iter().filter_map(usable).collect::<Vec<_>>();
-    usable.sort_by_key(|(rank, _)| *rank);
-    usable.into_iter().map(|(_, adapter)| adapter).collect()
+    list.sort_by_key(|found| found.rank);
+    list.into_iter().map(|found| found.adapter).collect()
 }
 
-/// Makes the next search start the drivers anew. For recovery after a device was lost: an upgraded driver is not seen
-/// through the connection to the old one. Adapters and devices in use keep theirs.
+/// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
+/// through the old one's adapters; devices in use keep theirs.
 pub fn forget_drivers() {
-    *connections() = [const { None }; 2];
+    *found() = [Vec::new(), Vec::new()];
 }
 
 /// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
@@ -76,39 +80,31 @@ pub(super) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
-/// The wgpu instances for Vulkan, Metal and D3D12, without and with validation. Kept for the life of the process: a
-/// context is then opened in 5 ms instead of 14 (lavapipe), and drivers are not loaded and unloaded under the host.
-static CONNECTIONS: Mutex<[Option<wgpu::Instance>; 2]> = Mutex::new([const { None }; 2]);
+/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the life
+/// of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded under
+/// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+static FOUND: Mutex<[Vec<wgpu::Adapter>; 2]> = Mutex::new([Vec::new(), Vec::new()]);
 
-fn connections() -> MutexGuard<'static, [Option<wgpu::Instance>; 2]> {
-    CONNECTIONS.lock().unwrap_or_else(PoisonError::into_inner)
+fn found() -> MutexGuard<'static, [Vec<wgpu::Adapter>; 2]> {
+    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn connection(validation: bool) -> wgpu::Instance {
-    let [plain, validated] = &mut *connections();
-    let slot = if validation { validated } else { plain };
-    slot.get_or_insert_with(|| connect(native_interfaces(), validation)).clone()
+fn native(validation: bool) -> Vec<wgpu::Adapter> {
+    let [plain, validated] = &mut *found();
+    let kept = if validation { validated } else { plain };
+    if kept.is_empty() {
+        let all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        *kept = ask_drivers(all, validation);
+    }
+    kept.clone()
 }
 
-fn native_interfaces() -> wgpu::Backends {
-    wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12
-}
-
-fn native(interfaces: wgpu::Backends, validation: bool) -> Vec<wgpu::Adapter> {
-    guarded("Vulkan, Metal or D3D12", || pollster::block_on(connection(validation).enumerate_adapters(interfaces)))
-}
-
-/// GL, connected anew for each search, since all adapters of one wgpu GL instance share one GL context, which two threads
-/// cannot use at once.
-fn gl(validation: bool) -> Vec<wgpu::Adapter> {
-    on_own_thread(move || {
-        guarded("GL", || {
-            let instance = connect(wgpu::Backends::GL, validation);
-            pollster::block_on(instance.enumerate_adapters(wgpu::Backends::GL))
-        })
-    })
-    .unwrap_or_else(|error| {
-        log::info!("GL adapters passed over: {error}");
+/// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
+/// once.
+fn gl(validation: bool) -> Vec<Usable> {
+    let work = move || ask_drivers(wgpu::Backends::GL, validation).into_iter().filter_map(usable).collect();
+    on_own_thread(work).unwrap_or_else(|error| {
+        log::info!("adapters of GL passed over: {error}");
         Vec::new()
     })
 }
@@ -120,41 +116,38 @@ fn on_own_thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -
     thread.join().map_err(|_| Error::internal("GL panicked"))
 }
 
-fn connect(backends: wgpu::Backends, validation: bool) -> wgpu::Instance {
+/// A driver that panics has no adapters.
+fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Vec<wgpu::Adapter> {
     // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none.
     let flags = if validation {
         wgpu::InstanceFlags::DEBUG | wgpu::InstanceFlags::VALIDATION
     } else {
         wgpu::InstanceFlags::empty()
     };
-    wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        flags,
-        ..wgpu::InstanceDescriptor::new_without_display_handle()
-    })
-}
-
-/// Runs a search in a driver; one that panics has found nothing.
-fn guarded(interface: &str, search: impl FnOnce() -> Vec<wgpu::Adapter>) -> Vec<wgpu::Adapter> {
-    match catch_unwind(AssertUnwindSafe(search)) {
-        Ok(found) => {
-            if found.is_empty() {
-                log::info!("no adapter of {interface}: no loader, no driver, or no device behind it");
-            }
-            found
-        }
-        Err(_) => {
-            log::warn!("adapters of {interface} passed over: the search for them panicked");
-            Vec::new()
-        }
+    let descriptor =
+        wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    let ask = || pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(backends));
+    let found = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| {
+        log::warn!("the search for adapters of {backends:?} panicked");
+        Vec::new()
+    });
+    if found.is_empty() {
+        log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
     }
+    found
 }
 
-/// Lower is better.
+/// An adapter that can run the tracer, and its place in the list: lower is better.
+struct Usable {
+    rank: Rank,
+    adapter: Adapter,
+}
+
+/// Class of the hardware, then whether it is GL.
 type Rank = (u8, bool);
 
-/// The adapter with its rank; `None`, with the reason in the log, when it cannot run the tracer.
-fn usable(raw: wgpu::Adapter) -> Option<(Rank, Adapter)> {
+/// `None`, with the reason in the log, when it cannot run the tracer.
+fn usable(raw: wgpu::Adapter) -> Option<Usable> {
     let found = raw.get_info();
     let pass_over = |reason: String| {
         log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
@@ -183,10 +176,8 @@ fn usable(raw: wgpu::Adapter) -> Option<(Rank, Adapter)> {
         driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
         name: found.name,
     };
-    Some((
-        rank(found.device_type, backend),
-        Adapter { info, handle: Handle { raw: Some(raw), gl: backend == Backend::Gl } },
-    ))
+    let rank = rank(found.device_type, backend);
+    Some(Usable { rank, adapter: Adapter { info, handle: Handle { raw: Some(raw), gl: backend == Backend::Gl } } })
 }
 
 fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {
@@ -209,16 +200,6 @@ fn backend(of: wgpu::Backend) -> Option<Backend> {
     }
 }
 
-fn wgpu_backends(of: Backend) -> wgpu::Backends {
-    match of {
-        Backend::Cpu => wgpu::Backends::empty(),
-        Backend::Vulkan => wgpu::Backends::VULKAN,
-        Backend::Metal => wgpu::Backends::METAL,
-        Backend::D3d12 => wgpu::Backends::DX12,
-        Backend::Gl => wgpu::Backends::GL,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -238,10 +219,5 @@ mod tests {
         ];
         let ranks = order.map(|(kind, backend)| rank(kind, backend));
         assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
-    }
-
-    #[test]
-    fn a_search_that_panics_finds_nothing() {
-        assert!(guarded("test", || panic!("a driver's bug")).is_empty());
     }
 }
