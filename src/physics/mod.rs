@@ -2,3 +2,4 @@
 //! Knows neither scenes nor tracers; the WGSL in `shaders/` mirrors it, function by function, under the same names.
 
 pub mod blackbody;
+pub mod cie1931;
