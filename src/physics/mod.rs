@@ -5,6 +5,7 @@
 //! spin axis +z. `a` is signed: a < 0 turns the hole towards -ph. Prograde means towards +ph.
 
 pub mod blackbody;
+pub mod cie1931;
 pub mod disk_flux;
 pub mod geodesic;
 pub mod integrator;
