@@ -7,7 +7,7 @@ const MIN_TEMPERATURE: f32 = 100.0;
 const MAX_TEMPERATURE: f32 = 1e20;
 const COORDINATE_TEMPERATURE: f32 = 1000.0;
 // c2 / 650 nm
-const WIEN_TEMPERATURE: f32 = 22135.028884675903;
+const WIEN_TEMPERATURE: f32 = 22135.029;
 const MAX_LN_RATIO: f32 = 80.0;
 
 // rgb / Y, not clamped, and ln Y; MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE.

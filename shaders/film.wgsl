@@ -118,11 +118,13 @@ fn aces(rgb: vec3<f32>) -> vec3<f32> {
     return clamp(balanced(ACES_OUT, fit), vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
-const AGX_IN = mat3x2<f32>(0.0784336, 0.0792237451, 0.0423282423, 0.0791661275, 0.0423756549, 0.0784336);
-const AGX_OUT = mat3x2<f32>(-0.098033173, -0.099040827, -0.052903485, -0.098950804, -0.052977564, -0.098033173);
+const AGX_IN = mat3x2<f32>(0.0784336, 0.0792237, 0.0423282, 0.0791661, 0.0423757, 0.0784336);
+const AGX_OUT = mat3x2<f32>(-0.0980332, -0.0990408, -0.0529035, -0.0989508, -0.0529776, -0.0980332);
 const AGX_LOW: f32 = -12.473931;
 const AGX_SPAN: f32 = 16.5;
-const AGX_PIVOT: f32 = 0.60606061;
+const AGX_PIVOT: f32 = 0.6060606;
+const AGX_TOE: f32 = 0.5122774;
+const AGX_SHOULDER: f32 = 0.5414642;
 
 fn agx(rgb: vec3<f32>) -> vec3<f32> {
     let inset = max(balanced(AGX_IN, rgb), vec3<f32>(1e-10));
@@ -133,7 +135,7 @@ fn agx(rgb: vec3<f32>) -> vec3<f32> {
 
 fn agx_sigmoid(x: f32) -> f32 {
     let toe = x < AGX_PIVOT;
-    let scale = select(0.541464156, -0.512277382, toe);
+    let scale = select(AGX_SHOULDER, -AGX_TOE, toe);
     let power = select(3.25, 3.0, toe);
     let t = max(2.0 * (x - AGX_PIVOT) / scale, 0.0);
     return clamp(0.5 + scale * t / pow(1.0 + pow(t, power), 1.0 / power), 0.0, 1.0);

@@ -39,13 +39,17 @@ fn aces(rgb: [f32; 3]) -> [f32; 3] {
 }
 
 /// Troy Sobotka's AgX inset, and its inverse.
-const AGX_IN: Balanced = [[0.0784336, 0.0792237451], [0.0423282423, 0.0791661275], [0.0423756549, 0.0784336]];
-const AGX_OUT: Balanced = [[-0.098033173, -0.099040827], [-0.052903485, -0.098950804], [-0.052977564, -0.098033173]];
+const AGX_IN: Balanced = [[0.0784336, 0.0792237], [0.0423282, 0.0791661], [0.0423757, 0.0784336]];
+const AGX_OUT: Balanced = [[-0.0980332, -0.0990408], [-0.0529035, -0.0989508], [-0.0529776, -0.0980332]];
 /// Stops about middle grey, 0.18, that the curve spans: -10 .. +6.5, in log2 of light.
 const AGX_LOW: f32 = -12.473931;
 const AGX_SPAN: f32 = 16.5;
 /// Middle grey on that axis, 10 / 16.5, where the curve passes through one half.
-const AGX_PIVOT: f32 = 0.60606061;
+const AGX_PIVOT: f32 = 0.606_060_6;
+
+/// |s| of the sigmoid below and above the pivot.
+const AGX_TOE: f32 = 0.5122774;
+const AGX_SHOULDER: f32 = 0.5414642;
 
 /// AgX, base look (T. Sobotka, AgX-S2O3, 2022): inset, log2, a sigmoid, outset; the result is for a display of gamma 2.2.
 /// The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the pivot, p = 3
@@ -57,7 +61,7 @@ fn agx(rgb: [f32; 3]) -> [f32; 3] {
 }
 
 fn agx_sigmoid(x: f32) -> f32 {
-    let (scale, power) = if x < AGX_PIVOT { (-0.512277382, 3.0) } else { (0.541464156, 3.25) };
+    let (scale, power) = if x < AGX_PIVOT { (-AGX_TOE, 3.0) } else { (AGX_SHOULDER, 3.25) };
     let t = (2.0 * (x - AGX_PIVOT) / scale).max(0.0);
     (0.5 + scale * t / (1.0 + t.powf(power)).powf(1.0 / power)).clamp(0.0, 1.0)
 }
@@ -112,8 +116,8 @@ mod tests {
         let pivot = 10.0 / 16.5;
         assert!((f64::from(AGX_PIVOT) - pivot).abs() < 1e-7);
         assert!((f64::from(AGX_LOW) - (0.18_f64.log2() - 10.0)).abs() < 1e-6);
-        assert!((scale(pivot, 3.0) - 0.512277382).abs() < 1e-9);
-        assert!((scale(1.0 - pivot, 3.25) - 0.541464156).abs() < 1e-9);
+        assert!((scale(pivot, 3.0) - f64::from(AGX_TOE)).abs() < 1e-7);
+        assert!((scale(1.0 - pivot, 3.25) - f64::from(AGX_SHOULDER)).abs() < 1e-7);
         for rgb in [[1.0, 0.2, 0.1], [0.0, 0.7, 0.3]] {
             let back = balanced(AGX_OUT, balanced(AGX_IN, rgb));
             assert!((0..3).all(|i| (back[i] - rgb[i]).abs() < 1e-6), "{rgb:?} {back:?}");

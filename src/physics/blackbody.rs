@@ -119,7 +119,9 @@ impl BlackbodyTable {
     /// ln Y of a blackbody as the table has it, Y as in `radiance_xyz`: the `log_reference` of the functions below.
     /// `temperature` in K, taken into [MIN_TEMPERATURE, MAX_TEMPERATURE].
     pub fn ln_luminance(&self, temperature: f64) -> f64 {
-        self.blackbody_lookup(temperature.max(MIN_TEMPERATURE).min(MAX_TEMPERATURE))[3]
+        // NaN goes to the lower end too.
+        let taken = if temperature > MIN_TEMPERATURE { temperature.min(MAX_TEMPERATURE) } else { MIN_TEMPERATURE };
+        self.blackbody_lookup(taken)[3]
     }
 
     /// Linear Rec. 709 light of a blackbody at `temperature` (K), where a luminance of e^`log_reference` counts as 1. Inside the gamut,
