@@ -1,5 +1,5 @@
-// From a pixel to the start of its ray: the lens, aberration, and the local frame. Mirrors src/physics/observer.rs and
-// `Lens::look`; knows no integrator. Reads the uniform `frame`, declared in frame.wgsl.
+// From a look direction to the start of its ray: aberration and the local frame. Mirrors src/physics/observer.rs; knows no
+// integrator. Reads the uniform `frame`, declared where the bindings are.
 
 struct RayBegin {
     c: Constants,
@@ -8,13 +8,6 @@ struct RayBegin {
     frequency_ratio: f32,
     // False: no light can come from there (rain frame, E <= 0).
     light: bool,
-}
-
-// Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.
-fn camera_look(x: f32, y: f32) -> vec3<f32> {
-    let right = 2.0 * x / frame.size.x - 1.0;
-    let up = 1.0 - 2.0 * y / frame.size.y;
-    return normalize(frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz);
 }
 
 fn begin_ray(look: vec3<f32>) -> RayBegin {

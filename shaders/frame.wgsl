@@ -25,7 +25,7 @@ struct Frame {
     sky_z: vec4<f32>,
     // Inner and outer radius, temperature, ln Y(temperature).
     disk: vec4<f32>,
-    // Opacity, brightness, w-scale of the temperature profile, -1 for retrograde or 1.
+    // Opacity, brightness, 0, -1 for retrograde or 1.
     disk_light: vec4<f32>,
     // Of the full frame, pixels; then step in sigma and tolerance.
     size: vec4<f32>,
@@ -33,25 +33,11 @@ struct Frame {
     max_steps: u32,
     max_crossings: u32,
     rain: u32,
-    // BHR_EFFECT_* bits, BHR_VIEW_*, 1 with a disk, 1 for TRANSPARENT.
+    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*, 1 with a disk, 1 for TRANSPARENT.
     effects: u32,
     view: u32,
     has_disk: u32,
     transparent: u32,
-}
-
-// One sample of one tile. The traced rectangle is the tile and one pixel around it, for the derivatives.
-struct Pass {
-    // Of the traced rectangle's top-left pixel in the full frame.
-    origin: vec2<i32>,
-    // Of the traced rectangle.
-    size: vec2<u32>,
-    // Of this sample in its pixel, 0 .. 1.
-    offset: vec2<f32>,
-    // Of this sample among all.
-    weight: f32,
-    // 1: begins a new sum.
-    first: u32,
 }
 
 const VIEW_LIGHT: u32 = 0u;
@@ -64,6 +50,7 @@ const VIEW_METRIC: u32 = 5u;
 const EFFECT_DOPPLER_SHIFT: u32 = 1u;
 const EFFECT_GRAVITY_SHIFT: u32 = 2u;
 const EFFECT_BEAMING: u32 = 4u;
+const EFFECT_ALL: u32 = 7u;
 
 // The record of pixel i: word k is records[k * pixels + i].
 const RECORD_DIRECTION: u32 = 0u;
@@ -79,3 +66,10 @@ const RECORD_PLANE: u32 = 8u;
 // u, azimuth, g, delay of each crossing within the disk, in order.
 const RECORD_CROSSINGS: u32 = 9u;
 const RECORD_CROSSING_WORDS: u32 = 4u;
+
+// Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.
+fn camera_look(x: f32, y: f32) -> vec3<f32> {
+    let right = 2.0 * x / frame.size.x - 1.0;
+    let up = 1.0 - 2.0 * y / frame.size.y;
+    return normalize(frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz);
+}

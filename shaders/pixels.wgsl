@@ -72,7 +72,7 @@ fn write_record(i: u32, pixels: u32, begin: RayBegin, traced: RayTrace) {
     }
     records[RECORD_META * pixels + i] = meta_word;
     // What only some frames look at.
-    if frame.effects != 0xffffffffu {
+    if frame.effects != EFFECT_ALL {
         records[RECORD_ENERGY * pixels + i] = bitcast<u32>(c.energy / c.nu_local);
         records[RECORD_ANGULAR_MOMENTUM * pixels + i] = bitcast<u32>(c.angular_momentum / c.nu_local);
     }

@@ -57,12 +57,14 @@ pub struct Compiled {
     pub layout: wgpu::BindGroupLayout,
 }
 
+const MATH: &str = include_str!("../../shaders/math.wgsl");
 const TRACE_PARTS: [&str; 4] = [
-    include_str!("../../shaders/math.wgsl"),
+    MATH,
     include_str!("../../shaders/geodesic.wgsl"),
     include_str!("../../shaders/integrator.wgsl"),
     include_str!("../../shaders/trace.wgsl"),
 ];
+const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 
 fn crossing_constant(max_crossings: u32) -> String {
@@ -76,13 +78,15 @@ fn rays_source(max_crossings: u32) -> String {
 
 fn pixels_source(max_crossings: u32) -> String {
     let head = crossing_constant(max_crossings);
-    let rest = [FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
+    let rest = [PASS, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
     [&[head.as_str()], TRACE_PARTS.as_slice(), &rest].concat().join("\n")
 }
 
 fn shade_source() -> String {
     [
         sky::StarIndex::shared().wgsl_constants().as_str(),
+        MATH,
+        PASS,
         FRAME,
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -93,7 +97,7 @@ fn shade_source() -> String {
 }
 
 fn develop_source() -> String {
-    [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/develop.wgsl")].join("\n")
+    [PASS, include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/develop.wgsl")].join("\n")
 }
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
@@ -223,7 +227,9 @@ impl Compiled {
 pub fn check_groups(device: &Device, groups: [u32; 2]) -> Result<()> {
     let limit = device.limits().max_compute_workgroups_per_dimension;
     if groups.iter().any(|&g| g > limit) {
-        return Err(Error::internal(format!("a dispatch of {groups:?} workgroups exceeds the device's limit of {limit}")));
+        return Err(Error::internal(format!(
+            "a dispatch of {groups:?} workgroups exceeds the device's limit of {limit}"
+        )));
     }
     Ok(())
 }

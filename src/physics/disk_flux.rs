@@ -50,7 +50,7 @@ pub struct TemperatureProfile {
 }
 
 impl TemperatureProfile {
-    pub const SIZE: usize = 1024;
+    pub const SIZE: usize = 2048;
 
     /// `a` as the matter meets it: the hole's spin for prograde, its negative for retrograde matter.
     pub fn new(a: f64) -> Self {

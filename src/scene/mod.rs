@@ -38,6 +38,16 @@ impl Effects {
     pub const LIGHT_DELAY: u32 = 8;
     pub const ALL: u32 = u32::MAX;
 
+    /// The bits that change the colour or brightness of light, without unknown ones.
+    pub fn light(self) -> u32 {
+        self.0 & (Self::DOPPLER_SHIFT | Self::GRAVITY_SHIFT | Self::BEAMING)
+    }
+
+    /// Whether light is shown as it arrives, no effect left out.
+    pub fn all_light(self) -> bool {
+        self.light() == Self(Self::ALL).light()
+    }
+
     pub fn has(self, bit: u32) -> bool {
         self.0 & bit != 0
     }

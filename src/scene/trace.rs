@@ -77,9 +77,14 @@ impl Scene {
         self.disk.is_some_and(|d| d.retrograde)
     }
 
+    /// Spin as the disk's matter meets it: its own sense of motion is +ph.
+    pub fn matter_spin(&self) -> f64 {
+        if self.retrograde() { -self.hole.spin } else { self.hole.spin }
+    }
+
     /// ISCO of the disk's matter, M.
     pub fn disk_isco(&self) -> f64 {
-        isco(if self.retrograde() { -self.hole.spin } else { self.hole.spin })
+        isco(self.matter_spin())
     }
 
     /// The host's view of a finished trace.
