@@ -6,10 +6,12 @@ pub mod disk;
 pub mod film;
 pub mod frame;
 pub mod hole;
+pub mod observer;
 pub mod quality;
 pub mod query;
 pub mod rays;
 pub mod sky;
+pub mod trace;
 
 pub use camera::{Camera, Motion, Projection};
 pub use disk::Disk;
