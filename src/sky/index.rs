@@ -181,7 +181,8 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
         let (u, v) = (warp(u / along), warp(v / along));
         for level in 0..STAR_LEVELS {
             let n = side(level) as i32;
-            let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) - 0.5).floor() as i32;
+            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 24 moves every level's cells above 0.
+            let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 23.5) as i32 - 24;
             let (column, row) = (first(u), first(v));
             for row in (row..=row + 1).filter(|row| (0..n).contains(row)) {
                 for column in (column..=column + 1).filter(|column| (0..n).contains(column)) {

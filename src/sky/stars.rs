@@ -205,15 +205,12 @@ mod tests {
         let mean = index.mean_sky.iter().map(|p| p.radiance).sum::<f64>();
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
         assert!((luminance(index.star_light(d, dx, dy, 1.0, 1.0)) / mean - 1.0).abs() < 1e-3);
-        let mut before = None;
+        let mut before: Option<f64> = None;
         for i in 0..4000 {
             let (d, dx, dy) = pixel(DVec3::Z, 0.01 + 1e-5 * f64::from(i), 0.0, 0.0);
             let now = luminance(index.star_light(d, dx, dy, 1.0, 1.0));
             if let Some(before) = before {
-                assert!(
-                    (now - before as f64).abs() < 0.01 * (mean + before),
-                    "seam at {i}: {before} {now}, mean {mean}"
-                );
+                assert!((now - before).abs() < 0.01 * (mean + before), "seam at {i}: {before} {now}, mean {mean}");
             }
             before = Some(now);
         }
