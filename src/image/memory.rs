@@ -28,8 +28,24 @@ pub struct ImageMut<'a> {
     _memory: PhantomData<&'a mut [u8]>,
 }
 impl ImageMut<'_> {
-    pub fn width(&self) -> u32 { 0 }
-    pub fn height(&self) -> u32 { 0 }
-    pub fn format(&self) -> PixelFormat { PixelFormat::Rgba8Srgb }
-    pub fn write_tile(&mut self, _x: u32, _y: u32, _width: u32, _height: u32, _pixels: &[u8], _bytes_per_row: usize) -> Result<()> { Ok(()) }
+    pub fn width(&self) -> u32 {
+        0
+    }
+    pub fn height(&self) -> u32 {
+        0
+    }
+    pub fn format(&self) -> PixelFormat {
+        PixelFormat::Rgba8Srgb
+    }
+    pub fn write_tile(
+        &mut self,
+        _x: u32,
+        _y: u32,
+        _width: u32,
+        _height: u32,
+        _pixels: &[u8],
+        _bytes_per_row: usize,
+    ) -> Result<()> {
+        Ok(())
+    }
 }
