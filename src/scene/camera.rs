@@ -62,10 +62,14 @@ impl Default for Camera {
 impl Camera {
     /// Errors: a number not finite, position 0, forward or up zero or parallel, fov_y out of range, |velocity| >= 1.
     pub fn check(&self) -> Result<()> {
-        let named = [("position", self.position), ("forward", self.forward), ("up", self.up), ("velocity", self.velocity)];
+        let named =
+            [("position", self.position), ("forward", self.forward), ("up", self.up), ("velocity", self.velocity)];
         for (name, v) in named {
             if !v.is_finite() {
-                return Err(Error::argument(format!("camera {name} is ({}, {}, {}); it must be finite", v.x, v.y, v.z)));
+                return Err(Error::argument(format!(
+                    "camera {name} is ({}, {}, {}); it must be finite",
+                    v.x, v.y, v.z
+                )));
             }
         }
         if unit(self.position).is_none() {
@@ -80,7 +84,10 @@ impl Camera {
         let inside = self.fov_y > 0.0 && (self.fov_y < limit || (closed && self.fov_y == limit));
         if !ignored && !inside {
             let bracket = if closed { ']' } else { ')' };
-            return Err(Error::argument(format!("camera fov_y is {}; it must lie in (0, {limit}{bracket}", self.fov_y)));
+            return Err(Error::argument(format!(
+                "camera fov_y is {}; it must lie in (0, {limit}{bracket}",
+                self.fov_y
+            )));
         }
         if self.velocity.length() >= 1.0 {
             return Err(Error::argument(format!(

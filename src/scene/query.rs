@@ -43,7 +43,13 @@ impl Scene {
     }
 
     /// Rays through all pixel centres of the image, row by row, handed to `write(index, ray)`.
-    pub fn camera_rays(&self, _width: u32, _height: u32, _region: Option<Region>, _write: &mut dyn FnMut(usize, Ray)) -> Result<()> {
+    pub fn camera_rays(
+        &self,
+        _width: u32,
+        _height: u32,
+        _region: Option<Region>,
+        _write: &mut dyn FnMut(usize, Ray),
+    ) -> Result<()> {
         Err(Error::unsupported("skeleton"))
     }
 
