@@ -52,7 +52,7 @@ pub unsafe extern "C" fn bhr_render_image_async(
 pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fraction: *mut f64) -> BhrStatus {
     let _ = timeout_ns;
     // SAFETY: NULL or valid, by the header's conventions.
-    drop(unsafe { Out::cleared(out_fraction) });
+    let _out = unsafe { Out::cleared(out_fraction) };
     on_job("bhr_job_wait", job, || Ok(()))
 }
 

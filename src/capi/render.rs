@@ -102,7 +102,7 @@ mod tests {
             unsafe { &mut *user.cast::<Vec<f64>>() }.push(fraction);
             i32::from(fraction < 0.5)
         }
-        let mut heard = Vec::new();
+        let mut heard: Vec<f64> = Vec::new();
         let user = User((&raw mut heard).cast());
         let mut report = Report { callback: Some(Callback { function: keep, user }), told: 0.0 };
         let go_on: Vec<bool> = [0.0, 0.25, 0.125, f64::NAN, -1.0, 7.0].map(|fraction| report.tell(fraction)).into();
