@@ -3,7 +3,7 @@
 
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{self, GpuTracer};
+use crate::gpu::{self, GpuTracer, Search};
 use crate::image::{ImageMut, PixelFormat};
 use crate::scene::{Hit, Ray, Region, Scene, View};
 use std::time::Instant;
@@ -63,7 +63,7 @@ pub struct FrameStats {
 
 /// Every adapter on this machine, best first; the CPU tracer, always there, is last.
 pub fn adapters() -> Vec<AdapterInfo> {
-    let mut list = gpu::adapters(false).into_iter().map(|a| a.info).collect::<Vec<_>>();
+    let mut list = gpu::adapters(Search::All, false).into_iter().map(|a| a.info).collect::<Vec<_>>();
     list.push(crate::cpu::adapter_info());
     list
 }
@@ -120,7 +120,12 @@ impl Renderer {
         if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {
             return cpu();
         }
-        let found = gpu::adapters(options.validation);
+        let search = match (options.adapter_index, options.backend) {
+            (Some(_), _) => Search::All,
+            (None, Some(backend)) => Search::Only(backend),
+            (None, None) => Search::Auto,
+        };
+        let found = gpu::adapters(search, options.validation);
         let count = found.len() as u32 + 1;
         if let Some(index) = options.adapter_index {
             if index >= count {
@@ -142,7 +147,7 @@ impl Renderer {
             };
         }
         let mut reasons = Vec::new();
-        for adapter in found.into_iter().filter(|a| options.backend.is_none_or(|wanted| wanted == a.info.backend)) {
+        for adapter in found {
             let name = adapter.info.name.clone();
             match GpuTracer::new(adapter) {
                 Ok(tracer) => return Ok(Tracer::Gpu(Box::new(tracer))),
@@ -169,6 +174,7 @@ impl Renderer {
 
     /// Opens the device anew after it was lost; the scene stays.
     pub fn recover(&mut self) -> Result<()> {
+        gpu::forget_drivers();
         self.tracer = Self::open(&self.options)?;
         Ok(())
     }

@@ -1,11 +1,23 @@
-//! The CPU tracer: f64, rayon.
-use crate::error::{Error, Result};
+//! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the GPU tracer
+//! is held against. Calls `physics`; knows no pixel memory and nothing of C.
+
+mod rays;
+
+pub use rays::trace_path;
+
+use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, Backend, FrameRequest, FrameStats, Progress, TileSink};
 use crate::scene::{Hit, Ray, Scene};
 
+/// Most threads a pool may have, whatever the host asks for.
+pub const MAX_THREADS: u32 = 1024;
+
 pub struct CpuTracer {
     adapter: AdapterInfo,
+    pool: rayon::ThreadPool,
 }
+
+/// What the CPU tracer is listed as.
 pub fn adapter_info() -> AdapterInfo {
     AdapterInfo {
         backend: Backend::Cpu,
@@ -13,17 +25,39 @@ pub fn adapter_info() -> AdapterInfo {
         software: true,
         vendor_id: 0,
         device_id: 0,
-        name: "bhr CPU tracer".into(),
-        driver: String::new(),
+        name: "bhr CPU tracer (double precision)".into(),
+        driver: format!("bhr {}", env!("CARGO_PKG_VERSION")),
     }
 }
+
 impl CpuTracer {
-    pub fn new(_threads: u32) -> Result<Self> {
-        Ok(Self { adapter: adapter_info() })
+    /// `threads` 0: one per core this process may use. Errors: INVALID_ARGUMENT for too many, OUT_OF_MEMORY when the system
+    /// gives no threads.
+    pub fn new(threads: u32) -> Result<Self> {
+        if threads > MAX_THREADS {
+            return Err(Error::argument(format!("cpu_threads is {threads}; the limit is {MAX_THREADS}")));
+        }
+        let count = match threads {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get()).min(MAX_THREADS as usize),
+            n => n as usize,
+        };
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(count)
+            .thread_name(|i| format!("bhr-cpu-{i}"))
+            .build()
+            .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
+        Ok(Self { adapter: adapter_info(), pool })
     }
+
     pub fn adapter(&self) -> &AdapterInfo {
         &self.adapter
     }
+
+    pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
+        self.pool.install(|| rays::trace_rays(scene, rays, hits));
+        Ok(())
+    }
+
     pub fn render(
         &mut self,
         _scene: &Scene,
@@ -33,10 +67,4 @@ impl CpuTracer {
     ) -> Result<FrameStats> {
         Err(Error::unsupported("skeleton"))
     }
-    pub fn trace_rays(&mut self, _scene: &Scene, _rays: &[Ray], _hits: &mut [Hit]) -> Result<()> {
-        Err(Error::unsupported("skeleton"))
-    }
-}
-pub fn trace_path(_scene: &Scene, _ray: &Ray, _capacity: usize) -> Result<Vec<[f64; 4]>> {
-    Err(Error::unsupported("skeleton"))
 }

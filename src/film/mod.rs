@@ -1,1 +1,266 @@
-//! skeleton
+//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve and dithering; float
+//! formats get the radiance as it is. Views other than light get false colour, or their value. In f32, so that
+//! `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how light was made.
+
+mod false_colour;
+mod tone_map;
+
+use crate::image::PixelFormat;
+use crate::scene::{Film, ToneMap, View};
+use arrayvec::ArrayVec;
+use tone_map::MAX_SCENE_LIGHT;
+
+/// What film needs to know of a frame: the uniform `film` of the shader, 32 bytes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+pub struct FilmParams {
+    /// Factor on radiance, 2^ev.
+    pub exposure: f32,
+    /// A `ToneMap`.
+    pub tone_map: u32,
+    /// A `PixelFormat`.
+    pub format: u32,
+    /// 1: the red channel holds a view's value, not light.
+    pub false_colour: u32,
+    /// The view's value that becomes the first colour.
+    pub view_low: f32,
+    /// 1 / (last colour's value - first's).
+    pub view_scale: f32,
+    /// 1: alpha is kept; 0: it becomes 1.
+    pub transparent: u32,
+    pub reserved: u32,
+}
+
+impl FilmParams {
+    /// `film` has passed its check. `transparent`: keep alpha, radiance being premultiplied by it.
+    pub fn new(film: &Film, view: View, format: PixelFormat, transparent: bool) -> Self {
+        let (low, high) = false_colour::range(view);
+        Self {
+            exposure: film.exposure_ev.exp2() as f32,
+            tone_map: film.tone_map as u32,
+            format: format as i32 as u32,
+            false_colour: u32::from(view != View::Light),
+            view_low: low,
+            view_scale: 1.0 / (high - low),
+            transparent: u32::from(transparent),
+            reserved: 0,
+        }
+    }
+
+    fn tone_map_kind(&self) -> ToneMap {
+        match self.tone_map {
+            1 => ToneMap::Aces,
+            2 => ToneMap::Agx,
+            _ => ToneMap::None,
+        }
+    }
+}
+
+/// The bytes of one pixel, in memory order.
+pub type PackedPixel = ArrayVec<u8, 16>;
+
+/// One pixel of the frame. `radiance`: linear Rec. 709, premultiplied, and alpha; for a view, its value first. (`x`, `y`): the pixel's
+/// place in the whole frame, which the dither goes by, so that tiles join without a seam.
+pub fn develop(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> PackedPixel {
+    let words: ArrayVec<u32, 4> = match params.format {
+        3 => develop_rgba16f(params, radiance).into_iter().collect(),
+        4 => develop_rgba32f(params, radiance).into_iter().collect(),
+        5 => [radiance[0].to_bits()].into_iter().collect(),
+        2 => [develop_bgra8(params, radiance, x, y)].into_iter().collect(),
+        _ => [develop_rgba8(params, radiance, x, y)].into_iter().collect(),
+    };
+    words.into_iter().flat_map(u32::to_le_bytes).collect()
+}
+
+/// Red in the lowest byte.
+fn develop_rgba8(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> u32 {
+    let [r, g, b, a] = develop_8bit(params, radiance, x, y);
+    r | g << 8 | b << 16 | a << 24
+}
+
+/// Blue in the lowest byte.
+fn develop_bgra8(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> u32 {
+    let [r, g, b, a] = develop_8bit(params, radiance, x, y);
+    b | g << 8 | r << 16 | a << 24
+}
+
+/// Codes 0 .. 255 of red, green, blue, alpha. Premultiplied light is developed as it is: over black, a transparent picture looks
+/// like the opaque one. Codes are what the sum of value and dither, in [0, 1), is rounded down to: right on average, and
+/// black and white stay exact. Alpha and false colour are rounded without dither.
+fn develop_8bit(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> [u32; 4] {
+    if params.false_colour != 0 {
+        let share = (radiance[0] - params.view_low) * params.view_scale;
+        let [r, g, b] = false_colour::false_colour(share).map(|v| (v * 255.0 + 0.5) as u32);
+        return [r, g, b, 255];
+    }
+    let scene = [radiance[0], radiance[1], radiance[2]].map(|v| limited(v * params.exposure, MAX_SCENE_LIGHT));
+    let noise = dither(x, y);
+    let [r, g, b] = tone_map::tone_map(params.tone_map_kind(), scene).map(|v| (srgb_encode(v) * 255.0 + noise) as u32);
+    [r, g, b, (alpha(params, radiance[3]) * 255.0 + 0.5) as u32]
+}
+
+/// Largest finite f16.
+const MAX_F16: f32 = 65504.0;
+
+/// Finite: brighter light than f16 can hold becomes its largest number.
+fn develop_rgba16f(params: &FilmParams, radiance: [f32; 4]) -> [u32; 2] {
+    let pair = |low: f32, high: f32| {
+        let bits = |v| u32::from(half::f16::from_f32(v).to_bits());
+        bits(low) | bits(high) << 16
+    };
+    let [r, g, b, a] = radiance;
+    let light = |v| limited(v, MAX_F16);
+    [pair(light(r), light(g)), pair(light(b), alpha(params, a))]
+}
+
+fn develop_rgba32f(params: &FilmParams, radiance: [f32; 4]) -> [u32; 4] {
+    let [r, g, b, a] = radiance;
+    let light = |v| limited(v, f32::MAX).to_bits();
+    [light(r), light(g), light(b), alpha(params, a).to_bits()]
+}
+
+fn alpha(params: &FilmParams, alpha: f32) -> f32 {
+    if params.transparent != 0 { limited(alpha, 1.0) } else { 1.0 }
+}
+
+/// `v` within [0, `most`]; NaN, which no tracer should give, becomes 0: no pixel spreads it.
+fn limited(v: f32, most: f32) -> f32 {
+    if v.is_nan() { 0.0 } else { v.max(0.0).min(most) }
+}
+
+/// Linear light 0 .. 1 to the sRGB code value 0 .. 1 (IEC 61966-2-1). The power is written so that 1 gives 1 exactly.
+pub fn srgb_encode(linear: f32) -> f32 {
+    if linear <= 0.0031308 { 12.92 * linear } else { 1.0 - 1.055 * (1.0 - linear.powf(1.0 / 2.4)) }
+}
+
+/// Interleaved gradient noise (J. Jimenez, SIGGRAPH 2014): fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), here in
+/// fixed point with 32 bits of fraction, so that it is the same number on every machine: 52.9829189 = 53 - 1119.4 / 2^16. In [0, 1),
+/// multiples of 2^-16, so that 255 plus it is exact.
+pub fn dither(x: u32, y: u32) -> f32 {
+    let ramp = x.wrapping_mul(288_237_660).wrapping_add(y.wrapping_mul(25_070_369));
+    let noise = ramp.wrapping_mul(53).wrapping_sub((ramp >> 16).wrapping_mul(1119));
+    (noise >> 16) as f32 / 65536.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn params(tone_map: ToneMap, format: PixelFormat) -> FilmParams {
+        FilmParams::new(&Film { tone_map, exposure_ev: 0.0, bloom: 0.0 }, View::Light, format, false)
+    }
+
+    /// IEC 61966-2-1, decoding, in f64.
+    fn srgb_decode(code: f64) -> f64 {
+        if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+    }
+
+    #[test]
+    fn srgb_curve_is_exact_at_every_code() {
+        for code in 0..=255_u32 {
+            let linear = srgb_decode(f64::from(code) / 255.0) as f32;
+            assert!((srgb_encode(linear) * 255.0 - code as f32).abs() < 1e-3, "{code}");
+        }
+        assert_eq!(srgb_encode(0.0), 0.0);
+        assert_eq!(srgb_encode(1.0), 1.0);
+        assert_eq!((srgb_encode(1.0) * 255.0 + 65535.0 / 65536.0) as u32, 255);
+    }
+
+    #[test]
+    fn black_and_white_take_no_dither_in_any_tone_map() {
+        for kind in [ToneMap::None, ToneMap::Aces, ToneMap::Agx] {
+            let params = params(kind, PixelFormat::Rgba8Srgb);
+            for i in 0..4096 {
+                let (x, y) = (i % 64, i / 64);
+                assert_eq!(develop(&params, [0.0; 4], x, y).as_slice(), [0, 0, 0, 255]);
+                assert_eq!(develop(&params, [1e9; 4], x, y).as_slice(), [255; 4]);
+            }
+        }
+        assert_eq!(develop(&params(ToneMap::None, PixelFormat::Rgba8Srgb), [1.0; 4], 0, 0).as_slice(), [255; 4]);
+    }
+
+    #[test]
+    fn dither_is_unbiased_and_at_most_one_step() {
+        let params = params(ToneMap::None, PixelFormat::Rgba8Srgb);
+        for value in [0.001, 0.02, 0.2, 0.77] {
+            let wanted = f64::from(srgb_encode(value)) * 255.0;
+            let mut sum = 0.0;
+            for i in 0..128 * 128 {
+                let code = f64::from(develop(&params, [value; 4], i % 128, 1000 + i / 128)[0]);
+                assert!((code - wanted).abs() < 1.0, "{code} for {wanted}");
+                sum += code;
+            }
+            let mean = sum / (128.0 * 128.0);
+            assert!((mean - wanted).abs() < 0.01, "mean {mean} for {wanted}");
+        }
+    }
+
+    #[test]
+    fn dither_is_jimenez_noise() {
+        for (x, y) in [(0_u32, 0_u32), (1, 0), (0, 1), (17, 5), (1919, 1079)] {
+            let ramp = (0.06711056 * f64::from(x) + 0.00583715 * f64::from(y)).fract();
+            let difference = f64::from(dither(x, y)) - (52.9829189 * ramp).fract();
+            // On a circle: 0 and 1 are the same phase.
+            assert!((difference - difference.round()).abs() < 1e-3, "({x}, {y}): {difference}");
+        }
+    }
+
+    #[test]
+    fn exposure_is_in_stops_and_for_8_bit_only() {
+        let film = Film { tone_map: ToneMap::None, exposure_ev: -1.0, bloom: 0.0 };
+        let darker = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
+        let plain = params(ToneMap::None, PixelFormat::Rgba8Srgb);
+        assert_eq!(develop(&darker, [0.5, 0.25, 0.125, 1.0], 3, 4), develop(&plain, [0.25, 0.125, 0.0625, 1.0], 3, 4));
+        let float = FilmParams::new(&film, View::Light, PixelFormat::Rgba32F, false);
+        let bytes = develop(&float, [0.5, 7.0, 1e30, 0.25], 0, 0);
+        let values: Vec<f32> = bytes.chunks(4).map(|c| f32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
+        assert_eq!(values, [0.5, 7.0, 1e30, 1.0]);
+    }
+
+    #[test]
+    fn formats_order_and_limit_their_channels() {
+        let plain = |format| params(ToneMap::None, format);
+        assert_eq!(develop(&plain(PixelFormat::Rgba8Srgb), [1.0, 0.0, 0.0, 0.0], 0, 0).as_slice(), [255, 0, 0, 255]);
+        assert_eq!(develop(&plain(PixelFormat::Bgra8Srgb), [1.0, 0.0, 0.0, 0.0], 0, 0).as_slice(), [0, 0, 255, 255]);
+        let half = develop(&plain(PixelFormat::Rgba16F), [1.0, 1e9, f32::INFINITY, 0.0], 0, 0);
+        assert_eq!(half.as_slice(), [0x00, 0x3c, 0xff, 0x7b, 0xff, 0x7b, 0x00, 0x3c]);
+        let value = develop(&plain(PixelFormat::R32F), [-2.0, 0.0, 0.0, 0.0], 0, 0);
+        assert_eq!(value.as_slice(), (-2.0_f32).to_le_bytes());
+        for format in [PixelFormat::Rgba8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F, PixelFormat::R32F] {
+            assert_eq!(develop(&plain(format), [0.0; 4], 0, 0).len(), format.bytes_per_pixel());
+        }
+    }
+
+    #[test]
+    fn nan_and_negative_light_is_black() {
+        for kind in [ToneMap::None, ToneMap::Aces, ToneMap::Agx] {
+            let pixel = develop(&params(kind, PixelFormat::Rgba8Srgb), [f32::NAN, -1.0, 0.0, f32::NAN], 9, 9);
+            assert_eq!(pixel.as_slice(), [0, 0, 0, 255]);
+        }
+        let pixel = develop(&params(ToneMap::None, PixelFormat::Rgba32F), [f32::NAN, f32::INFINITY, -1.0, 0.0], 9, 9);
+        assert_eq!(pixel[..4], 0.0_f32.to_le_bytes());
+        assert_eq!(pixel[4..8], f32::MAX.to_le_bytes());
+        assert_eq!(pixel[8..12], 0.0_f32.to_le_bytes());
+    }
+
+    #[test]
+    fn transparent_pictures_keep_alpha_and_look_alike_over_black() {
+        let film = Film::default();
+        let opaque = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
+        let clear = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, true);
+        let radiance = [0.3, 0.2, 0.1, 0.5];
+        assert_eq!(develop(&clear, radiance, 5, 6)[..3], develop(&opaque, radiance, 5, 6)[..3]);
+        assert_eq!(develop(&clear, radiance, 5, 6)[3], 128);
+        assert_eq!(develop(&opaque, radiance, 5, 6)[3], 255);
+    }
+
+    #[test]
+    fn views_are_false_colour_without_film() {
+        let film = Film { exposure_ev: 5.0, ..Film::default() };
+        let redshift = FilmParams::new(&film, View::Redshift, PixelFormat::Rgba8Srgb, true);
+        let at = |value: f32| develop(&redshift, [value, 0.0, 0.0, 0.0], 1, 2);
+        assert_eq!(at(f32::NAN).as_slice(), [128, 128, 128, 255]);
+        assert_eq!(at(7.0), at(2.0));
+        assert!(at(0.0)[0] < 80 && at(2.0)[0] > 240, "{:?} {:?}", at(0.0), at(2.0));
+    }
+}

@@ -1,35 +1,87 @@
-//! The GPU tracer.
-use crate::error::{Error, Result};
-use crate::renderer::{AdapterInfo, FrameRequest, FrameStats, Progress, TileSink};
-use crate::scene::{Hit, Ray, Scene};
+//! The GPU tracer: wgpu compute, f32. Owns the device, the pipelines and the readback. Mirrors the CPU tracer in what a frame
+//! shows; knows no host memory (tiles go to a sink) and nothing of C.
 
-/// An adapter that a device can be opened on.
-pub struct Adapter {
-    pub info: AdapterInfo,
-}
-pub fn adapters(_validation: bool) -> Vec<Adapter> {
-    Vec::new()
-}
+mod adapter;
+mod buffer;
+mod device;
+mod frame;
+mod kernels;
+mod pipeline;
+mod rays;
+mod readback;
+mod tables;
+mod tiles;
+mod timer;
+mod uniforms;
+
+pub use adapter::{Adapter, Search, adapters, forget_drivers};
+pub use buffer::Buffer;
+pub use device::Device;
+#[doc(hidden)]
+pub use kernels::shader_sources;
+pub use pipeline::{Kernel, Loops, ProvenFinite};
+pub use readback::{Copied, Readback};
+pub use timer::GpuTimer;
+
+use crate::error::Result;
+use crate::physics::trace::Settings;
+use crate::renderer::AdapterInfo;
+use crate::scene::{Method, Scene};
+use kernels::{Kernels, Variant};
+use tables::Tables;
+
+/// f32 rounds at 6e-8; a step's error estimate cannot be trusted below a few times that.
+const SMALLEST_TOLERANCE: f64 = 3e-7;
+/// Nystrom step in sigma for given rays and for pixels: truncation stays below rounding.
+const STEP: f64 = 0.2;
+
+/// Traces on one device.
 pub struct GpuTracer {
     adapter: AdapterInfo,
+    device: Device,
+    kernels: Kernels,
+    /// Made when light is first shaded.
+    tables: Option<Tables>,
+    buffers: frame::FrameBuffers,
+    ray_buffers: rays::RayBuffers,
 }
+
 impl GpuTracer {
+    /// Opens a device. Pipelines and sky follow with the first frame. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
-        Ok(Self { adapter: adapter.info })
+        let device = Device::open(&adapter)?;
+        Ok(Self {
+            adapter: adapter.info.clone(),
+            device,
+            kernels: Kernels::default(),
+            tables: None,
+            buffers: Default::default(),
+            ray_buffers: Default::default(),
+        })
     }
+
     pub fn adapter(&self) -> &AdapterInfo {
         &self.adapter
     }
-    pub fn render(
-        &mut self,
-        _scene: &Scene,
-        _request: &FrameRequest,
-        _sink: &mut TileSink<'_>,
-        _progress: &mut Progress<'_>,
-    ) -> Result<FrameStats> {
-        Err(Error::unsupported("skeleton"))
+}
+
+/// Settings of the f64 tracers brought to what f32 can do.
+fn for_f32(mut settings: Settings, method: Method) -> Settings {
+    settings.tolerance = settings.tolerance.max(SMALLEST_TOLERANCE);
+    if method == Method::Auto {
+        settings.step = STEP;
     }
-    pub fn trace_rays(&mut self, _scene: &Scene, _rays: &[Ray], _hits: &mut [Hit]) -> Result<()> {
-        Err(Error::unsupported("skeleton"))
+    settings
+}
+
+/// What the tracing kernels of a scene are compiled with.
+fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant {
+    let spinning = scene.hole.spin != 0.0;
+    Variant {
+        method: settings.method.into(),
+        spinning,
+        delay: settings.delay,
+        step_limit: spinning || settings.delay || inside_horizon,
+        max_crossings: kernels::crossing_room(settings.max_crossings as u32),
     }
 }

@@ -48,3 +48,13 @@ impl Region {
         overrun("y", self.y, height, self.full_height)
     }
 }
+
+/// Where in its pixel sample `index` of `count` lies, 0 .. 1 each way: the centre for one sample, else a rank-1 lattice with
+/// the generator of R. Korobov's form nearest to the golden ratio (Niederreiter 1992, section 5), centred.
+pub fn sample_offset(index: u32, count: u32) -> [f64; 2] {
+    let (i, n) = (f64::from(index), f64::from(count));
+    let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+    // The lattice's mean lies at the pixel's centre in x exactly, in y by the turn that centres it.
+    let turn = 0.5 - golden * (n - 1.0) / 2.0;
+    [(i + 0.5) / n, (i * golden + turn).rem_euclid(1.0)]
+}

@@ -6,10 +6,12 @@ pub mod disk;
 pub mod film;
 pub mod frame;
 pub mod hole;
+pub mod observer;
 pub mod quality;
 pub mod query;
 pub mod rays;
 pub mod sky;
+pub mod trace;
 
 pub use camera::{Camera, Motion, Projection};
 pub use disk::Disk;
@@ -35,6 +37,16 @@ impl Effects {
     /// The moving disk is seen at its retarded time.
     pub const LIGHT_DELAY: u32 = 8;
     pub const ALL: u32 = u32::MAX;
+
+    /// The bits that change the colour or brightness of light, without unknown ones.
+    pub fn light(self) -> u32 {
+        self.0 & (Self::DOPPLER_SHIFT | Self::GRAVITY_SHIFT | Self::BEAMING)
+    }
+
+    /// Whether light is shown as it arrives, no effect left out.
+    pub fn all_light(self) -> bool {
+        self.light() == Self(Self::ALL).light()
+    }
 
     pub fn has(self, bit: u32) -> bool {
         self.0 & bit != 0

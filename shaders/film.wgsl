@@ -1,0 +1,158 @@
+// Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film`, declared where
+// the bindings are.
+
+struct FilmParams {
+    exposure: f32,
+    tone_map: u32,
+    format: u32,
+    false_colour: u32,
+    view_low: f32,
+    view_scale: f32,
+    transparent: u32,
+    reserved: u32,
+}
+
+const TONE_MAP_ACES: u32 = 1u;
+const TONE_MAP_AGX: u32 = 2u;
+const FORMAT_BGRA8: u32 = 2u;
+const FORMAT_RGBA16F: u32 = 3u;
+const FORMAT_RGBA32F: u32 = 4u;
+const FORMAT_R32F: u32 = 5u;
+const MAX_SCENE_LIGHT: f32 = 65504.0;
+const MAX_F16: f32 = 65504.0;
+const MAX_F32: f32 = 3.40282347e38;
+
+// One pixel, in as many of the four words as the format has: 1 (8-bit, R32F), 2 (RGBA16F) or 4 (RGBA32F).
+fn develop(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
+    switch film.format {
+        case FORMAT_RGBA16F: { return vec4<u32>(develop_rgba16f(radiance), 0u, 0u); }
+        case FORMAT_RGBA32F: { return develop_rgba32f(radiance); }
+        case FORMAT_R32F: { return vec4<u32>(bitcast<u32>(radiance.x), 0u, 0u, 0u); }
+        case FORMAT_BGRA8: { return vec4<u32>(develop_bgra8(radiance, x, y), 0u, 0u, 0u); }
+        default: { return vec4<u32>(develop_rgba8(radiance, x, y), 0u, 0u, 0u); }
+    }
+}
+
+fn develop_rgba8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
+    let codes = develop_8bit(radiance, x, y);
+    return codes.x | (codes.y << 8u) | (codes.z << 16u) | (codes.w << 24u);
+}
+
+fn develop_bgra8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
+    let codes = develop_8bit(radiance, x, y);
+    return codes.z | (codes.y << 8u) | (codes.x << 16u) | (codes.w << 24u);
+}
+
+fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
+    if film.false_colour != 0u {
+        let share = (radiance.x - film.view_low) * film.view_scale;
+        return vec4<u32>(vec3<u32>(false_colour(share) * 255.0 + 0.5), 255u);
+    }
+    let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
+    let display = tone_map(scene);
+    let codes = vec3<f32>(srgb_encode(display.x), srgb_encode(display.y), srgb_encode(display.z)) * 255.0;
+    return vec4<u32>(vec3<u32>(codes + dither(x, y)), u32(alpha_of(radiance.w) * 255.0 + 0.5));
+}
+
+fn develop_rgba16f(radiance: vec4<f32>) -> vec2<u32> {
+    let light = limited(radiance.xyz, MAX_F16);
+    let half = f16_bits(vec4<f32>(light, alpha_of(radiance.w)));
+    return vec2<u32>(half.x | (half.y << 16u), half.z | (half.w << 16u));
+}
+
+// f16 of 0 <= v <= MAX_F16, rounded to even. Not pack2x16float: its rounding is the driver's, and old GL has none.
+fn f16_bits(v: vec4<f32>) -> vec4<u32> {
+    let bits = bitcast<vec4<u32>>(v);
+    // The exponent's bias goes from 127 to 15; adding just under half of the last place, and its lowest bit, rounds.
+    let normal = (bits - 0x38000000u + 0xfffu + ((bits >> vec4<u32>(13u)) & vec4<u32>(1u))) >> vec4<u32>(13u);
+    let subnormal = vec4<u32>(round(v * 16777216.0));
+    return select(normal, subnormal, v < vec4<f32>(6.103515625e-5));
+}
+
+fn develop_rgba32f(radiance: vec4<f32>) -> vec4<u32> {
+    return bitcast<vec4<u32>>(vec4<f32>(limited(radiance.xyz, MAX_F32), alpha_of(radiance.w)));
+}
+
+fn alpha_of(alpha: f32) -> f32 {
+    return select(1.0, limited(vec3<f32>(alpha), 1.0).x, film.transparent != 0u);
+}
+
+// NaN by its bits: a comparison of floats may be compiled as if there were none.
+fn is_nan(v: vec3<f32>) -> vec3<bool> {
+    return (bitcast<vec3<u32>>(v) & vec3<u32>(0x7fffffffu)) > vec3<u32>(0x7f800000u);
+}
+
+fn limited(v: vec3<f32>, most: f32) -> vec3<f32> {
+    return select(clamp(v, vec3<f32>(0.0), vec3<f32>(most)), vec3<f32>(0.0), is_nan(v));
+}
+
+fn srgb_encode(linear: f32) -> f32 {
+    return select(1.0 - 1.055 * (1.0 - pow(linear, 1.0 / 2.4)), 12.92 * linear, linear <= 0.0031308);
+}
+
+fn dither(x: u32, y: u32) -> f32 {
+    let ramp = x * 288237660u + y * 25070369u;
+    let noise = ramp * 53u - (ramp >> 16u) * 1119u;
+    return f32(noise >> 16u) / 65536.0;
+}
+
+fn tone_map(rgb: vec3<f32>) -> vec3<f32> {
+    switch film.tone_map {
+        case TONE_MAP_ACES: { return aces(rgb); }
+        case TONE_MAP_AGX: { return agx(rgb); }
+        default: { return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0)); }
+    }
+}
+
+// A matrix whose rows sum to 1, by what each component takes from the other two.
+fn balanced(m: mat3x2<f32>, c: vec3<f32>) -> vec3<f32> {
+    return c + vec3<f32>(dot(m[0], c.yz - c.x), dot(m[1], c.xz - c.y), dot(m[2], c.xy - c.z));
+}
+
+const ACES_IN = mat3x2<f32>(0.35458, 0.04823, 0.076, 0.01566, 0.0284, 0.13383);
+const ACES_OUT = mat3x2<f32>(-0.53108, -0.07367, -0.10208, -0.00605, -0.00327, -0.07276);
+
+fn aces(rgb: vec3<f32>) -> vec3<f32> {
+    let v = balanced(ACES_IN, rgb);
+    let fit = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
+    return clamp(balanced(ACES_OUT, fit), vec3<f32>(0.0), vec3<f32>(1.0));
+}
+
+const AGX_IN = mat3x2<f32>(0.0784336, 0.0792237, 0.0423282, 0.0791661, 0.0423757, 0.0784336);
+const AGX_OUT = mat3x2<f32>(-0.0980332, -0.0990408, -0.0529035, -0.0989508, -0.0529776, -0.0980332);
+const AGX_LOW: f32 = -12.473931;
+const AGX_SPAN: f32 = 16.5;
+const AGX_PIVOT: f32 = 0.6060606;
+const AGX_TOE: f32 = 0.5122774;
+const AGX_SHOULDER: f32 = 0.5414642;
+
+fn agx(rgb: vec3<f32>) -> vec3<f32> {
+    let inset = max(balanced(AGX_IN, rgb), vec3<f32>(1e-10));
+    let x = clamp((log2(inset) - AGX_LOW) / AGX_SPAN, vec3<f32>(0.0), vec3<f32>(1.0));
+    let curve = vec3<f32>(agx_sigmoid(x.x), agx_sigmoid(x.y), agx_sigmoid(x.z));
+    return pow(clamp(balanced(AGX_OUT, curve), vec3<f32>(0.0), vec3<f32>(1.0)), vec3<f32>(2.2));
+}
+
+fn agx_sigmoid(x: f32) -> f32 {
+    let toe = x < AGX_PIVOT;
+    let scale = select(AGX_SHOULDER, -AGX_TOE, toe);
+    let power = select(3.25, 3.0, toe);
+    let t = max(2.0 * (x - AGX_PIVOT) / scale, 0.0);
+    return clamp(0.5 + scale * t / pow(1.0 + pow(t, power), 1.0 / power), 0.0, 1.0);
+}
+
+fn false_colour(share: f32) -> vec3<f32> {
+    if is_nan(vec3<f32>(share)).x {
+        return vec3<f32>(0.5);
+    }
+    let s = 2.0 * clamp(share, 0.0, 1.0) - 1.0;
+    var sum = vec3<f32>(0.519528, 0.052835, 0.283648);
+    sum = sum * s + vec3<f32>(-0.084876, 0.072525, 0.410502);
+    sum = sum * s + vec3<f32>(-1.206411, -0.080524, -0.039970);
+    sum = sum * s + vec3<f32>(-0.142943, -0.175859, -0.507857);
+    sum = sum * s + vec3<f32>(1.150665, 0.011892, -0.238708);
+    sum = sum * s + vec3<f32>(0.731407, -0.006731, -0.220599);
+    sum = sum * s + vec3<f32>(-0.093959, 0.467181, -0.098045);
+    sum = sum * s + vec3<f32>(0.122859, 0.565404, 0.547807);
+    return clamp(sum, vec3<f32>(0.0), vec3<f32>(1.0));
+}

@@ -1,0 +1,110 @@
+// The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule), where the reasons are.
+// Reads light_tables and star_cells, declared where the bindings are; the constants in capitals that are not here come from
+// StarIndex::wgsl_constants.
+
+const STAR_MIN_AREA: f32 = 1e-3;
+const STAR_TINY_AREA: f32 = 1e-30;
+const MAX_STAR_LIGHT: f32 = 1e9;
+
+fn star_side(level: u32) -> u32 {
+    return STAR_FINEST >> level;
+}
+
+fn star_margin(level: u32) -> f32 {
+    return STAR_MARGIN / f32(star_side(level));
+}
+
+// STAR_LEVELS: none.
+fn star_level_for(radius: f32) -> u32 {
+    var level = 0u;
+    while level < STAR_LEVELS && !(star_margin(level) >= radius) {
+        level += 1u;
+    }
+    return level;
+}
+
+fn star_column(u: f32, side: u32) -> u32 {
+    let w = u * (1.0 + STAR_WARP - STAR_WARP * abs(u));
+    return min(u32(max((w + 1.0) * 0.5 * f32(side), 0.0)), side - 1u);
+}
+
+fn cell_of(direction: vec3<f32>, level: u32) -> u32 {
+    let a = abs(direction);
+    var axis = 2u;
+    var local = direction.zxy;
+    if a.x >= a.y && a.x >= a.z {
+        axis = 0u;
+        local = direction;
+    } else if a.y >= a.z {
+        axis = 1u;
+        local = direction.yzx;
+    }
+    let face = 2u * axis + select(0u, 1u, local.x < 0.0);
+    let side = star_side(level);
+    let before = 8u * (STAR_FINEST * STAR_FINEST - side * side);
+    let plane = local.yz / abs(local.x);
+    return before + (face * side + star_column(plane.y, side)) * side + star_column(plane.x, side);
+}
+
+// Quadratic B-spline, support [-1.5, 1.5].
+fn star_footprint(t: f32) -> f32 {
+    let a = abs(t);
+    let skirt = max(1.5 - a, 0.0);
+    return select(0.5 * skirt * skirt, 0.75 - a * a, a < 0.5);
+}
+
+// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1: d unit direction in sky axes, dx and dy its derivatives by
+// pixel.
+fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    let xx = dot(dx, dx);
+    let yy = dot(dy, dy);
+    let xy = dot(dx, dy);
+    let stretch2 = 0.5 * (xx + yy) + sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
+    let radius = 2.1213203 * sqrt(stretch2);
+    let limit = star_margin(STAR_LEVELS - 1u);
+    // By its bits: not NaN, not infinite.
+    let finite = (bitcast<u32>(radius) & 0x7fffffffu) < 0x7f800000u;
+    let level = select(STAR_LEVELS, star_level_for(radius), finite);
+    var single = 0.0;
+    var light = vec3<f32>(0.0);
+    if level < STAR_LEVELS {
+        single = 1.0 - smoothstep(0.5 * limit, limit, radius);
+        light = single * stars_in(cell_of(d, level), d, dx, dy, stretch2, g_colour, g_beaming);
+    }
+    if single < 1.0 {
+        light += (1.0 - single) * mean_sky(g_colour, g_beaming);
+    }
+    return min(light, vec3<f32>(MAX_STAR_LIGHT));
+}
+
+// The stars of one cell's list.
+fn stars_in(cell: u32, d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, stretch2: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    let across = cross(dy, d);
+    let down = cross(d, dx);
+    let area = abs(dot(cross(dx, dy), d));
+    let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
+    var light = vec3<f32>(0.0);
+    let end = star_cells[cell + 1u];
+    for (var i = star_cells[cell]; i < end; i += 1u) {
+        let at = STARS_OFFSET + 2u * star_cells[i];
+        let star = light_tables[at];
+        let e = star.xyz - d;
+        let p = vec2<f32>(dot(e, across), dot(e, down));
+        if max(abs(p.x), abs(p.y)) < 1.5 * area {
+            let spread = star_footprint(p.x / area) * star_footprint(p.y / area) * magnification;
+            let kind = light_tables[at + 1u];
+            light += spread * star.w * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
+        }
+    }
+    return light;
+}
+
+// The light of all stars, spread evenly.
+fn mean_sky(g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    var light = vec3<f32>(0.0);
+    for (var i = 0u; i < MEAN_SKY_PARTS; i += 1u) {
+        let part = light_tables[MEAN_SKY_OFFSET + i];
+        light += part.z * shifted_blackbody(part.x, part.y, g_colour, g_beaming);
+    }
+    return light;
+}

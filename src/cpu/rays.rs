@@ -1,0 +1,46 @@
+//! Rays that a host asks for, traced in f64.
+
+use crate::error::{Error, Result};
+use crate::physics::trace::{Settings, path, trace};
+use crate::scene::{Fate, Hit, Ray, Scene};
+use rayon::prelude::*;
+
+/// Traces `rays` in parallel on the current pool.
+pub fn trace_rays(scene: &Scene, rays: &[Ray], hits: &mut [Hit]) {
+    let settings = scene.quality.ray_settings(scene.hole.spin);
+    rays.par_iter().zip(hits).with_min_len(16).for_each(|(ray, hit)| *hit = trace_ray(scene, &settings, ray));
+}
+
+fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
+    let Some((frame, start)) = scene.start(ray) else { return Hit { fate: Fate::Invalid, ..Hit::default() } };
+    let Some((constants, state)) = start else {
+        return Hit { fate: Fate::Captured, sky_redshift: f64::NAN, swept_angle: 0.0, ..Hit::default() };
+    };
+    let traced = trace(&constants, &state, settings);
+    scene.hit(ray, &frame, Some(&constants), &traced)
+}
+
+/// The curve a ray follows, from the eye: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most, evenly
+/// spaced in Mino time, the last one its end: just outside the horizon, or, for a ray that escapes, at ten times the eye's
+/// radius, but at least 1000 M.
+/// Errors: INVALID_ARGUMENT for a ray that is not valid.
+pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
+    let Some((frame, start)) = scene.start(ray) else {
+        return Err(Error::argument(
+            "ray is not valid: position, direction and frequency_ratio (> 0) must be finite, the direction not zero, and \
+             the position outside a spinning hole's horizon",
+        ));
+    };
+    let eye = ray.position;
+    let Some((constants, state)) = start else { return Ok(vec![[eye.x, eye.y, eye.z, 0.0]]) };
+    let settings = scene.quality.ray_settings(scene.hole.spin);
+    let far = (10.0 * frame.r).max(1000.0);
+    let to_scene = scene.hole.scene_to_chart().transpose();
+    Ok(path(&constants, &state, &settings, far, capacity)
+        .into_iter()
+        .map(|p| {
+            let place = to_scene * p.position * scene.hole.mass;
+            [place.x, place.y, place.z, -p.delay * scene.hole.mass]
+        })
+        .collect())
+}

@@ -1,0 +1,126 @@
+//! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1].
+//! In f32, as `shaders/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
+
+use crate::scene::ToneMap;
+
+/// Brighter light is taken as this: far above every curve's white, and its square is finite.
+pub const MAX_SCENE_LIGHT: f32 = 65504.0;
+
+/// `rgb` with every component in [0, MAX_SCENE_LIGHT], to [0, 1]; 0 stays 0 (AgX: below 1e-9).
+pub fn tone_map(kind: ToneMap, rgb: [f32; 3]) -> [f32; 3] {
+    match kind {
+        ToneMap::None => rgb.map(|v| v.clamp(0.0, 1.0)),
+        ToneMap::Aces => aces(rgb),
+        ToneMap::Agx => agx(rgb),
+    }
+}
+
+/// A 3 x 3 matrix whose rows sum to 1, so that grey stays grey to the last bit: given by what each component takes from the
+/// other two, in their order.
+type Balanced = [[f32; 2]; 3];
+
+fn balanced(m: Balanced, [r, g, b]: [f32; 3]) -> [f32; 3] {
+    [
+        r + m[0][0] * (g - r) + m[0][1] * (b - r),
+        g + m[1][0] * (r - g) + m[1][1] * (b - g),
+        b + m[2][0] * (r - b) + m[2][1] * (g - b),
+    ]
+}
+
+/// Linear Rec. 709 -> ACES AP1 with the RRT's desaturation; and the way back with the ODT's (Hill).
+const ACES_IN: Balanced = [[0.35458, 0.04823], [0.076, 0.01566], [0.0284, 0.13383]];
+const ACES_OUT: Balanced = [[-0.53108, -0.07367], [-0.10208, -0.00605], [-0.00327, -0.07276]];
+
+/// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab, and kept by many engines): a rational curve
+/// between two matrices. Unlike a curve per channel alone it lets bright saturated light go to white.
+fn aces(rgb: [f32; 3]) -> [f32; 3] {
+    let curve = |v: f32| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
+    balanced(ACES_OUT, balanced(ACES_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0))
+}
+
+/// Troy Sobotka's AgX inset, and its inverse.
+const AGX_IN: Balanced = [[0.0784336, 0.0792237], [0.0423282, 0.0791661], [0.0423757, 0.0784336]];
+const AGX_OUT: Balanced = [[-0.0980332, -0.0990408], [-0.0529035, -0.0989508], [-0.0529776, -0.0980332]];
+/// Stops about middle grey, 0.18, that the curve spans: -10 .. +6.5, in log2 of light.
+const AGX_LOW: f32 = -12.473931;
+const AGX_SPAN: f32 = 16.5;
+/// Middle grey on that axis, 10 / 16.5, where the curve passes through one half.
+const AGX_PIVOT: f32 = 0.606_060_6;
+
+/// |s| of the sigmoid below and above the pivot.
+const AGX_TOE: f32 = 0.5122774;
+const AGX_SHOULDER: f32 = 0.5414642;
+
+/// AgX, base look (T. Sobotka, AgX-S2O3, 2022): inset, log2, a sigmoid, outset; the result is for a display of gamma 2.2.
+/// The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the pivot, p = 3
+/// below it and 3.25 above; s, negative below, makes it end in 0 and 1:
+/// s = ((2 w)^-p ((4 w)^p - 1))^(-1/p), w = the pivot's distance to that end.
+fn agx(rgb: [f32; 3]) -> [f32; 3] {
+    let curve = |v: f32| agx_sigmoid(((v.max(1e-10).log2() - AGX_LOW) / AGX_SPAN).clamp(0.0, 1.0));
+    balanced(AGX_OUT, balanced(AGX_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0).powf(2.2))
+}
+
+fn agx_sigmoid(x: f32) -> f32 {
+    let (scale, power) = if x < AGX_PIVOT { (-AGX_TOE, 3.0) } else { (AGX_SHOULDER, 3.25) };
+    let t = (2.0 * (x - AGX_PIVOT) / scale).max(0.0);
+    (0.5 + scale * t / (1.0 + t.powf(power)).powf(1.0 / power)).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [ToneMap; 3] = [ToneMap::None, ToneMap::Aces, ToneMap::Agx];
+
+    #[test]
+    fn curves_are_monotonic_from_black_to_white_and_keep_grey() {
+        for kind in ALL {
+            assert!(tone_map(kind, [0.0; 3]).iter().all(|&v| (0.0..1e-9).contains(&v)), "{kind:?}");
+            assert_eq!(tone_map(kind, [MAX_SCENE_LIGHT; 3]), [1.0; 3], "{kind:?}");
+            let mut before = 0.0;
+            for i in 0..4000 {
+                let v = 2.0_f32.powf(i as f32 * 0.008 - 16.0);
+                let [r, g, b] = tone_map(kind, [v; 3]);
+                assert!(r == g && g == b, "{kind:?} tints {v}");
+                assert!((before..=1.0).contains(&r), "{kind:?} at {v}: {r} after {before}");
+                before = r;
+            }
+        }
+    }
+
+    #[test]
+    fn saturated_light_stays_in_range_and_goes_to_white() {
+        for kind in [ToneMap::Aces, ToneMap::Agx] {
+            for rgb in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.5, 0.0]] {
+                for scale in [1e-4, 0.01, 1.0, 100.0, 6e4_f32] {
+                    let out = tone_map(kind, rgb.map(|v| v * scale));
+                    assert!(out.iter().all(|v| (0.0..=1.0).contains(v)), "{kind:?} {rgb:?} {scale}: {out:?}");
+                }
+                let bright = tone_map(kind, rgb.map(|v| v * 6e4));
+                assert!(bright.iter().all(|&v| v > 0.4), "{kind:?} {rgb:?}: {bright:?}");
+            }
+        }
+    }
+
+    /// Middle grey: Hill's fit by hand, 0.18 (0.18 + 0.0245786) - 9.0537e-5 over 0.18 (0.18 0.983729 + 0.432951) + 0.238081;
+    /// AgX: one half on a display of gamma 2.2.
+    #[test]
+    fn middle_grey_is_where_the_sources_put_it() {
+        assert!((tone_map(ToneMap::Aces, [0.18; 3])[0] - 0.105_591_2).abs() < 1e-5);
+        assert!((tone_map(ToneMap::Agx, [0.18; 3])[0] - 0.5_f32.powf(2.2)).abs() < 1e-5);
+    }
+
+    #[test]
+    fn agx_constants_are_those_of_its_formulas() {
+        let scale = |w: f64, p: f64| ((2.0 * w).powf(-p) * ((4.0 * w).powf(p) - 1.0)).powf(-1.0 / p);
+        let pivot = 10.0 / 16.5;
+        assert!((f64::from(AGX_PIVOT) - pivot).abs() < 1e-7);
+        assert!((f64::from(AGX_LOW) - (0.18_f64.log2() - 10.0)).abs() < 1e-6);
+        assert!((scale(pivot, 3.0) - f64::from(AGX_TOE)).abs() < 1e-7);
+        assert!((scale(1.0 - pivot, 3.25) - f64::from(AGX_SHOULDER)).abs() < 1e-7);
+        for rgb in [[1.0, 0.2, 0.1], [0.0, 0.7, 0.3]] {
+            let back = balanced(AGX_OUT, balanced(AGX_IN, rgb));
+            assert!((0..3).all(|i| (back[i] - rgb[i]).abs() < 1e-6), "{rgb:?} {back:?}");
+        }
+    }
+}

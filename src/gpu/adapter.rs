@@ -1,0 +1,223 @@
+//! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
+
+use crate::error::{Error, Result};
+use crate::renderer::{AdapterInfo, Backend};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// The interfaces that a search looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Every interface of this platform. Its order is what an adapter index counts.
+    All,
+    /// As `All`, but GL is left alone when another interface has an adapter: starting it takes as long as all the rest.
+    Auto,
+    /// This interface alone. `Backend::Cpu` finds nothing: the CPU tracer is no adapter of wgpu.
+    Only(Backend),
+}
+
+/// An adapter that a device can be opened on.
+pub struct Adapter {
+    pub info: AdapterInfo,
+    handle: Handle,
+}
+
+impl Adapter {
+    pub(super) fn raw(&self) -> Result<&wgpu::Adapter> {
+        self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
+    }
+}
+
+/// Drops a GL adapter where it may touch GL contexts.
+struct Handle {
+    /// `None` only while it is being dropped.
+    raw: Option<wgpu::Adapter>,
+    gl: bool,
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        if self.gl {
+            let raw = self.raw.take();
+            let _ = on_own_thread(move || drop(raw));
+        }
+    }
+}
+
+/// Every adapter of `search` that has what the tracer needs, best first: discrete GPUs, integrated ones, virtual and
+/// unknown ones, software. Among equals GL is last; the driver's order decides the rest, so one machine has one order.
+/// Hardware that several interfaces reach is listed once for each.
+///
+/// `validation`: adapters whose devices the driver's validation layers watch, if they are installed.
+///
+/// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
+pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
+    let native = || native(validation).into_iter().filter_map(usable).collect::<Vec<_>>();
+    let gl = || gl(validation);
+    let mut list = match search {
+        Search::All => [native(), gl()].into_iter().flatten().collect(),
+        Search::Auto => Some(native()).filter(|list| !list.is_empty()).unwrap_or_else(gl),
+        Search::Only(Backend::Cpu) => Vec::new(),
+        Search::Only(Backend::Gl) => gl(),
+        Search::Only(backend) => {
+            let mut list = native();
+            list.retain(|found| found.adapter.info.backend == backend);
+            list
+        }
+    };
+    list.sort_by_key(|found| found.rank);
+    list.into_iter().map(|found| found.adapter).collect()
+}
+
+/// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
+/// through the old one's adapters; devices in use keep theirs.
+pub fn forget_drivers() {
+    *found() = [Vec::new(), Vec::new()];
+}
+
+/// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
+pub(super) fn required_limits() -> wgpu::Limits {
+    wgpu::Limits::downlevel_defaults()
+}
+
+/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the life
+/// of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded under
+/// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+static FOUND: Mutex<[Vec<wgpu::Adapter>; 2]> = Mutex::new([Vec::new(), Vec::new()]);
+
+fn found() -> MutexGuard<'static, [Vec<wgpu::Adapter>; 2]> {
+    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn native(validation: bool) -> Vec<wgpu::Adapter> {
+    let [plain, validated] = &mut *found();
+    let kept = if validation { validated } else { plain };
+    if kept.is_empty() {
+        let all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        *kept = ask_drivers(all, validation);
+    }
+    kept.clone()
+}
+
+/// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
+/// once.
+fn gl(validation: bool) -> Vec<Usable> {
+    let work = move || ask_drivers(wgpu::Backends::GL, validation).into_iter().filter_map(usable).collect();
+    on_own_thread(work).unwrap_or_else(|error| {
+        log::info!("adapters of GL passed over: {error}");
+        Vec::new()
+    })
+}
+
+/// Keeps wgpu's GL off the calling thread: it leaves its thread without a current GL context, and the host may have one.
+fn on_own_thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
+    let thread = std::thread::Builder::new().name("bhr-gl".into()).spawn(work);
+    let thread = thread.map_err(|error| Error::internal(format!("no thread for GL: {error}")))?;
+    thread.join().map_err(|_| Error::internal("GL panicked"))
+}
+
+/// A driver that panics has no adapters.
+fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Vec<wgpu::Adapter> {
+    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none.
+    let flags = if validation {
+        wgpu::InstanceFlags::DEBUG | wgpu::InstanceFlags::VALIDATION
+    } else {
+        wgpu::InstanceFlags::empty()
+    };
+    let descriptor =
+        wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    let ask = || pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(backends));
+    let found = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| {
+        log::warn!("the search for adapters of {backends:?} panicked");
+        Vec::new()
+    });
+    if found.is_empty() {
+        log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
+    }
+    found
+}
+
+/// An adapter that can run the tracer, and its place in the list: lower is better.
+struct Usable {
+    rank: Rank,
+    adapter: Adapter,
+}
+
+/// Class of the hardware, then whether it is GL.
+type Rank = (u8, bool);
+
+/// `None`, with the reason in the log, when it cannot run the tracer.
+fn usable(raw: wgpu::Adapter) -> Option<Usable> {
+    let found = raw.get_info();
+    let pass_over = |reason: String| {
+        log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
+        None
+    };
+    let Some(backend) = backend(found.backend) else {
+        return pass_over("bhr does not use this interface".into());
+    };
+    if !raw.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+        return pass_over("it has no compute shaders".into());
+    }
+    let mut lacking = None;
+    required_limits().check_limits_with_fail_fn(&raw.limits(), true, |name, needed, offered| {
+        lacking = Some(format!("its {name} is {offered}, bhr needs {needed}"));
+    });
+    if let Some(reason) = lacking {
+        return pass_over(reason);
+    }
+    let driver = [found.driver.as_str(), found.driver_info.as_str()];
+    let info = AdapterInfo {
+        backend,
+        discrete: found.device_type == wgpu::DeviceType::DiscreteGpu,
+        software: found.device_type == wgpu::DeviceType::Cpu,
+        vendor_id: found.vendor,
+        device_id: found.device,
+        driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
+        name: found.name,
+    };
+    let rank = rank(found.device_type, backend);
+    Some(Usable { rank, adapter: Adapter { info, handle: Handle { raw: Some(raw), gl: backend == Backend::Gl } } })
+}
+
+fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {
+    let class = match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
+        wgpu::DeviceType::Cpu => 3,
+    };
+    (class, backend == Backend::Gl)
+}
+
+fn backend(of: wgpu::Backend) -> Option<Backend> {
+    match of {
+        wgpu::Backend::Vulkan => Some(Backend::Vulkan),
+        wgpu::Backend::Metal => Some(Backend::Metal),
+        wgpu::Backend::Dx12 => Some(Backend::D3d12),
+        wgpu::Backend::Gl => Some(Backend::Gl),
+        wgpu::Backend::Noop | wgpu::Backend::BrowserWebGpu => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::DeviceType;
+
+    #[test]
+    fn ranks_hardware_before_software_and_gl_last_in_its_class() {
+        let order = [
+            (DeviceType::DiscreteGpu, Backend::Vulkan),
+            (DeviceType::DiscreteGpu, Backend::Gl),
+            (DeviceType::IntegratedGpu, Backend::D3d12),
+            (DeviceType::IntegratedGpu, Backend::Gl),
+            (DeviceType::VirtualGpu, Backend::Vulkan),
+            (DeviceType::Other, Backend::Gl),
+            (DeviceType::Cpu, Backend::Vulkan),
+            (DeviceType::Cpu, Backend::Gl),
+        ];
+        let ranks = order.map(|(kind, backend)| rank(kind, backend));
+        assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
+    }
+}

@@ -1,0 +1,237 @@
+//! One wgpu device: opened with the least it needs, and with every way it can fail turned into an [`Error`]. All calls into
+//! wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of scenes.
+
+use super::adapter::{Adapter, required_limits};
+use crate::error::{Error, ErrorKind, Result};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A submission that takes longer than this has hung. Drivers give up after 2 to 10 s; a debugger or a busy software
+/// driver may need more.
+const HANG_AFTER: Duration = Duration::from_secs(60);
+
+/// How long to wait in one piece before looking whether the device was lost meanwhile.
+const WAIT_SLICE: Duration = Duration::from_secs(1);
+
+/// Largest buffer and storage binding asked for: what a tile of the largest frames needs, not what the adapter could.
+const MAX_BUFFER_SIZE: u64 = 256 << 20;
+
+/// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
+const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
+
+/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it.
+pub struct Device {
+    raw: wgpu::Device,
+    /// `None` only while it is being dropped.
+    queue: Option<wgpu::Queue>,
+    limits: wgpu::Limits,
+    health: Arc<Health>,
+    bytes: Arc<AtomicU64>,
+    pub(super) modules: super::pipeline::Modules,
+}
+
+/// What wgpu's callbacks, which come from any thread, say about a device.
+#[derive(Default)]
+struct Health {
+    lost: Mutex<Option<String>>,
+    /// The first error that came outside every scope and that no call has returned yet.
+    stray: Mutex<Option<Error>>,
+    hung: AtomicBool,
+}
+
+impl Device {
+    /// Opens a device with timestamps if the adapter has them, and no other feature.
+    ///
+    /// A GL device leaves every thread that uses it without a current GL context: a host that draws with GL on the same
+    /// thread has to make its own current again.
+    ///
+    /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason.
+    pub fn open(adapter: &Adapter) -> Result<Self> {
+        let raw = adapter.raw()?;
+        let offered = raw.limits();
+        let limits = wgpu::Limits {
+            max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
+            ..required_limits()
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("bhr"),
+            required_features: raw.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_limits: limits.clone(),
+            memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
+            ..Default::default()
+        };
+        let (raw, queue) = pollster::block_on(raw.request_device(&descriptor)).map_err(|error| {
+            Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {error}", adapter.info.name))
+        })?;
+        let health = Arc::new(Health::default());
+        let of_errors = health.clone();
+        raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
+        let of_loss = health.clone();
+        raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
+        Ok(Self { raw, queue: Some(queue), limits, health, bytes: Arc::default(), modules: Default::default() })
+    }
+
+    /// The limits the device was opened with.
+    pub fn limits(&self) -> &wgpu::Limits {
+        &self.limits
+    }
+
+    /// Whether the device can time its passes.
+    pub fn has_timestamps(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Nanoseconds per tick of a timestamp.
+    pub(super) fn timestamp_period(&self) -> f64 {
+        self.queue.as_ref().map_or(0.0, |queue| f64::from(queue.get_timestamp_period()))
+    }
+
+    /// Bytes of the buffers that exist.
+    pub fn bytes(&self) -> u64 {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
+    pub(super) fn byte_count(&self) -> Arc<AtomicU64> {
+        self.bytes.clone()
+    }
+
+    /// Errors: `DeviceLost` once the device is gone; an error that came outside every other call.
+    pub fn check(&self) -> Result<()> {
+        if let Some(reason) = &*lock(&self.health.lost) {
+            return Err(lost(reason));
+        }
+        lock(&self.health.stray).take().map_or(Ok(()), Err)
+    }
+
+    /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins the
+    /// message.
+    ///
+    /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
+    pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+        self.check()?;
+        let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
+        let done = work(&self.raw);
+        let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
+        match errors.into_iter().flatten().next() {
+            Some(error) => Err(from_wgpu(what, &error)),
+            None => self.check().map(|()| done),
+        }
+    }
+
+    /// Begins recording. Mistakes in what is recorded are reported by [`Self::submit`].
+    pub fn encoder(&self, label: &str) -> Result<wgpu::CommandEncoder> {
+        self.scoped(label, |device| {
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+        })
+    }
+
+    /// Writes `data` into `buffer` at `offset` (both multiples of 4) before the next submission runs.
+    pub fn write(&self, buffer: &wgpu::Buffer, offset: u64, data: &[u8]) -> Result<()> {
+        let queue = self.queue()?;
+        self.scoped("writing a buffer", |_| queue.write_buffer(buffer, offset, data))
+    }
+
+    /// Starts what `encoder` has recorded. Errors: as [`Self::scoped`].
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
+        let queue = self.queue()?;
+        self.scoped("submitting work", |_| queue.submit([encoder.finish()]))
+    }
+
+    /// Waits until `submission` has run and the callbacks of its buffers were called.
+    ///
+    /// Errors: `DeviceLost`, also when the device hangs for 60 s.
+    pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<()> {
+        let deadline = Instant::now() + HANG_AFTER;
+        loop {
+            let wait = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(WAIT_SLICE) };
+            match self.poll(wait)? {
+                Ok(_) => return self.check(),
+                Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
+                    // wgpu drops a submission silently only when its device is gone; this poll calls the callback.
+                    let _ = self.poll(wgpu::PollType::Poll)?;
+                    self.health.lose("it no longer takes work");
+                }
+                Err(wgpu::PollError::Timeout) if Instant::now() >= deadline => {
+                    self.health.hung.store(true, Ordering::Relaxed);
+                    self.health.lose(&format!("it did not finish within {} s", HANG_AFTER.as_secs()));
+                }
+                Err(wgpu::PollError::Timeout) => {}
+            }
+            self.check()?;
+        }
+    }
+
+    /// [`Self::submit`], then [`Self::wait`].
+    pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<()> {
+        let submission = self.submit(encoder)?;
+        self.wait(&submission)
+    }
+
+    /// wgpu panics here when the driver reports that the device is lost.
+    fn poll(&self, how: wgpu::PollType) -> Result<Result<wgpu::PollStatus, wgpu::PollError>> {
+        catch_unwind(AssertUnwindSafe(|| self.raw.poll(how))).map_err(|panic| {
+            self.health.lose(panic_text(&*panic));
+            lost(panic_text(&*panic))
+        })
+    }
+
+    fn queue(&self) -> Result<&wgpu::Queue> {
+        self.queue.as_ref().ok_or_else(|| Error::internal("the device is being closed"))
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        let queue = self.queue.take();
+        if self.health.hung.load(Ordering::Relaxed) {
+            // Dropping it would wait for the work that never ends.
+            std::mem::forget(queue);
+        } else if catch_unwind(AssertUnwindSafe(|| drop(queue))).is_err() {
+            log::error!("closing the GPU device panicked");
+        }
+    }
+}
+
+impl Health {
+    /// Keeps the first reason.
+    fn lose(&self, reason: &str) {
+        let mut lost = lock(&self.lost);
+        if lost.is_none() {
+            log::debug!("GPU device lost: {reason}");
+            *lost = Some(reason.trim().to_owned());
+        }
+    }
+
+    fn stray(&self, error: wgpu::Error) {
+        let error = from_wgpu("the GPU device reports", &error);
+        log::error!("{error}");
+        lock(&self.stray).get_or_insert(error);
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn lost(reason: &str) -> Error {
+    Error::new(ErrorKind::DeviceLost, format!("the GPU device was lost: {reason}"))
+}
+
+fn from_wgpu(what: &str, error: &wgpu::Error) -> Error {
+    let kind = match error {
+        wgpu::Error::OutOfMemory { .. } => ErrorKind::OutOfMemory,
+        wgpu::Error::Validation { .. } | wgpu::Error::Internal { .. } => ErrorKind::Internal,
+    };
+    Error::new(kind, format!("{what}: {error}"))
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> &str {
+    let owned = panic.downcast_ref::<String>().map(String::as_str);
+    owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic without a message")
+}

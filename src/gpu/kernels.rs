@@ -1,0 +1,235 @@
+//! The shaders, joined from their parts, and their pipelines, made at first use. Knows what each kernel binds, not what with.
+
+use super::{Device, Kernel, Loops, ProvenFinite};
+use crate::error::{Error, Result};
+use crate::physics::integrator::Method;
+use crate::sky;
+use std::collections::HashMap;
+
+/// Everything that decides how the tracing kernels are compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Variant {
+    pub method: MethodCode,
+    pub spinning: bool,
+    pub delay: bool,
+    pub step_limit: bool,
+    /// Room for this many crossings: 4 or 16.
+    pub max_crossings: u32,
+}
+
+/// `METHOD_*` of integrator.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MethodCode(u32);
+
+impl From<Method> for MethodCode {
+    fn from(method: Method) -> Self {
+        Self(match method {
+            Method::Nystrom => 0,
+            Method::Rk4 => 1,
+            Method::DormandPrince => 2,
+        })
+    }
+}
+
+/// The room for crossings that serves `wanted`.
+pub fn crossing_room(wanted: u32) -> u32 {
+    if wanted <= 4 { 4 } else { 16 }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+enum Name {
+    Pixels(Variant),
+    Rays(Variant),
+    Shade,
+    Develop,
+}
+
+/// The pipelines of one device.
+#[derive(Default)]
+pub struct Kernels {
+    made: HashMap<Name, Compiled>,
+}
+
+/// A pipeline and the layout of its group 0.
+#[derive(Clone)]
+pub struct Compiled {
+    pub pipeline: wgpu::ComputePipeline,
+    pub layout: wgpu::BindGroupLayout,
+}
+
+const MATH: &str = include_str!("../../shaders/math.wgsl");
+const TRACE_PARTS: [&str; 4] = [
+    MATH,
+    include_str!("../../shaders/geodesic.wgsl"),
+    include_str!("../../shaders/integrator.wgsl"),
+    include_str!("../../shaders/trace.wgsl"),
+];
+const PASS: &str = include_str!("../../shaders/pass.wgsl");
+const FRAME: &str = include_str!("../../shaders/frame.wgsl");
+
+fn crossing_constant(max_crossings: u32) -> String {
+    format!("const MAX_CROSSINGS: u32 = {max_crossings}u;\n")
+}
+
+fn rays_source(max_crossings: u32) -> String {
+    let head = crossing_constant(max_crossings);
+    [&[head.as_str()], TRACE_PARTS.as_slice(), &[include_str!("../../shaders/rays.wgsl")]].concat().join("\n")
+}
+
+fn pixels_source(max_crossings: u32) -> String {
+    let head = crossing_constant(max_crossings);
+    let rest = [PASS, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
+    [&[head.as_str()], TRACE_PARTS.as_slice(), &rest].concat().join("\n")
+}
+
+fn shade_source() -> String {
+    [
+        sky::StarIndex::shared().wgsl_constants().as_str(),
+        MATH,
+        PASS,
+        FRAME,
+        include_str!("../../shaders/blackbody.wgsl"),
+        include_str!("../../shaders/stars.wgsl"),
+        include_str!("../../shaders/disk.wgsl"),
+        include_str!("../../shaders/shade.wgsl"),
+    ]
+    .join("\n")
+}
+
+fn develop_source() -> String {
+    [PASS, include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/develop.wgsl")].join("\n")
+}
+
+/// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
+pub fn shader_sources() -> Vec<(&'static str, String)> {
+    vec![
+        ("rays", rays_source(4)),
+        ("pixels with 4 crossings", pixels_source(4)),
+        ("pixels with 16 crossings", pixels_source(16)),
+        ("shade", shade_source()),
+        ("develop", develop_source()),
+    ]
+}
+
+/// What a binding of group 0 is.
+#[derive(Clone, Copy)]
+enum Slot {
+    Uniform,
+    /// A uniform of which each dispatch chooses a part.
+    UniformPart,
+    Read,
+    Write,
+}
+
+impl Kernels {
+    pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
+        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Write, Slot::Write];
+        self.get(device, Name::Pixels(variant), &slots, "trace_pixels", || pixels_source(variant.max_crossings))
+    }
+
+    pub fn rays(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
+        let slots = [Slot::Uniform, Slot::Read, Slot::Write];
+        self.get(device, Name::Rays(variant), &slots, "trace_rays", || rays_source(variant.max_crossings))
+    }
+
+    pub fn shade(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Read, Slot::Read, Slot::Read, Slot::Write];
+        self.get(device, Name::Shade, &slots, "shade", shade_source)
+    }
+
+    pub fn develop(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Read, Slot::Write];
+        self.get(device, Name::Develop, &slots, "develop_tile", develop_source)
+    }
+
+    fn get(
+        &mut self,
+        device: &Device,
+        name: Name,
+        slots: &[Slot],
+        entry_point: &str,
+        source: impl FnOnce() -> String,
+    ) -> Result<Compiled> {
+        if let Some(compiled) = self.made.get(&name) {
+            return Ok(compiled.clone());
+        }
+        let layout = layout(device, entry_point, slots)?;
+        let constants = constants(name);
+        let source = source();
+        let pipeline = device.compute_pipeline(&Kernel {
+            label: entry_point,
+            source: &[&source],
+            loops: LOOPS,
+            entry_point,
+            constants: &constants,
+            zero_workgroup_memory: false,
+            groups: &[&layout],
+        })?;
+        let compiled = Compiled { pipeline, layout };
+        self.made.insert(name, compiled.clone());
+        Ok(compiled)
+    }
+}
+
+/// SAFETY of the promise: every loop in shaders/ is one of: `trace`, which adds 1 to `steps` in every turn before it can
+/// `continue` and ends at `max_steps` <= 100000; counted loops over constants or over counts that the kernel itself bounds by
+/// MAX_CROSSINGS; and the star list of a cell, counted from the host's own table.
+const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
+
+/// Values of the `override` constants that the kernel's source declares.
+fn constants(name: Name) -> Vec<(&'static str, f64)> {
+    let (Name::Pixels(variant) | Name::Rays(variant)) = name else { return Vec::new() };
+    vec![
+        ("METHOD", f64::from(variant.method.0)),
+        ("SPINNING", f64::from(u8::from(variant.spinning))),
+        ("DELAY", f64::from(u8::from(variant.delay))),
+        ("STEP_LIMIT", f64::from(u8::from(variant.step_limit))),
+    ]
+}
+
+fn layout(device: &Device, label: &str, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
+    let entries = slots
+        .iter()
+        .zip(0..)
+        .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty: wgpu::BindingType::Buffer {
+                ty: match slot {
+                    Slot::Uniform | Slot::UniformPart => wgpu::BufferBindingType::Uniform,
+                    Slot::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                    Slot::Write => wgpu::BufferBindingType::Storage { read_only: false },
+                },
+                has_dynamic_offset: matches!(slot, Slot::UniformPart),
+                min_binding_size: None,
+            },
+            count: None,
+        })
+        .collect::<Vec<_>>();
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
+    device.scoped(label, |d| d.create_bind_group_layout(&descriptor))
+}
+
+impl Compiled {
+    /// Group 0 with `resources` in the order of its slots.
+    pub fn bind(&self, device: &Device, resources: &[wgpu::BindingResource<'_>]) -> Result<wgpu::BindGroup> {
+        let entries = resources
+            .iter()
+            .zip(0..)
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+            .collect::<Vec<_>>();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
+        device.scoped("binding buffers", |d| d.create_bind_group(&descriptor))
+    }
+}
+
+/// Errors: INTERNAL if a count of workgroups exceeds what the device takes.
+pub fn check_groups(device: &Device, groups: [u32; 2]) -> Result<()> {
+    let limit = device.limits().max_compute_workgroups_per_dimension;
+    if groups.iter().any(|&g| g > limit) {
+        return Err(Error::internal(format!(
+            "a dispatch of {groups:?} workgroups exceeds the device's limit of {limit}"
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! Compute pipelines from WGSL, and the shader modules they share. Knows no shader.
+
+use super::device::Device;
+use crate::error::Result;
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+/// The modules of a device by their source, so that pipelines which differ in constants share one translation.
+pub(super) type Modules = Mutex<HashMap<(String, Loops), wgpu::ShaderModule>>;
+
+/// What keeps the loops of a shader finite, which drivers rely on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Loops {
+    /// wgpu counts each loop's turns and ends it after 2^64: safe for every shader, and slow in short loops.
+    Counted,
+    /// Somebody proved it.
+    Proven(ProvenFinite),
+}
+
+/// The promise that every loop of a shader ends, whatever its input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ProvenFinite(());
+
+impl ProvenFinite {
+    /// # Safety
+    /// In every shader that is compiled with the value, every loop ends after finitely many turns for every input, NaN
+    /// included. A driver may draw any conclusion from one that does not.
+    pub const unsafe fn promise() -> Self {
+        Self(())
+    }
+}
+
+/// A compute shader's entry point and what it is compiled with.
+#[derive(Clone, Copy, Debug)]
+pub struct Kernel<'a> {
+    pub label: &'a str,
+    /// WGSL, joined with line ends; declarations may stand in any order.
+    pub source: &'a [&'a str],
+    pub loops: Loops,
+    pub entry_point: &'a str,
+    /// Values of the shader's `override` constants, by name; the others keep their defaults.
+    pub constants: &'a [(&'a str, f64)],
+    /// False: `var<workgroup>` begins undefined, and the kernel writes it before it reads it.
+    pub zero_workgroup_memory: bool,
+    /// The layouts of `@group(0)`, `@group(1)` ...
+    pub groups: &'a [&'a wgpu::BindGroupLayout],
+}
+
+impl Device {
+    /// Compiles a kernel; the driver may put its own part off to the first dispatch.
+    ///
+    /// Errors: `Internal` with wgpu's message for source that is not valid, an unknown entry point or constant, or a layout
+    /// that does not fit; `OutOfMemory`; `DeviceLost`.
+    pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
+        let module = self.module(kernel)?;
+        let groups = kernel.groups.iter().map(|group| Some(*group)).collect::<Vec<_>>();
+        self.scoped(kernel.label, |device| {
+            let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(kernel.label),
+                bind_group_layouts: &groups,
+                immediate_size: 0,
+            });
+            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(kernel.label),
+                layout: Some(&layout),
+                module: &module,
+                entry_point: Some(kernel.entry_point),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: kernel.constants,
+                    zero_initialize_workgroup_memory: kernel.zero_workgroup_memory,
+                },
+                cache: None,
+            })
+        })
+    }
+
+    fn module(&self, kernel: &Kernel<'_>) -> Result<wgpu::ShaderModule> {
+        let key = (kernel.source.join("\n"), kernel.loops);
+        let mut modules = self.modules.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(module) = modules.get(&key) {
+            return Ok(module.clone());
+        }
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label: Some(kernel.label),
+            source: wgpu::ShaderSource::Wgsl(key.0.as_str().into()),
+        };
+        let checks = wgpu::ShaderRuntimeChecks {
+            force_loop_bounding: kernel.loops == Loops::Counted,
+            ..wgpu::ShaderRuntimeChecks::checked()
+        };
+        let module = self.scoped(kernel.label, |device| {
+            // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches for them.
+            unsafe { device.create_shader_module_trusted(descriptor, checks) }
+        })?;
+        modules.insert(key, module.clone());
+        Ok(module)
+    }
+}

@@ -1,0 +1,97 @@
+//! How a frame is cut into tiles, so that memory stays bounded and no submission runs for long. Knows numbers only.
+
+use crate::renderer::{FrameRequest, Tile};
+
+/// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog fires.
+const STEPS_PER_SUBMISSION: u64 = 96 << 20;
+/// Widest tile.
+const MAX_WIDTH: u32 = 4096;
+/// Samples of one submission at most.
+pub const MAX_BATCH: u32 = 16;
+
+/// Tiles of one frame, and how many samples of a tile go into one submission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    frame: [u32; 2],
+    tile: [u32; 2],
+    pub batch: u32,
+}
+
+impl Plan {
+    /// `bytes_per_pixel` of the largest storage binding, which may have `binding_limit` bytes; `steps` a ray is expected to take.
+    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, binding_limit: u64, steps: u64, samples: u32) -> Self {
+        let steps = steps.max(1);
+        let by_memory = binding_limit / bytes_per_pixel;
+        let by_time = STEPS_PER_SUBMISSION / steps;
+        let pixels = by_memory.min(by_time).max(1024);
+        // The traced rectangle is one pixel wider on each side; wide tiles waste least on short frames, squarer ones on small tiles.
+        let wide = (8.0 * (pixels as f64).sqrt()) as u32;
+        let width = request.width.min(MAX_WIDTH).min(wide.max(128)).max(1);
+        let height = ((pixels / u64::from(width + 2)) as u32).saturating_sub(2).clamp(1, request.height.max(1));
+        // Even shares: no sliver at the end.
+        let share = |full: u32, part: u32| full.div_ceil(full.div_ceil(part).max(1)).max(1);
+        let tile = [share(request.width, width), share(request.height, height)];
+        let traced = u64::from(tile[0] + 2) * u64::from(tile[1] + 2);
+        let batch = (STEPS_PER_SUBMISSION / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(samples.max(1)))) as u32;
+        Self { frame: [request.width, request.height], tile, batch }
+    }
+
+    /// Pixels of the largest tile, and of its traced rectangle.
+    pub fn largest(&self) -> (u64, u64) {
+        let [w, h] = self.tile.map(u64::from);
+        (w * h, (w + 2) * (h + 2))
+    }
+
+    /// Row by row from the top left.
+    pub fn tiles(self) -> impl Iterator<Item = Tile> {
+        let [width, height] = self.frame;
+        let [w, h] = self.tile;
+        (0..height).step_by(h as usize).flat_map(move |y| {
+            (0..width).step_by(w as usize).map(move |x| Tile {
+                x,
+                y,
+                width: w.min(width - x),
+                height: h.min(height - y),
+            })
+        })
+    }
+
+    pub fn count(&self) -> u64 {
+        let [nx, ny] = [0, 1].map(|i| u64::from(self.frame[i].div_ceil(self.tile[i])));
+        nx * ny
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::PixelFormat;
+    use crate::scene::Region;
+
+    fn request(width: u32, height: u32) -> FrameRequest {
+        let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
+        FrameRequest { width, height, region, format: PixelFormat::Rgba8Srgb, transparent: false }
+    }
+
+    #[test]
+    fn tiles_cover_every_pixel_once_within_the_limits() {
+        for (width, height, steps) in [(1, 1, 30), (1280, 720, 30), (16384, 16384, 30), (5000, 3, 30), (300, 70, 6000)]
+        {
+            let limit = 128 << 20;
+            let plan = Plan::new(&request(width, height), 100, limit, steps, 1);
+            let (tile, traced) = plan.largest();
+            assert!(traced * 100 <= limit, "{width} x {height}: {plan:?}");
+            assert!(tile * steps <= STEPS_PER_SUBMISSION, "{plan:?}");
+            let pixels = plan.tiles().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>();
+            assert_eq!(pixels, u64::from(width) * u64::from(height));
+            assert_eq!(plan.tiles().count() as u64, plan.count());
+            assert!(plan.tiles().all(|t| t.x + t.width <= width && t.y + t.height <= height));
+        }
+    }
+
+    #[test]
+    fn a_frame_of_720_rows_is_one_submission_even_on_the_smallest_devices() {
+        let plan = Plan::new(&request(1280, 720), 100, 128 << 20, 30, 1);
+        assert_eq!((plan.count(), plan.batch), (1, 1));
+    }
+}

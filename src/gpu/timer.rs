@@ -1,0 +1,84 @@
+//! GPU time of compute passes, by timestamp queries. Knows nothing of what the passes do.
+
+use super::buffer::Buffer;
+use super::device::Device;
+use super::readback::{Copied, Readback};
+use crate::error::{Error, Result};
+
+/// Each pass writes one tick count when it begins and one when it ends.
+const PASS_BYTES: u64 = 2 * wgpu::QUERY_SIZE as u64;
+
+/// Times the compute passes of one submission after another, of at most two that are not yet read.
+pub struct GpuTimer {
+    queries: wgpu::QuerySet,
+    resolved: Buffer,
+    readback: Readback,
+    /// Passes a submission may have.
+    capacity: u32,
+    /// Passes of the submission being recorded.
+    passes: u32,
+}
+
+impl GpuTimer {
+    /// For submissions of at most `capacity` passes, 1 .. 2048; `None` when the device has no timestamps.
+    pub fn new(device: &Device, capacity: u32) -> Result<Option<Self>> {
+        if !device.has_timestamps() {
+            return Ok(None);
+        }
+        let descriptor =
+            wgpu::QuerySetDescriptor { label: Some("passes"), ty: wgpu::QueryType::Timestamp, count: 2 * capacity };
+        let queries = device.scoped("creating timestamps", |device| device.create_query_set(&descriptor))?;
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let resolved = device.buffer("timestamps", u64::from(capacity) * PASS_BYTES, usage)?;
+        Ok(Some(Self { queries, resolved, readback: Readback::new(), capacity, passes: 0 }))
+    }
+
+    /// What a pass's descriptor needs to be timed; `None` beyond the capacity.
+    pub fn next_pass(&mut self) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+        if self.passes == self.capacity {
+            return None;
+        }
+        let begin = 2 * self.passes;
+        self.passes += 1;
+        Some(wgpu::ComputePassTimestampWrites {
+            query_set: &self.queries,
+            beginning_of_pass_write_index: Some(begin),
+            end_of_pass_write_index: Some(begin + 1),
+        })
+    }
+
+    /// After the last pass, in the same encoder. `None` when no pass was timed.
+    pub fn finish(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder) -> Result<Option<Copied>> {
+        let passes = std::mem::take(&mut self.passes);
+        if passes == 0 {
+            return Ok(None);
+        }
+        encoder.resolve_query_set(&self.queries, 0..2 * passes, &self.resolved, 0);
+        self.readback.copy(device, encoder, &self.resolved, u64::from(passes) * PASS_BYTES).map(Some)
+    }
+
+    /// Nanoseconds that the passes of `submission` took together. Errors: as [`Readback::read`].
+    pub fn read(&mut self, device: &Device, copied: Copied, submission: &wgpu::SubmissionIndex) -> Result<u64> {
+        let ticks = self.readback.read(device, copied, submission, sum_of_spans)?;
+        Ok((ticks as f64 * device.timestamp_period()) as u64)
+    }
+}
+
+/// The bytes are pairs of begin and end. A driver's clock may jump back; such a span counts as 0.
+fn sum_of_spans(bytes: &[u8]) -> Result<u64> {
+    let ticks: &[[u64; 2]] =
+        bytemuck::try_cast_slice(bytes).map_err(|error| Error::internal(format!("timestamps: {error}")))?;
+    Ok(ticks.iter().map(|[begin, end]| end.saturating_sub(*begin)).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spans_add_up_and_a_backward_one_is_nothing() {
+        let ticks = [[10u64, 14], [20, 27], [40, 30]];
+        assert_eq!(sum_of_spans(bytemuck::cast_slice(&ticks)).unwrap(), 11);
+        assert!(sum_of_spans(&[0; 15]).is_err());
+    }
+}

@@ -1,0 +1,122 @@
+//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of frame.wgsl and pass.wgsl, field by field. The only
+//! place where f64 becomes f32 on its way to the GPU.
+
+use crate::error::Result;
+use crate::physics::blackbody::BlackbodyTable;
+use crate::physics::observer::LocalFrame;
+use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
+use crate::physics::trace::Settings;
+use crate::scene::observer::Lens;
+use crate::scene::{Disk, Scene, Sky};
+use bytemuck::{Pod, Zeroable};
+use glam::{DMat3, DVec3, Vec4};
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct FrameUniform {
+    right: Vec4,
+    up: Vec4,
+    forward: Vec4,
+    beta: Vec4,
+    e_r: Vec4,
+    e_theta: Vec4,
+    e_phi: Vec4,
+    place: Vec4,
+    zamo: Vec4,
+    hole: Vec4,
+    sky_x: Vec4,
+    sky_y: Vec4,
+    sky_z: Vec4,
+    disk: Vec4,
+    disk_light: Vec4,
+    size: Vec4,
+    capture_u: f32,
+    max_steps: u32,
+    max_crossings: u32,
+    rain: u32,
+    effects: u32,
+    view: u32,
+    has_disk: u32,
+    transparent: u32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub struct PassUniform {
+    pub origin: [i32; 2],
+    pub size: [u32; 2],
+    pub offset: [f32; 2],
+    pub weight: f32,
+    pub first: u32,
+}
+
+fn with(v: DVec3, w: f64) -> Vec4 {
+    v.as_vec3().extend(w as f32)
+}
+
+fn four(x: f64, y: f64, z: f64, w: f64) -> Vec4 {
+    with(DVec3::new(x, y, z), w)
+}
+
+/// omega, q, sqrt(Sg), sqrt(Sg D) of the start values (numerics.md); 0 in the rain frame, which has its own.
+fn zamo(frame: &LocalFrame) -> Vec4 {
+    if frame.rain {
+        return Vec4::ZERO;
+    }
+    let (a, u) = (frame.a, 1.0 / frame.r);
+    let au2 = (a * u).powi(2);
+    let sigma = 1.0 + au2 * frame.cos * frame.cos;
+    let d = (1.0 - horizon_outer(a) * u) * (1.0 - horizon_inner(a) * u);
+    let big_a = (1.0 + au2).powi(2) - d * au2 * frame.sin * frame.sin;
+    four(zamo_omega(a, frame.r, frame.sin), (big_a / sigma).sqrt() / u, sigma.sqrt(), (sigma * d).sqrt())
+}
+
+/// Takes chart directions to sky axes.
+pub fn chart_to_sky(scene: &Scene) -> DMat3 {
+    let scene_to_sky = DMat3::from_quat(scene.sky.orientation.normalize()).transpose();
+    scene_to_sky * scene.hole.scene_to_chart().transpose()
+}
+
+impl FrameUniform {
+    /// `settings`: those of f32 pixels. Errors: as `Scene::lens`.
+    pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, transparent: bool) -> Result<Self> {
+        let frame = &lens.observer.frame;
+        let a = scene.hole.spin;
+        let disk = scene.disk.unwrap_or(Disk::default());
+        let sky = chart_to_sky(scene);
+        let stars = scene.sky.flags & Sky::STARS != 0 && scene.sky.stars_brightness > 0.0;
+        let isco = scene.disk_isco();
+        let u = 1.0 / frame.r;
+        Ok(Self {
+            right: with(lens.axes.x_axis, 0.0),
+            up: with(lens.axes.y_axis, 0.0),
+            forward: with(lens.axes.z_axis, 0.0),
+            beta: with(lens.observer.beta, lens.observer.gamma),
+            e_r: with(frame.e_r, 0.0),
+            e_theta: with(frame.e_theta, 0.0),
+            e_phi: with(frame.e_phi, 0.0),
+            place: four(u, frame.sin, frame.cos, if frame.rain { (2.0 * u).sqrt() } else { frame.lapse }),
+            zamo: zamo(frame),
+            hole: four(a, horizon_outer(a), horizon_inner(a), isco),
+            sky_x: with(sky.x_axis, f64::from(u8::from(stars))),
+            sky_y: with(sky.y_axis, scene.sky.stars_brightness),
+            sky_z: with(sky.z_axis, 0.0),
+            disk: four(
+                disk.inner_radius.max(isco),
+                disk.outer_radius,
+                disk.temperature,
+                BlackbodyTable::shared().ln_luminance(disk.temperature),
+            ),
+            disk_light: four(disk.opacity, disk.brightness, 0.0, if disk.retrograde { -1.0 } else { 1.0 }),
+            size: four(lens.width, lens.height, settings.step, settings.tolerance),
+            capture_u: settings.capture_u as f32,
+            max_steps: settings.max_steps,
+            max_crossings: settings.max_crossings as u32,
+            rain: u32::from(frame.rain),
+            effects: scene.effects.light(),
+            view: scene.view as u32,
+            has_disk: u32::from(scene.disk.is_some()),
+            transparent: u32::from(transparent),
+        })
+    }
+}

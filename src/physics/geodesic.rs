@@ -1,0 +1,184 @@
+//! Light rays traced backward from the eye, in Mino time tau: the equations of motion and what is measured along a ray.
+//! Knows no integrator and no observer. Mirrored by `shaders/geodesic.wgsl`.
+//!
+//! State: u = 1/r, the unit position vector N (in axes that the drag has not turned), the drag angle and the delay. With the
+//! constants E, L = L_z, Q (Carter's), K = Q + L^2, B = K - 2 a L E + a^2 E^2 and primes for d / d tau (Carter 1968; the N
+//! equation is a Neumann problem):
+//!
+//! ```text
+//! u''    = (a^2 E^2 - K) u + 3 B u^2 - 2 a^2 Q u^3
+//! N''    = -(K + 2 a^2 E^2 N_z^2) N + a^2 E^2 N_z z
+//! drag'  = -a (2 E u - a L u^2) / D,     D = 1 - 2 u + a^2 u^2
+//! ```
+//!
+//! Polynomial right-hand sides without square roots: regular at poles, turning points and infinity (u = 0). The chart position
+//! is N turned about z by `drag`. a = 0 is Schwarzschild.
+
+use super::orbit::{horizon_inner, horizon_outer};
+use glam::DVec3;
+
+/// Which time `State::delay` integrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// Boyer-Lindquist (Schwarzschild) t, for eyes outside the horizon.
+    Coordinate,
+    /// Painleve-Gullstrand (rain) time, spin 0 only: regular through the horizon.
+    Rain,
+}
+
+/// The constants of one ray. Scaled so that E = 1 where the local energy allows it, else so that the observer of the local
+/// frame measures frequency 1: inside the ergosphere E <= 0 occurs, and E = 1 would turn tau round.
+#[derive(Clone, Copy, Debug)]
+pub struct Constants {
+    pub a: f64,
+    pub energy: f64,
+    pub angular_momentum: f64,
+    pub carter: f64,
+    /// K = Q + L^2.
+    pub k: f64,
+    /// B = K - 2 a L E + a^2 E^2.
+    pub b: f64,
+    /// a^2 E^2.
+    pub a2e2: f64,
+    /// Frequency that the observer of the local frame measures, in the units that `energy` is in.
+    pub nu_local: f64,
+    pub u_eye: f64,
+    /// S: sigma = S tau is the parameter in which all rays take steps of like size.
+    pub scale: f64,
+    pub r_plus: f64,
+    pub r_minus: f64,
+    pub clock: Clock,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct State {
+    pub u: f64,
+    pub du: f64,
+    pub n: DVec3,
+    pub dn: DVec3,
+    pub drag: f64,
+    /// The integral part of the delay; `Constants::delay` adds the boundary terms.
+    pub delay: f64,
+}
+
+impl Constants {
+    pub fn new(a: f64, energy: f64, angular_momentum: f64, carter: f64, nu_local: f64, u_eye: f64) -> Self {
+        let k = carter + angular_momentum * angular_momentum;
+        let a2e2 = (a * energy).powi(2);
+        Self {
+            a,
+            energy,
+            angular_momentum,
+            carter,
+            k,
+            b: k - 2.0 * a * angular_momentum * energy + a2e2,
+            a2e2,
+            nu_local,
+            u_eye,
+            // 3 |E|: radial rays have K = 0 but still r to travel. (K + a^2 E^2 >= 0 for light.)
+            scale: (k + a2e2).max(0.0).sqrt().max(3.0 * energy.abs()),
+            r_plus: horizon_outer(a),
+            r_minus: horizon_inner(a),
+            clock: Clock::Coordinate,
+        }
+    }
+
+    /// u''.
+    #[inline(always)]
+    pub fn u_acceleration(&self, u: f64) -> f64 {
+        u * (self.a2e2 - self.k + u * (3.0 * self.b - u * (2.0 * self.a * self.a * self.carter)))
+    }
+
+    /// N''.
+    #[inline(always)]
+    pub fn n_acceleration(&self, n: DVec3) -> DVec3 {
+        let mut f = n * -(self.k + 2.0 * self.a2e2 * n.z * n.z);
+        f.z += self.a2e2 * n.z;
+        f
+    }
+
+    /// D = Delta / r^2 from its roots: no cancellation near the horizon.
+    #[inline(always)]
+    pub fn horizon_function(&self, u: f64) -> f64 {
+        (1.0 - self.r_plus * u) * (1.0 - self.r_minus * u)
+    }
+
+    /// drag' = d ph / d tau of the backward ray beyond what N turns.
+    #[inline(always)]
+    pub fn drag_rate(&self, u: f64) -> f64 {
+        if self.a == 0.0 {
+            return 0.0;
+        }
+        -self.a * u * (2.0 * self.energy - self.a * self.angular_momentum * u) / self.horizon_function(u)
+    }
+
+    /// E = 1 and 1/u^2 may be integrated by parts, so that far observers are no difficulty.
+    fn is_unit_energy(&self) -> bool {
+        self.energy == 1.0
+    }
+
+    /// d/dtau of `State::delay`: Carter's dt/dtau without what `delay_boundary` holds in closed form.
+    ///
+    /// dt/dtau = 1/u^2 + 2/u + a^2 N_z^2 + (4 - 2 a L u) / D with E = 1; 1/u^2 = -(u'/u)' + B u - a^2 Q u^2 and, with
+    /// l = ln(u / u_eye), 1/u = (u' l)' + (K - a^2) u (1 + l) - B u^2 (2 + 3 l) + a^2 Q u^3 (1 + 2 l).
+    #[inline(always)]
+    pub fn delay_rate(&self, u: f64, du: f64, n_z: f64) -> f64 {
+        let k = self.k;
+        if self.clock == Clock::Rain {
+            // Gullstrand 1922: T = t + 2 sqrt(2 r) + 2 ln |(sqrt r - sqrt 2) / (sqrt r + sqrt 2)|; a = 0, E = 1, B = K.
+            let l = u.ln();
+            return 3.0 * k * u + 2.0 * k * u * l - 2.0 * k * u * u * (2.0 + 3.0 * l) + 4.0 * k * u * u / (1.0 - du);
+        }
+        let a2 = self.a * self.a;
+        let d = self.horizon_function(u);
+        let frame = self.a2e2 / self.energy * n_z * n_z;
+        let frame = if self.energy == 0.0 { 0.0 } else { frame };
+        let horizon = (4.0 * self.energy - 2.0 * self.a * self.angular_momentum * u) / d;
+        if !self.is_unit_energy() {
+            return self.energy * (1.0 / (u * u) + 2.0 / u) + frame + horizon;
+        }
+        // At u <= 0, past infinity, only the step that finds the escape looks; it does not use the delay.
+        let l = (u / self.u_eye).max(f64::MIN_POSITIVE).ln();
+        let a2q = a2 * self.carter;
+        let by_parts = (k - a2) * u * (1.0 + l) - self.b * u * u * (2.0 + 3.0 * l) + a2q * u * u * u * (1.0 + 2.0 * l);
+        self.b * u - a2q * u * u + 2.0 * by_parts + frame + horizon
+    }
+
+    /// The closed-form part of the time integral up to (u, u').
+    fn delay_boundary(&self, u: f64, du: f64) -> f64 {
+        if self.clock == Clock::Rain {
+            return 2.0 * du * u.ln() - du / u - 2.0 * (2.0 / u).sqrt() + 4.0 * (2.0 * u).sqrt().ln_1p();
+        }
+        if !self.is_unit_energy() {
+            return 0.0;
+        }
+        2.0 * du * (u / self.u_eye).ln() - du / u
+    }
+
+    /// Time from the event at `there` to the eye, which the ray left as `eye`; > 0 outside the horizon.
+    pub fn delay(&self, eye: &State, there: &State) -> f64 {
+        self.delay_boundary(there.u, there.du) - self.delay_boundary(eye.u, eye.du) + there.delay - eye.delay
+    }
+}
+
+impl State {
+    /// The chart direction of this point from the hole: N, normalised, turned by the drag.
+    pub fn chart_direction(&self) -> DVec3 {
+        let n = self.n.normalize();
+        let (s, c) = self.drag.sin_cos();
+        DVec3::new(n.x * c - n.y * s, n.x * s + n.y * c, n.z)
+    }
+
+    /// Chart azimuth in (-pi, pi].
+    pub fn azimuth(&self) -> f64 {
+        wrap_angle(self.n.y.atan2(self.n.x) + self.drag)
+    }
+}
+
+/// `angle` brought into (-pi, pi].
+pub fn wrap_angle(angle: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    let turned = angle - TAU * ((angle - PI) / TAU).ceil();
+    // Rounding can leave the bracket by one step.
+    if turned <= -PI { PI } else { turned.min(PI) }
+}

@@ -1,0 +1,315 @@
+//! Steps of a light ray in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom method of order 5 that
+//! the renderer uses; their common dense output; the step limit beside the horizon. Knows the equations only through
+//! `geodesic`. Mirrored by `shaders/integrator.wgsl`.
+
+use super::geodesic::{Clock, Constants, State};
+use glam::DVec3;
+
+/// A one-step method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Order 5, four evaluations a step (Nystrom 1925; Hairer, Norsett & Wanner, Solving ODEs I, II.14).
+    Nystrom,
+    /// The classic fourth-order Runge-Kutta method (Kutta 1901).
+    Rk4,
+    /// Dormand & Prince 1980, RK5(4)7M; the step carries an error estimate.
+    DormandPrince,
+}
+
+/// The state after `h` (in tau), and the error estimate of an embedded method (0 for the others), relative to what
+/// `error_norm` takes for 1.
+pub fn step(method: Method, c: &Constants, s: &State, h: f64, with_delay: bool) -> (State, f64) {
+    match method {
+        Method::Nystrom => (nystrom_step(c, s, h, with_delay), 0.0),
+        Method::Rk4 => (rk4_step(c, s, h), 0.0),
+        Method::DormandPrince => dormand_prince_step(c, s, h),
+    }
+}
+
+/// Nystrom's method for y'' = f(y). Drag and delay, z' = f(u, N), take the weights of y', which keeps order 5.
+#[inline]
+pub fn nystrom_step(c: &Constants, s: &State, h: f64, with_delay: bool) -> State {
+    let h2 = h * h;
+    let f1 = (c.u_acceleration(s.u), c.n_acceleration(s.n));
+    let at = |node: f64, u_term: f64, n_term: DVec3| {
+        (s.u + node * h * s.du + h2 * u_term, s.n + s.dn * (node * h) + n_term * h2)
+    };
+    let y2 = at(0.2, f1.0 / 50.0, f1.1 * (1.0 / 50.0));
+    let f2 = (c.u_acceleration(y2.0), c.n_acceleration(y2.1));
+    let y3 = at(2.0 / 3.0, (7.0 * f2.0 - f1.0) / 27.0, f2.1 * (7.0 / 27.0) - f1.1 * (1.0 / 27.0));
+    let f3 = (c.u_acceleration(y3.0), c.n_acceleration(y3.1));
+    let y4 = at(
+        1.0,
+        0.3 * f1.0 - 2.0 / 35.0 * f2.0 + 9.0 / 35.0 * f3.0,
+        f1.1 * 0.3 - f2.1 * (2.0 / 35.0) + f3.1 * (9.0 / 35.0),
+    );
+    let f4 = (c.u_acceleration(y4.0), c.n_acceleration(y4.1));
+    let (b1, b2, b3) = (1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0);
+    let (d1, d2, d3, d4) = (1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0);
+    let mut end = State {
+        u: s.u + h * s.du + h2 * (b1 * f1.0 + b2 * f2.0 + b3 * f3.0),
+        du: s.du + h * (d1 * f1.0 + d2 * f2.0 + d3 * f3.0 + d4 * f4.0),
+        n: s.n + s.dn * h + (f1.1 * b1 + f2.1 * b2 + f3.1 * b3) * h2,
+        dn: s.dn + (f1.1 * d1 + f2.1 * d2 + f3.1 * d3 + f4.1 * d4) * h,
+        drag: s.drag,
+        delay: s.delay,
+    };
+    if c.a != 0.0 {
+        let rate = |u: f64| c.drag_rate(u);
+        end.drag += h * (d1 * rate(s.u) + d2 * rate(y2.0) + d3 * rate(y3.0) + d4 * rate(y4.0));
+    }
+    if with_delay {
+        end.delay += match c.clock {
+            Clock::Coordinate => {
+                let rate = |u: f64, n: DVec3| c.delay_rate(u, 0.0, n.z);
+                h * (d1 * rate(s.u, s.n) + d2 * rate(y2.0, y2.1) + d3 * rate(y3.0, y3.1) + d4 * rate(y4.0, y4.1))
+            }
+            Clock::Rain => rain_delay_step(c, s, &end, h),
+        };
+    }
+    end
+}
+
+/// Rain time over one step: its rate needs u', which Nystrom stages do not have; Gauss-Legendre on the dense output.
+fn rain_delay_step(c: &Constants, from: &State, to: &State, h: f64) -> f64 {
+    let dense = Quintic::of_u(c, from, to, h);
+    let offset = 0.6_f64.sqrt() / 2.0;
+    let at = |x: f64| {
+        let (u, du) = dense.at(x);
+        c.delay_rate(u, du, 0.0)
+    };
+    h / 18.0 * (5.0 * at(0.5 - offset) + 8.0 * at(0.5) + 5.0 * at(0.5 + offset))
+}
+
+/// u, u', N, N', drag, delay as one vector, for the methods that treat the system as of first order.
+type Vector = [f64; 10];
+
+fn to_vector(s: &State) -> Vector {
+    [s.u, s.du, s.n.x, s.n.y, s.n.z, s.dn.x, s.dn.y, s.dn.z, s.drag, s.delay]
+}
+
+fn from_vector(v: &Vector) -> State {
+    State {
+        u: v[0],
+        du: v[1],
+        n: DVec3::new(v[2], v[3], v[4]),
+        dn: DVec3::new(v[5], v[6], v[7]),
+        drag: v[8],
+        delay: v[9],
+    }
+}
+
+fn derivative(c: &Constants, v: &Vector) -> Vector {
+    let s = from_vector(v);
+    let f = c.n_acceleration(s.n);
+    [
+        s.du,
+        c.u_acceleration(s.u),
+        s.dn.x,
+        s.dn.y,
+        s.dn.z,
+        f.x,
+        f.y,
+        f.z,
+        c.drag_rate(s.u),
+        c.delay_rate(s.u, s.du, s.n.z),
+    ]
+}
+
+/// y + h sum_i weights[i] k[i].
+fn combine(y: &Vector, h: f64, weights: &[f64], k: &[Vector]) -> Vector {
+    std::array::from_fn(|i| y[i] + h * weights.iter().zip(k).map(|(w, k)| w * k[i]).sum::<f64>())
+}
+
+pub fn rk4_step(c: &Constants, s: &State, h: f64) -> State {
+    let y = to_vector(s);
+    let k1 = derivative(c, &y);
+    let k2 = derivative(c, &combine(&y, h, &[0.5], &[k1]));
+    let k3 = derivative(c, &combine(&y, h, &[0.5], &[k2]));
+    let k4 = derivative(c, &combine(&y, h, &[1.0], &[k3]));
+    from_vector(&combine(&y, h / 6.0, &[1.0, 2.0, 2.0, 1.0], &[k1, k2, k3, k4]))
+}
+
+/// Stage weights, fifth-order weights (row 7 of the tableau: first same as last), and fifth minus fourth order.
+const DP_STAGES: [&[f64]; 6] = [
+    &[1.0 / 5.0],
+    &[3.0 / 40.0, 9.0 / 40.0],
+    &[44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0],
+    &[19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0],
+    &[9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0],
+    &[35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
+];
+const DP_ERROR: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
+
+pub fn dormand_prince_step(c: &Constants, s: &State, h: f64) -> (State, f64) {
+    let y = to_vector(s);
+    let mut k = [[0.0; 10]; 7];
+    k[0] = derivative(c, &y);
+    let mut end = y;
+    for (i, weights) in DP_STAGES.iter().enumerate() {
+        end = combine(&y, h, weights, &k[..=i]);
+        k[i + 1] = derivative(c, &end);
+    }
+    let error = combine(&[0.0; 10], h, &DP_ERROR, &k);
+    let end = from_vector(&end);
+    (end, error_norm(c, &end, &from_vector(&error)))
+}
+
+/// What an error in each component does to directions (rad) and radii (relative); delay is left out: where it is ill
+/// conditioned, beside the horizon, the step limit holds it.
+fn error_norm(c: &Constants, s: &State, error: &State) -> f64 {
+    // At the far end of a ray an error in u moves the escape: 1e-3 keeps that in proportion with the direction.
+    let u_scale = s.u.abs() + 1e-3;
+    (error.u.abs() / u_scale)
+        .max(error.du.abs() / (c.scale * u_scale))
+        .max(error.n.abs().max_element())
+        .max(error.dn.abs().max_element() / c.scale)
+        .max(error.drag.abs())
+}
+
+/// Largest step in tau at this state.
+///
+/// Outside, beside the horizon (u > 0.3 u+): 0.35 (u+ - u) / (|u'| + sqrt(|u''| (u+ - u))), which cannot overshoot u+: drag and
+/// delay diverge there. Inside (spin 0): `h` u / (|u'| + sqrt(|u''| u)), as u is large. `h` is the step in sigma.
+#[inline]
+pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
+    let u_plus = 1.0 / c.r_plus;
+    if s.u <= 0.3 * u_plus {
+        return f64::INFINITY;
+    }
+    let curvature = c.u_acceleration(s.u).abs();
+    if s.u >= u_plus {
+        return h * s.u / (s.du.abs() + (curvature * s.u).sqrt());
+    }
+    let room = u_plus - s.u;
+    0.35 * room / (s.du.abs() + (curvature * room).sqrt())
+}
+
+/// Quintic Hermite interpolation over one step: value, slope and curvature at both ends. Error O(h^6).
+pub struct Quintic {
+    coefficients: [f64; 6],
+    h: f64,
+}
+
+impl Quintic {
+    pub fn new(y0: f64, d0: f64, c0: f64, y1: f64, d1: f64, c1: f64, h: f64) -> Self {
+        let (d0, d1, c0, c1) = (d0 * h, d1 * h, c0 * h * h, c1 * h * h);
+        let rise = y1 - y0;
+        Self {
+            coefficients: [
+                y0,
+                d0,
+                0.5 * c0,
+                10.0 * rise - 6.0 * d0 - 4.0 * d1 - 1.5 * c0 + 0.5 * c1,
+                -15.0 * rise + 8.0 * d0 + 7.0 * d1 + 1.5 * c0 - c1,
+                6.0 * rise - 3.0 * (d0 + d1) - 0.5 * (c0 - c1),
+            ],
+            h,
+        }
+    }
+
+    pub fn of_u(c: &Constants, from: &State, to: &State, h: f64) -> Self {
+        Self::new(from.u, from.du, c.u_acceleration(from.u), to.u, to.du, c.u_acceleration(to.u), h)
+    }
+
+    pub fn of_n_z(c: &Constants, from: &State, to: &State, h: f64) -> Self {
+        Self::new(from.n.z, from.dn.z, c.n_acceleration(from.n).z, to.n.z, to.dn.z, c.n_acceleration(to.n).z, h)
+    }
+
+    /// Value and slope (by tau) at the fraction `x` of the step.
+    pub fn at(&self, x: f64) -> (f64, f64) {
+        let k = &self.coefficients;
+        let value = k[0] + x * (k[1] + x * (k[2] + x * (k[3] + x * (k[4] + x * k[5]))));
+        let slope = k[1] + x * (2.0 * k[2] + x * (3.0 * k[3] + x * (4.0 * k[4] + x * 5.0 * k[5])));
+        (value, slope / self.h)
+    }
+
+    /// The fraction in [0, 1] where the value is 0, for end values of opposite sign (or 0): Newton's method inside a
+    /// shrinking bracket.
+    pub fn root(&self) -> f64 {
+        let rising = self.at(1.0).0 > self.coefficients[0];
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut x = 0.5;
+        for _ in 0..60 {
+            let (value, slope) = self.at(x);
+            if (value > 0.0) == rising {
+                high = x
+            } else {
+                low = x
+            }
+            let newton = x - value / (slope * self.h);
+            let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+            if (next - x).abs() <= f64::EPSILON * 2.0 {
+                return next;
+            }
+            x = next;
+        }
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::observer::LocalFrame;
+
+    fn start(a: f64) -> (Constants, State) {
+        let frame = LocalFrame::new(a, DVec3::new(9.0, 0.0, 4.0)).unwrap();
+        frame.start(DVec3::new(-0.8, 0.3, -0.52).normalize()).unwrap()
+    }
+
+    fn integrate(method: Method, c: &Constants, s: State, tau: f64, n: usize) -> State {
+        (0..n).fold(s, |s, _| step(method, c, &s, tau / n as f64, true).0)
+    }
+
+    /// Halving the step divides the error by 2^order.
+    #[test]
+    fn methods_have_their_order() {
+        let (c, s) = start(0.9);
+        let tau = 0.12;
+        let truth = integrate(Method::Nystrom, &c, s, tau, 4000);
+        let error = |method, n| {
+            let e = integrate(method, &c, s, tau, n);
+            (e.n - truth.n).length()
+                + (e.u - truth.u).abs()
+                + (e.drag - truth.drag).abs()
+                + (e.delay - truth.delay).abs()
+        };
+        for (method, order) in [(Method::Nystrom, 5.0), (Method::Rk4, 4.0), (Method::DormandPrince, 5.0)] {
+            let measured = (error(method, 12) / error(method, 24)).log2();
+            assert!((measured - order).abs() < 0.5, "{method:?}: order {measured}");
+        }
+    }
+
+    #[test]
+    fn error_estimate_follows_the_error() {
+        let (c, s) = start(0.5);
+        let estimate = |h| step(Method::DormandPrince, &c, &s, h, true).1;
+        let ratio = (estimate(0.02) / estimate(0.01)).log2();
+        assert!(ratio > 4.0 && ratio < 6.0, "{ratio}");
+    }
+
+    #[test]
+    fn quintic_reproduces_a_quintic_and_finds_its_root() {
+        let f = |t: f64| 1.0 - 3.0 * t + t.powi(3) - 0.2 * t.powi(5);
+        let d = |t: f64| -3.0 + 3.0 * t * t - t.powi(4);
+        let c = |t: f64| 6.0 * t - 4.0 * t.powi(3);
+        let h = 0.8;
+        let q = Quintic::new(f(0.0), d(0.0), c(0.0), f(h), d(h), c(h), h);
+        let (value, slope) = q.at(0.3);
+        assert!((value - f(0.24)).abs() < 1e-14 && (slope - d(0.24)).abs() < 1e-13);
+        assert!(f(q.root() * h).abs() < 1e-14);
+    }
+
+    /// u'^2 = E^2 + (a^2 E^2 - K) u^2 + 2 B u^3 - a^2 Q u^4 and |N| = 1 stay.
+    #[test]
+    fn first_integrals_are_kept() {
+        let (c, s) = start(0.7);
+        let e = integrate(Method::Nystrom, &c, s, 0.15, 400);
+        let u = e.u;
+        let squared = c.energy.powi(2) + u * u * (c.a2e2 - c.k + u * (2.0 * c.b - u * c.a * c.a * c.carter));
+        assert!((e.du * e.du / squared - 1.0).abs() < 1e-10);
+        assert!((e.n.length() - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,124 @@
+//! Radii and circular equatorial orbits of the Kerr spacetime. Knows nothing of light beyond the photon orbits.
+//!
+//! Bardeen, Press & Teukolsky 1972, eq. 2.12 - 2.21. `a` is signed; matter moves towards +ph ("prograde") unless `retrograde`,
+//! which is the same orbit seen in a mirror: a -> -a, ph -> -ph.
+
+/// r+ = 1 + sqrt(1 - a^2).
+pub fn horizon_outer(a: f64) -> f64 {
+    1.0 + ((1.0 - a) * (1.0 + a)).sqrt()
+}
+
+/// r- = a^2 / r+: the other root of Delta, without cancellation.
+pub fn horizon_inner(a: f64) -> f64 {
+    a * a / horizon_outer(a)
+}
+
+/// The static limit at polar angle th: 1 + sqrt(1 - a^2 cos^2 th).
+pub fn ergosphere(a: f64, theta: f64) -> f64 {
+    1.0 + (1.0 - (a * theta.cos()).powi(2)).max(0.0).sqrt()
+}
+
+/// Circular photon orbit towards +ph: 2 (1 + cos(2/3 acos(-a))); towards -ph with -a. (Eq. 2.18.)
+pub fn photon_orbit(a: f64) -> f64 {
+    2.0 * (1.0 + (2.0 / 3.0 * (-a).acos()).cos())
+}
+
+/// Innermost stable circular orbit of matter moving towards +ph; towards -ph with -a. (Eq. 2.21.)
+pub fn isco(a: f64) -> f64 {
+    let z1 = 1.0 + (1.0 - a * a).cbrt() * ((1.0 + a).cbrt() + (1.0 - a).cbrt());
+    let z2 = (3.0 * a * a + z1 * z1).sqrt();
+    let root = ((3.0 - z1) * (3.0 + z1 + 2.0 * z2)).max(0.0).sqrt();
+    3.0 + z2 - root.copysign(a)
+}
+
+/// omega = -g_tph / g_phph: angular velocity of the ZAMO at (r, th), th by its sine.
+pub fn zamo_omega(a: f64, r: f64, sin: f64) -> f64 {
+    let sum = r * r + a * a;
+    let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
+    let big_a = sum * sum - delta * (a * sin).powi(2);
+    2.0 * a * r / big_a
+}
+
+/// Matter on a circular equatorial geodesic of radius `r`, moving towards +ph.
+#[derive(Clone, Copy, Debug)]
+pub struct CircularOrbit {
+    /// Omega = d ph / d t = 1 / (r^(3/2) + a).
+    pub angular_velocity: f64,
+    /// u^t = d t / d tau.
+    pub ut: f64,
+    /// E / m.
+    pub energy: f64,
+    /// L_z / m.
+    pub angular_momentum: f64,
+    /// v / c measured by the ZAMO there, towards +ph.
+    pub beta: f64,
+}
+
+/// `None` at or inside the circular photon orbit, where no time-like circular orbit exists. (Eq. 2.12, 2.13, 2.16, 3.11a.)
+pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
+    let u = 1.0 / r;
+    let v = u * u.sqrt();
+    let root = (1.0 - 3.0 * u + 2.0 * a * v).sqrt();
+    if !(root > 0.0) || r <= horizon_outer(a) {
+        return None;
+    }
+    let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
+    Some(CircularOrbit {
+        angular_velocity: 1.0 / (r * r.sqrt() + a),
+        ut: (1.0 + a * v) / root,
+        energy: (1.0 - 2.0 * u + a * v) / root,
+        angular_momentum: r.sqrt() * (1.0 - 2.0 * a * v + (a * u).powi(2)) / root,
+        beta: (r * r - 2.0 * a * r.sqrt() + a * a) / (delta.sqrt() * (r * r.sqrt() + a)),
+    })
+}
+
+/// g = nu_receiver / nu_emitter of a photon with constants E, L (scaled so that the receiver measures `nu_receiver`) emitted
+/// at u = 1 / r by matter on the circular orbit towards +ph, or -ph if `retrograde`. (Luminet 1979; eq. 2.16 above.)
+/// Also for E <= 0, inside the ergosphere. NaN where no such orbit exists.
+pub fn redshift(a: f64, u: f64, retrograde: bool, energy: f64, angular_momentum: f64, nu_receiver: f64) -> f64 {
+    let v = if retrograde { -u * u.sqrt() } else { u * u.sqrt() };
+    nu_receiver * (1.0 - 3.0 * u + 2.0 * a * v).sqrt() / (energy * (1.0 + a * v) - v * angular_momentum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn schwarzschild_radii() {
+        assert_eq!(horizon_outer(0.0), 2.0);
+        assert_eq!(horizon_inner(0.0), 0.0);
+        assert!((photon_orbit(0.0) - 3.0).abs() < 1e-14);
+        assert_eq!(isco(0.0), 6.0);
+        assert_eq!(ergosphere(0.9, std::f64::consts::FRAC_PI_2), 2.0);
+    }
+
+    #[test]
+    fn radii_of_both_senses_bracket_schwarzschild() {
+        for a in [0.1, 0.5, 0.9, 0.998] {
+            assert!(photon_orbit(a) < 3.0 && photon_orbit(-a) > 3.0, "a {a}");
+            assert!(isco(a) < 6.0 && isco(-a) > 6.0, "a {a}");
+        }
+        assert!((photon_orbit(-1.0) - 4.0).abs() < 1e-12);
+        assert!((isco(-1.0) - 9.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn no_circular_orbit_at_the_photon_orbit() {
+        assert!(circular_orbit(0.0, 3.0).is_none());
+        assert!(circular_orbit(0.5, photon_orbit(0.5) * (1.0 - 1e-9)).is_none());
+        assert!(circular_orbit(0.5, photon_orbit(0.5) * (1.0 + 1e-6)).is_some());
+    }
+
+    /// L_z = sqrt(r) (1 - 2 a v + a^2 u^2) / root and E are stationary at the ISCO.
+    #[test]
+    fn energy_is_stationary_at_the_isco() {
+        for a in [-0.9, 0.0, 0.5, 0.99] {
+            let r = isco(a);
+            let energy = |r| circular_orbit(a, r).unwrap().energy;
+            let slope = (energy(r + 1e-4) - energy(r - 1e-4)) / 2e-4;
+            let curvature = (energy(r + 1e-2) + energy(r - 1e-2) - 2.0 * energy(r)) / 1e-4;
+            assert!(slope.abs() < 1e-6 * (1.0 + curvature), "a {a}: {slope}");
+        }
+    }
+}

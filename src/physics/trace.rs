@@ -1,0 +1,292 @@
+//! One light ray from the eye to its fate: steps, crossings of the equatorial plane, escape and capture. The only driver of the
+//! integrators. Mirrored by `shaders/trace.wgsl`.
+
+use super::geodesic::{Constants, State};
+use super::integrator::{Method, Quintic, step, step_limit};
+use super::observer::LocalFrame;
+use super::orbit::redshift;
+use arrayvec::ArrayVec;
+use glam::DVec3;
+
+/// Crossings a trace can keep: a ray's direct image of the plane and 15 higher orders.
+pub const CROSSINGS_KEPT: usize = 16;
+
+/// How to trace.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    pub method: Method,
+    /// Step in sigma of the fixed-step methods; the first and largest x 5 of the adaptive one.
+    pub step: f64,
+    /// Error per step of the adaptive method.
+    pub tolerance: f64,
+    /// A ray that needs more steps is unresolved.
+    pub max_steps: u32,
+    /// Crossings to find, at most `CROSSINGS_KEPT`; the ray is followed to its fate all the same.
+    pub max_crossings: usize,
+    /// Integrate the delay.
+    pub delay: bool,
+    /// 1/r beyond which a ray that moves inwards counts as captured. At most 1/r+; smaller skips what no one asks for.
+    pub capture_u: f64,
+}
+
+impl Settings {
+    /// The exact way: everything down to the horizon.
+    pub fn exact(a: f64) -> Self {
+        Self {
+            method: Method::Nystrom,
+            step: 0.02,
+            tolerance: 1e-10,
+            max_steps: 100_000,
+            max_crossings: CROSSINGS_KEPT,
+            delay: true,
+            capture_u: 1.0 / super::orbit::horizon_outer(a),
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fate {
+    Captured,
+    Escaped,
+    /// `max_steps` ran out.
+    Unresolved,
+}
+
+/// A crossing of the equatorial plane.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneCrossing {
+    pub u: f64,
+    /// In (-pi, pi].
+    pub azimuth: f64,
+    /// Time since the photon left there (`Constants::clock`); 0 unless asked for.
+    pub delay: f64,
+    /// Number of this crossing along the ray, from 0.
+    pub order: u32,
+}
+
+/// What became of a ray.
+#[derive(Clone, Debug)]
+pub struct RayTrace {
+    pub fate: Fate,
+    /// Asymptotic chart direction, unit; 0 unless escaped.
+    pub direction: DVec3,
+    /// sqrt(K) tau to infinity, or to the horizon: the orbit angle of a spin-0 ray. NaN with spin or unresolved.
+    pub swept: f64,
+    pub steps: u32,
+    pub crossings: ArrayVec<PlaneCrossing, CROSSINGS_KEPT>,
+}
+
+/// One accepted step, for those who follow a ray.
+pub struct Segment<'a> {
+    pub from: &'a State,
+    pub to: &'a State,
+    /// Tau at `from`, and the step.
+    pub tau: f64,
+    pub h: f64,
+}
+
+/// Why the stepping loop ended: the last segment, in which the end lies.
+enum End {
+    Escaped,
+    Captured,
+    OutOfSteps,
+}
+
+/// Steps of an adaptive method: next = 0.9 h (tolerance / error)^(1/5), at most 5 times more or less.
+fn next_step(h: f64, error: f64, tolerance: f64) -> f64 {
+    h * (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0)
+}
+
+/// Follows the ray, calling `visit` for every accepted step; the last one is where it ended.
+fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut dyn FnMut(&Segment)) -> (End, u32) {
+    let adaptive = settings.method == Method::DormandPrince;
+    let u_plus = 1.0 / c.r_plus;
+    let mut state = *start;
+    let mut tau = 0.0;
+    let mut h_wish = settings.step / c.scale;
+    // Sigma-steps of the adaptive method never exceed 0.5: crossings are found by their change of side.
+    let h_most = if adaptive { 0.5 / c.scale } else { h_wish };
+    for count in 1..=settings.max_steps {
+        let h = h_wish.min(h_most).min(step_limit(c, &state, settings.step));
+        let (next, error) = step(settings.method, c, &state, h, settings.delay);
+        if adaptive {
+            h_wish = next_step(h, error, settings.tolerance);
+            // NaN is no error to accept; a step too small to change anything is.
+            if !(error <= settings.tolerance) && h * c.scale > 1e-9 {
+                continue;
+            }
+        }
+        visit(&Segment { from: &state, to: &next, tau, h });
+        if next.u <= 0.0 {
+            return (End::Escaped, count);
+        }
+        // The state, not a change of side: the step rule stops short of the horizon.
+        if next.du > 0.0 && (next.u >= settings.capture_u || u_plus - next.u < 1e-6 * u_plus) {
+            return (End::Captured, count);
+        }
+        tau += h;
+        state = next;
+    }
+    (End::OutOfSteps, settings.max_steps)
+}
+
+/// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method with
+/// the integrator itself, so that dense output only has to be good enough to begin with.
+fn land(c: &Constants, s: &Settings, from: &State, guess: f64, value: impl Fn(&State) -> (f64, f64)) -> (State, f64) {
+    let mut h = guess;
+    let mut state = step(s.method, c, from, h, s.delay).0;
+    for _ in 0..3 {
+        let (y, slope) = value(&state);
+        let correction = y / slope;
+        if !(correction.abs() > 1e-15 / c.scale && correction.abs() < 0.1 / c.scale) {
+            break;
+        }
+        h -= correction;
+        state = step(s.method, c, from, h, s.delay).0;
+    }
+    (state, h)
+}
+
+/// Traces the backward ray (`constants`, `start`) to its fate.
+pub fn trace(constants: &Constants, start: &State, settings: &Settings) -> RayTrace {
+    let c = constants;
+    let mut crossings = ArrayVec::<PlaneCrossing, CROSSINGS_KEPT>::new();
+    let mut order = 0;
+    // A start in the plane is no crossing: the side is then the one it leaves to.
+    let mut side = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
+    let mut last = (*start, *start, 0.0, 0.0);
+    let crossing_limit = settings.max_crossings.min(CROSSINGS_KEPT);
+    let (end, steps) = follow(c, start, settings, &mut |segment| {
+        last = (*segment.from, *segment.to, segment.tau, segment.h);
+        if side * segment.to.n.z < 0.0 {
+            side = segment.to.n.z;
+            if crossings.len() < crossing_limit
+                && let Some(crossing) = find_crossing(c, start, settings, segment, order)
+            {
+                crossings.push(crossing);
+            }
+            order += 1;
+        }
+    });
+    let (from, to, tau, h) = last;
+    let mut result = RayTrace { fate: Fate::Unresolved, direction: DVec3::ZERO, swept: f64::NAN, steps, crossings };
+    let swept = |tau: f64| if c.a == 0.0 { c.k.max(0.0).sqrt() * tau } else { f64::NAN };
+    match end {
+        End::OutOfSteps => {}
+        End::Escaped => {
+            let guess = h * Quintic::of_u(c, &from, &to, h).root();
+            // The delay is infinite at infinity and not needed there.
+            let no_delay = Settings { delay: false, ..*settings };
+            let (state, h) = land(c, &no_delay, &from, guess, |s| (s.u, s.du));
+            result.fate = Fate::Escaped;
+            result.direction = state.chart_direction();
+            result.swept = swept(tau + h);
+        }
+        End::Captured => {
+            result.fate = Fate::Captured;
+            result.swept = swept(tau + h + time_to_horizon(c, settings, &to));
+        }
+    }
+    result
+}
+
+/// Tau from the end of a captured ray on to the horizon; spin 0, where u and N are regular there.
+fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
+    if c.a != 0.0 || settings.capture_u < 1.0 / c.r_plus {
+        return 0.0;
+    }
+    let no_delay = Settings { delay: false, ..*settings };
+    let u_plus = 1.0 / c.r_plus;
+    land(c, &no_delay, end, (u_plus - end.u) / end.du, |s| (s.u - u_plus, s.du)).1
+}
+
+fn find_crossing(c: &Constants, eye: &State, s: &Settings, segment: &Segment, order: u32) -> Option<PlaneCrossing> {
+    let (from, to, h) = (segment.from, segment.to, segment.h);
+    let guess = h * Quintic::of_n_z(c, from, to, h).root();
+    let (state, _) = land(c, s, from, guess, |s| (s.n.z, s.dn.z));
+    // Outside the horizon, by the contract's margin, and this side of infinity.
+    let outermost = 1.0 / (c.r_plus * (1.0 + 1e-5));
+    if !(state.u > 0.0 && state.u <= outermost) {
+        return None;
+    }
+    let delay = if s.delay { c.delay(eye, &state) } else { 0.0 };
+    Some(PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order })
+}
+
+/// Traces the look direction `n` (components, unit) of `frame`; the ray that no light can come from is captured.
+pub fn trace_look(frame: &LocalFrame, n: DVec3, settings: &Settings) -> (Option<Constants>, RayTrace) {
+    match frame.start(n) {
+        Some((c, state)) => {
+            let result = trace(&c, &state, settings);
+            (Some(c), result)
+        }
+        None => {
+            let nothing = RayTrace {
+                fate: Fate::Captured,
+                direction: DVec3::ZERO,
+                swept: 0.0,
+                steps: 0,
+                crossings: ArrayVec::new(),
+            };
+            (None, nothing)
+        }
+    }
+}
+
+impl PlaneCrossing {
+    /// g = nu(observer of the local frame) / nu(matter on its circular orbit); NaN inside that orbit's ISCO (`isco_radius`).
+    pub fn redshift(&self, c: &Constants, retrograde: bool, isco_radius: f64) -> f64 {
+        if self.u * isco_radius > 1.0 {
+            return f64::NAN;
+        }
+        redshift(c.a, self.u, retrograde, c.energy, c.angular_momentum, c.nu_local)
+    }
+}
+
+/// A point of a ray's path: chart position and time since the photon left it (<= 0 when read as scene time: `-delay`).
+#[derive(Clone, Copy, Debug)]
+pub struct PathPoint {
+    pub position: DVec3,
+    pub delay: f64,
+}
+
+/// The path in `count` (>= 2) points, evenly spaced in Mino time from the eye to the end: the horizon (1 + 1e-6), or, for
+/// a ray that escapes, the radius `far`.
+pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: usize) -> Vec<PathPoint> {
+    let point = |s: &State| PathPoint { position: s.chart_direction() / s.u, delay: c.delay(start, s) };
+    let u_far = 1.0 / far;
+    let mut segments: Vec<(State, f64, f64)> = Vec::new();
+    let mut end_tau = 0.0;
+    let mut over = false;
+    follow(c, start, settings, &mut |segment| {
+        if over {
+            return;
+        }
+        segments.push((*segment.from, segment.tau, segment.h));
+        end_tau = segment.tau + segment.h;
+        if segment.to.u < u_far && segment.to.du < 0.0 {
+            let q = Quintic::new(
+                segment.from.u - u_far,
+                segment.from.du,
+                c.u_acceleration(segment.from.u),
+                segment.to.u - u_far,
+                segment.to.du,
+                c.u_acceleration(segment.to.u),
+                segment.h,
+            );
+            end_tau = segment.tau + segment.h * q.root();
+            over = true;
+        }
+    });
+    let mut index = 0;
+    (0..count)
+        .map(|i| {
+            let tau = end_tau * i as f64 / (count - 1).max(1) as f64;
+            while index + 1 < segments.len() && segments[index + 1].1 <= tau {
+                index += 1;
+            }
+            let Some((from, begin, _)) = segments.get(index) else { return point(start) };
+            point(&step(settings.method, c, from, tau - begin, settings.delay).0)
+        })
+        .collect()
+}

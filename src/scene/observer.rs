@@ -1,0 +1,113 @@
+//! From the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks through a
+//! pixel. The only place that converts; both tracers and the queries build on it.
+
+use super::hole::unit;
+use super::{Camera, Motion, Projection, Region, Scene};
+use crate::error::{Error, Result};
+use crate::physics::observer::{LocalFrame, NoFrame, Observer};
+use crate::physics::orbit::{horizon_outer, photon_orbit};
+use glam::{DMat3, DVec3};
+
+impl Scene {
+    /// The local frame at a place given in scene axes and lengths.
+    /// Errors: INVALID_ARGUMENT for no place at all, UNSUPPORTED at or inside a spinning hole's horizon.
+    pub fn local_frame(&self, position: DVec3) -> Result<LocalFrame> {
+        let chart = self.hole.scene_to_chart() * position / self.hole.mass;
+        LocalFrame::new(self.hole.spin, chart).map_err(|why| match why {
+            NoFrame::NotAPlace => Error::argument(format!(
+                "position ({}, {}, {}) is no place for an observer: it must be finite, and not the hole's centre",
+                position.x, position.y, position.z
+            )),
+            NoFrame::InsideSpinningHorizon => Error::unsupported(format!(
+                "r = {} M lies at or inside the horizon, {} M, of a hole of spin {}; inside, only spin 0 is traced",
+                chart.length(),
+                horizon_outer(self.hole.spin),
+                self.hole.spin
+            )),
+        })
+    }
+
+    /// The camera's observer. Errors: as `local_frame`; INVALID_STATE where the camera's motion cannot be.
+    pub fn observer(&self) -> Result<Observer> {
+        self.observer_of(&self.camera)
+    }
+
+    pub(super) fn observer_of(&self, camera: &Camera) -> Result<Observer> {
+        let frame = self.local_frame(camera.position)?;
+        let spin = self.hole.spin;
+        if frame.rain && camera.motion != Motion::FreeFall {
+            return Err(Error::state(format!(
+                "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {:?}: there only FREE_FALL is possible",
+                frame.r, camera.motion
+            )));
+        }
+        match camera.motion {
+            Motion::Static => Ok(Observer::at_rest(frame)),
+            Motion::FreeFall => Ok(Observer::free_fall(frame)),
+            Motion::Velocity => {
+                let velocity = self.hole.scene_to_chart() * camera.velocity;
+                Ok(Observer::moving(frame, frame.components(velocity)))
+            }
+            Motion::Orbit => Observer::orbiting(frame).ok_or_else(|| {
+                Error::state(if spin != 0.0 && frame.cos != 0.0 {
+                    format!(
+                        "camera motion ORBIT off the equatorial plane (z = {} M) needs spin 0; spin is {spin}",
+                        frame.r * frame.cos
+                    )
+                } else {
+                    format!(
+                        "camera motion ORBIT at r = {} M: circular orbits exist only outside the photon orbit, {} M",
+                        frame.r,
+                        photon_orbit(spin)
+                    )
+                })
+            }),
+        }
+    }
+
+    /// The lens of the camera for the frame that `region` describes. Errors: as `observer`; UNSUPPORTED projections.
+    pub fn lens(&self, region: &Region) -> Result<Lens> {
+        let observer = self.observer()?;
+        if self.camera.projection != Projection::Perspective {
+            return Err(Error::unsupported(format!(
+                "projection {:?} is not rendered by this version; use PERSPECTIVE",
+                self.camera.projection
+            )));
+        }
+        let axes = self.hole.scene_to_chart() * self.camera.axes()?;
+        let frame = &observer.frame;
+        let tan = (0.5 * self.camera.fov_y).tan();
+        let (width, height) = (f64::from(region.full_width), f64::from(region.full_height));
+        let axes = DMat3::from_cols(
+            frame.components(axes.x_axis) * (tan * width / height),
+            frame.components(axes.y_axis) * tan,
+            frame.components(axes.z_axis),
+        );
+        Ok(Lens { observer, axes, width, height })
+    }
+}
+
+/// A pinhole at an observer's eye.
+#[derive(Clone, Copy, Debug)]
+pub struct Lens {
+    pub observer: Observer,
+    /// Columns: half the image plane's width to the right, half its height up, forward; components in the observer's frame.
+    pub axes: DMat3,
+    /// Of the full frame, pixels.
+    pub width: f64,
+    pub height: f64,
+}
+
+impl Lens {
+    /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0) being
+    /// its top-left corner. Positions outside the frame continue the image plane.
+    pub fn look(&self, x: f64, y: f64) -> DVec3 {
+        let plane = DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0);
+        (self.axes * plane).normalize()
+    }
+}
+
+/// The components of a host's direction in `frame`, unit; `None` when it is zero or not finite.
+pub fn look_components(scene: &Scene, frame: &LocalFrame, direction: DVec3) -> Option<DVec3> {
+    unit(direction).map(|d| frame.components(scene.hole.scene_to_chart() * d).normalize())
+}

@@ -1,0 +1,120 @@
+//! A host's ray and quality in the terms of `physics::trace`, and a trace's result in the host's: what both tracers share.
+
+use super::observer::look_components;
+use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
+use super::{Method, Quality, Scene};
+use crate::physics::geodesic::{Constants, State};
+use crate::physics::integrator;
+use crate::physics::observer::LocalFrame;
+use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
+use crate::physics::trace::{self, RayTrace, Settings};
+
+/// Steps in sigma of the Nystrom method: for rays that a host asks for (1e-11), and for pixels in f64 (1e-7).
+pub const RAY_STEP: f64 = 0.025;
+pub const PIXEL_STEP: f64 = 0.2;
+
+impl Quality {
+    /// For rays of the f64 tracer.
+    pub fn ray_settings(&self, spin: f64) -> Settings {
+        let (method, step) = match self.method {
+            Method::Auto => (integrator::Method::Nystrom, RAY_STEP),
+            Method::Rk4 => (integrator::Method::Rk4, self.rk4_step()),
+            Method::Adaptive => (integrator::Method::DormandPrince, 0.1),
+        };
+        Settings {
+            method,
+            step,
+            tolerance: self.adaptive_tolerance(),
+            max_steps: self.max_steps,
+            max_crossings: MAX_CROSSINGS,
+            delay: true,
+            capture_u: 1.0 / horizon_outer(spin),
+        }
+    }
+}
+
+impl Scene {
+    /// For pixels of the f64 tracer.
+    pub fn pixel_settings(&self) -> Settings {
+        let mut settings = self.quality.ray_settings(self.hole.spin);
+        if self.quality.method == Method::Auto {
+            settings.step = PIXEL_STEP;
+        }
+        settings.max_crossings = self.quality.max_disk_order as usize + 1;
+        settings.delay = self.needs_delay();
+        settings.capture_u = self.pixel_capture_u();
+        settings
+    }
+
+    /// Whether light shows when it left the disk: only structure that moves does.
+    pub fn needs_delay(&self) -> bool {
+        self.disk.is_some_and(|d| d.turbulence > 0.0) && self.effects.has(super::Effects::LIGHT_DELAY)
+    }
+
+    /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde photon
+    /// orbit, and no disk is drawn there, the ISCO being outside it; only METRIC looks deeper.
+    pub fn pixel_capture_u(&self) -> f64 {
+        let spin = self.hole.spin;
+        if self.view == super::View::Metric {
+            return 1.0 / horizon_outer(spin);
+        }
+        // 1 %: an eye on the photon orbit itself still sees its rays leave.
+        1.0 / (0.99 * photon_orbit(spin.abs())).max(horizon_outer(spin))
+    }
+
+    /// The start of a host's ray; `None` when it is not valid. The inner `None`: captured at once (`LocalFrame::start`).
+    pub fn start(&self, ray: &Ray) -> Option<(LocalFrame, Option<(Constants, State)>)> {
+        if !(ray.frequency_ratio > 0.0 && ray.frequency_ratio.is_finite() && ray.position.is_finite()) {
+            return None;
+        }
+        let frame = self.local_frame(ray.position).ok()?;
+        let n = look_components(self, &frame, ray.direction)?;
+        Some((frame, frame.start(n)))
+    }
+
+    /// Whether the disk's matter, or without a disk any matter a redshift is asked for, orbits towards -ph.
+    pub fn retrograde(&self) -> bool {
+        self.disk.is_some_and(|d| d.retrograde)
+    }
+
+    /// Spin as the disk's matter meets it: its own sense of motion is +ph.
+    pub fn matter_spin(&self) -> f64 {
+        if self.retrograde() { -self.hole.spin } else { self.hole.spin }
+    }
+
+    /// ISCO of the disk's matter, M.
+    pub fn disk_isco(&self) -> f64 {
+        isco(self.matter_spin())
+    }
+
+    /// The host's view of a finished trace.
+    pub fn hit(&self, ray: &Ray, frame: &LocalFrame, constants: Option<&Constants>, traced: &RayTrace) -> Hit {
+        let mut hit = Hit {
+            fate: match traced.fate {
+                trace::Fate::Captured => Fate::Captured,
+                trace::Fate::Escaped => Fate::Escaped,
+                trace::Fate::Unresolved => Fate::Unresolved,
+            },
+            sky_direction: traced.direction,
+            sky_redshift: f64::NAN,
+            swept_angle: traced.swept,
+            steps: traced.steps,
+            ..Hit::default()
+        };
+        let Some(c) = constants else { return hit };
+        if hit.fate == Fate::Escaped {
+            hit.sky_redshift = ray.frequency_ratio * c.nu_local / c.energy;
+        }
+        let (retrograde, isco, mass) = (self.retrograde(), self.disk_isco(), self.hole.mass);
+        for (out, crossing) in hit.crossings.iter_mut().zip(&traced.crossings) {
+            *out = Crossing {
+                radius: mass / crossing.u,
+                azimuth: crossing.azimuth,
+                redshift: ray.frequency_ratio * crossing.redshift(c, retrograde, isco),
+                delay: if frame.rain { f64::NAN } else { mass * crossing.delay },
+            };
+        }
+        hit.crossing_count = traced.crossings.len().min(MAX_CROSSINGS) as u32;
+        hit
+    }
+}

@@ -1,0 +1,350 @@
+//! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the stars within the cell
+//! enlarged by half its size on every side. Flat arrays, the same ones on the GPU. `shaders/stars.wgsl` has `cell_of` and `level_for` too.
+
+use super::catalogue::{self, Star};
+use crate::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable};
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Levels of the pyramid, finest first; each halves the cells of a cube side.
+pub const STAR_LEVELS: u32 = 5;
+/// Cells along a cube side at level 0.
+pub const STAR_FINEST: u32 = 128;
+/// Bend of the map from the plane of a cube side, u in [-1, 1], to cells, w = u (1 + k - k |u|): with (sqrt 3 - 1) / (sqrt 3 + 1) the smallest
+/// search radius inside a side is as large as that in its corner.
+pub const STAR_WARP: f64 = 0.268;
+/// Search radius times the cells along a side: 1 / (1.268 sqrt 2) = 0.5577 for small cells, 0.5457 on the coarsest level, less a
+/// little for rounding in f32.
+pub const STAR_MARGIN: f64 = 0.545;
+
+/// Display convention: a star of V = 0 has this radiance when its light is spread over REFERENCE_SOLID_ANGLE.
+pub const STAR_REFERENCE_RADIANCE: f64 = 30.0;
+/// (2 tan(30 degrees) / 720)^2 sr: the central pixel of a frame of 720 rows and 60 degrees.
+const REFERENCE_SOLID_ANGLE: f64 = (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
+
+/// Blackbodies that stand for the whole sky where a pixel is wider than the index reaches.
+pub const MEAN_SKY_PARTS: usize = 8;
+/// K. Upper ends of the temperatures that all but the last gather.
+const MEAN_SKY_BOUNDS: [f64; MEAN_SKY_PARTS - 1] = [3800.0, 4400.0, 5300.0, 6500.0, 8000.0, 10000.0, 13000.0];
+
+/// Cells along a cube side.
+pub fn side(level: u32) -> u32 {
+    STAR_FINEST >> level
+}
+
+/// Every star whose distance from a direction has a sine of at most this is in the list of the direction's cell.
+pub fn margin(level: u32) -> f64 {
+    STAR_MARGIN / f64::from(side(level))
+}
+
+/// The finest level whose margin is at least `radius`; `None` if even the coarsest one's is not, and for NaN.
+pub fn level_for(radius: f64) -> Option<u32> {
+    (0..STAR_LEVELS).find(|&level| margin(level) >= radius)
+}
+
+/// Cells of the levels finer than this one: 6 side^2 each, summed.
+fn cells_before(level: u32) -> u32 {
+    8 * (STAR_FINEST * STAR_FINEST - side(level) * side(level))
+}
+
+/// Cells of all levels.
+const CELL_COUNT: usize = {
+    let last = STAR_FINEST >> STAR_LEVELS;
+    (8 * (STAR_FINEST * STAR_FINEST - last * last)) as usize
+};
+
+fn warp(u: f64) -> f64 {
+    u * (1.0 + STAR_WARP - STAR_WARP * u.abs())
+}
+
+/// The cell of `level` that holds the direction: sides +x, -x, +y, -y, +z, -z; columns and rows along the axes that follow
+/// the side's own, cyclically. Any vector gives a cell that exists.
+pub fn cell_of(direction: DVec3, level: u32) -> u32 {
+    let a = direction.abs();
+    let (axis, along, u, v) = if a.x >= a.y && a.x >= a.z {
+        (0, direction.x, direction.y, direction.z)
+    } else if a.y >= a.z {
+        (1, direction.y, direction.z, direction.x)
+    } else {
+        (2, direction.z, direction.x, direction.y)
+    };
+    let face = 2 * axis + u32::from(along < 0.0);
+    let n = side(level);
+    // Saturating conversions: NaN becomes 0.
+    let cell = |u: f64| (((warp(u / along.abs()) + 1.0) * 0.5 * f64::from(n)).max(0.0) as u32).min(n - 1);
+    cells_before(level) + (face * n + cell(v)) * n + cell(u)
+}
+
+/// A blackbody of the mean sky.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct MeanSkyPart {
+    /// K.
+    pub temperature: f64,
+    /// ln Y of it (`BlackbodyTable::ln_luminance`).
+    pub log_reference: f64,
+    /// Luminance at rest, spread over the whole sky.
+    pub radiance: f64,
+}
+
+/// Stars, cells and mean light, ready to draw.
+pub struct StarIndex {
+    /// Two per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. In f32, what the GPU has,
+    /// so that both tracers see the same sky.
+    pub stars: Vec<[f32; 4]>,
+    /// For every cell, and one beyond, where its list begins in this same array; then the lists: star numbers.
+    pub star_cells: Vec<u32>,
+    pub mean_sky: [MeanSkyPart; MEAN_SKY_PARTS],
+}
+
+impl StarIndex {
+    /// The one of this process, made at first use (a few milliseconds).
+    pub fn shared() -> &'static Self {
+        static SHARED: OnceLock<StarIndex> = OnceLock::new();
+        SHARED.get_or_init(|| Self::new(catalogue::stars()))
+    }
+
+    /// Of any stars.
+    pub fn new(stars: impl Iterator<Item = Star>) -> Self {
+        let mut stars: Vec<Star> = stars.collect();
+        // Neighbours in the sky become neighbours in memory.
+        stars.sort_by_cached_key(|star| cell_of(star.direction, 0));
+        let table = BlackbodyTable::shared();
+        let packed = stars.iter().flat_map(|star| {
+            let (d, temperature) = (star.direction, star.temperature());
+            let (flux, log_reference) = (scaled_flux(star), table.ln_luminance(temperature));
+            [[d.x, d.y, d.z, flux], [temperature, log_reference, 0.0, 0.0]]
+        });
+        Self {
+            stars: packed.map(|v| v.map(|x| x as f32)).collect(),
+            star_cells: list_cells(&stars),
+            mean_sky: mean_sky(&stars),
+        }
+    }
+
+    /// `light_tables` of the GPU: blackbodies, stars, mean sky, at the offsets of `wgsl_constants`.
+    pub fn light_tables(&self) -> Vec<[f32; 4]> {
+        let mut tables = BlackbodyTable::shared().gpu_table();
+        tables.extend_from_slice(&self.stars);
+        tables.extend(
+            self.mean_sky
+                .iter()
+                .map(|part| [part.temperature as f32, part.log_reference as f32, part.radiance as f32, 0.0]),
+        );
+        tables
+    }
+
+    /// The constants of `shaders/stars.wgsl` that this index decides, as WGSL.
+    pub fn wgsl_constants(&self) -> String {
+        let stars = BLACKBODY_SIZE;
+        let mean = stars + self.stars.len();
+        format!(
+            "const STARS_OFFSET: u32 = {stars}u;\n\
+             const MEAN_SKY_OFFSET: u32 = {mean}u;\n\
+             const MEAN_SKY_PARTS: u32 = {MEAN_SKY_PARTS}u;\n\
+             const STAR_LEVELS: u32 = {STAR_LEVELS}u;\n\
+             const STAR_FINEST: u32 = {STAR_FINEST}u;\n\
+             const STAR_WARP: f32 = {STAR_WARP};\n\
+             const STAR_MARGIN: f32 = {STAR_MARGIN};\n"
+        )
+    }
+
+    /// The stars listed in a cell: number, then what `stars` has of it.
+    pub fn cell_stars(&self, cell: u32) -> impl Iterator<Item = ([f32; 4], [f32; 4])> {
+        let bound = |cell: usize| self.star_cells.get(cell).map_or(0, |&b| b as usize);
+        let (begin, end) = (bound(cell as usize), bound(cell as usize + 1));
+        let members = self.star_cells.get(begin..end).unwrap_or(&[]);
+        members.iter().filter_map(|&star| {
+            let star = 2 * star as usize;
+            Some((*self.stars.get(star)?, *self.stars.get(star + 1)?))
+        })
+    }
+}
+
+/// Radiance x solid angle: `Star::flux` on the display scale.
+fn scaled_flux(star: &Star) -> f64 {
+    star.flux() * STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE
+}
+
+/// Calls `visit` with every cell whose list the star belongs to: on each level, on each cube side whose plane it is near enough to, the two
+/// columns by two rows whose enlarged cells hold it.
+fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
+    let d = star.direction.to_array();
+    for face in 0..6_u32 {
+        let axis = (face / 2) as usize;
+        let along = if face % 2 == 0 { d[axis] } else { -d[axis] };
+        let (u, v) = (d[(axis + 1) % 3], d[(axis + 2) % 3]);
+        // Enlarged cells reach 1 + 1 / side in w; on the coarsest level that is below 1.25 in u.
+        if along <= 0.0 || u.abs() > 1.25 * along || v.abs() > 1.25 * along {
+            continue;
+        }
+        let (u, v) = (warp(u / along), warp(v / along));
+        for level in 0..STAR_LEVELS {
+            let n = side(level) as i32;
+            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 24 moves every level's cells above 0.
+            let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 23.5) as i32 - 24;
+            let (column, row) = (first(u), first(v));
+            for row in (row..=row + 1).filter(|row| (0..n).contains(row)) {
+                for column in (column..=column + 1).filter(|column| (0..n).contains(column)) {
+                    visit(cells_before(level) as usize + ((face as i32 * n + row) * n + column) as usize);
+                }
+            }
+        }
+    }
+}
+
+/// `StarIndex::star_cells`: a counting sort of the stars by cell.
+fn list_cells(stars: &[Star]) -> Vec<u32> {
+    let mut cells = vec![0_u32; CELL_COUNT + 1];
+    for star in stars {
+        visit_cells(star, &mut |cell| cells[cell] += 1);
+    }
+    let mut end = CELL_COUNT as u32 + 1;
+    for cell in &mut cells {
+        end += *cell;
+        *cell = end;
+    }
+    // Each cell now holds its list's end; filling from the back turns it into the begin, and leaves each list in order.
+    cells.resize(end as usize, 0);
+    for (number, star) in stars.iter().enumerate().rev() {
+        visit_cells(star, &mut |cell| {
+            cells[cell] -= 1;
+            let place = cells[cell] as usize;
+            cells[place] = number as u32;
+        });
+    }
+    cells
+}
+
+/// The light of all stars, spread evenly, by temperature. A part's 1 / T is the mean of its stars', weighted by light: to first
+/// order the shifted spectra, whose exponents are in 1 / T, then sum to the part's.
+fn mean_sky(stars: &[Star]) -> [MeanSkyPart; MEAN_SKY_PARTS] {
+    let mut sums = [(0.0, 0.0); MEAN_SKY_PARTS];
+    for star in stars {
+        let (flux, temperature) = (scaled_flux(star), star.temperature());
+        let part = MEAN_SKY_BOUNDS.iter().take_while(|&&bound| temperature > bound).count();
+        sums[part].0 += flux;
+        sums[part].1 += flux / temperature;
+    }
+    sums.map(|(flux, flux_by_temperature)| {
+        if flux == 0.0 {
+            return MeanSkyPart::default();
+        }
+        let temperature = flux / flux_by_temperature;
+        let log_reference = BlackbodyTable::shared().ln_luminance(temperature);
+        MeanSkyPart { temperature, log_reference, radiance: flux / (4.0 * PI) }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Directions spread evenly over the sphere (golden spiral), among them ones close to cube edges.
+    fn directions(count: u32) -> impl Iterator<Item = DVec3> {
+        (0..count).map(move |i| {
+            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
+            let angle = 2.399_963_229_728_653 * f64::from(i);
+            let s = (1.0 - z * z).sqrt();
+            DVec3::new(s * angle.cos(), s * angle.sin(), z)
+        })
+    }
+
+    #[test]
+    fn one_lookup_finds_every_star_within_the_margin() {
+        let index = StarIndex::shared();
+        let corner = DVec3::splat(1.0).normalize();
+        let edge = DVec3::new(1.0, 1.0 - 1e-12, 0.01).normalize();
+        for direction in directions(300).chain([corner, -corner, edge, DVec3::X, DVec3::NEG_Z]) {
+            for level in 0..STAR_LEVELS {
+                let listed: Vec<_> = index.cell_stars(cell_of(direction, level)).map(|(star, _)| star).collect();
+                for star in index.stars.iter().step_by(2) {
+                    let place = DVec3::new(star[0].into(), star[1].into(), star[2].into());
+                    if place.dot(direction) > 0.0 && place.cross(direction).length() <= margin(level) {
+                        assert!(listed.contains(star), "{star:?} near {direction} at level {level}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn margin_is_the_smallest_distance_across_half_a_cell() {
+        for level in 0..STAR_LEVELS {
+            let half = 1.0 / f64::from(side(level));
+            let mut least = f64::INFINITY;
+            for i in -1000..=1000 {
+                let u = f64::from(i) / 1000.0;
+                // u0 half a cell further in w, by bisection.
+                let (mut low, mut high) = (u, 1.5);
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    if warp(middle) - warp(u) < half { low = middle } else { high = middle }
+                }
+                // Sine of the distance from (1, u, 1) to the plane of the great circle u = u0.
+                least = least.min((low - u) / ((1.0 + low * low).sqrt() * (2.0 + u * u).sqrt()));
+            }
+            assert!(margin(level) < least && margin(level) > 0.9 * least, "level {level}: {least}");
+        }
+    }
+
+    #[test]
+    fn cells_number_the_whole_sphere_and_anything_else() {
+        let mut seen = vec![false; CELL_COUNT];
+        for direction in directions(400_000) {
+            seen[cell_of(direction, 2) as usize] = true;
+        }
+        let (begin, end) = (cells_before(2) as usize, cells_before(3) as usize);
+        assert_eq!(end - begin, 6 * 32 * 32);
+        assert!(seen[begin..end].iter().all(|&s| s));
+        assert!(seen[..begin].iter().chain(&seen[end..]).all(|&s| !s));
+        for odd in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::new(0.0, f64::NAN, 1.0)] {
+            for level in 0..STAR_LEVELS {
+                assert!((cell_of(odd, level) as usize) < CELL_COUNT);
+            }
+        }
+    }
+
+    #[test]
+    fn levels_are_chosen_by_margin() {
+        assert_eq!(level_for(0.0), Some(0));
+        assert_eq!(level_for(margin(0)), Some(0));
+        assert_eq!(level_for(margin(0) * 1.01), Some(1));
+        assert_eq!(level_for(margin(STAR_LEVELS - 1)), Some(STAR_LEVELS - 1));
+        assert_eq!(level_for(margin(STAR_LEVELS - 1) * 1.01), None);
+        assert_eq!(level_for(f64::NAN), None);
+    }
+
+    #[test]
+    fn memory_stays_small_and_lists_are_in_order() {
+        let index = StarIndex::shared();
+        assert!(index.stars.len() * 16 + index.star_cells.len() * 4 < 6_000_000);
+        assert_eq!(index.star_cells[CELL_COUNT] as usize, index.star_cells.len());
+        assert!(index.star_cells[..=CELL_COUNT].windows(2).all(|w| w[0] <= w[1]));
+        for cell in 0..CELL_COUNT {
+            let list = &index.star_cells[index.star_cells[cell] as usize..index.star_cells[cell + 1] as usize];
+            assert!(list.windows(2).all(|w| w[0] < w[1]));
+        }
+    }
+
+    #[test]
+    fn mean_sky_has_the_light_of_all_stars_under_any_shift() {
+        let index = StarIndex::shared();
+        let table = BlackbodyTable::shared();
+        for (g, tolerance) in [(0.5, 0.03), (1.0, 0.005), (2.0, 0.03)] {
+            let mut exact = [0.0; 3];
+            for star in index.stars.chunks(2) {
+                let light = table.shifted_blackbody(star[1][0].into(), star[1][1].into(), g, g);
+                (0..3).for_each(|c| exact[c] += f64::from(star[0][3]) * light[c] / (4.0 * PI));
+            }
+            let mut mean = [0.0; 3];
+            for part in index.mean_sky {
+                let light = table.shifted_blackbody(part.temperature, part.log_reference, g, g);
+                (0..3).for_each(|c| mean[c] += part.radiance * light[c]);
+            }
+            for c in 0..3 {
+                assert!((mean[c] / exact[c] - 1.0).abs() < tolerance, "g {g}: {mean:?} for {exact:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! How stars are drawn, the same in both tracers (`shaders/stars.wgsl`): as points with a fixed footprint in pixels, so that they neither alias
+//! nor sparkle, and with the brightness that the lens's magnification gives them.
+
+use super::index::{STAR_LEVELS, StarIndex, cell_of, level_for, margin};
+use crate::physics::blackbody::BlackbodyTable;
+use glam::{DVec2, DVec3};
+
+/// A pixel's patch of sky counts as at least this share of the square of its length. On a critical curve of the lens the patch that the derivatives
+/// span has no area and its stars would be infinitely bright; within one pixel that area really varies from 0 to about length^2 / (pixels
+/// around the curve), which is a thousandth.
+const MIN_AREA: f64 = 1e-3;
+/// Keeps the division finite for cameras of no field of view at all.
+const TINY_AREA: f64 = 1e-30;
+/// Brightest sum: finite in f32, whatever the host multiplies it by.
+const MAX_STAR_LIGHT: f64 = 1e9;
+
+/// Quadratic B-spline, support [-1.5, 1.5]: its values at t + integers sum to 1, so a star's light does not depend on where between
+/// the pixels it lies.
+fn footprint(t: f64) -> f64 {
+    let t = t.abs();
+    if t < 0.5 {
+        0.75 - t * t
+    } else if t < 1.5 {
+        0.5 * (1.5 - t) * (1.5 - t)
+    } else {
+        0.0
+    }
+}
+
+/// The patch of sky that belongs to a pixel: `d` unit direction at its centre, `dx` and `dy` its derivatives by pixel.
+struct Patch {
+    d: DVec3,
+    /// e . across / area = pixels along x to a star that is e away; e . down / area, along y.
+    across: DVec3,
+    down: DVec3,
+    /// Signed solid angle of a pixel.
+    area: f64,
+    /// 1 / solid angle, bounded.
+    magnification: f64,
+}
+
+impl Patch {
+    /// `stretch2`: the square of the longest derivative.
+    fn new(d: DVec3, dx: DVec3, dy: DVec3, stretch2: f64) -> Self {
+        let area = dx.cross(dy).dot(d);
+        let magnification = 1.0 / area.abs().max(MIN_AREA * stretch2).max(TINY_AREA);
+        Self { d, across: dy.cross(d), down: d.cross(dx), area, magnification }
+    }
+
+    /// Radiance per flux of a star in direction `s`. Solves [dx dy] (px, py) = s - d in the tangent plane by triple products; a star
+    /// outside the footprint is found out before anything is divided.
+    fn spread(&self, s: DVec3) -> f64 {
+        let e = s - self.d;
+        let p = DVec2::new(e.dot(self.across), e.dot(self.down));
+        let size = self.area.abs();
+        if p.abs().max_element() < 1.5 * size {
+            footprint(p.x / size) * footprint(p.y / size) * self.magnification
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Square of the largest singular value of [dx dy].
+fn stretch_squared(dx: DVec3, dy: DVec3) -> f64 {
+    let (a, b, c) = (dx.length_squared(), dx.dot(dy), dy.length_squared());
+    0.5 * (a + c) + (0.25 * (a - c) * (a - c) + b * b).sqrt()
+}
+
+impl StarIndex {
+    /// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1. `d`: unit direction in sky axes; `dx`, `dy`: its derivatives by
+    /// pixel; `g_colour`, `g_beaming` as for `BlackbodyTable::shifted_blackbody`. Where the pixel is wider than the index reaches, or
+    /// its derivatives are not finite (at the edge of the shadow), the mean light of all stars. Finite for any input.
+    pub fn star_light(&self, d: DVec3, dx: DVec3, dy: DVec3, g_colour: f64, g_beaming: f64) -> [f64; 3] {
+        let stretch2 = stretch_squared(dx, dy);
+        // The footprint's corner, (1.5, 1.5) pixels away.
+        let radius = 1.5 * std::f64::consts::SQRT_2 * stretch2.sqrt();
+        let mut light = [0.0; 3];
+        let mut add = |share: f64, rgb: [f64; 3]| (0..3).for_each(|c| light[c] += share * rgb[c]);
+        let table = BlackbodyTable::shared();
+        let limit = margin(STAR_LEVELS - 1);
+        let level = level_for(radius);
+        let single = if level.is_some() { 1.0 - smoothstep(0.5 * limit, limit, radius) } else { 0.0 };
+        if let Some(level) = level {
+            let patch = Patch::new(d, dx, dy, stretch2);
+            for (star, kind) in self.cell_stars(cell_of(d, level)) {
+                let spread = patch.spread(DVec3::new(star[0].into(), star[1].into(), star[2].into()));
+                if spread > 0.0 {
+                    let rgb = table.shifted_blackbody(kind[0].into(), kind[1].into(), g_colour, g_beaming);
+                    add(single * spread * f64::from(star[3]), rgb);
+                }
+            }
+        }
+        if single < 1.0 {
+            for part in self.mean_sky {
+                let rgb = table.shifted_blackbody(part.temperature, part.log_reference, g_colour, g_beaming);
+                add((1.0 - single) * part.radiance, rgb);
+            }
+        }
+        light.map(|v| v.min(MAX_STAR_LIGHT))
+    }
+}
+
+fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::blackbody::LUMINANCE;
+    use crate::sky::catalogue::Star;
+    use crate::sky::index::STAR_REFERENCE_RADIANCE;
+
+    fn luminance(rgb: [f64; 3]) -> f64 {
+        (0..3).map(|c| LUMINANCE[c] * rgb[c]).sum()
+    }
+
+    /// A perspective camera's pixel: `x`, `y` in pixels from the centre of a frame that looks along `forward`.
+    fn pixel(forward: DVec3, scale: f64, x: f64, y: f64) -> (DVec3, DVec3, DVec3) {
+        let right = forward.any_orthonormal_vector();
+        let up = right.cross(forward);
+        let look = |x: f64, y: f64| forward + right * (x * scale) - up * (y * scale);
+        let v = look(x, y);
+        let d = v.normalize();
+        let tangent = |t: DVec3| (t - d * d.dot(t)) / v.length();
+        (d, tangent(right * scale), tangent(up * -scale))
+    }
+
+    /// Sum of radiance x solid angle over the pixels of a small frame.
+    fn collected(index: &StarIndex, forward: DVec3, scale: f64, shift: (f64, f64), squeeze: f64) -> f64 {
+        let mut sum = 0.0;
+        for i in -12..=12 {
+            for j in -12..=12 {
+                let (d, dx, dy) = pixel(forward, scale, f64::from(i) + shift.0, f64::from(j) * squeeze + shift.1);
+                let dy = dy * squeeze;
+                sum += luminance(index.star_light(d, dx, dy, 1.0, 1.0)) * dx.cross(dy).length();
+            }
+        }
+        sum
+    }
+
+    fn single(direction: DVec3, magnitude: f64) -> StarIndex {
+        StarIndex::new([Star { direction, magnitude, colour: 0.6 }].into_iter())
+    }
+
+    #[test]
+    fn a_stars_light_does_not_depend_on_its_place_between_pixels() {
+        let scale = 2.0 * 30.0_f64.to_radians().tan() / 720.0;
+        let flux = STAR_REFERENCE_RADIANCE * scale * scale;
+        // In a cube side, on an edge, in a corner.
+        for place in [DVec3::new(1.0, 0.3, -0.2), DVec3::new(1.0, 1.0, 0.1), DVec3::splat(-1.0)] {
+            let place = place.normalize();
+            let index = single(place, 0.0);
+            for shift in [(0.0, 0.0), (0.5, 0.5), (0.13, -0.37), (-0.49, 0.21)] {
+                for squeeze in [1.0, 0.2] {
+                    let sum = collected(&index, place, scale, shift, squeeze);
+                    assert!((sum / flux - 1.0).abs() < 1e-3, "{place} {shift:?} {squeeze}: {}", sum / flux);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_star_over_the_reference_pixel_has_the_reference_radiance() {
+        let scale = 2.0 * 30.0_f64.to_radians().tan() / 720.0;
+        let (d, dx, dy) = pixel(DVec3::Y, scale, 0.0, 0.0);
+        let peak = luminance(single(d, 0.0).star_light(d, dx, dy, 1.0, 1.0));
+        assert!((peak / (STAR_REFERENCE_RADIANCE * 0.75 * 0.75) - 1.0).abs() < 1e-4, "{peak}");
+        let magnified = luminance(single(d, 0.0).star_light(d, dx * 0.5, dy, 1.0, 1.0));
+        assert!((magnified / peak - 2.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn index_and_plain_search_draw_the_same() {
+        let index = StarIndex::shared();
+        let table = BlackbodyTable::shared();
+        for (i, scale) in [2e-4, 1.6e-3, 4e-3, 8e-3].into_iter().enumerate() {
+            for star in index.stars.iter().step_by(2 * (997 + i)) {
+                let forward = DVec3::new(star[0].into(), star[1].into(), star[2].into()).normalize();
+                let (d, dx, dy) = pixel(forward, scale, 0.3, -0.6);
+                let patch = Patch::new(d, dx, dy, stretch_squared(dx, dy));
+                let mut wanted = [0.0; 3];
+                for pair in index.stars.chunks(2) {
+                    let s = DVec3::new(pair[0][0].into(), pair[0][1].into(), pair[0][2].into());
+                    if s.dot(d) > 0.0 {
+                        let rgb = table.shifted_blackbody(pair[1][0].into(), pair[1][1].into(), 0.8, 0.8);
+                        let weight = patch.spread(s) * f64::from(pair[0][3]);
+                        (0..3).for_each(|c| wanted[c] += weight * rgb[c]);
+                    }
+                }
+                let got = index.star_light(d, dx, dy, 0.8, 0.8);
+                assert!(luminance(wanted) > 0.0);
+                for c in 0..3 {
+                    assert!((got[c] - wanted[c]).abs() <= 1e-9 * wanted[c], "{scale} {d}: {got:?} {wanted:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn wide_pixels_blend_into_the_mean() {
+        let index = StarIndex::shared();
+        let mean = index.mean_sky.iter().map(|p| p.radiance).sum::<f64>();
+        let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
+        assert!((luminance(index.star_light(d, dx, dy, 1.0, 1.0)) / mean - 1.0).abs() < 1e-3);
+        let mut before: Option<f64> = None;
+        for i in 0..4000 {
+            let (d, dx, dy) = pixel(DVec3::Z, 0.01 + 1e-5 * f64::from(i), 0.0, 0.0);
+            let now = luminance(index.star_light(d, dx, dy, 1.0, 1.0));
+            if let Some(before) = before {
+                assert!((now - before).abs() < 0.01 * (mean + before), "seam at {i}: {before} {now}, mean {mean}");
+            }
+            before = Some(now);
+        }
+    }
+
+    #[test]
+    fn anything_gives_finite_light() {
+        let index = StarIndex::shared();
+        let star = &index.stars[0];
+        let d = DVec3::new(star[0].into(), star[1].into(), star[2].into());
+        let t = d.any_orthonormal_vector();
+        let u = d.cross(t);
+        let tangents = [DVec3::ZERO, t * 1e-3, u * 1e-3, t * 1e-20, u * 1e300, t * f64::INFINITY, DVec3::NAN];
+        for dx in tangents {
+            for dy in tangents {
+                for g in [0.0, 1.0, 1e-3, 1e6, f64::INFINITY, f64::NAN] {
+                    let light = index.star_light(d, dx, dy, g, g);
+                    assert!(light.iter().all(|v| v.is_finite() && *v >= 0.0), "{dx} {dy} {g}: {light:?}");
+                }
+            }
+        }
+    }
+
+    /// On a critical curve dx and dy are parallel: the star keeps a finite brightness, that of MIN_AREA.
+    #[test]
+    fn caustics_are_bounded() {
+        let d = DVec3::X;
+        let index = single(d, 0.0);
+        let flux = f64::from(index.stars[0][3]);
+        for squeeze in [1e-2, 1e-4, 1e-8] {
+            let peak = luminance(index.star_light(d, DVec3::Y * 1e-3, DVec3::Z * 1e-3 * squeeze, 1.0, 1.0));
+            let bound = flux / (1e-6 * MIN_AREA);
+            assert!(peak > 0.0 && peak < bound, "{squeeze}: {peak} over {bound}");
+        }
+    }
+}

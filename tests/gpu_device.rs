@@ -1,0 +1,337 @@
+//! The device layer of the GPU tracer on a real adapter; lavapipe will do. Without a Vulkan adapter these tests fail.
+
+use bhr::error::{ErrorKind, Result};
+use bhr::gpu::{Adapter, Buffer, Device, GpuTimer, Kernel, Loops, Readback, Search, adapters};
+use bhr::renderer::Backend;
+use std::time::Instant;
+use wgpu::BufferUsages;
+
+const DOUBLE: &str = "
+@group(0) @binding(0) var<storage, read_write> values: array<u32>;
+override factor: u32 = 2u;
+@compute @workgroup_size(64)
+fn scale(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x < arrayLength(&values) { values[id.x] = factor * values[id.x] + offset; }
+}";
+const OFFSET: &str = "const offset = 1u;";
+
+fn adapter() -> Adapter {
+    let mut found = adapters(Search::Only(Backend::Vulkan), false);
+    assert!(!found.is_empty(), "these tests need a Vulkan adapter; lavapipe (mesa-vulkan-drivers) will do");
+    found.remove(0)
+}
+
+fn device() -> Device {
+    Device::open(&adapter()).unwrap()
+}
+
+fn layout(device: &Device) -> Result<wgpu::BindGroupLayout> {
+    let entry = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: false },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry] };
+    device.scoped("layout", |d| d.create_bind_group_layout(&descriptor))
+}
+
+fn kernel<'a>(source: &'a [&'a str], groups: &'a [&'a wgpu::BindGroupLayout]) -> Kernel<'a> {
+    Kernel {
+        label: "scale",
+        source,
+        loops: Loops::Counted,
+        entry_point: "scale",
+        constants: &[],
+        zero_workgroup_memory: false,
+        groups,
+    }
+}
+
+/// A buffer of values and what it takes to scale them.
+struct Scaling {
+    values: Buffer,
+    group: wgpu::BindGroup,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Scaling {
+    fn new(device: &Device, values: &[u32], constants: &[(&str, f64)]) -> Result<Self> {
+        let layout = layout(device)?;
+        let groups = [&layout];
+        let kernel = Kernel { constants, ..kernel(&[DOUBLE, OFFSET], &groups) };
+        let pipeline = device.compute_pipeline(&kernel)?;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+        let buffer = device.buffer("values", size_of_val(values) as u64, usage)?;
+        device.write(&buffer, 0, bytemuck::cast_slice(values))?;
+        let entries = [wgpu::BindGroupEntry { binding: 0, resource: buffer.as_entire_binding() }];
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &layout, entries: &entries };
+        let group = device.scoped("group", |d| d.create_bind_group(&descriptor))?;
+        Ok(Self { values: buffer, group, pipeline })
+    }
+
+    fn record(&self, encoder: &mut wgpu::CommandEncoder, timestamps: Option<wgpu::ComputePassTimestampWrites<'_>>) {
+        let descriptor = wgpu::ComputePassDescriptor { label: None, timestamp_writes: timestamps };
+        let mut pass = encoder.begin_compute_pass(&descriptor);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups((self.values.size() as u32 / 4).div_ceil(64), 1, 1);
+    }
+
+    fn run(&self, device: &Device, readback: &mut Readback) -> Result<Vec<u32>> {
+        let mut encoder = device.encoder("scale")?;
+        self.record(&mut encoder, None);
+        let copied = readback.copy(device, &mut encoder, &self.values, self.values.size())?;
+        let submission = device.submit(encoder)?;
+        readback.read(device, copied, &submission, |bytes| Ok(bytemuck::cast_slice(bytes).to_vec()))
+    }
+}
+
+fn round_trip(device: &Device) -> Result<()> {
+    let input = (0..1000).collect::<Vec<u32>>();
+    let output = Scaling::new(device, &input, &[("factor", 3.0)])?.run(device, &mut Readback::new())?;
+    assert_eq!(output, input.iter().map(|v| 3 * v + 1).collect::<Vec<_>>());
+    Ok(())
+}
+
+#[test]
+fn lists_adapters_best_first_and_the_same_each_time() {
+    let list = || adapters(Search::All, false).into_iter().map(|a| a.info).collect::<Vec<_>>();
+    let (first, second) = (list(), list());
+    assert!(first.iter().any(|a| a.backend == Backend::Vulkan), "no Vulkan adapter: {first:?}");
+    assert_eq!(format!("{first:?}"), format!("{second:?}"));
+    assert!(first.iter().all(|a| !(a.name.is_empty() || a.discrete && a.software)), "{first:?}");
+    assert!(first.is_sorted_by_key(|a| a.software), "software before hardware: {first:?}");
+    assert!(first.iter().filter(|a| a.software && a.backend == Backend::Vulkan).all(|a| !a.driver.is_empty()));
+}
+
+#[test]
+fn a_search_keeps_to_its_interfaces() {
+    assert!(adapters(Search::Only(Backend::Vulkan), false).iter().all(|a| a.info.backend == Backend::Vulkan));
+    assert!(adapters(Search::Only(Backend::Gl), false).iter().all(|a| a.info.backend == Backend::Gl));
+    assert!(adapters(Search::Only(Backend::Cpu), false).is_empty());
+    let auto = adapters(Search::Auto, false);
+    assert!(!auto.is_empty() && auto.iter().all(|a| a.info.backend != Backend::Gl), "Vulkan is there; GL was started");
+}
+
+#[test]
+fn computes_and_reads_back() {
+    round_trip(&device()).unwrap();
+}
+
+#[test]
+fn computes_on_gl_too() {
+    for adapter in adapters(Search::Only(Backend::Gl), false) {
+        round_trip(&Device::open(&adapter).unwrap()).unwrap();
+    }
+}
+
+#[test]
+fn computes_with_validation_on() {
+    let found = adapters(Search::Only(Backend::Vulkan), true);
+    round_trip(&Device::open(&found[0]).unwrap()).unwrap();
+}
+
+#[test]
+fn reads_a_piece_while_the_next_is_made() {
+    let device = device();
+    let scaling = Scaling::new(&device, &[1; 256], &[]).unwrap();
+    let mut readback = Readback::new();
+    let submit = |readback: &mut Readback| {
+        let mut encoder = device.encoder("piece").unwrap();
+        scaling.record(&mut encoder, None);
+        let copied = readback.copy(&device, &mut encoder, &scaling.values, 1024).unwrap();
+        (copied, device.submit(encoder).unwrap())
+    };
+    let mut last = submit(&mut readback);
+    for turn in 1..20u32 {
+        let next = submit(&mut readback);
+        let (copied, submission) = std::mem::replace(&mut last, next);
+        let expected = (1u32 << (turn + 1)) - 1;
+        readback
+            .read(&device, copied, &submission, |bytes| {
+                assert_eq!(bytemuck::cast_slice::<u8, u32>(bytes), [expected; 256]);
+                Ok(())
+            })
+            .unwrap();
+    }
+}
+
+#[test]
+fn an_overwritten_readback_is_an_error() {
+    let device = device();
+    let scaling = Scaling::new(&device, &[1; 16], &[]).unwrap();
+    let mut readback = Readback::new();
+    let mut encoder = device.encoder("three copies").unwrap();
+    let first = readback.copy(&device, &mut encoder, &scaling.values, 64).unwrap();
+    let _second = readback.copy(&device, &mut encoder, &scaling.values, 64).unwrap();
+    let third = readback.copy(&device, &mut encoder, &scaling.values, 64).unwrap();
+    let submission = device.submit(encoder).unwrap();
+    let error = readback.read(&device, first, &submission, |_| Ok(())).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Internal);
+    readback.read(&device, third, &submission, |_| Ok(())).unwrap();
+}
+
+#[test]
+fn a_failing_or_panicking_reader_leaves_the_staging_buffer_usable() {
+    let device = device();
+    let scaling = Scaling::new(&device, &[1; 16], &[]).unwrap();
+    let mut readback = Readback::new();
+    for turn in 0..4 {
+        let mut encoder = device.encoder("reader").unwrap();
+        let copied = readback.copy(&device, &mut encoder, &scaling.values, 64).unwrap();
+        let submission = device.submit(encoder).unwrap();
+        let read = std::panic::AssertUnwindSafe(|| {
+            readback.read(&device, copied, &submission, |_| match turn % 2 {
+                0 => Err::<(), _>(bhr::error::Error::state("the reader's own")),
+                _ => panic!("the reader's own"),
+            })
+        });
+        match std::panic::catch_unwind(read) {
+            Ok(result) => assert_eq!(result.unwrap_err().kind, ErrorKind::InvalidState),
+            Err(_) => assert_eq!(turn % 2, 1),
+        }
+    }
+    scaling.run(&device, &mut readback).unwrap();
+}
+
+#[test]
+fn times_passes() {
+    let device = device();
+    assert!(device.has_timestamps(), "lavapipe and every desktop driver have timestamps");
+    let scaling = Scaling::new(&device, &vec![1; 1 << 16], &[]).unwrap();
+    let mut timer = GpuTimer::new(&device, 2).unwrap().unwrap();
+    let start = Instant::now();
+    let mut encoder = device.encoder("timed").unwrap();
+    for _ in 0..2 {
+        scaling.record(&mut encoder, timer.next_pass());
+    }
+    assert!(timer.next_pass().is_none(), "a third pass is beyond the capacity");
+    let copied = timer.finish(&device, &mut encoder).unwrap().unwrap();
+    let submission = device.submit(encoder).unwrap();
+    let spent = timer.read(&device, copied, &submission).unwrap();
+    assert!(u128::from(spent) <= start.elapsed().as_nanos(), "{spent} ns");
+    assert!(timer.finish(&device, &mut device.encoder("empty").unwrap()).unwrap().is_none());
+}
+
+#[test]
+fn a_rejected_request_is_an_error_and_the_device_goes_on() {
+    let device = device();
+    let layout = layout(&device).unwrap();
+    let groups = [&layout];
+    let faulty = [
+        ("unknown identifier", kernel(&[DOUBLE], &groups)),
+        ("missing entry point", Kernel { entry_point: "none", ..kernel(&[DOUBLE, OFFSET], &groups) }),
+        ("unknown constant", Kernel { constants: &[("none", 1.0)], ..kernel(&[DOUBLE, OFFSET], &groups) }),
+        ("missing layout", kernel(&[DOUBLE, OFFSET], &[])),
+    ];
+    for (case, kernel) in faulty {
+        let error = device.compute_pipeline(&kernel).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Internal, "{case}");
+        assert!(error.message.starts_with("scale: ") && error.message.len() > 20, "{case}: {error}");
+    }
+    let small = device.buffer("small", 16, BufferUsages::COPY_SRC).unwrap();
+    let mut encoder = device.encoder("overrun").unwrap();
+    let copied = Readback::new().copy(&device, &mut encoder, &small, 64).unwrap();
+    let error = device.submit(encoder).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Internal, "{error}");
+    drop(copied);
+    round_trip(&device).unwrap();
+}
+
+#[test]
+fn an_error_outside_every_scope_is_returned_once() {
+    let device = device();
+    let raw = device.scoped("clone", Clone::clone).unwrap();
+    drop(raw.create_query_set(&wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Timestamp, count: 0 }));
+    assert_eq!(device.check().unwrap_err().kind, ErrorKind::Internal);
+    round_trip(&device).unwrap();
+}
+
+#[test]
+fn sizes_beyond_the_limits_name_the_size_and_the_limit() {
+    let device = device();
+    let limits = device.limits().clone();
+    assert!(limits.max_storage_buffers_per_shader_stage <= 4, "asks for more than old GPUs have");
+    let cases = [
+        (BufferUsages::COPY_DST, limits.max_buffer_size),
+        (BufferUsages::STORAGE, limits.max_storage_buffer_binding_size),
+        (BufferUsages::UNIFORM, limits.max_uniform_buffer_binding_size),
+    ];
+    for (usage, limit) in cases {
+        let Err(error) = device.buffer("big", limit + 1, usage) else { panic!("{usage:?} of {} bytes", limit + 1) };
+        assert_eq!(error.kind, ErrorKind::Unsupported);
+        for part in ["'big'".to_owned(), (limit + 1).to_string(), format!("{limit} bytes")] {
+            assert!(error.message.contains(&part), "{part} is not in: {error}");
+        }
+    }
+    assert_eq!(device.buffer("none", 0, BufferUsages::COPY_DST).err().unwrap().kind, ErrorKind::Internal);
+    assert_eq!(device.buffer("huge", u64::MAX, BufferUsages::COPY_DST).err().unwrap().kind, ErrorKind::Unsupported);
+    assert_eq!(device.bytes(), 0);
+}
+
+#[test]
+fn counts_the_bytes_it_holds() {
+    let device = device();
+    let first = device.buffer("first", 1001, BufferUsages::COPY_DST).unwrap();
+    assert_eq!(device.bytes(), 1004);
+    let second = device.buffer("second", 4096, BufferUsages::STORAGE).unwrap();
+    assert_eq!(device.bytes(), 5100);
+    drop(first);
+    assert_eq!(device.bytes(), 4096);
+    drop(device);
+    drop(second);
+}
+
+#[test]
+fn a_lost_device_is_an_error_in_every_call() {
+    let device = device();
+    let scaling = Scaling::new(&device, &[1; 16], &[]).unwrap();
+    let mut readback = Readback::new();
+    let mut before = device.encoder("before").unwrap();
+    let copied = readback.copy(&device, &mut before, &scaling.values, 64).unwrap();
+    let submission = device.submit(before).unwrap();
+    let encoder = device.encoder("during").unwrap();
+    device.scoped("destroy", |d| d.destroy()).unwrap();
+
+    let start = Instant::now();
+    assert_eq!(device.submit_and_wait(encoder).unwrap_err().kind, ErrorKind::DeviceLost);
+    assert_eq!(device.check().unwrap_err().kind, ErrorKind::DeviceLost);
+    assert_eq!(device.encoder("after").unwrap_err().kind, ErrorKind::DeviceLost);
+    assert_eq!(device.buffer("after", 4, BufferUsages::COPY_DST).err().unwrap().kind, ErrorKind::DeviceLost);
+    assert_eq!(device.write(&scaling.values, 0, &[0; 4]).unwrap_err().kind, ErrorKind::DeviceLost);
+    assert_eq!(scaling.run(&device, &mut readback).unwrap_err().kind, ErrorKind::DeviceLost);
+    let late = readback.read(&device, copied, &submission, |_| Ok(()));
+    assert_eq!(late.unwrap_err().kind, ErrorKind::DeviceLost);
+    assert_eq!(round_trip(&device).unwrap_err().kind, ErrorKind::DeviceLost);
+    assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
+}
+
+#[test]
+fn a_device_lost_during_a_readback_is_an_error() {
+    let device = device();
+    let scaling = Scaling::new(&device, &[1; 16], &[]).unwrap();
+    let mut readback = Readback::new();
+    let mut encoder = device.encoder("readback").unwrap();
+    let copied = readback.copy(&device, &mut encoder, &scaling.values, 64).unwrap();
+    let submission = device.submit(encoder).unwrap();
+    device.scoped("destroy", |d| d.destroy()).unwrap();
+    let error = readback.read(&device, copied, &submission, |_| Ok(())).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::DeviceLost, "{error}");
+    drop(device);
+    drop(readback);
+}
+
+#[test]
+fn devices_on_two_threads_do_not_disturb_each_other() {
+    let run = || (0..5).for_each(|_| round_trip(&device()).unwrap());
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(run);
+        }
+    });
+}
