@@ -244,6 +244,31 @@ BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
 /** What a BhrWindow holds. Fields that are not named for a kind are ignored. */
 typedef int32_t BhrWindowKind;
 
+/**
+ * A window of the host's: not owned, it must outlive every surface made from it. Fields as in the
+ * raw-window-handle crate.
+ */
+typedef struct BhrWindow {
+    /** sizeof(BhrWindow). */
+    uint32_t struct_size;
+    /** BHR_WINDOW_*. */
+    BhrWindowKind kind;
+    /** By kind. */
+    void *display;
+    /** By kind. */
+    void *handle;
+    /** By kind. */
+    void *aux;
+    /** By kind: an X11 window id. */
+    uint64_t id;
+    /** X11: the visual's id; 0 when not known. */
+    uint64_t visual_id;
+    /** X11: the screen's number. */
+    int32_t screen;
+    /** 0. */
+    uint32_t reserved;
+} BhrWindow;
+
 /** X11 through Xlib: display = Display *, id = Window. */
 #define BHR_WINDOW_XLIB 1
 
