@@ -1,1 +1,40 @@
-//! skeleton
+//! The C boundary: the only `extern "C"` of the crate and all code that touches a host's pointers. One file per C
+//! concept; each holds the types, constants and functions of one section of `include/bhr.h`, which `build.rs`
+//! generates from them. Public items that begin with `bhr_`, `Bhr` or `BHR_` are the API, and their comments are
+//! written for the reader of the header. Nothing here knows physics or pixels: a function checks its arguments and
+//! makes one call into `Renderer`, `Scene` or `image`.
+//!
+//! Every entry point has one shape: out-parameters are cleared ([`pointer::Out`]), then [`entry`] takes a closure,
+//! runs it under the panic guard (with a context: under its lock) and turns its `Result` into a status, a message
+//! and a log line. Structs cross the boundary by value only ([`versioned`]); no pointer of the host's ever becomes
+//! a reference, so misaligned structs and arrays are read and written correctly. (Pixels must be aligned; `image`
+//! checks.)
+
+// The safety contract of every function here is the same, is the header's, and is written once, in `cbindgen.toml`.
+#![allow(clippy::missing_safety_doc)]
+
+mod entry;
+mod pointer;
+mod versioned;
+
+pub mod adapter;
+pub mod camera;
+pub mod context;
+pub mod disk;
+pub mod effects;
+pub mod film;
+pub mod hole;
+pub mod image;
+pub mod job;
+pub mod log;
+pub mod quality;
+pub mod rays;
+pub mod region;
+pub mod render;
+pub mod sky;
+pub mod stats;
+pub mod status;
+pub mod surface;
+pub mod version;
+pub mod view;
+pub mod window;

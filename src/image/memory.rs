@@ -1,6 +1,12 @@
-//! (helper A) Images in the host's memory.
-use crate::error::Result;
+//! Images in the host's memory: formats and strides. Bytes between rows are never touched, not even borrowed:
+//! images may lie side by side in one block and be written by different threads. Outside `capi` this is the only
+//! file with raw pointers.
+
+use crate::error::{Error, Result};
 use std::marker::PhantomData;
+
+/// Longest side of an image, pixels. A larger one is more than any format's header or any address space holds well.
+pub const MAX_SIDE: u32 = 1 << 20;
 
 /// Bytes in memory order; row 0 at the top (`BHR_FORMAT_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,44 +14,394 @@ use std::marker::PhantomData;
 pub enum PixelFormat {
     Rgba8Srgb = 1,
     Bgra8Srgb = 2,
+    /// Linear, Rec. 709 primaries.
     Rgba16F = 3,
+    /// Linear, Rec. 709 primaries.
     Rgba32F = 4,
+    /// One value: views other than light.
     R32F = 5,
 }
 
 impl PixelFormat {
     pub fn bytes_per_pixel(self) -> usize {
         match self {
+            Self::Rgba8Srgb | Self::Bgra8Srgb | Self::R32F => 4,
             Self::Rgba16F => 8,
             Self::Rgba32F => 16,
-            _ => 4,
+        }
+    }
+
+    /// Of one channel; pixels and rows are aligned to it.
+    pub fn channel_bytes(self) -> usize {
+        match self {
+            Self::Rgba8Srgb | Self::Bgra8Srgb => 1,
+            Self::Rgba16F => 2,
+            Self::Rgba32F | Self::R32F => 4,
         }
     }
 }
 
-pub struct ImageRef<'a>(PhantomData<&'a [u8]>);
-pub struct ImageMut<'a> {
-    _memory: PhantomData<&'a mut [u8]>,
+/// How pixels lie in a block of memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    pub format: PixelFormat,
+    /// 1 .. [`MAX_SIDE`].
+    pub width: u32,
+    /// 1 .. [`MAX_SIDE`].
+    pub height: u32,
+    /// Bytes to the next row down; 0: packed; < 0: bottom-up, the block beginning at the last row.
+    pub row_stride: i64,
 }
-impl ImageMut<'_> {
+
+impl Layout {
+    /// Rows without gaps, top-down.
+    pub fn packed(format: PixelFormat, width: u32, height: u32) -> Self {
+        Self { format, width, height, row_stride: 0 }
+    }
+
+    /// Of one row's pixels.
+    fn row_bytes(&self) -> u64 {
+        u64::from(self.width) * self.format.bytes_per_pixel() as u64
+    }
+
+    /// Bytes of the block, (height - 1) |stride| + one row, and the stride. Errors: sides or stride out of their
+    /// ranges.
+    fn check(&self) -> Result<(usize, isize)> {
+        for (name, side) in [("width", self.width), ("height", self.height)] {
+            if side == 0 || side > MAX_SIDE {
+                return Err(Error::argument(format!("image {name} is {side}; it must lie in [1, {MAX_SIDE}]")));
+            }
+        }
+        let row = self.row_bytes();
+        let stride = if self.row_stride == 0 { row as i64 } else { self.row_stride };
+        let step = stride.unsigned_abs();
+        if step < row {
+            return Err(Error::argument(format!(
+                "image row_stride is {stride}; a row of {} pixels {:?} takes {row} bytes",
+                self.width, self.format
+            )));
+        }
+        let channel = self.format.channel_bytes() as u64;
+        if !step.is_multiple_of(channel) {
+            return Err(Error::argument(format!(
+                "image row_stride is {stride}; for {:?} it must be a multiple of {channel}",
+                self.format
+            )));
+        }
+        let bytes = u128::from(self.height - 1) * u128::from(step) + u128::from(row);
+        match (isize::try_from(bytes), isize::try_from(stride)) {
+            (Ok(bytes), Ok(stride)) => Ok((bytes.unsigned_abs(), stride)),
+            _ => Err(Error::argument(format!("image takes {bytes} bytes; there is no such memory"))),
+        }
+    }
+}
+
+/// A checked layout and its top-left pixel.
+#[derive(Clone, Copy)]
+struct Rows {
+    format: PixelFormat,
+    width: u32,
+    height: u32,
+    stride: isize,
+    top_left: *mut u8,
+}
+
+impl Rows {
+    /// Errors: as `Layout::check`; a block of fewer bytes than that needs; NULL or misaligned pixels, or ones whose
+    /// rows would lie outside the address space.
+    fn new(layout: Layout, top_left: *mut u8, byte_size: u64) -> Result<Self> {
+        let (bytes, stride) = layout.check()?;
+        if top_left.is_null() {
+            return Err(Error::argument("image pixels is NULL"));
+        }
+        let channel = layout.format.channel_bytes();
+        if !top_left.addr().is_multiple_of(channel) {
+            return Err(Error::argument(format!(
+                "image pixels is {top_left:p}; for {:?} it must be a multiple of {channel}",
+                layout.format
+            )));
+        }
+        if byte_size < bytes as u64 {
+            return Err(Error::argument(format!(
+                "image byte_size is {byte_size}; {} x {} {:?} at stride {stride} needs {bytes}",
+                layout.width, layout.height, layout.format
+            )));
+        }
+        let above = (layout.height as usize - 1) * stride.unsigned_abs();
+        let lowest = if stride < 0 { top_left.addr().checked_sub(above) } else { Some(top_left.addr()) };
+        if lowest.and_then(|address| address.checked_add(bytes)).is_none() {
+            return Err(Error::argument(format!(
+                "image pixels is {top_left:p}; {bytes} bytes at stride {stride} reach outside the address space"
+            )));
+        }
+        let Layout { format, width, height, .. } = layout;
+        Ok(Self { format, width, height, stride, top_left })
+    }
+
+    /// Offset of the top-left pixel in the block.
+    fn lead(layout: Layout) -> Result<usize> {
+        let (_, stride) = layout.check()?;
+        Ok(if stride < 0 { (layout.height as usize - 1) * stride.unsigned_abs() } else { 0 })
+    }
+
+    fn row_bytes(&self) -> usize {
+        self.width as usize * self.format.bytes_per_pixel()
+    }
+
+    /// Where row `y` begins; `None` past the last.
+    fn row(&self, y: u32) -> Option<*mut u8> {
+        // In range: `Rows::new` saw that every row lies in the address space.
+        (y < self.height).then(|| self.top_left.wrapping_offset(y as isize * self.stride))
+    }
+}
+
+/// An image to read from.
+pub struct ImageRef<'a> {
+    rows: Rows,
+    memory: PhantomData<&'a [u8]>,
+}
+
+// SAFETY: it stands for a `&'a [u8]`, which is Send and Sync.
+unsafe impl Send for ImageRef<'_> {}
+// SAFETY: as above.
+unsafe impl Sync for ImageRef<'_> {}
+
+impl<'a> ImageRef<'a> {
+    /// Errors: a layout out of its ranges, or a block too small or misaligned for it.
+    pub fn new(layout: Layout, block: &'a [u8]) -> Result<Self> {
+        let lead = Rows::lead(layout)?;
+        // A block that ends before its top-left pixel is refused by its size below.
+        let top_left = block.as_ptr().wrapping_add(lead).cast_mut();
+        Ok(Self { rows: Rows::new(layout, top_left, block.len() as u64)?, memory: PhantomData })
+    }
+
     pub fn width(&self) -> u32 {
-        0
+        self.rows.width
     }
+
     pub fn height(&self) -> u32 {
-        0
+        self.rows.height
     }
+
     pub fn format(&self) -> PixelFormat {
-        PixelFormat::Rgba8Srgb
+        self.rows.format
     }
+
+    /// The pixels of row `y`; empty past the last.
+    pub fn row(&self, y: u32) -> &'a [u8] {
+        match self.rows.row(y) {
+            // SAFETY: `Rows::new` saw that the block holds this row; nobody writes it during 'a.
+            Some(begin) => unsafe { std::slice::from_raw_parts(begin, self.rows.row_bytes()) },
+            None => &[],
+        }
+    }
+
+    /// All pixels, where rows lie top-down without gaps.
+    pub fn packed(&self) -> Option<&'a [u8]> {
+        let row = self.rows.row_bytes();
+        // SAFETY: as in `row`, and no byte lies between rows.
+        (self.rows.stride == row as isize)
+            .then(|| unsafe { std::slice::from_raw_parts(self.rows.top_left, row * self.rows.height as usize) })
+    }
+}
+
+/// An image to write to.
+pub struct ImageMut<'a> {
+    rows: Rows,
+    touched: bool,
+    memory: PhantomData<&'a mut [u8]>,
+}
+
+// SAFETY: it stands for a `&'a mut [u8]`, which is Send.
+unsafe impl Send for ImageMut<'_> {}
+
+impl<'a> ImageMut<'a> {
+    /// Errors: a layout out of its ranges, or a block too small or misaligned for it.
+    pub fn new(layout: Layout, block: &'a mut [u8]) -> Result<Self> {
+        let lead = Rows::lead(layout)?;
+        let byte_size = block.len() as u64;
+        let top_left = block.as_mut_ptr().wrapping_add(lead);
+        Ok(Self { rows: Rows::new(layout, top_left, byte_size)?, touched: false, memory: PhantomData })
+    }
+
+    /// Errors: as `new`, or `pixels` NULL.
+    ///
+    /// # Safety
+    /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not what lies between them)
+    /// are readable and writable, and nobody else's, during `'a`.
+    pub unsafe fn from_raw(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
+        Ok(Self { rows: Rows::new(layout, pixels, byte_size)?, touched: false, memory: PhantomData })
+    }
+
+    pub fn width(&self) -> u32 {
+        self.rows.width
+    }
+
+    pub fn height(&self) -> u32 {
+        self.rows.height
+    }
+
+    pub fn format(&self) -> PixelFormat {
+        self.rows.format
+    }
+
+    /// A tile has been written.
+    pub fn is_touched(&self) -> bool {
+        self.touched
+    }
+
+    /// The same pixels, to read.
+    pub fn as_image_ref(&self) -> ImageRef<'_> {
+        ImageRef { rows: self.rows, memory: PhantomData }
+    }
+
+    /// Copies a `width` x `height` tile, whose rows lie `bytes_per_row` apart in `pixels`, to (x, y). Errors:
+    /// INTERNAL for a tile that is not inside the image or not in `pixels`, which is a tracer's mistake; nothing is
+    /// written then.
     pub fn write_tile(
         &mut self,
-        _x: u32,
-        _y: u32,
-        _width: u32,
-        _height: u32,
-        _pixels: &[u8],
-        _bytes_per_row: usize,
+        x: u32,
+        y: u32,
+        width: u32,
+        height: u32,
+        pixels: &[u8],
+        bytes_per_row: usize,
     ) -> Result<()> {
+        let pixel = self.rows.format.bytes_per_pixel();
+        let inside = |begin: u32, size: u32, full: u32| u64::from(begin) + u64::from(size) <= u64::from(full);
+        let fits = inside(x, width, self.rows.width) && inside(y, height, self.rows.height);
+        if width == 0 || height == 0 {
+            return Ok(());
+        }
+        let row = width as usize * pixel;
+        let needed = (height as usize - 1).checked_mul(bytes_per_row).and_then(|bytes| bytes.checked_add(row));
+        if !fits || bytes_per_row < row || needed.is_none_or(|needed| pixels.len() < needed) {
+            return Err(Error::internal(format!(
+                "tile {width} x {height} at ({x}, {y}) with {} bytes in rows of {bytes_per_row} does not fit a {} x {} image",
+                pixels.len(),
+                self.rows.width,
+                self.rows.height
+            )));
+        }
+        self.touched = true;
+        for (line, from) in (y..y + height).zip(pixels.chunks(bytes_per_row)) {
+            if let (Some(begin), Some(from)) = (self.rows.row(line), from.get(..row)) {
+                // SAFETY: the tile's columns lie inside the row by the check above, and the row inside the host's
+                // block, which is no part of `pixels`.
+                unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), begin.add(x as usize * pixel), row) };
+            }
+        }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ErrorKind;
+    use PixelFormat::*;
+
+    fn layout(format: PixelFormat, width: u32, height: u32, row_stride: i64) -> Layout {
+        Layout { format, width, height, row_stride }
+    }
+
+    #[test]
+    fn tiles_fill_every_row_and_nothing_between() {
+        for stride in [0i64, 8, 11, -8, -13] {
+            let step = if stride == 0 { 8 } else { stride.unsigned_abs() as usize };
+            let mut block = vec![0xee; 2 * step + 8];
+            let mut image = ImageMut::new(layout(Rgba8Srgb, 2, 3, stride), &mut block).unwrap();
+            for y in 0..3u8 {
+                for x in 0..2u8 {
+                    image.write_tile(x.into(), y.into(), 1, 1, &[10 * y + x; 4], 4).unwrap();
+                }
+            }
+            let seen = image.as_image_ref();
+            let wanted = |y: u8| [[10 * y; 4], [10 * y + 1; 4]].concat();
+            for y in 0..3u8 {
+                assert_eq!(seen.row(y.into()), wanted(y), "stride {stride}");
+            }
+            for y in 0..3u8 {
+                let from_below = if stride < 0 { 2 - y } else { y } as usize;
+                assert_eq!(block[from_below * step..][..8], wanted(y), "stride {stride}");
+            }
+            assert_eq!(block.iter().filter(|byte| **byte == 0xee).count(), 2 * (step - 8));
+        }
+    }
+
+    #[test]
+    fn a_tile_with_padded_rows_is_copied_row_by_row() {
+        let mut block = [0u8; 4 * 4 * 4];
+        let mut image = ImageMut::new(Layout::packed(Bgra8Srgb, 4, 4), &mut block).unwrap();
+        let tile: Vec<u8> = (0..28).collect();
+        image.write_tile(1, 2, 2, 2, &tile, 20).unwrap();
+        assert_eq!(image.as_image_ref().row(2)[4..12], tile[..8]);
+        assert_eq!(image.as_image_ref().row(3)[4..12], tile[20..28]);
+        assert_eq!(block.iter().filter(|byte| **byte != 0).count(), 15);
+    }
+
+    #[test]
+    fn a_tile_outside_the_image_writes_nothing() {
+        let mut block = [7u8; 16];
+        let mut image = ImageMut::new(Layout::packed(R32F, 2, 2), &mut block).unwrap();
+        let tile = [0u8; 64];
+        for (x, y, w, h, row) in
+            [(1, 0, 2, 1, 8), (0, 2, 1, 1, 4), (u32::MAX, 0, 2, 1, 8), (0, 0, 2, 2, 7), (0, 0, 2, 2, 60)]
+        {
+            let error = image.write_tile(x, y, w, h, &tile, row).unwrap_err();
+            assert_eq!(error.kind, ErrorKind::Internal);
+        }
+        image.write_tile(2, 2, 0, 0, &[], 0).unwrap();
+        assert!(!image.is_touched());
+        assert_eq!(block, [7; 16]);
+    }
+
+    #[test]
+    fn the_block_may_be_exactly_as_large_as_needed_and_no_smaller() {
+        for (format, stride) in [(Rgba16F, 0), (Rgba16F, 26), (Rgba32F, -48), (Rgba32F, 64)] {
+            let l = layout(format, 3, 2, stride);
+            let (needed, _) = l.check().unwrap();
+            let mut words = vec![0u32; 64];
+            let block: &mut [u8] = bytemuck::cast_slice_mut(&mut words);
+            ImageMut::new(l, &mut block[..needed]).unwrap();
+            let error = ImageMut::new(l, &mut block[..needed - 1]).err().unwrap();
+            assert!(error.message.contains(&needed.to_string()), "{error}");
+        }
+    }
+
+    #[test]
+    fn impossible_layouts_are_refused() {
+        let bad = [
+            layout(Rgba8Srgb, 0, 1, 0),
+            layout(Rgba8Srgb, 1, 0, 0),
+            layout(Rgba8Srgb, MAX_SIDE + 1, 1, 0),
+            layout(Rgba8Srgb, 1, u32::MAX, 0),
+            layout(Rgba8Srgb, 4, 4, 15),
+            layout(Rgba8Srgb, 4, 4, -15),
+            layout(Rgba16F, 4, 4, 33),
+            layout(R32F, 4, 4, 18),
+            layout(Rgba8Srgb, 4, 4, i64::MIN),
+            layout(Rgba8Srgb, 4, 4, i64::MAX),
+        ];
+        for l in bad {
+            let error = l.check().unwrap_err();
+            assert_eq!(error.kind, ErrorKind::InvalidArgument, "{l:?}");
+        }
+    }
+
+    #[test]
+    fn misaligned_null_and_impossible_pixels_are_refused() {
+        let l = layout(Rgba32F, 1, 2, -16);
+        let raw = |address: usize| {
+            // SAFETY: refused, or never written to.
+            unsafe { ImageMut::from_raw(l, std::ptr::without_provenance_mut(address), 32) }
+        };
+        for (address, word) in
+            [(0, "NULL"), (1026, "multiple of 4"), (8, "address space"), (usize::MAX - 3, "address space")]
+        {
+            let error = raw(address).err().unwrap();
+            assert!(error.message.contains(word), "{error}");
+        }
+        assert!(raw(1024).is_ok());
     }
 }

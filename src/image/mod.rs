@@ -1,6 +1,8 @@
-//! Pixels in memory and in files: formats, strides, and reading and writing image files. Knows neither scenes nor tracers.
+//! Pixels in memory and in files: formats, strides, and reading and writing image files. Knows neither scenes nor
+//! tracers.
 
 pub mod file;
 pub mod memory;
 
-pub use memory::{ImageMut, ImageRef, PixelFormat};
+pub use file::{Loaded, Pixels, load, save};
+pub use memory::{ImageMut, ImageRef, Layout, MAX_SIDE, PixelFormat};

@@ -1,0 +1,1171 @@
+/* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
+ *
+ * Made by build.rs from the Rust sources in src/capi; do not edit. A program needs nothing else to read:
+ * make a context (bhr_context_create), set mass, spin and camera, render into memory of your own (bhr_render_image).
+ *
+ * Units
+ *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild radius is
+ *   2 M. Angles in radians, temperatures in kelvin, times in scene lengths. Only disk radii are in units of M.
+ *
+ * Coordinates
+ *   The hole sits at the origin. x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the
+ *   Schwarzschild / Boyer-Lindquist coordinates about the spin axis, which is also the disk's normal: +z unless
+ *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that takes +z to
+ *   it (about +x for -z): r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart; positions,
+ *   directions and BhrHit.sky_direction stay in scene axes. Right-handed.
+ *
+ *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit vectors of
+ *   spherical coordinates there (on the axis e_th = x, e_ph = y), standing for the components along the orthonormal frame
+ *   of the local static observer (the ZAMO when the hole spins). Any non-zero length is accepted and normalised (velocity:
+ *   as it is). A moving camera's axes are that frame boosted without rotation. Inside a spin-0 horizon the frame is that of
+ *   the observer falling from rest at infinity; inside a spinning hole's horizon everything is BHR_ERROR_UNSUPPORTED.
+ *
+ *   Prograde always means +ph about the axis, retrograde -ph; with spin < 0 the hole turns towards -ph.
+ *
+ * Errors
+ *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message says what
+ *   was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call fills in is NULL or 0
+ *   after a failure. Setters check their own argument only; what combinations forbid (a static camera inside the horizon,
+ *   say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means a bug in bhr: only
+ *   bhr_context_destroy is valid on that context then.
+ *
+ * Structs
+ *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than the library's
+ *   first version is BHR_ERROR_INVALID_ARGUMENT; larger is accepted as input when the rest is zero, and as output the rest is
+ *   zeroed. Fields named reserved are 0. The *_init functions clear struct_size bytes and fill in the defaults. Structs and
+ *   arrays need no alignment; pixels do (BhrImage).
+ *
+ * Pointers
+ *   A pointer is NULL only where this header says that it may be; NULL elsewhere is BHR_ERROR_INVALID_ARGUMENT. Whatever is
+ *   passed in is copied before the call returns; what the host owns (windows, pixels) stays its own.
+ *
+ * Threads and callbacks
+ *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other. (macOS: surfaces
+ *   on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the calling thread. From inside
+ *   a callback a call on a context, job or surface, bhr_adapter_count and bhr_adapter_info return BHR_ERROR_INVALID_STATE; calls that
+ *   work on plain structs and images, versions and messages are allowed. A callback must not wait for another
+ *   thread's call on the same context. No callback runs after the destroy call of its context has returned.
+ *
+ * The process
+ *   The library never writes to stdout or stderr, never calls exit or abort, installs no signal handler, and no Rust panic
+ *   leaves it. It stays mapped after dlclose (graphics drivers leave thread-exit handlers behind).
+ */
+
+#ifndef BHR_H
+#define BHR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- version ---- */
+
+/**
+ * Of this header. Before 1.0 a greater minor version may add functions and grow structs; it removes nothing within
+ * one BHR_ABI_VERSION.
+ */
+#define BHR_VERSION_MAJOR 0
+
+/** Of this header. */
+#define BHR_VERSION_MINOR 1
+
+/** Of this header. */
+#define BHR_VERSION_PATCH 0
+
+/** What bhr_context_create wants to be told: N of libbhr.so.N. */
+#define BHR_ABI_VERSION 0u
+
+/** Of the loaded library: major << 16 | minor << 8 | patch. Any thread, inside callbacks too. */
+uint32_t bhr_version(void);
+
+/** BHR_ABI_VERSION of the loaded library. Any thread, inside callbacks too. */
+uint32_t bhr_abi_version(void);
+
+/** Of the loaded library, such as "0.1.0"; static. Any thread, inside callbacks too. */
+const char *bhr_version_string(void);
+
+/* ---- status, messages ---- */
+
+/** What a call returns: 0 success, > 0 success with news, < 0 error. */
+typedef int32_t BhrStatus;
+
+/** Success. */
+#define BHR_OK 0
+
+/** bhr_job_wait: the job was still running when the timeout ran out. */
+#define BHR_NOT_READY 1
+
+/** bhr_render_surface: the window is minimised, occluded or 0 x 0; nothing was presented. */
+#define BHR_FRAME_SKIPPED 2
+
+/**
+ * An argument is NULL, not finite, out of its range, or an unknown constant; the message names it, its value and
+ * the limit.
+ */
+#define BHR_ERROR_INVALID_ARGUMENT (0 - 1)
+
+/** Wrong order, a combination that cannot be, or a call from inside a callback. */
+#define BHR_ERROR_INVALID_STATE (0 - 2)
+
+/** The program was compiled against a header of another BHR_ABI_VERSION. */
+#define BHR_ERROR_INCOMPATIBLE_ABI (0 - 3)
+
+/** Valid, but not on this adapter, platform or build. */
+#define BHR_ERROR_UNSUPPORTED (0 - 4)
+
+/** No adapter of the kind asked for exists. */
+#define BHR_ERROR_NO_ADAPTER (0 - 5)
+
+/** Host or device memory ran out. */
+#define BHR_ERROR_OUT_OF_MEMORY (0 - 6)
+
+/** The progress callback, or bhr_job_cancel, stopped the work. */
+#define BHR_ERROR_CANCELLED (0 - 7)
+
+/** The window behind a surface is gone. */
+#define BHR_ERROR_SURFACE_LOST (0 - 8)
+
+/** The device is gone; bhr_context_recover brings the context back. */
+#define BHR_ERROR_DEVICE_LOST (0 - 9)
+
+/** A file could not be read or written. */
+#define BHR_ERROR_IO (0 - 10)
+
+/** A bug in bhr was caught; only destroy calls are valid on this context from now on. */
+#define BHR_ERROR_INTERNAL (0 - 99)
+
+/**
+ * What this thread's last failed call says about it: the function, the argument, its value and the limit. Never
+ * NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from
+ * inside callbacks.
+ */
+const char *bhr_error_message(void);
+
+/** The constant's name, such as "BHR_ERROR_DEVICE_LOST"; static, never NULL. May be called from inside callbacks. */
+const char *bhr_status_name(BhrStatus status);
+
+/* ---- log ---- */
+
+/** How much a log callback hears: messages of this level and those more severe. */
+typedef int32_t BhrLogLevel;
+
+/**
+ * Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
+ * for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
+ * whichever thread the call runs; one from another thread goes to every context's callback. It may therefore run
+ * on several threads at once. It must not throw, unwind or longjmp. Calls on a context from inside it return
+ * BHR_ERROR_INVALID_STATE. None runs after bhr_context_destroy has returned.
+ */
+typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
+
+/** Nothing. */
+#define BHR_LOG_OFF 0
+
+/** Every failed call, and errors of the graphics stack. */
+#define BHR_LOG_ERROR 1
+
+/** Also what went wrong without failing a call, such as an adapter passed over. The default. */
+#define BHR_LOG_WARN 2
+
+/** Also the adapter that was chosen, and why. */
+#define BHR_LOG_INFO 3
+
+/** Also what the graphics stack (wgpu) reports about itself. */
+#define BHR_LOG_DEBUG 4
+
+/** Everything: slow. */
+#define BHR_LOG_TRACE 5
+
+/* ---- adapters ---- */
+
+/** BhrAdapterInfo.flags: a GPU with memory of its own. */
+#define BHR_ADAPTER_DISCRETE 1u
+
+/** BhrAdapterInfo.flags: a software driver, or the CPU tracer. */
+#define BHR_ADAPTER_SOFTWARE 2u
+
+/** The interface to an adapter. */
+typedef int32_t BhrBackend;
+
+/** One adapter. */
+typedef struct BhrAdapterInfo {
+    /** sizeof(BhrAdapterInfo), set by the caller. */
+    uint32_t struct_size;
+    BhrBackend backend;
+    /** BHR_ADAPTER_* bits. */
+    uint32_t flags;
+    /** PCI id of the vendor; 0 for the CPU tracer. */
+    uint32_t vendor_id;
+    /** PCI id of the device; 0 for the CPU tracer. */
+    uint32_t device_id;
+    /** 0. */
+    uint32_t reserved;
+    /** UTF-8, cut where it is longer. */
+    char name[256];
+    /** Name and version of the driver, UTF-8; "" where it is not known. */
+    char driver[256];
+} BhrAdapterInfo;
+
+/** The best GPU, else a software GPU, else the CPU tracer. */
+#define BHR_BACKEND_AUTO 0
+
+/** The built-in double-precision CPU tracer: needs no driver. */
+#define BHR_BACKEND_CPU 1
+
+/** Vulkan. */
+#define BHR_BACKEND_VULKAN 2
+
+/** Metal. */
+#define BHR_BACKEND_METAL 3
+
+/** Direct3D 12. */
+#define BHR_BACKEND_D3D12 4
+
+/** OpenGL or OpenGL ES. */
+#define BHR_BACKEND_GL 5
+
+/**
+ * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Asks the drivers anew at
+ * every call. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+ */
+BhrStatus bhr_adapter_count(uint32_t *out_count);
+
+/**
+ * The adapter at index, best first. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong
+ * struct_size, or an index not below bhr_adapter_count.
+ */
+BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
+
+/* ---- windows of the host ---- */
+
+/** What a BhrWindow holds. Fields that are not named for a kind are ignored. */
+typedef int32_t BhrWindowKind;
+
+/**
+ * A window of the host's: not owned, it must outlive every surface made from it. Fields as in the
+ * raw-window-handle crate.
+ */
+typedef struct BhrWindow {
+    /** sizeof(BhrWindow). */
+    uint32_t struct_size;
+    /** BHR_WINDOW_*. */
+    BhrWindowKind kind;
+    /** By kind. */
+    void *display;
+    /** By kind. */
+    void *handle;
+    /** By kind. */
+    void *aux;
+    /** By kind: an X11 window id. */
+    uint64_t id;
+    /** X11: the visual's id; 0 when not known. */
+    uint64_t visual_id;
+    /** X11: the screen's number. */
+    int32_t screen;
+    /** 0. */
+    uint32_t reserved;
+} BhrWindow;
+
+/** X11 through Xlib: display = Display *, id = Window. */
+#define BHR_WINDOW_XLIB 1
+
+/** X11 through XCB: display = xcb_connection_t *, id = xcb_window_t. */
+#define BHR_WINDOW_XCB 2
+
+/** Wayland: display = wl_display *, handle = wl_surface *. */
+#define BHR_WINDOW_WAYLAND 3
+
+/** Windows: handle = HWND, aux = HINSTANCE or NULL. */
+#define BHR_WINDOW_WIN32 4
+
+/** macOS: handle = NSView *. */
+#define BHR_WINDOW_APPKIT 5
+
+/** iOS: handle = UIView *. */
+#define BHR_WINDOW_UIKIT 6
+
+/** macOS, iOS: handle = CAMetalLayer *. */
+#define BHR_WINDOW_METAL_LAYER 7
+
+/** Android: handle = ANativeWindow *. */
+#define BHR_WINDOW_ANDROID 8
+
+/* ---- context ---- */
+
+/** BhrContextOptions.flags: the driver's validation layers, where installed, check bhr and report to the log. Slow. */
+#define BHR_CONTEXT_VALIDATION 1u
+
+/**
+ * A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
+ * wait for each other.
+ */
+typedef struct BhrContext BhrContext;
+
+/** How to make a context. Fill in with bhr_context_options_init first. */
+typedef struct BhrContextOptions {
+    /** sizeof(BhrContextOptions). */
+    uint32_t struct_size;
+    /** BHR_CONTEXT_* bits. Default 0. */
+    uint32_t flags;
+    /** Default BHR_BACKEND_AUTO. */
+    BhrBackend backend;
+    /**
+     * Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the
+     * library chooses.
+     */
+    int32_t adapter_index;
+    /** Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use. */
+    uint32_t cpu_threads;
+    /** What log_fn hears. Default BHR_LOG_WARN. */
+    BhrLogLevel log_level;
+    /** NULL (default): silent. */
+    BhrLogFn log_fn;
+    /** Handed to log_fn. */
+    void *log_user;
+    /** A window that the adapter must be able to present to. NULL (default): off-screen only. */
+    const BhrWindow *compatible_window;
+} BhrContextOptions;
+
+/** Clears struct_size bytes and fills in the defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_size);
+
+/**
+ * Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30,
+ * 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
+ * BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
+ * why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
+ * INVALID_ARGUMENT for a bad option; NO_ADAPTER when the backend or adapter asked for is not there.
+ */
+BhrStatus bhr_context_create(uint32_t abi_version,
+                             const BhrContextOptions *options,
+                             BhrContext **out_context);
+
+/** What the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
+
+/**
+ * Opens the device anew after BHR_ERROR_DEVICE_LOST; the scene stays. Errors: as bhr_context_create; the context
+ * then stays lost.
+ */
+BhrStatus bhr_context_recover(BhrContext *context);
+
+/**
+ * Ends a context: waits for a call that is running on it and for its jobs, then frees it. NULL is a no-op, and any
+ * destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
+ * From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.
+ */
+void bhr_context_destroy(BhrContext *context);
+
+/* ---- the black hole ---- */
+
+/** Numbers about the hole and the camera's observer. Lengths in scene units; NaN where not defined. */
+typedef struct BhrHoleInfo {
+    /** sizeof(BhrHoleInfo), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** r+ = M + sqrt(M^2 - a^2). */
+    double horizon_radius;
+    /** 2 M. */
+    double ergosphere_equatorial_radius;
+    /** Equatorial circular photon orbit towards +ph. */
+    double photon_orbit_prograde;
+    /** The one towards -ph. */
+    double photon_orbit_retrograde;
+    /** Innermost stable circular orbit of matter towards +ph. */
+    double isco_prograde;
+    /** That of matter towards -ph. */
+    double isco_retrograde;
+    /** Spin 0: 3 sqrt(3) M; NaN with spin. */
+    double critical_impact_parameter;
+    /**
+     * Spin 0: angular radius of the shadow as the camera's observer sees it, radians (Synge 1966, with
+     * aberration); NaN with spin.
+     */
+    double shadow_angular_radius;
+    /** Boyer-Lindquist r of the camera. */
+    double camera_radius;
+    /** d tau / d t of the camera's observer. */
+    double camera_time_rate;
+} BhrHoleInfo;
+
+/**
+ * Sets the mass M in scene lengths (G = c = 1; the Schwarzschild radius is 2 M): finite, > 0. Default 1.
+ * Errors: INVALID_ARGUMENT.
+ */
+BhrStatus bhr_set_mass(BhrContext *context, double mass);
+
+/** Sets the spin a / M in [-0.999, 0.999]; < 0: the hole turns towards -ph. Default 0. Errors: INVALID_ARGUMENT. */
+BhrStatus bhr_set_spin(BhrContext *context, double spin);
+
+/**
+ * Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. Errors:
+ * INVALID_ARGUMENT.
+ *
+ */
+BhrStatus bhr_set_axis(BhrContext *context, const double axis[3]);
+
+/**
+ * The mass, spin and axis (unit) as they are set. Errors: INVALID_ARGUMENT for NULL.
+ *
+ */
+BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_spin, double out_axis[3]);
+
+/**
+ * Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
+ * NaN. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
+
+/**
+ * The metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph), signature - +
+ * + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
+ *
+ */
+BhrStatus bhr_metric_at(const BhrContext *context, const double position[3], double out_metric[16]);
+
+/**
+ * The Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist (t,
+ * r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
+ *
+ */
+BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
+
+/* ---- the camera: an observer with a lens ---- */
+
+/** The lens. Camera axes: right = forward x up, then up = right x forward. */
+typedef int32_t BhrProjection;
+
+/**
+ * How the camera's observer moves. What the hole forbids at the camera's place is INVALID_STATE when a frame or
+ * rays are asked for.
+ */
+typedef int32_t BhrMotion;
+
+/** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
+typedef struct BhrCamera {
+    /** sizeof(BhrCamera). */
+    uint32_t struct_size;
+    /** BHR_PROJECTION_*. Default PERSPECTIVE. */
+    BhrProjection projection;
+    /** Default (0, -30, 5). Not (0, 0, 0). */
+    double position[3];
+    /** Any non-zero length. Default: towards the hole. */
+    double forward[3];
+    /** Any non-zero length, not parallel to forward. Default +z. */
+    double up[3];
+    /** Full vertical angle, radians: (0, pi) for PERSPECTIVE, (0, 2 pi] for FISHEYE. Default pi / 3. */
+    double fov_y;
+    /** BHR_MOTION_*. Default STATIC. */
+    BhrMotion motion;
+    /** 0. */
+    uint32_t reserved;
+    /**
+     * For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
+     * direction given at position. Default 0.
+     */
+    double velocity[3];
+} BhrCamera;
+
+/** A flat picture; fov_y in (0, pi). */
+#define BHR_PROJECTION_PERSPECTIVE 0
+
+/** Equidistant dome master in the inscribed circle; fov_y is the full angle, to 2 pi. UNSUPPORTED in this version. */
+#define BHR_PROJECTION_FISHEYE 1
+
+/** 360 x 180 degrees, forward in the middle, up at the top; fov_y is ignored. UNSUPPORTED in this version. */
+#define BHR_PROJECTION_EQUIRECT 2
+
+/**
+ * 6 faces side by side, width = 6 height: right left up down front back; image up is up, on the up face backward,
+ * on the down face forward. UNSUPPORTED in this version.
+ */
+#define BHR_PROJECTION_CUBE 3
+
+/** At rest; the zero angular momentum observer (ZAMO) when the hole spins. */
+#define BHR_MOTION_STATIC 0
+
+/** Radially from rest at infinity; inside a spin-0 horizon too. */
+#define BHR_MOTION_FREE_FALL 1
+
+/**
+ * Circular, along +ph. Spin 0: with beta = 1 / sqrt(r / M - 2), r > 3 M, at any latitude. With spin: the circular
+ * geodesic, in the equatorial plane only.
+ */
+#define BHR_MOTION_ORBIT 2
+
+/** With BhrCamera.velocity. */
+#define BHR_MOTION_VELOCITY 3
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_camera_init(BhrCamera *camera, size_t struct_size);
+
+/**
+ * Sets position, forward (towards target) and up of a camera; touches no context. Any thread, inside callbacks
+ * too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, numbers not finite, position (0,
+ * 0, 0) or equal to target, up zero or along the line of sight.
+ *
+ */
+BhrStatus bhr_camera_look_at(BhrCamera *camera,
+                             const double position[3],
+                             const double target[3],
+                             const double up[3]);
+
+/**
+ * Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
+ * towards +z (radians), looking at the hole: position = distance (cos el cos az, cos el sin az, sin el), up = +z.
+ * Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). Any thread,
+ * inside callbacks too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, a number not
+ * finite, distance <= 0.
+ */
+BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, double elevation);
+
+/**
+ * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
+ * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant; UNSUPPORTED for projections other than
+ * PERSPECTIVE.
+ */
+BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
+
+/** The camera as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
+
+/**
+ * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
+ * stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
+ * *out_coordinate_time, unless NULL, becomes the scene time that went by; falling at or inside the horizon it is
+ * rain time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
+ * where the motion cannot be; UNSUPPORTED for VELOCITY.
+ */
+BhrStatus bhr_camera_advance(const BhrContext *context,
+                             BhrCamera *camera,
+                             double proper_time,
+                             double *out_coordinate_time);
+
+/* ---- accretion disk ---- */
+
+/** BhrDisk.flags: the matter orbits towards -ph. */
+#define BHR_DISK_RETROGRADE 1u
+
+/**
+ * A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux. Radii in
+ * units of M.
+ */
+typedef struct BhrDisk {
+    /** sizeof(BhrDisk). */
+    uint32_t struct_size;
+    /** BHR_DISK_* bits. Default 0: prograde. */
+    uint32_t flags;
+    /** In M, 0 .. 1e6. 0 (default): the ISCO. Matter inside the ISCO does not shine. */
+    double inner_radius;
+    /** In M, greater than inner_radius, to 1e6. Default 20. */
+    double outer_radius;
+    /** Kelvin at the hottest radius of the profile, 500 .. 1e9. Default 6500. */
+    double temperature;
+    /** 0 .. 1. Default 1. */
+    double opacity;
+    /** 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
+    double brightness;
+    /** 0 smooth (default) .. 1. */
+    double turbulence;
+    /** Of the turbulence. Default 0. */
+    uint64_t seed;
+} BhrDisk;
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_disk_init(BhrDisk *disk, size_t struct_size);
+
+/**
+ * Sets the disk; NULL: no disk. A new context has the default one. Errors: INVALID_ARGUMENT for a number outside
+ * its range or an unknown flag.
+ */
+BhrStatus bhr_set_disk(BhrContext *context, const BhrDisk *disk);
+
+/**
+ * The disk as it is set. *out_present is 1 with a disk, else 0, and then disk gets the defaults. Errors:
+ * INVALID_ARGUMENT for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_present);
+
+/* ---- images in the host's memory ---- */
+
+/** BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. */
+#define BHR_IMAGE_TRANSPARENT 1u
+
+/** A pixel's bytes in memory order; row 0 is at the top. */
+typedef int32_t BhrFormat;
+
+/**
+ * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
+ * side or interleaved; different contexts may then render them at the same time.
+ */
+typedef struct BhrImage {
+    /** sizeof(BhrImage). */
+    uint32_t struct_size;
+    /** BHR_FORMAT_*. Default RGBA8_SRGB. */
+    BhrFormat format;
+    /** Pixels, 1 .. 2^20. */
+    uint32_t width;
+    /** Pixels, 1 .. 2^20. */
+    uint32_t height;
+    /** The top-left pixel; aligned to its channel: 1, 2 or 4 bytes. */
+    void *pixels;
+    /**
+     * Bytes to the next row down, a multiple of the channel's size. 0 (default): packed. < 0: bottom-up.
+     * |row_stride| must hold a row.
+     */
+    int64_t row_stride;
+    /**
+     * Of the host's block, which begins at its lowest address (row_stride < 0: at the last row). Needed: (height -
+     * 1) |row_stride| + width bytes-per-pixel; checked.
+     */
+    uint64_t byte_size;
+    /** BHR_IMAGE_* bits. Default 0. Matters for rendering only. */
+    uint32_t flags;
+    /** 0. */
+    uint32_t reserved;
+} BhrImage;
+
+/** 4 bytes: red, green, blue with the sRGB curve, alpha. */
+#define BHR_FORMAT_RGBA8_SRGB 1
+
+/** 4 bytes: blue, green, red with the sRGB curve, alpha. */
+#define BHR_FORMAT_BGRA8_SRGB 2
+
+/**
+ * 4 half floats, linear, Rec. 709 primaries. A radiance of 1 is the luminance of the default disk's hottest ring
+ * at rest.
+ */
+#define BHR_FORMAT_RGBA16F 3
+
+/** 4 floats, as above. */
+#define BHR_FORMAT_RGBA32F 4
+
+/** 1 float: views other than BHR_VIEW_LIGHT. */
+#define BHR_FORMAT_R32F 5
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
+
+/**
+ * Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
+ * grey. Alpha is written as it is. The file appears whole or not at all. Any thread, inside callbacks too. Errors:
+ * INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, or one that does not go with the
+ * format; IO, with the path in the message.
+ */
+BhrStatus bhr_image_save(const BhrImage *image, const char *path);
+
+/**
+ * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in. 8-bit files give
+ * RGBA8_SRGB, others RGBA32F (16-bit files are made linear). The pixels are the library's: give them back with
+ * bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
+ * struct_size; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, or larger than 4 GiB when
+ * decoded.
+ */
+BhrStatus bhr_image_load(const char *path, BhrImage *image);
+
+/**
+ * Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0. Any thread, inside
+ * callbacks too. Errors: INVALID_ARGUMENT for pixels that are NULL, the host's, or were given back before.
+ */
+BhrStatus bhr_image_release(BhrImage *image);
+
+/* ---- sky ---- */
+
+/** BhrSky.flags: the real sky, from the embedded star catalogue. */
+#define BHR_SKY_STARS 1u
+
+/** BhrSky.flags: a random star field. UNSUPPORTED in this version. */
+#define BHR_SKY_PROCEDURAL 2u
+
+/**
+ * BhrSky.flags: the embedded glow of the Milky Way. Accepted, being part of the default, but not drawn by this
+ * version.
+ */
+#define BHR_SKY_MILKY_WAY 4u
+
+/** BhrSky.flags: the map that bhr_set_sky_map was given. UNSUPPORTED in this version. */
+#define BHR_SKY_MAP 8u
+
+/** BhrSky.flags: a coordinate grid, which shows the lensing. UNSUPPORTED in this version. */
+#define BHR_SKY_GRID 16u
+
+/** What lies at infinity. */
+typedef struct BhrSky {
+    /** sizeof(BhrSky). */
+    uint32_t struct_size;
+    /** BHR_SKY_* bits; 0: black. Default STARS | MILKY_WAY. */
+    uint32_t flags;
+    /** 0 .. 1e6. Default 1. */
+    double stars_brightness;
+    /** Of the Milky Way and the map, 0 .. 1e6. Default 1. */
+    double map_brightness;
+    /**
+     * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
+     * to scene axes. Default (0, 0, 0, 1).
+     */
+    double orientation[4];
+    /** Of BHR_SKY_PROCEDURAL. Default 0. */
+    uint64_t seed;
+} BhrSky;
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_sky_init(BhrSky *sky, size_t struct_size);
+
+/**
+ * Sets the sky; NULL: black. Errors: INVALID_ARGUMENT for a number outside its range, an orientation that is no
+ * unit quaternion, or an unknown flag; UNSUPPORTED for flags that this version cannot draw.
+ */
+BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
+
+/** The sky as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
+
+/**
+ * Gives BHR_SKY_MAP its picture, copied before return; NULL removes it. Errors: INVALID_ARGUMENT for a bad image;
+ * UNSUPPORTED for every other image in this version.
+ */
+BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
+
+/* ---- film ---- */
+
+/** The curve from light to pixels. */
+typedef int32_t BhrToneMap;
+
+/**
+ * Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
+ * tone map.
+ */
+typedef struct BhrFilm {
+    /** sizeof(BhrFilm). */
+    uint32_t struct_size;
+    /** BHR_TONE_MAP_*. Default ACES. */
+    BhrToneMap tone_map;
+    /** Stops, -20 .. 20. Default 0. */
+    double exposure_ev;
+    /** 0 off (default) .. 1. UNSUPPORTED above 0 in this version. */
+    double bloom;
+} BhrFilm;
+
+/** Clips at 1. */
+#define BHR_TONE_MAP_NONE 0
+
+/** A filmic curve after ACES. */
+#define BHR_TONE_MAP_ACES 1
+
+/** AgX. */
+#define BHR_TONE_MAP_AGX 2
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
+
+/**
+ * Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map; UNSUPPORTED
+ * for bloom.
+ */
+BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
+
+/** The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
+
+/* ---- relativistic effects, time ---- */
+
+/**
+ * Frequency shift by motion colours the light. The redshift g = g_gravity g_doppler is split at the local static
+ * observer (ZAMO) of emitter and camera.
+ */
+#define BHR_EFFECT_DOPPLER_SHIFT 1u
+
+/** Gravitational redshift colours the light. */
+#define BHR_EFFECT_GRAVITY_SHIFT 2u
+
+/** Intensity follows g^3 (I_nu), g^4 (bolometric). */
+#define BHR_EFFECT_BEAMING 4u
+
+/** The moving disk is seen at its retarded time. */
+#define BHR_EFFECT_LIGHT_DELAY 8u
+
+/** What a new context has. */
+#define BHR_EFFECT_ALL 4294967295u
+
+/**
+ * Sets which effects colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
+ * Lensing itself stays. Errors: INVALID_ARGUMENT for NULL.
+ */
+BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
+
+/** Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. Errors: INVALID_ARGUMENT. */
+BhrStatus bhr_set_time(BhrContext *context, double time);
+
+/* ---- quality ---- */
+
+/** The integrator. */
+typedef int32_t BhrMethod;
+
+/** How exactly to trace. */
+typedef struct BhrQuality {
+    /** sizeof(BhrQuality). */
+    uint32_t struct_size;
+    /** BHR_METHOD_*. Default AUTO. */
+    BhrMethod method;
+    /** 1 (default) .. 256. */
+    uint32_t samples_per_pixel;
+    /** Per ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
+    uint32_t max_steps;
+    /** RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0: the default, 0.1. */
+    double step;
+    /** ADAPTIVE: relative, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers stop at their own. */
+    double tolerance;
+    /** Images of the disk to follow: 0 the direct one only .. 15. Default 3. */
+    uint32_t max_disk_order;
+    /** 0. */
+    uint32_t reserved;
+    /** Windows: traced size / window size, 0.1 .. 1. Default 1. */
+    double render_scale;
+} BhrQuality;
+
+/** The fastest that meets the stated accuracy. */
+#define BHR_METHOD_AUTO 0
+
+/** Fixed-step fourth-order Runge-Kutta. */
+#define BHR_METHOD_RK4 1
+
+/** Embedded Runge-Kutta with error control. */
+#define BHR_METHOD_ADAPTIVE 2
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_quality_init(BhrQuality *quality, size_t struct_size);
+
+/** Sets the quality. Errors: INVALID_ARGUMENT for NULL, a number outside its range, or an unknown method. */
+BhrStatus bhr_set_quality(BhrContext *context, const BhrQuality *quality);
+
+/** The quality as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *quality);
+
+/* ---- what a pixel shows ---- */
+
+/**
+ * What a pixel shows. 8-bit formats and windows: false colour, without film. R32F: the value, NaN where there is
+ * none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is INVALID_ARGUMENT. A
+ * backend may not have every view: then rendering is UNSUPPORTED.
+ */
+typedef int32_t BhrView;
+
+/** The picture. The default. */
+#define BHR_VIEW_LIGHT 0
+
+/** g of the first crossing within the disk's radii, else the sky's redshift. */
+#define BHR_VIEW_REDSHIFT 1
+
+/** 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. */
+#define BHR_VIEW_ORDER 2
+
+/** Angle between look direction and sky direction, radians; NaN captured. */
+#define BHR_VIEW_DEFLECTION 3
+
+/** Integration steps spent on the pixel. */
+#define BHR_VIEW_STEPS 4
+
+/** -g_tt at the first crossing of the equatorial plane; NaN without one. */
+#define BHR_VIEW_METRIC 5
+
+/** Sets the view. Default BHR_VIEW_LIGHT. Errors: INVALID_ARGUMENT for an unknown view. */
+BhrStatus bhr_set_view(BhrContext *context, BhrView view);
+
+/* ---- parts of a larger frame ---- */
+
+/**
+ * The image is this part of a larger frame: tiles, dome walls, render farms. Tiles joined give the same bytes as
+ * the frame.
+ */
+typedef struct BhrRegion {
+    /** sizeof(BhrRegion). */
+    uint32_t struct_size;
+    /** Pixels of the whole frame, 1 .. 2^20. */
+    uint32_t full_width;
+    /** Pixels of the whole frame, 1 .. 2^20. */
+    uint32_t full_height;
+    /** Column of the image's left pixels in the frame, < full_width. */
+    uint32_t x;
+    /** Row of the image's top pixels in the frame, < full_height. */
+    uint32_t y;
+    /** 0. */
+    uint32_t reserved;
+} BhrRegion;
+
+/**
+ * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. An image
+ * that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
+ * INVALID_ARGUMENT.
+ */
+BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
+
+/* ---- rendering into memory ---- */
+
+/**
+ * Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on. Runs
+ * inside a bhr_ call only, on the calling thread. It must not throw, unwind or longjmp; calls on a context from
+ * inside it return BHR_ERROR_INVALID_STATE.
+ */
+typedef int32_t (*BhrProgressFn)(void *user, double fraction);
+
+/** Sets what bhr_render_image reports to; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context. */
+BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
+
+/**
+ * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
+ * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
+ * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by
+ * the progress callback; DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target
+ * alone; after that the message says so, and what is not yet rendered is untouched.
+ */
+BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
+
+/* ---- rendering in the background ---- */
+
+/** A frame that is being rendered in the background. */
+typedef struct BhrJob BhrJob;
+
+/**
+ * Begins to render an image and returns at once. The scene is taken as it is now. target->pixels is written until
+ * the job is done or destroyed. Errors: INVALID_ARGUMENT as bhr_render_image; UNSUPPORTED otherwise in this
+ * version.
+ */
+BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, BhrJob **out_job);
+
+/**
+ * Waits until the job is done, at most timeout_ns nanoseconds; 0 polls. *out_fraction, unless NULL, becomes the
+ * part that is done, 0 .. 1. A job's failure is returned, with its message, here; NOT_READY while it runs. Errors:
+ * INVALID_ARGUMENT for NULL; UNSUPPORTED otherwise in this version.
+ */
+BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
+
+/** Asks a job to stop. NULL is a no-op. */
+void bhr_job_cancel(BhrJob *job);
+
+/** Cancels a job, waits for it and frees it: the target is the host's again. NULL is a no-op. */
+void bhr_job_destroy(BhrJob *job);
+
+/* ---- rendering into windows ---- */
+
+/** A window that a context renders into. */
+typedef struct BhrSurface BhrSurface;
+
+/** How frames reach the screen. */
+typedef int32_t BhrPresentMode;
+
+/** At the display's rate, never torn. */
+#define BHR_PRESENT_VSYNC 0
+
+/** At once; may tear. */
+#define BHR_PRESENT_IMMEDIATE 1
+
+/** The newest frame at the display's rate; older ones are dropped. */
+#define BHR_PRESENT_MAILBOX 2
+
+/**
+ * Makes a surface of width x height pixels from a window. macOS: on the main thread only. Errors: INVALID_ARGUMENT
+ * for NULL, a bad window, an unknown mode; UNSUPPORTED otherwise in this version.
+ */
+BhrStatus bhr_surface_create(BhrContext *context,
+                             const BhrWindow *window,
+                             uint32_t width,
+                             uint32_t height,
+                             BhrPresentMode mode,
+                             BhrSurface **out_surface);
+
+/**
+ * Follows a window's new size in pixels; 0 x 0: minimised. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED
+ * otherwise in this version.
+ */
+BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
+
+/**
+ * Changes how frames reach the screen; a mode that the window does not have falls back to VSYNC. Errors:
+ * INVALID_ARGUMENT for NULL or an unknown mode; UNSUPPORTED otherwise in this version.
+ */
+BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode);
+
+/**
+ * Renders the scene into the surface's window and presents it. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED
+ * otherwise in this version.
+ */
+BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
+
+/** Ends a surface; the window stays the host's. NULL is a no-op, and any destroy order is safe. */
+void bhr_surface_destroy(BhrSurface *surface);
+
+/* ---- rays: the same tracer, asked directly ---- */
+
+/** Crossings that a BhrHit lists. */
+#define BHR_MAX_CROSSINGS 4
+
+/** A ray, followed backward from the eye. */
+typedef struct BhrRay {
+    /** Scene axes and lengths. */
+    double position[3];
+    /**
+     * Where the eye looks, opposite to the photon's momentum; any non-zero length. Components as the conventions
+     * say: along the frame of the local static observer (ZAMO), inside a spin-0 horizon of the observer falling
+     * from rest at infinity.
+     */
+    double direction[3];
+    /**
+     * nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies every
+     * redshift of the hit.
+     */
+    double frequency_ratio;
+} BhrRay;
+
+/** What became of a ray. */
+typedef int32_t BhrFate;
+
+/** A crossing of the equatorial plane outside the horizon. */
+typedef struct BhrCrossing {
+    /** Boyer-Lindquist r, scene lengths. */
+    double radius;
+    /** Boyer-Lindquist ph in the chart, (-pi, pi]. */
+    double azimuth;
+    /** g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
+    double redshift;
+    /** Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon. */
+    double delay;
+} BhrCrossing;
+
+/** What a ray met. */
+typedef struct BhrHit {
+    /** BHR_FATE_*. */
+    BhrFate fate;
+    /** 0 .. BHR_MAX_CROSSINGS. */
+    uint32_t crossing_count;
+    /** Asymptotic, unit, chart axes; 0 when captured. */
+    double sky_direction[3];
+    /** nu(camera) / nu(at infinity). */
+    double sky_redshift;
+    /** Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN. */
+    double swept_angle;
+    /** Integration steps. */
+    uint32_t steps;
+    /** 0. */
+    uint32_t reserved;
+    /** In order along the ray; 0 beyond crossing_count. */
+    BhrCrossing crossings[BHR_MAX_CROSSINGS];
+} BhrHit;
+
+/** It ends at the horizon. */
+#define BHR_FATE_CAPTURED 0
+
+/** It reaches the sky. */
+#define BHR_FATE_ESCAPED 1
+
+/** BhrQuality.max_steps ran out. */
+#define BHR_FATE_UNRESOLVED 2
+
+/** This ray's input is not valid: not finite, zero direction, no frame there. */
+#define BHR_FATE_INVALID 3
+
+/**
+ * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
+ * the pixel centres; out_rays has room for width * height. A zero direction where a projection has none. Errors:
+ * INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
+ * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon. out_rays is
+ * left alone by INVALID_ARGUMENT and cleared by other errors.
+ */
+BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
+
+/**
+ * One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
+ * image). Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+ */
+BhrStatus bhr_camera_ray(const BhrContext *context,
+                         uint32_t width,
+                         uint32_t height,
+                         double x,
+                         double y,
+                         BhrRay *out_ray);
+
+/**
+ * Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
+ * equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
+ * flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
+ * error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled; both
+ * arrays are packed. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below the first version's;
+ * UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+ */
+BhrStatus bhr_trace_rays(BhrContext *context,
+                         const BhrRay *rays,
+                         size_t ray_size,
+                         size_t count,
+                         BhrHit *out_hits,
+                         size_t hit_size);
+
+/**
+ * The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
+ * room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
+ * number. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
+ * < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
+ */
+BhrStatus bhr_trace_path(BhrContext *context,
+                         const BhrRay *ray,
+                         uint32_t capacity,
+                         double *out_points,
+                         uint32_t *out_count);
+
+/* ---- numbers about the last finished frame ---- */
+
+/** Numbers about the last finished frame; all 0 before the first. Times in nanoseconds. */
+typedef struct BhrFrameStats {
+    /** sizeof(BhrFrameStats), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** 1 for the first frame of a context. */
+    uint64_t frame_index;
+    uint64_t rays;
+    /** Integration steps of all rays. */
+    uint64_t steps;
+    /** From the call's begin to its end. */
+    uint64_t cpu_ns;
+    /** On the GPU; 0: the adapter has no timestamps. */
+    uint64_t gpu_ns;
+    /** From the GPU's memory to the host's. */
+    uint64_t readback_ns;
+    /** Device memory that the context holds. */
+    uint64_t device_bytes;
+} BhrFrameStats;
+
+/** Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
+
+/**
+ * Numbers about a finished job's frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED
+ * otherwise in this version.
+ */
+BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,149 @@
+//! BhrAdapterInfo and BhrBackend: what bhr can run on.
+
+use super::entry::outside_callbacks;
+use super::pointer::{Out, unknown};
+use super::status::BhrStatus;
+use super::versioned::{OutStruct, Versioned};
+use crate::error::{Error, Result};
+use crate::renderer::{self, AdapterInfo, Backend};
+use std::ffi::c_char;
+
+/// The interface to an adapter.
+pub type BhrBackend = i32;
+/// The best GPU, else a software GPU, else the CPU tracer.
+pub const BHR_BACKEND_AUTO: BhrBackend = 0;
+/// The built-in double-precision CPU tracer: needs no driver.
+pub const BHR_BACKEND_CPU: BhrBackend = 1;
+/// Vulkan.
+pub const BHR_BACKEND_VULKAN: BhrBackend = 2;
+/// Metal.
+pub const BHR_BACKEND_METAL: BhrBackend = 3;
+/// Direct3D 12.
+pub const BHR_BACKEND_D3D12: BhrBackend = 4;
+/// OpenGL or OpenGL ES.
+pub const BHR_BACKEND_GL: BhrBackend = 5;
+
+/// BhrAdapterInfo.flags: a GPU with memory of its own.
+pub const BHR_ADAPTER_DISCRETE: u32 = 1u32;
+/// BhrAdapterInfo.flags: a software driver, or the CPU tracer.
+pub const BHR_ADAPTER_SOFTWARE: u32 = 2u32;
+
+const TEXT: usize = 256;
+
+/// One adapter.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrAdapterInfo {
+    /// sizeof(BhrAdapterInfo), set by the caller.
+    pub struct_size: u32,
+    pub backend: BhrBackend,
+    /// BHR_ADAPTER_* bits.
+    pub flags: u32,
+    /// PCI id of the vendor; 0 for the CPU tracer.
+    pub vendor_id: u32,
+    /// PCI id of the device; 0 for the CPU tracer.
+    pub device_id: u32,
+    /// 0.
+    pub reserved: u32,
+    /// UTF-8, cut where it is longer.
+    pub name: [c_char; 256],
+    /// Name and version of the driver, UTF-8; "" where it is not known.
+    pub driver: [c_char; 256],
+}
+
+// SAFETY: repr(C), size first, no padding, integers only.
+unsafe impl Versioned for BhrAdapterInfo {
+    const NAME: &'static str = "BhrAdapterInfo";
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            backend: BHR_BACKEND_AUTO,
+            flags: 0,
+            vendor_id: 0,
+            device_id: 0,
+            reserved: 0,
+            name: [0; TEXT],
+            driver: [0; TEXT],
+        }
+    }
+}
+
+impl From<&AdapterInfo> for BhrAdapterInfo {
+    fn from(info: &AdapterInfo) -> Self {
+        let flag = |set: bool, bit: u32| if set { bit } else { 0 };
+        Self {
+            backend: info.backend as BhrBackend,
+            flags: flag(info.discrete, BHR_ADAPTER_DISCRETE) | flag(info.software, BHR_ADAPTER_SOFTWARE),
+            vendor_id: info.vendor_id,
+            device_id: info.device_id,
+            name: fixed_text(&info.name),
+            driver: fixed_text(&info.driver),
+            ..Self::defaults()
+        }
+    }
+}
+
+/// `text` up to its first NUL, cut at a character so that a terminator fits.
+fn fixed_text(text: &str) -> [c_char; TEXT] {
+    let text = text.split('\0').next().unwrap_or_default();
+    let end = text.floor_char_boundary(TEXT - 1);
+    let mut fixed = [0; TEXT];
+    for (to, from) in fixed.iter_mut().zip(text.bytes().take(end)) {
+        *to = from as c_char;
+    }
+    fixed
+}
+
+/// `None`: AUTO. Errors: INVALID_ARGUMENT for a backend that the header does not list.
+pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
+    Ok(Some(match value {
+        BHR_BACKEND_AUTO => return Ok(None),
+        BHR_BACKEND_CPU => Backend::Cpu,
+        BHR_BACKEND_VULKAN => Backend::Vulkan,
+        BHR_BACKEND_METAL => Backend::Metal,
+        BHR_BACKEND_D3D12 => Backend::D3d12,
+        BHR_BACKEND_GL => Backend::Gl,
+        _ => return unknown(value, "options backend", "BHR_BACKEND_AUTO (0) to BHR_BACKEND_GL (5)"),
+    }))
+}
+
+/// How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Asks the drivers anew at
+/// every call. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    let out = unsafe { Out::cleared(out_count) };
+    outside_callbacks("bhr_adapter_count", || {
+        out.required("out_count")?;
+        out.set(renderer::adapters().len() as u32);
+        Ok(())
+    })
+}
+
+/// The adapter at index, best first. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong
+/// struct_size, or an index not below bhr_adapter_count.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_adapter_info(index: u32, info: *mut BhrAdapterInfo) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    let info = unsafe { OutStruct::cleared(info, "info") };
+    outside_callbacks("bhr_adapter_info", || {
+        let adapters = renderer::adapters();
+        let adapter = adapters.get(index as usize).ok_or_else(|| {
+            Error::argument(format!("index is {index}; this machine has {} adapters", adapters.len()))
+        })?;
+        info.set(&adapter.into())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_names_are_cut_at_a_character_and_terminated() {
+        let fixed = fixed_text(&"\u{e9}".repeat(200));
+        assert_eq!(fixed[253] as u8, 0xa9);
+        assert_eq!(fixed[254..], [0, 0]);
+        assert_eq!(fixed_text("ab\0cd")[..3], [b'a' as c_char, b'b' as c_char, 0]);
+    }
+}

@@ -1,0 +1,301 @@
+//! BhrCamera: the struct, the helpers that aim one, and setting, getting and advancing it.
+
+use super::context::BhrContext;
+use super::entry::{anywhere, on_context};
+use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_null, read_vector, unknown};
+use super::status::BhrStatus;
+use super::versioned::{self, OutStruct, Versioned};
+use crate::error::{Error, Result};
+use crate::scene::{Camera, Motion, Projection};
+use glam::DVec3;
+
+/// The lens. Camera axes: right = forward x up, then up = right x forward.
+pub type BhrProjection = i32;
+/// A flat picture; fov_y in (0, pi).
+pub const BHR_PROJECTION_PERSPECTIVE: BhrProjection = 0;
+/// Equidistant dome master in the inscribed circle; fov_y is the full angle, to 2 pi. UNSUPPORTED in this version.
+pub const BHR_PROJECTION_FISHEYE: BhrProjection = 1;
+/// 360 x 180 degrees, forward in the middle, up at the top; fov_y is ignored. UNSUPPORTED in this version.
+pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
+/// 6 faces side by side, width = 6 height: right left up down front back; image up is up, on the up face backward,
+/// on the down face forward. UNSUPPORTED in this version.
+pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
+
+/// How the camera's observer moves. What the hole forbids at the camera's place is INVALID_STATE when a frame or
+/// rays are asked for.
+pub type BhrMotion = i32;
+/// At rest; the zero angular momentum observer (ZAMO) when the hole spins.
+pub const BHR_MOTION_STATIC: BhrMotion = 0;
+/// Radially from rest at infinity; inside a spin-0 horizon too.
+pub const BHR_MOTION_FREE_FALL: BhrMotion = 1;
+/// Circular, along +ph. Spin 0: with beta = 1 / sqrt(r / M - 2), r > 3 M, at any latitude. With spin: the circular
+/// geodesic, in the equatorial plane only.
+pub const BHR_MOTION_ORBIT: BhrMotion = 2;
+/// With BhrCamera.velocity.
+pub const BHR_MOTION_VELOCITY: BhrMotion = 3;
+
+/// The camera: an observer with a lens. Positions and axes in scene axes and lengths.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrCamera {
+    /// sizeof(BhrCamera).
+    pub struct_size: u32,
+    /// BHR_PROJECTION_*. Default PERSPECTIVE.
+    pub projection: BhrProjection,
+    /// Default (0, -30, 5). Not (0, 0, 0).
+    pub position: [f64; 3],
+    /// Any non-zero length. Default: towards the hole.
+    pub forward: [f64; 3],
+    /// Any non-zero length, not parallel to forward. Default +z.
+    pub up: [f64; 3],
+    /// Full vertical angle, radians: (0, pi) for PERSPECTIVE, (0, 2 pi] for FISHEYE. Default pi / 3.
+    pub fov_y: f64,
+    /// BHR_MOTION_*. Default STATIC.
+    pub motion: BhrMotion,
+    /// 0.
+    pub reserved: u32,
+    /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
+    /// direction given at position. Default 0.
+    pub velocity: [f64; 3],
+}
+
+// SAFETY: repr(C), size first, no padding, numbers only.
+unsafe impl Versioned for BhrCamera {
+    const NAME: &'static str = "BhrCamera";
+    fn defaults() -> Self {
+        Camera::default().into()
+    }
+}
+
+impl From<Camera> for BhrCamera {
+    fn from(camera: Camera) -> Self {
+        Self {
+            struct_size: 0,
+            projection: camera.projection as BhrProjection,
+            position: camera.position.to_array(),
+            forward: camera.forward.to_array(),
+            up: camera.up.to_array(),
+            fov_y: camera.fov_y,
+            motion: camera.motion as BhrMotion,
+            reserved: 0,
+            velocity: camera.velocity.to_array(),
+        }
+    }
+}
+
+impl TryFrom<BhrCamera> for Camera {
+    type Error = Error;
+
+    fn try_from(given: BhrCamera) -> Result<Self> {
+        let camera = Self {
+            projection: projection(given.projection)?,
+            position: given.position.into(),
+            forward: given.forward.into(),
+            up: given.up.into(),
+            fov_y: given.fov_y,
+            motion: motion(given.motion)?,
+            velocity: given.velocity.into(),
+        };
+        check_reserved(given.reserved, "camera")?;
+        camera.check()?;
+        if camera.projection != Projection::Perspective {
+            return Err(Error::unsupported(format!(
+                "camera projection is {} ({:?}); this version has PERSPECTIVE (0) only",
+                given.projection, camera.projection
+            )));
+        }
+        Ok(camera)
+    }
+}
+
+fn projection(value: BhrProjection) -> Result<Projection> {
+    Ok(match value {
+        BHR_PROJECTION_PERSPECTIVE => Projection::Perspective,
+        BHR_PROJECTION_FISHEYE => Projection::Fisheye,
+        BHR_PROJECTION_EQUIRECT => Projection::Equirect,
+        BHR_PROJECTION_CUBE => Projection::Cube,
+        _ => return unknown(value, "camera projection", "BHR_PROJECTION_PERSPECTIVE (0) to BHR_PROJECTION_CUBE (3)"),
+    })
+}
+
+fn motion(value: BhrMotion) -> Result<Motion> {
+    Ok(match value {
+        BHR_MOTION_STATIC => Motion::Static,
+        BHR_MOTION_FREE_FALL => Motion::FreeFall,
+        BHR_MOTION_ORBIT => Motion::Orbit,
+        BHR_MOTION_VELOCITY => Motion::Velocity,
+        _ => return unknown(value, "camera motion", "BHR_MOTION_STATIC (0) to BHR_MOTION_VELOCITY (3)"),
+    })
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_init(camera: *mut BhrCamera, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_camera_init", || unsafe { versioned::init(camera, "camera", struct_size) })
+}
+
+/// Puts position, forward and up into a camera that bhr_camera_init filled in; the rest of it stays.
+///
+/// # Safety
+/// `camera` is NULL or points to a BhrCamera.
+unsafe fn aim(camera: *mut BhrCamera, position: DVec3, forward: DVec3, up: DVec3) -> Result<()> {
+    Camera { position, forward, up, ..Camera::default() }.check()?;
+    // SAFETY: this function's contract.
+    unsafe {
+        let given = versioned::read(camera, "camera")?;
+        let (position, forward, up) = (position.to_array(), forward.to_array(), up.to_array());
+        versioned::write(camera, "camera", &BhrCamera { position, forward, up, ..given })
+    }
+}
+
+/// Sets position, forward (towards target) and up of a camera; touches no context. Any thread, inside callbacks
+/// too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, numbers not finite, position (0,
+/// 0, 0) or equal to target, up zero or along the line of sight.
+///
+/// cbindgen:ptrs-as-arrays=[[position;3], [target;3], [up;3]]
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_look_at(
+    camera: *mut BhrCamera,
+    position: *const f64,
+    target: *const f64,
+    up: *const f64,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    anywhere("bhr_camera_look_at", || unsafe {
+        versioned::caller_size(camera, "camera")?;
+        let position = read_vector(position, "position")?;
+        let target = check_finite_vector(read_vector(target, "target")?, "target")?;
+        if position == target {
+            return Err(Error::argument("position and target are the same place; there is no direction to look in"));
+        }
+        aim(camera, position, target - position, read_vector(up, "up")?)
+    })
+}
+
+/// Below this distance from a pole (radians of elevation) +z is no usable "up".
+const POLE: f64 = 1e-6;
+
+/// Position on a sphere about the hole, looking at its centre; `elevation` and `azimuth` as for `bhr_camera_orbit`.
+fn orbit(distance: f64, azimuth: f64, elevation: f64) -> Result<(DVec3, DVec3)> {
+    if !(distance.is_finite() && distance > 0.0) {
+        return Err(Error::argument(format!("distance is {distance}; it must be finite and greater than 0")));
+    }
+    let (sin_az, cos_az) = check_finite(azimuth, "azimuth")?.sin_cos();
+    let (sin_el, cos_el) = check_finite(elevation, "elevation")?.sin_cos();
+    let position = distance * DVec3::new(cos_el * cos_az, cos_el * sin_az, sin_el);
+    let up = if cos_el.abs() > POLE { DVec3::Z } else { -sin_el * DVec3::new(cos_az, sin_az, 0.0) };
+    Ok((position, up))
+}
+
+/// Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
+/// towards +z (radians), looking at the hole: position = distance (cos el cos az, cos el sin az, sin el), up = +z.
+/// Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). Any thread,
+/// inside callbacks too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, a number not
+/// finite, distance <= 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_orbit(
+    camera: *mut BhrCamera,
+    distance: f64,
+    azimuth: f64,
+    elevation: f64,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    anywhere("bhr_camera_orbit", || unsafe {
+        versioned::caller_size(camera, "camera")?;
+        let (position, up) = orbit(distance, azimuth, elevation)?;
+        aim(camera, position, -position, up)
+    })
+}
+
+/// Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
+/// or parallel, fov_y out of range, |velocity| >= 1, an unknown constant; UNSUPPORTED for projections other than
+/// PERSPECTIVE.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_camera(context: *mut BhrContext, camera: *const BhrCamera) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_camera", context, |state| {
+            state.renderer.scene.camera = versioned::read(camera, "camera")?.try_into()?;
+            Ok(())
+        })
+    }
+}
+
+/// The camera as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut BhrCamera) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let camera = OutStruct::cleared(camera, "camera");
+        on_context("bhr_get_camera", context, |state| camera.set(&state.renderer.scene.camera.into()))
+    }
+}
+
+/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
+/// stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
+/// *out_coordinate_time, unless NULL, becomes the scene time that went by; falling at or inside the horizon it is
+/// rain time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
+/// where the motion cannot be; UNSUPPORTED for VELOCITY.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_advance(
+    context: *const BhrContext,
+    camera: *mut BhrCamera,
+    proper_time: f64,
+    out_coordinate_time: *mut f64,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_coordinate_time);
+        on_context("bhr_camera_advance", context, |state| {
+            if camera.is_null() {
+                return Err(is_null("camera"));
+            }
+            let before = versioned::read(camera, "camera")?.try_into()?;
+            let proper_time = check_finite(proper_time, "proper_time")?;
+            let (after, coordinate_time) = state.renderer.scene.advance_camera(&before, proper_time)?;
+            versioned::write(camera, "camera", &after.into())?;
+            out.set(coordinate_time);
+            Ok(())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::{FRAC_PI_2, PI};
+
+    #[test]
+    fn an_orbit_camera_is_valid_at_every_elevation() {
+        for azimuth in [-3.0, 0.0, 0.7, PI] {
+            for elevation in [-FRAC_PI_2, -1.5, 0.0, 1.0, FRAC_PI_2 - 2e-6, FRAC_PI_2 - 1e-7, FRAC_PI_2, 2.0] {
+                let (position, up) = orbit(30.0, azimuth, elevation).unwrap();
+                let camera = Camera { position, forward: -position, up, ..Camera::default() };
+                camera.check().unwrap();
+                assert!((position.length() - 30.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_image_does_not_turn_on_the_way_to_a_pole() {
+        for pole in [FRAC_PI_2, -FRAC_PI_2] {
+            let axes = |elevation: f64| {
+                let (position, up) = orbit(30.0, 0.7, elevation).unwrap();
+                Camera { position, forward: -position, up, ..Camera::default() }.axes().unwrap()
+            };
+            let near = axes(pole * (1.0 - 1e-5));
+            assert!(near.abs_diff_eq(axes(pole), 1e-4), "{near} {}", axes(pole));
+        }
+    }
+
+    #[test]
+    fn the_struct_and_the_scene_agree() {
+        let camera = Camera { motion: Motion::Velocity, velocity: DVec3::new(0.1, 0.2, 0.3), ..Camera::default() };
+        assert_eq!(Camera::try_from(BhrCamera::from(camera)).unwrap(), camera);
+        let error = Camera::try_from(BhrCamera { motion: 9, ..BhrCamera::defaults() }).unwrap_err();
+        assert!(error.message.contains("motion is 9"), "{error}");
+    }
+}

@@ -1,0 +1,286 @@
+//! BhrContext: one `Renderer` behind a lock, with its region, callbacks and log. Makes and ends it; what is drawn
+//! is set elsewhere.
+
+use super::adapter::{self, BHR_BACKEND_AUTO, BhrAdapterInfo, BhrBackend};
+use super::entry::{anywhere, finish, guarded, in_callback, on_context, outside_callbacks};
+use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
+use super::pointer::{Out, check_flags};
+use super::render::Callback;
+use super::status::BhrStatus;
+use super::version::BHR_ABI_VERSION;
+use super::versioned::{self, OutStruct, Versioned};
+use super::window::{self, BhrWindow};
+use crate::error::{Error, ErrorKind, Result};
+use crate::renderer::{Renderer, RendererOptions};
+use crate::scene::Region;
+use ::log::LevelFilter;
+use std::ffi::c_void;
+use std::ptr::{null, null_mut};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
+/// wait for each other.
+pub struct BhrContext {
+    pub(super) state: Mutex<State>,
+    /// A call failed internally.
+    pub(super) broken: AtomicBool,
+    /// After `state`, so that a renderer's last words are still heard.
+    log: Option<Registered>,
+}
+
+/// What the lock of a context protects.
+pub(super) struct State {
+    pub renderer: Renderer,
+    /// `None`: images are whole frames.
+    pub region: Option<Region>,
+    pub progress: Option<Callback>,
+}
+
+// Any thread may call.
+const _: () = {
+    const fn shared<T: Send + Sync>() {}
+    shared::<BhrContext>();
+};
+
+impl BhrContext {
+    pub(super) fn sink(&self) -> Option<Arc<Sink>> {
+        self.log.as_ref().map(Registered::sink)
+    }
+}
+
+/// BhrContextOptions.flags: the driver's validation layers, where installed, check bhr and report to the log. Slow.
+pub const BHR_CONTEXT_VALIDATION: u32 = 1u32;
+
+/// How to make a context. Fill in with bhr_context_options_init first.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrContextOptions {
+    /// sizeof(BhrContextOptions).
+    pub struct_size: u32,
+    /// BHR_CONTEXT_* bits. Default 0.
+    pub flags: u32,
+    /// Default BHR_BACKEND_AUTO.
+    pub backend: BhrBackend,
+    /// Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the
+    /// library chooses.
+    pub adapter_index: i32,
+    /// Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use.
+    pub cpu_threads: u32,
+    /// What log_fn hears. Default BHR_LOG_WARN.
+    pub log_level: BhrLogLevel,
+    /// NULL (default): silent.
+    pub log_fn: BhrLogFn,
+    /// Handed to log_fn.
+    pub log_user: *mut c_void,
+    /// A window that the adapter must be able to present to. NULL (default): off-screen only.
+    pub compatible_window: *const BhrWindow,
+}
+
+const MAX_CPU_THREADS: u32 = 1024;
+
+// SAFETY: repr(C), size first, no padding, integers and nullable pointers.
+unsafe impl Versioned for BhrContextOptions {
+    const NAME: &'static str = "BhrContextOptions";
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            flags: 0,
+            backend: BHR_BACKEND_AUTO,
+            adapter_index: -1,
+            cpu_threads: 0,
+            log_level: BHR_LOG_WARN,
+            log_fn: None,
+            log_user: null_mut(),
+            compatible_window: null(),
+        }
+    }
+}
+
+impl BhrContextOptions {
+    /// # Safety
+    /// `compatible_window` is NULL or points to a BhrWindow.
+    unsafe fn check(&self) -> Result<(RendererOptions, LevelFilter)> {
+        let flags = check_flags(self.flags, BHR_CONTEXT_VALIDATION, "options flags")?;
+        let backend = adapter::backend(self.backend)?;
+        let adapter_index = match self.adapter_index {
+            -1 => None,
+            index => Some(u32::try_from(index).map_err(|_| {
+                Error::argument(format!(
+                    "options adapter_index is {index}; it must be -1 or an index for bhr_adapter_info"
+                ))
+            })?),
+        };
+        if self.cpu_threads > MAX_CPU_THREADS {
+            return Err(Error::argument(format!(
+                "options cpu_threads is {}; it must lie in [0, {MAX_CPU_THREADS}]",
+                self.cpu_threads
+            )));
+        }
+        if !self.compatible_window.is_null() {
+            // SAFETY: this function's contract.
+            unsafe { window::read(self.compatible_window, "options compatible_window") }?;
+        }
+        let options = RendererOptions {
+            backend,
+            adapter_index,
+            cpu_threads: self.cpu_threads,
+            validation: flags & BHR_CONTEXT_VALIDATION != 0,
+        };
+        Ok((options, log::level_filter(self.log_level)?))
+    }
+
+    fn register_log(&self, level: LevelFilter) -> Option<Registered> {
+        let function = self.log_fn?;
+        (level > LevelFilter::Off).then(|| Registered::new(level, function, self.log_user))
+    }
+}
+
+/// Clears struct_size bytes and fills in the defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOptions, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_context_options_init", || unsafe { versioned::init(options, "options", struct_size) })
+}
+
+/// Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30,
+/// 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
+/// BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
+/// why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
+/// INVALID_ARGUMENT for a bad option; NO_ADAPTER when the backend or adapter asked for is not there.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_context_create(
+    abi_version: u32,
+    options: *const BhrContextOptions,
+    out_context: *mut *mut BhrContext,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_context);
+        outside_callbacks("bhr_context_create", || {
+            out.required("out_context")?;
+            check_abi(abi_version)?;
+            let given =
+                if options.is_null() { BhrContextOptions::defaults() } else { versioned::read(options, "options")? };
+            let (options, level) = given.check()?;
+            out.set(Box::into_raw(create(options, given.register_log(level))?));
+            Ok(())
+        })
+    }
+}
+
+fn check_abi(abi_version: u32) -> Result<()> {
+    if abi_version == BHR_ABI_VERSION {
+        return Ok(());
+    }
+    Err(Error::new(
+        ErrorKind::IncompatibleAbi,
+        format!(
+            "abi_version is {abi_version}, this library's is {BHR_ABI_VERSION}: compile against the bhr.h that came with it"
+        ),
+    ))
+}
+
+fn create(options: RendererOptions, log: Option<Registered>) -> Result<Box<BhrContext>> {
+    let scope = log::Scope::enter(log.as_ref().map(Registered::sink));
+    // Outside this scope the new callback would not hear why there is no context.
+    let renderer = Renderer::new(options).inspect_err(|error| ::log::error!(target: "bhr", "no context: {error}"))?;
+    let adapter = renderer.adapter();
+    ::log::info!(target: "bhr", "context on {} ({:?})", adapter.name, adapter.backend);
+    drop(scope);
+    let state = Mutex::new(State { renderer, region: None, progress: None });
+    Ok(Box::new(BhrContext { state, broken: AtomicBool::new(false), log }))
+}
+
+/// What the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *mut BhrAdapterInfo) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let info = OutStruct::cleared(info, "info");
+        on_context("bhr_context_adapter", context, |state| info.set(&BhrAdapterInfo::from(state.renderer.adapter())))
+    }
+}
+
+/// Opens the device anew after BHR_ERROR_DEVICE_LOST; the scene stays. Errors: as bhr_context_create; the context
+/// then stays lost.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe { on_context("bhr_context_recover", context, |state| state.renderer.recover()) }
+}
+
+/// Ends a context: waits for a call that is running on it and for its jobs, then frees it. NULL is a no-op, and any
+/// destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
+/// From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
+    const NAME: &str = "bhr_context_destroy";
+    if context.is_null() {
+        return;
+    }
+    if in_callback() {
+        finish(
+            NAME,
+            Err(Error::state("ignored inside a log or progress callback; call it after the callback returned")),
+        );
+        return;
+    }
+    // SAFETY: bhr_context_create made it with Box::into_raw, and the host destroys it once.
+    let context = unsafe { Box::from_raw(context) };
+    let scope = log::Scope::enter(context.sink());
+    // A running call holds the lock.
+    drop(context.state.lock().unwrap_or_else(PoisonError::into_inner));
+    let BhrContext { state, log, .. } = *context;
+    let result = guarded(|| {
+        drop(state);
+        Ok(())
+    });
+    finish(NAME, result);
+    drop(scope);
+    drop(log);
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::capi::adapter::BHR_BACKEND_CPU;
+    use crate::capi::status::{BHR_ERROR_INCOMPATIBLE_ABI, BHR_OK};
+
+    /// A context on the CPU tracer for the tests of this room.
+    pub struct Owned(*mut BhrContext);
+
+    impl Owned {
+        pub fn get(&self) -> *mut BhrContext {
+            self.0
+        }
+    }
+
+    impl Drop for Owned {
+        fn drop(&mut self) {
+            // SAFETY: made by `cpu_context`, destroyed once.
+            unsafe { bhr_context_destroy(self.0) };
+        }
+    }
+
+    pub fn cpu_context() -> Owned {
+        let options = BhrContextOptions {
+            struct_size: size_of::<BhrContextOptions>() as u32,
+            backend: BHR_BACKEND_CPU,
+            ..BhrContextOptions::defaults()
+        };
+        let mut context = null_mut();
+        // SAFETY: both live here.
+        let status = unsafe { bhr_context_create(BHR_ABI_VERSION, &options, &mut context) };
+        assert_eq!(status, BHR_OK);
+        Owned(context)
+    }
+
+    #[test]
+    fn another_abi_is_refused_and_the_out_parameter_cleared() {
+        let mut context = std::ptr::dangling_mut();
+        // SAFETY: the out-parameter lives here.
+        let status = unsafe { bhr_context_create(BHR_ABI_VERSION + 1, null(), &mut context) };
+        assert_eq!((status, context.is_null()), (BHR_ERROR_INCOMPATIBLE_ABI, true));
+    }
+}

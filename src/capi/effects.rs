@@ -1,0 +1,52 @@
+//! Which effects colour the light, and the scene's time.
+
+use super::context::BhrContext;
+use super::entry::on_context;
+use super::pointer::check_finite;
+use super::status::BhrStatus;
+use crate::scene::Effects;
+
+/// Frequency shift by motion colours the light. The redshift g = g_gravity g_doppler is split at the local static
+/// observer (ZAMO) of emitter and camera.
+pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
+/// Gravitational redshift colours the light.
+pub const BHR_EFFECT_GRAVITY_SHIFT: u32 = 2u32;
+/// Intensity follows g^3 (I_nu), g^4 (bolometric).
+pub const BHR_EFFECT_BEAMING: u32 = 4u32;
+/// The moving disk is seen at its retarded time.
+pub const BHR_EFFECT_LIGHT_DELAY: u32 = 8u32;
+/// What a new context has.
+pub const BHR_EFFECT_ALL: u32 = 0xffff_ffffu32;
+
+const _: () = assert!(
+    BHR_EFFECT_DOPPLER_SHIFT == Effects::DOPPLER_SHIFT
+        && BHR_EFFECT_GRAVITY_SHIFT == Effects::GRAVITY_SHIFT
+        && BHR_EFFECT_BEAMING == Effects::BEAMING
+        && BHR_EFFECT_LIGHT_DELAY == Effects::LIGHT_DELAY
+        && BHR_EFFECT_ALL == Effects::ALL
+);
+
+/// Sets which effects colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
+/// Lensing itself stays. Errors: INVALID_ARGUMENT for NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_effects", context, |state| {
+            state.renderer.scene.effects = Effects(effects);
+            Ok(())
+        })
+    }
+}
+
+/// Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. Errors: INVALID_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_time(context: *mut BhrContext, time: f64) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_time", context, |state| {
+            state.renderer.scene.time = check_finite(time, "time")?;
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,224 @@
+//! The shape of every entry point: refuse calls from inside callbacks, run one closure under the panic guard (with
+//! a context: under its lock), and turn the result into a status, this thread's message and a log line. The whole
+//! panic policy is here.
+
+use super::context::{BhrContext, State};
+use super::log;
+use super::pointer::is_null;
+use super::status::{self, BHR_OK, BhrStatus};
+use crate::error::{Error, ErrorKind, Result};
+use std::cell::{Cell, RefCell};
+use std::ffi::{CString, c_char};
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::sync::atomic::Ordering;
+use std::sync::{Mutex, Once, PoisonError};
+use std::thread::LocalKey;
+
+thread_local! {
+    static MESSAGE: RefCell<CString> = RefCell::default();
+    static CALLS: Cell<u32> = const { Cell::new(0) };
+    static CALLBACKS: Cell<u32> = const { Cell::new(0) };
+    static LOG_CALLBACKS: Cell<u32> = const { Cell::new(0) };
+}
+
+/// A call that touches nothing shared: allowed inside callbacks.
+pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> BhrStatus {
+    finish(function, guarded(body))
+}
+
+/// A call without a context that reaches drivers or shared state: refused inside callbacks.
+pub(super) fn outside_callbacks(function: &str, body: impl FnOnce() -> Result<()>) -> BhrStatus {
+    finish(function, refuse_in_callback().and_then(|()| guarded(body)))
+}
+
+/// A call on a context: refused inside callbacks, one at a time, with the context's log callback listening. `body`
+/// gets what the lock protects. After a failure of kind `Internal`, a caught panic above all, the context refuses
+/// everything but its end.
+///
+/// # Safety
+/// `context` is NULL or came from `bhr_context_create` and is not destroyed.
+pub(super) unsafe fn on_context(
+    function: &str,
+    context: *const BhrContext,
+    body: impl FnOnce(&mut State) -> Result<()>,
+) -> BhrStatus {
+    if let Err(error) = refuse_in_callback() {
+        return finish(function, Err(error));
+    }
+    // SAFETY: NULL or alive, by this function's contract.
+    let Some(context) = (unsafe { context.as_ref() }) else {
+        return finish(function, Err(is_null("context")));
+    };
+    let _scope = log::Scope::enter(context.sink());
+    let mut state = context.state.lock().unwrap_or_else(PoisonError::into_inner);
+    let result = if context.broken.load(Ordering::Relaxed) {
+        Err(Error::internal("this context failed internally before; only bhr_context_destroy is valid"))
+    } else {
+        guarded(|| body(&mut state))
+    };
+    if result.as_ref().is_err_and(|error| error.kind == ErrorKind::Internal) {
+        context.broken.store(true, Ordering::Relaxed);
+    }
+    drop(state);
+    finish(function, result)
+}
+
+/// Runs `body`; a panic becomes an `Internal` error that says where.
+pub(super) fn guarded(body: impl FnOnce() -> Result<()>) -> Result<()> {
+    static HOOK: Once = Once::new();
+    if !std::thread::panicking() {
+        HOOK.call_once(silence_panics);
+    }
+    let _call = Depth::enter(&CALLS);
+    // Unwind safe: whoever could see what the panic left half done is refused from then on.
+    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
+        // Dropping an unknown payload may panic again.
+        std::mem::forget(payload);
+        let place = last_panic().take().unwrap_or_else(|| "an unknown place".into());
+        Err(Error::internal(format!("a bug in bhr was caught: panic at {place}")))
+    })
+}
+
+/// Keeps the message and logs it. The status of `result`.
+pub(super) fn finish(function: &str, result: Result<()>) -> BhrStatus {
+    let Err(error) = result else {
+        return BHR_OK;
+    };
+    let message = format!("{function}: {}", error.message);
+    ::log::error!(target: "bhr", "{message}");
+    let message = log::c_string(message);
+    // A thread that is ending has no message any more.
+    let _ = MESSAGE.try_with(|slot| slot.replace(message));
+    status::of(error.kind)
+}
+
+/// Never NULL.
+pub(super) fn last_message() -> *const c_char {
+    MESSAGE.try_with(|slot| slot.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+}
+
+fn refuse_in_callback() -> Result<()> {
+    if in_callback() {
+        return Err(Error::state("called from inside a log or progress callback; return from it first"));
+    }
+    Ok(())
+}
+
+pub(super) fn in_callback() -> bool {
+    count(&CALLBACKS) > 0
+}
+
+pub(super) fn in_log_callback() -> bool {
+    count(&LOG_CALLBACKS) > 0
+}
+
+fn count(counter: &'static LocalKey<Cell<u32>>) -> u32 {
+    counter.try_with(Cell::get).unwrap_or(0)
+}
+
+/// Adds one to a counter of this thread while it lives.
+struct Depth(&'static LocalKey<Cell<u32>>);
+
+impl Depth {
+    fn enter(counter: &'static LocalKey<Cell<u32>>) -> Self {
+        let _ = counter.try_with(|n| n.set(n.get() + 1));
+        Self(counter)
+    }
+}
+
+impl Drop for Depth {
+    fn drop(&mut self) {
+        let _ = self.0.try_with(|n| n.set(n.get().saturating_sub(1)));
+    }
+}
+
+/// While it lives, this thread is inside a callback of the host's.
+pub(super) struct Callback {
+    _any: Depth,
+    _log: Option<Depth>,
+}
+
+impl Callback {
+    pub(super) fn log() -> Self {
+        Self { _any: Depth::enter(&CALLBACKS), _log: Some(Depth::enter(&LOG_CALLBACKS)) }
+    }
+
+    pub(super) fn progress() -> Self {
+        Self { _any: Depth::enter(&CALLBACKS), _log: None }
+    }
+}
+
+static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
+
+fn last_panic() -> std::sync::MutexGuard<'static, Option<String>> {
+    LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Rust's default hook prints. Panics inside a call, and on the tracers' threads (named "bhr.."), are noted
+/// instead; any other panic in the process goes where it went before.
+fn silence_panics() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        let ours = count(&CALLS) > 0 || std::thread::current().name().is_some_and(|name| name.starts_with("bhr"));
+        if ours {
+            *last_panic() = Some(describe(info));
+        } else {
+            before(info);
+        }
+    }));
+}
+
+fn describe(info: &PanicHookInfo<'_>) -> String {
+    let payload = info.payload();
+    let text = payload.downcast_ref::<&str>().copied().or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+    let place = info.location().map_or_else(|| "an unknown place".into(), ToString::to_string);
+    format!("{place}: {}", text.unwrap_or("no message"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capi::context::tests::cpu_context;
+    use crate::capi::status::*;
+    use std::ffi::CStr;
+
+    fn message() -> String {
+        // SAFETY: a C string of this thread's.
+        unsafe { CStr::from_ptr(last_message()) }.to_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn a_panic_becomes_internal_and_breaks_the_context() {
+        let context = cpu_context();
+        // SAFETY: the context lives.
+        let call = |body: fn(&mut State) -> Result<()>| unsafe { on_context("bhr_test", context.get(), body) };
+        assert_eq!(call(|_| Ok(())), BHR_OK);
+        assert_eq!(call(|_| Err(Error::argument("harmless"))), BHR_ERROR_INVALID_ARGUMENT);
+        assert_eq!(message(), "bhr_test: harmless");
+        assert_eq!(call(|_| Ok(())), BHR_OK);
+        assert_eq!(call(|_| panic!("deliberate")), BHR_ERROR_INTERNAL);
+        assert!(message().contains("entry.rs") && message().contains("deliberate"), "{}", message());
+        assert_eq!(call(|_| Ok(())), BHR_ERROR_INTERNAL);
+    }
+
+    #[test]
+    fn calls_inside_callbacks_are_refused() {
+        let context = cpu_context();
+        let inside = Callback::progress();
+        // SAFETY: the context lives.
+        let status = unsafe { on_context("bhr_test", context.get(), |_| Ok(())) };
+        assert_eq!(status, BHR_ERROR_INVALID_STATE);
+        assert_eq!(outside_callbacks("bhr_test", || Ok(())), BHR_ERROR_INVALID_STATE);
+        assert_eq!(anywhere("bhr_test", || Ok(())), BHR_OK);
+        drop(inside);
+        // SAFETY: the context lives.
+        assert_eq!(unsafe { on_context("bhr_test", context.get(), |_| Ok(())) }, BHR_OK);
+    }
+
+    #[test]
+    fn a_null_context_is_named() {
+        // SAFETY: NULL is allowed.
+        assert_eq!(unsafe { on_context("bhr_test", std::ptr::null(), |_| Ok(())) }, BHR_ERROR_INVALID_ARGUMENT);
+        assert_eq!(message(), "bhr_test: context is NULL");
+    }
+}

@@ -1,0 +1,94 @@
+//! BhrFilm: how light becomes 8-bit pixels.
+
+use super::context::BhrContext;
+use super::entry::{anywhere, on_context};
+use super::pointer::unknown;
+use super::status::BhrStatus;
+use super::versioned::{self, OutStruct, Versioned};
+use crate::error::{Error, Result};
+use crate::scene::{Film, ToneMap};
+
+/// The curve from light to pixels.
+pub type BhrToneMap = i32;
+/// Clips at 1.
+pub const BHR_TONE_MAP_NONE: BhrToneMap = 0;
+/// A filmic curve after ACES.
+pub const BHR_TONE_MAP_ACES: BhrToneMap = 1;
+/// AgX.
+pub const BHR_TONE_MAP_AGX: BhrToneMap = 2;
+
+/// Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
+/// tone map.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrFilm {
+    /// sizeof(BhrFilm).
+    pub struct_size: u32,
+    /// BHR_TONE_MAP_*. Default ACES.
+    pub tone_map: BhrToneMap,
+    /// Stops, -20 .. 20. Default 0.
+    pub exposure_ev: f64,
+    /// 0 off (default) .. 1. UNSUPPORTED above 0 in this version.
+    pub bloom: f64,
+}
+
+// SAFETY: repr(C), size first, no padding, numbers only.
+unsafe impl Versioned for BhrFilm {
+    const NAME: &'static str = "BhrFilm";
+    fn defaults() -> Self {
+        Film::default().into()
+    }
+}
+
+impl From<Film> for BhrFilm {
+    fn from(film: Film) -> Self {
+        Self { struct_size: 0, tone_map: film.tone_map as BhrToneMap, exposure_ev: film.exposure_ev, bloom: film.bloom }
+    }
+}
+
+impl TryFrom<BhrFilm> for Film {
+    type Error = Error;
+
+    fn try_from(given: BhrFilm) -> Result<Self> {
+        let tone_map = match given.tone_map {
+            BHR_TONE_MAP_NONE => ToneMap::None,
+            BHR_TONE_MAP_ACES => ToneMap::Aces,
+            BHR_TONE_MAP_AGX => ToneMap::Agx,
+            value => return unknown(value, "film tone_map", "BHR_TONE_MAP_NONE (0), _ACES (1), _AGX (2)"),
+        };
+        let film = Self { tone_map, exposure_ev: given.exposure_ev, bloom: given.bloom };
+        film.check()?;
+        Ok(film)
+    }
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_film_init(film: *mut BhrFilm, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_film_init", || unsafe { versioned::init(film, "film", struct_size) })
+}
+
+/// Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map; UNSUPPORTED
+/// for bloom.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_film(context: *mut BhrContext, film: *const BhrFilm) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_film", context, |state| {
+            state.renderer.scene.film = versioned::read(film, "film")?.try_into()?;
+            Ok(())
+        })
+    }
+}
+
+/// The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_film(context: *const BhrContext, film: *mut BhrFilm) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let film = OutStruct::cleared(film, "film");
+        on_context("bhr_get_film", context, |state| film.set(&state.renderer.scene.film.into()))
+    }
+}

@@ -1,0 +1,226 @@
+//! BhrImage: pixels in the host's memory, and image files. The pixels that bhr_image_load hands out are kept here
+//! until they are released.
+
+use super::entry::anywhere;
+use super::pointer::{check_flags, check_reserved, is_null, unknown};
+use super::status::BhrStatus;
+use super::versioned::{self, OutStruct, Versioned};
+use crate::error::{Error, Result};
+use crate::image::{self, ImageMut, Layout, Loaded, PixelFormat};
+use std::collections::BTreeMap;
+use std::ffi::{CStr, c_char, c_void};
+use std::path::PathBuf;
+use std::ptr::null_mut;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// A pixel's bytes in memory order; row 0 is at the top.
+pub type BhrFormat = i32;
+/// 4 bytes: red, green, blue with the sRGB curve, alpha.
+pub const BHR_FORMAT_RGBA8_SRGB: BhrFormat = 1;
+/// 4 bytes: blue, green, red with the sRGB curve, alpha.
+pub const BHR_FORMAT_BGRA8_SRGB: BhrFormat = 2;
+/// 4 half floats, linear, Rec. 709 primaries. A radiance of 1 is the luminance of the default disk's hottest ring
+/// at rest.
+pub const BHR_FORMAT_RGBA16F: BhrFormat = 3;
+/// 4 floats, as above.
+pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
+/// 1 float: views other than BHR_VIEW_LIGHT.
+pub const BHR_FORMAT_R32F: BhrFormat = 5;
+
+/// BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1.
+pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
+
+/// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
+/// side or interleaved; different contexts may then render them at the same time.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrImage {
+    /// sizeof(BhrImage).
+    pub struct_size: u32,
+    /// BHR_FORMAT_*. Default RGBA8_SRGB.
+    pub format: BhrFormat,
+    /// Pixels, 1 .. 2^20.
+    pub width: u32,
+    /// Pixels, 1 .. 2^20.
+    pub height: u32,
+    /// The top-left pixel; aligned to its channel: 1, 2 or 4 bytes.
+    pub pixels: *mut c_void,
+    /// Bytes to the next row down, a multiple of the channel's size. 0 (default): packed. < 0: bottom-up.
+    /// |row_stride| must hold a row.
+    pub row_stride: i64,
+    /// Of the host's block, which begins at its lowest address (row_stride < 0: at the last row). Needed: (height -
+    /// 1) |row_stride| + width bytes-per-pixel; checked.
+    pub byte_size: u64,
+    /// BHR_IMAGE_* bits. Default 0. Matters for rendering only.
+    pub flags: u32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: repr(C), size first, no padding, integers and a nullable pointer.
+unsafe impl Versioned for BhrImage {
+    const NAME: &'static str = "BhrImage";
+    fn defaults() -> Self {
+        Self { format: BHR_FORMAT_RGBA8_SRGB, ..Self::empty() }
+    }
+}
+
+impl BhrImage {
+    fn empty() -> Self {
+        Self {
+            struct_size: 0,
+            format: 0,
+            width: 0,
+            height: 0,
+            pixels: null_mut(),
+            row_stride: 0,
+            byte_size: 0,
+            flags: 0,
+            reserved: 0,
+        }
+    }
+}
+
+fn format(value: BhrFormat) -> Result<PixelFormat> {
+    Ok(match value {
+        BHR_FORMAT_RGBA8_SRGB => PixelFormat::Rgba8Srgb,
+        BHR_FORMAT_BGRA8_SRGB => PixelFormat::Bgra8Srgb,
+        BHR_FORMAT_RGBA16F => PixelFormat::Rgba16F,
+        BHR_FORMAT_RGBA32F => PixelFormat::Rgba32F,
+        BHR_FORMAT_R32F => PixelFormat::R32F,
+        _ => return unknown(value, "image format", "BHR_FORMAT_RGBA8_SRGB (1) to BHR_FORMAT_R32F (5)"),
+    })
+}
+
+/// The host's image, checked.
+pub(super) struct Given<'a> {
+    pub pixels: ImageMut<'a>,
+    pub transparent: bool,
+}
+
+/// Errors: INVALID_ARGUMENT for NULL or a field that breaks the rules of `BhrImage`.
+///
+/// # Safety
+/// `image` is NULL or points to a BhrImage whose block is the host's during `'a`.
+pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Given<'a>> {
+    // SAFETY: this function's contract.
+    let given = unsafe { versioned::read(image, name) }?;
+    check_reserved(given.reserved, name)?;
+    let flags = check_flags(given.flags, BHR_IMAGE_TRANSPARENT, &format!("{name} flags"))?;
+    let layout = Layout {
+        format: format(given.format)?,
+        width: given.width,
+        height: given.height,
+        row_stride: given.row_stride,
+    };
+    // SAFETY: the block of byte_size bytes is the host's, by this function's contract.
+    let pixels = unsafe { ImageMut::from_raw(layout, given.pixels.cast(), given.byte_size) }?;
+    Ok(Given { pixels, transparent: flags & BHR_IMAGE_TRANSPARENT != 0 })
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_image_init(image: *mut BhrImage, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_image_init", || unsafe { versioned::init(image, "image", struct_size) })
+}
+
+/// A path as the platform has it: any bytes on Unix, UTF-8 elsewhere.
+///
+/// # Safety
+/// `path` is NULL or a C string.
+unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
+    if path.is_null() {
+        return Err(is_null("path"));
+    }
+    // SAFETY: this function's contract.
+    let bytes = unsafe { CStr::from_ptr(path) }.to_bytes();
+    if bytes.is_empty() {
+        return Err(Error::argument("path is empty"));
+    }
+    #[cfg(unix)]
+    return Ok(<std::ffi::OsStr as std::os::unix::ffi::OsStrExt>::from_bytes(bytes).into());
+    #[cfg(not(unix))]
+    match std::str::from_utf8(bytes) {
+        Ok(text) => Ok(text.into()),
+        Err(_) => Err(Error::argument("path is not UTF-8")),
+    }
+}
+
+/// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
+/// grey. Alpha is written as it is. The file appears whole or not at all. Any thread, inside callbacks too. Errors:
+/// INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, or one that does not go with the
+/// format; IO, with the path in the message.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_char) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    anywhere("bhr_image_save", || unsafe {
+        let given = read(image, "image")?;
+        image::save(&given.pixels.as_image_ref(), &path_of(path)?)
+    })
+}
+
+/// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in. 8-bit files give
+/// RGBA8_SRGB, others RGBA32F (16-bit files are made linear). The pixels are the library's: give them back with
+/// bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
+/// struct_size; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, or larger than 4 GiB when
+/// decoded.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let out = OutStruct::cleared(image, "image");
+        anywhere("bhr_image_load", || {
+            let path = path_of(path)?;
+            out.set(&BhrImage::empty())?;
+            let mut loaded = image::load(&path)?;
+            out.set(&describe(&mut loaded))?;
+            keep(loaded);
+            Ok(())
+        })
+    }
+}
+
+fn describe(loaded: &mut Loaded) -> BhrImage {
+    let row = loaded.width as usize * loaded.format.bytes_per_pixel();
+    BhrImage {
+        format: loaded.format as BhrFormat,
+        width: loaded.width,
+        height: loaded.height,
+        row_stride: row as i64,
+        byte_size: row as u64 * u64::from(loaded.height),
+        pixels: loaded.pixels.as_mut_ptr().cast(),
+        ..BhrImage::empty()
+    }
+}
+
+/// The pixels that hosts hold, by their address: it tells the library's pixels from the host's.
+static KEPT: Mutex<BTreeMap<usize, Loaded>> = Mutex::new(BTreeMap::new());
+
+fn kept() -> MutexGuard<'static, BTreeMap<usize, Loaded>> {
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn keep(mut loaded: Loaded) {
+    kept().insert(loaded.pixels.as_mut_ptr().addr(), loaded);
+}
+
+/// Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0. Any thread, inside
+/// callbacks too. Errors: INVALID_ARGUMENT for pixels that are NULL, the host's, or were given back before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_image_release(image: *mut BhrImage) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    anywhere("bhr_image_release", || unsafe {
+        let given = versioned::read(image, "image")?;
+        // The lock ends before the pixels do.
+        let Some(loaded) = kept().remove(&given.pixels.addr()) else {
+            return Err(Error::argument(format!(
+                "image pixels {:p} are not held for bhr_image_load: the host's own, or released before",
+                given.pixels
+            )));
+        };
+        drop(loaded);
+        versioned::write(image, "image", &BhrImage { pixels: null_mut(), byte_size: 0, ..given })
+    })
+}

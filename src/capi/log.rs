@@ -1,0 +1,305 @@
+//! BhrLogLevel, BhrLogFn, and the way from the `log` crate to the hosts' callbacks. The process-wide logger is
+//! installed here, when the first context with a callback is made, and only if the process has none. Nothing is
+//! ever printed.
+
+use super::entry::{self, Callback};
+use crate::error::Result;
+use log::{Level, LevelFilter, Log, Metadata, Record};
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// How much a log callback hears: messages of this level and those more severe.
+pub type BhrLogLevel = i32;
+/// Nothing.
+pub const BHR_LOG_OFF: BhrLogLevel = 0;
+/// Every failed call, and errors of the graphics stack.
+pub const BHR_LOG_ERROR: BhrLogLevel = 1;
+/// Also what went wrong without failing a call, such as an adapter passed over. The default.
+pub const BHR_LOG_WARN: BhrLogLevel = 2;
+/// Also the adapter that was chosen, and why.
+pub const BHR_LOG_INFO: BhrLogLevel = 3;
+/// Also what the graphics stack (wgpu) reports about itself.
+pub const BHR_LOG_DEBUG: BhrLogLevel = 4;
+/// Everything: slow.
+pub const BHR_LOG_TRACE: BhrLogLevel = 5;
+
+/// Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
+/// for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
+/// whichever thread the call runs; one from another thread goes to every context's callback. It may therefore run
+/// on several threads at once. It must not throw, unwind or longjmp. Calls on a context from inside it return
+/// BHR_ERROR_INVALID_STATE. None runs after bhr_context_destroy has returned.
+pub type BhrLogFn = Option<unsafe extern "C" fn(user: *mut c_void, level: BhrLogLevel, message: *const c_char)>;
+
+/// A non-null [`BhrLogFn`].
+pub(super) type LogFn = unsafe extern "C" fn(*mut c_void, BhrLogLevel, *const c_char);
+
+/// The host's `user` pointer: never read here, only handed back.
+#[derive(Clone, Copy)]
+pub(super) struct User(pub *mut c_void);
+
+// SAFETY: bhr never looks behind the pointer; the header tells the host on which threads its callbacks run.
+unsafe impl Send for User {}
+// SAFETY: as above.
+unsafe impl Sync for User {}
+
+/// Errors: INVALID_ARGUMENT for a level that the header does not list.
+pub(super) fn level_filter(level: BhrLogLevel) -> Result<LevelFilter> {
+    Ok(match level {
+        BHR_LOG_OFF => LevelFilter::Off,
+        BHR_LOG_ERROR => LevelFilter::Error,
+        BHR_LOG_WARN => LevelFilter::Warn,
+        BHR_LOG_INFO => LevelFilter::Info,
+        BHR_LOG_DEBUG => LevelFilter::Debug,
+        BHR_LOG_TRACE => LevelFilter::Trace,
+        _ => return super::pointer::unknown(level, "options log_level", "BHR_LOG_OFF (0) to BHR_LOG_TRACE (5)"),
+    })
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    // Nothing under these locks is left half done by a panic.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+#[derive(Default)]
+struct Gate {
+    closed: bool,
+    /// Callbacks that are running now.
+    running: u32,
+}
+
+/// One context's log callback.
+pub(super) struct Sink {
+    level: LevelFilter,
+    function: LogFn,
+    user: User,
+    gate: Mutex<Gate>,
+    idle: Condvar,
+}
+
+impl Sink {
+    fn deliver(&self, level: Level, message: &CStr) {
+        if level > self.level || !self.enter() {
+            return;
+        }
+        let inside = Callback::log();
+        // SAFETY: the host gave this function with this pointer, and the gate is open: the context still lives.
+        unsafe { (self.function)(self.user.0, level as BhrLogLevel, message.as_ptr()) };
+        drop(inside);
+        self.leave();
+    }
+
+    fn enter(&self) -> bool {
+        let mut gate = lock(&self.gate);
+        if !gate.closed {
+            gate.running += 1;
+        }
+        !gate.closed
+    }
+
+    fn leave(&self) {
+        lock(&self.gate).running -= 1;
+        self.idle.notify_all();
+    }
+
+    /// After this no callback runs: new ones find the gate closed, and those that run are waited for.
+    fn close(&self) {
+        let mut gate = lock(&self.gate);
+        gate.closed = true;
+        while gate.running > 0 {
+            gate = self.idle.wait(gate).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// A [`Sink`] that the process-wide logger knows of; dropping it ends the callbacks.
+pub(super) struct Registered(Arc<Sink>);
+
+impl Registered {
+    pub(super) fn new(level: LevelFilter, function: LogFn, user: *mut c_void) -> Self {
+        let sink = Arc::new(Sink { level, function, user: User(user), gate: Mutex::default(), idle: Condvar::new() });
+        change_sinks(|sinks| sinks.push(sink.clone()));
+        Self(sink)
+    }
+
+    pub(super) fn sink(&self) -> Arc<Sink> {
+        self.0.clone()
+    }
+}
+
+impl Drop for Registered {
+    fn drop(&mut self) {
+        change_sinks(|sinks| sinks.retain(|sink| !Arc::ptr_eq(sink, &self.0)));
+        self.0.close();
+    }
+}
+
+static SINKS: Mutex<Vec<Arc<Sink>>> = Mutex::new(Vec::new());
+
+fn change_sinks(change: impl FnOnce(&mut Vec<Arc<Sink>>)) {
+    static OURS: OnceLock<bool> = OnceLock::new();
+    let ours = *OURS.get_or_init(|| ::log::set_logger(&HostLogger).is_ok());
+    let mut sinks = lock(&SINKS);
+    change(&mut sinks);
+    if ours {
+        ::log::set_max_level(sinks.iter().map(|sink| sink.level).max().unwrap_or(LevelFilter::Off));
+    }
+}
+
+thread_local! {
+    /// Of the call this thread is in: `Some(None)` is a context without a callback.
+    static CURRENT: RefCell<Option<Option<Arc<Sink>>>> = const { RefCell::new(None) };
+}
+
+/// While it lives, this thread's messages go to one context's callback, if it has one, and to no other.
+pub(super) struct Scope {
+    before: Option<Option<Arc<Sink>>>,
+}
+
+impl Scope {
+    pub(super) fn enter(sink: Option<Arc<Sink>>) -> Self {
+        Self { before: CURRENT.try_with(|current| current.replace(Some(sink))).unwrap_or(None) }
+    }
+}
+
+impl Drop for Scope {
+    fn drop(&mut self) {
+        // No thread-local left: the thread is ending, and nothing can be logged from it any more.
+        let _ = CURRENT.try_with(|current| current.replace(self.before.take()));
+    }
+}
+
+struct HostLogger;
+
+impl Log for HostLogger {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        metadata.level() <= ::log::max_level() && !entry::in_log_callback()
+    }
+
+    fn log(&self, record: &Record<'_>) {
+        if !self.enabled(record.metadata()) {
+            return;
+        }
+        let level = host_level(record);
+        let sinks = match CURRENT.try_with(|current| current.borrow().clone()).unwrap_or(None) {
+            Some(own) => own.into_iter().collect(),
+            None => lock(&SINKS).clone(),
+        };
+        if sinks.iter().all(|sink| level > sink.level) {
+            return;
+        }
+        let message = text(record);
+        for sink in sinks {
+            sink.deliver(level, &message);
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+fn is_own(record: &Record<'_>) -> bool {
+    record.target() == "bhr" || record.target().starts_with("bhr::")
+}
+
+/// What the graphics stack calls info, every buffer and pipeline, is detail to a host: below warnings it counts one
+/// level less.
+fn host_level(record: &Record<'_>) -> Level {
+    match record.level() {
+        Level::Info if !is_own(record) => Level::Debug,
+        Level::Debug if !is_own(record) => Level::Trace,
+        level => level,
+    }
+}
+
+fn text(record: &Record<'_>) -> CString {
+    let text =
+        if is_own(record) { record.args().to_string() } else { format!("{}: {}", record.target(), record.args()) };
+    c_string(text)
+}
+
+/// `text` as a C string; a NUL inside becomes a space.
+pub(super) fn c_string(text: String) -> CString {
+    CString::new(text).unwrap_or_else(|error| {
+        let text = String::from_utf8_lossy(&error.into_vec()).replace('\0', " ");
+        CString::new(text).unwrap_or_default()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    type Heard = Mutex<Vec<(BhrLogLevel, String)>>;
+
+    unsafe extern "C" fn hear(user: *mut c_void, level: BhrLogLevel, message: *const c_char) {
+        // SAFETY: the tests pass a `Heard` that outlives the sink, and the logger a C string.
+        let (heard, message) = unsafe { (&*user.cast::<Heard>(), CStr::from_ptr(message)) };
+        heard.lock().unwrap().push((level, message.to_str().unwrap().to_owned()));
+    }
+
+    fn listen(heard: &Heard, level: LevelFilter) -> Registered {
+        Registered::new(level, hear, (&raw const *heard).cast_mut().cast())
+    }
+
+    fn said(heard: &Heard, text: &str) -> Vec<BhrLogLevel> {
+        heard.lock().unwrap().iter().filter(|(_, message)| message.contains(text)).map(|(level, _)| *level).collect()
+    }
+
+    #[test]
+    fn messages_go_to_the_current_context_else_to_all() {
+        let (one, two) = (Heard::default(), Heard::default());
+        let first = listen(&one, LevelFilter::Debug);
+        let second = listen(&two, LevelFilter::Warn);
+        {
+            let _scope = Scope::enter(Some(first.sink()));
+            ::log::warn!("inside the first");
+        }
+        {
+            let _scope = Scope::enter(None);
+            ::log::warn!("inside a silent one");
+        }
+        ::log::warn!("from outside");
+        ::log::info!("only detail");
+        ::log::info!(target: "wgpu_core::device", "chatter");
+        assert_eq!((said(&one, "inside the first").len(), said(&two, "inside the first").len()), (1, 0));
+        assert_eq!((said(&one, "a silent one").len(), said(&two, "a silent one").len()), (0, 0));
+        assert_eq!((said(&one, "from outside").len(), said(&two, "from outside").len()), (1, 1));
+        assert_eq!((said(&one, "only detail"), said(&two, "only detail").len()), (vec![BHR_LOG_INFO], 0));
+        assert_eq!(said(&one, "wgpu_core::device: chatter"), [BHR_LOG_DEBUG]);
+        drop(first);
+        ::log::warn!("after the first has gone");
+        assert_eq!((said(&one, "has gone").len(), said(&two, "has gone").len()), (0, 1));
+        drop(second);
+    }
+
+    #[test]
+    fn closing_waits_for_a_callback_that_runs() {
+        unsafe extern "C" fn slow(user: *mut c_void, _: BhrLogLevel, message: *const c_char) {
+            // SAFETY: as in `hear`.
+            let (done, message) = unsafe { (&*user.cast::<Mutex<bool>>(), CStr::from_ptr(message)) };
+            if message == c"slow" {
+                std::thread::sleep(Duration::from_millis(100));
+                *done.lock().unwrap() = true;
+            }
+        }
+        let done = Mutex::new(false);
+        let registered = Registered::new(LevelFilter::Error, slow, (&raw const done).cast_mut().cast());
+        let sink = registered.sink();
+        std::thread::scope(|scope| {
+            scope.spawn(|| sink.deliver(Level::Error, c"slow"));
+            while lock(&sink.gate).running == 0 {
+                std::thread::yield_now();
+            }
+            drop(registered);
+            assert!(*done.lock().unwrap());
+        });
+        sink.deliver(Level::Error, c"slow");
+        assert_eq!(lock(&sink.gate).running, 0);
+    }
+
+    #[test]
+    fn a_nul_inside_a_message_becomes_a_space() {
+        assert_eq!(c_string("a\0b".into()).as_c_str(), c"a b");
+    }
+}

@@ -1,0 +1,121 @@
+//! BhrQuality: how exactly to trace.
+
+use super::context::BhrContext;
+use super::entry::{anywhere, on_context};
+use super::pointer::{check_reserved, unknown};
+use super::status::BhrStatus;
+use super::versioned::{self, OutStruct, Versioned};
+use crate::error::{Error, Result};
+use crate::scene::{Method, Quality};
+
+/// The integrator.
+pub type BhrMethod = i32;
+/// The fastest that meets the stated accuracy.
+pub const BHR_METHOD_AUTO: BhrMethod = 0;
+/// Fixed-step fourth-order Runge-Kutta.
+pub const BHR_METHOD_RK4: BhrMethod = 1;
+/// Embedded Runge-Kutta with error control.
+pub const BHR_METHOD_ADAPTIVE: BhrMethod = 2;
+
+/// How exactly to trace.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrQuality {
+    /// sizeof(BhrQuality).
+    pub struct_size: u32,
+    /// BHR_METHOD_*. Default AUTO.
+    pub method: BhrMethod,
+    /// 1 (default) .. 256.
+    pub samples_per_pixel: u32,
+    /// Per ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
+    pub max_steps: u32,
+    /// RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0: the default, 0.1.
+    pub step: f64,
+    /// ADAPTIVE: relative, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers stop at their own.
+    pub tolerance: f64,
+    /// Images of the disk to follow: 0 the direct one only .. 15. Default 3.
+    pub max_disk_order: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Windows: traced size / window size, 0.1 .. 1. Default 1.
+    pub render_scale: f64,
+}
+
+// SAFETY: repr(C), size first, no padding, numbers only.
+unsafe impl Versioned for BhrQuality {
+    const NAME: &'static str = "BhrQuality";
+    fn defaults() -> Self {
+        Quality::default().into()
+    }
+}
+
+impl From<Quality> for BhrQuality {
+    fn from(quality: Quality) -> Self {
+        Self {
+            struct_size: 0,
+            method: quality.method as BhrMethod,
+            samples_per_pixel: quality.samples_per_pixel,
+            max_steps: quality.max_steps,
+            step: quality.step,
+            tolerance: quality.tolerance,
+            max_disk_order: quality.max_disk_order,
+            reserved: 0,
+            render_scale: quality.render_scale,
+        }
+    }
+}
+
+impl TryFrom<BhrQuality> for Quality {
+    type Error = Error;
+
+    fn try_from(given: BhrQuality) -> Result<Self> {
+        let method = match given.method {
+            BHR_METHOD_AUTO => Method::Auto,
+            BHR_METHOD_RK4 => Method::Rk4,
+            BHR_METHOD_ADAPTIVE => Method::Adaptive,
+            value => return unknown(value, "quality method", "BHR_METHOD_AUTO (0), _RK4 (1), _ADAPTIVE (2)"),
+        };
+        check_reserved(given.reserved, "quality")?;
+        let quality = Self {
+            method,
+            samples_per_pixel: given.samples_per_pixel,
+            max_steps: given.max_steps,
+            step: given.step,
+            tolerance: given.tolerance,
+            max_disk_order: given.max_disk_order,
+            render_scale: given.render_scale,
+        };
+        quality.check()?;
+        Ok(quality)
+    }
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_quality_init(quality: *mut BhrQuality, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_quality_init", || unsafe { versioned::init(quality, "quality", struct_size) })
+}
+
+/// Sets the quality. Errors: INVALID_ARGUMENT for NULL, a number outside its range, or an unknown method.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_quality(context: *mut BhrContext, quality: *const BhrQuality) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_quality", context, |state| {
+            state.renderer.scene.quality = versioned::read(quality, "quality")?.try_into()?;
+            Ok(())
+        })
+    }
+}
+
+/// The quality as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_quality(context: *const BhrContext, quality: *mut BhrQuality) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let quality = OutStruct::cleared(quality, "quality");
+        on_context("bhr_get_quality", context, |state| quality.set(&state.renderer.scene.quality.into()))
+    }
+}

@@ -1,0 +1,369 @@
+//! BhrRay, BhrHit: the tracer, asked directly. Arrays of the host's are packed with the struct sizes it was
+//! compiled with.
+
+use super::context::BhrContext;
+use super::entry::on_context;
+use super::pointer::{Out, check_finite, is_null};
+use super::status::BhrStatus;
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::MAX_SIDE;
+use crate::renderer::Renderer;
+use crate::scene::{Crossing, Hit, MAX_CROSSINGS, Ray};
+use bytemuck::{Pod, Zeroable};
+use std::mem::size_of;
+
+/// A ray, followed backward from the eye.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct BhrRay {
+    /// Scene axes and lengths.
+    pub position: [f64; 3],
+    /// Where the eye looks, opposite to the photon's momentum; any non-zero length. Components as the conventions
+    /// say: along the frame of the local static observer (ZAMO), inside a spin-0 horizon of the observer falling
+    /// from rest at infinity.
+    pub direction: [f64; 3],
+    /// nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies every
+    /// redshift of the hit.
+    pub frequency_ratio: f64,
+}
+
+/// Crossings that a BhrHit lists.
+pub const BHR_MAX_CROSSINGS: usize = 4;
+
+const _: () = assert!(BHR_MAX_CROSSINGS == MAX_CROSSINGS);
+
+/// A crossing of the equatorial plane outside the horizon.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct BhrCrossing {
+    /// Boyer-Lindquist r, scene lengths.
+    pub radius: f64,
+    /// Boyer-Lindquist ph in the chart, (-pi, pi].
+    pub azimuth: f64,
+    /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
+    pub redshift: f64,
+    /// Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon.
+    pub delay: f64,
+}
+
+/// What became of a ray.
+pub type BhrFate = i32;
+/// It ends at the horizon.
+pub const BHR_FATE_CAPTURED: BhrFate = 0;
+/// It reaches the sky.
+pub const BHR_FATE_ESCAPED: BhrFate = 1;
+/// BhrQuality.max_steps ran out.
+pub const BHR_FATE_UNRESOLVED: BhrFate = 2;
+/// This ray's input is not valid: not finite, zero direction, no frame there.
+pub const BHR_FATE_INVALID: BhrFate = 3;
+
+/// What a ray met.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct BhrHit {
+    /// BHR_FATE_*.
+    pub fate: BhrFate,
+    /// 0 .. BHR_MAX_CROSSINGS.
+    pub crossing_count: u32,
+    /// Asymptotic, unit, chart axes; 0 when captured.
+    pub sky_direction: [f64; 3],
+    /// nu(camera) / nu(at infinity).
+    pub sky_redshift: f64,
+    /// Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN.
+    pub swept_angle: f64,
+    /// Integration steps.
+    pub steps: u32,
+    /// 0.
+    pub reserved: u32,
+    /// In order along the ray; 0 beyond crossing_count.
+    pub crossings: [BhrCrossing; BHR_MAX_CROSSINGS],
+}
+
+impl From<Ray> for BhrRay {
+    fn from(ray: Ray) -> Self {
+        Self {
+            position: ray.position.to_array(),
+            direction: ray.direction.to_array(),
+            frequency_ratio: ray.frequency_ratio,
+        }
+    }
+}
+
+impl From<BhrRay> for Ray {
+    fn from(ray: BhrRay) -> Self {
+        Self { position: ray.position.into(), direction: ray.direction.into(), frequency_ratio: ray.frequency_ratio }
+    }
+}
+
+impl From<Crossing> for BhrCrossing {
+    fn from(crossing: Crossing) -> Self {
+        Self { radius: crossing.radius, azimuth: crossing.azimuth, redshift: crossing.redshift, delay: crossing.delay }
+    }
+}
+
+impl From<Hit> for BhrHit {
+    fn from(hit: Hit) -> Self {
+        Self {
+            fate: hit.fate as BhrFate,
+            crossing_count: hit.crossing_count,
+            sky_direction: hit.sky_direction.to_array(),
+            sky_redshift: hit.sky_redshift,
+            swept_angle: hit.swept_angle,
+            steps: hit.steps,
+            reserved: 0,
+            crossings: hit.crossings.map(BhrCrossing::from),
+        }
+    }
+}
+
+/// `width * height`. Errors: a side that is 0 or longer than an image's may be; more rays than memory has addresses for.
+fn frame_pixels(width: u32, height: u32) -> Result<usize> {
+    let sides = 1..=MAX_SIDE;
+    let bytes = u64::from(width) * u64::from(height) * size_of::<BhrRay>() as u64;
+    if sides.contains(&width) && sides.contains(&height) && isize::try_from(bytes).is_ok() {
+        return Ok(width as usize * height as usize);
+    }
+    Err(Error::argument(format!("frame is {width} x {height}; each side must lie in [1, {MAX_SIDE}]")))
+}
+
+/// The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
+/// the pixel centres; out_rays has room for width * height. A zero direction where a projection has none. Errors:
+/// INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
+/// INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon. out_rays is
+/// left alone by INVALID_ARGUMENT and cleared by other errors.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_rays(
+    context: *const BhrContext,
+    width: u32,
+    height: u32,
+    out_rays: *mut BhrRay,
+) -> BhrStatus {
+    // SAFETY: NULL or room for width * height rays, by the header's conventions.
+    unsafe {
+        on_context("bhr_camera_rays", context, |state| {
+            let count = frame_pixels(width, height)?;
+            if out_rays.is_null() {
+                return Err(is_null("out_rays"));
+            }
+            let mut write = |index: usize, ray: Ray| {
+                if index < count {
+                    out_rays.add(index).write_unaligned(ray.into());
+                }
+            };
+            let result = state.renderer.scene.camera_rays(width, height, state.region, &mut write);
+            if result.as_ref().is_err_and(|error| error.kind != ErrorKind::InvalidArgument) {
+                out_rays.cast::<u8>().write_bytes(0, count * size_of::<BhrRay>());
+            }
+            result
+        })
+    }
+}
+
+/// One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
+/// image). Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_camera_ray(
+    context: *const BhrContext,
+    width: u32,
+    height: u32,
+    x: f64,
+    y: f64,
+    out_ray: *mut BhrRay,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_ray);
+        on_context("bhr_camera_ray", context, |state| {
+            out.required("out_ray")?;
+            frame_pixels(width, height)?;
+            let (x, y) = (check_finite(x, "x")?, check_finite(y, "y")?);
+            out.set(state.renderer.scene.camera_ray(width, height, state.region, x, y)?.into());
+            Ok(())
+        })
+    }
+}
+
+/// Rays that are copied and traced at a time: bounds the library's own memory.
+const CHUNK: usize = 65_536;
+
+/// Larger than the structs will ever be.
+const MAX_ELEMENT: usize = 16 * 1024;
+
+/// A packed array of the host's, of elements that may be longer than ours.
+#[derive(Clone, Copy)]
+struct Array {
+    begin: *mut u8,
+    element: usize,
+}
+
+impl Array {
+    /// Errors: NULL unless `count` is 0; an element shorter than `first`; more bytes than memory has.
+    fn new(begin: *mut u8, element: usize, first: usize, count: usize, names: [&str; 2]) -> Result<Self> {
+        let [name, size_name] = names;
+        if !(first..=MAX_ELEMENT).contains(&element) {
+            return Err(Error::argument(format!("{size_name} is {element}; it must lie in [{first}, {MAX_ELEMENT}]")));
+        }
+        if element.checked_mul(count).and_then(|bytes| isize::try_from(bytes).ok()).is_none() {
+            return Err(Error::argument(format!("count is {count}; that many {name} do not fit into memory")));
+        }
+        if begin.is_null() && count > 0 {
+            return Err(is_null(name));
+        }
+        Ok(Self { begin, element })
+    }
+
+    /// # Safety
+    /// `index` is less than the count, and the host's array is readable.
+    unsafe fn read_ray(self, index: usize) -> Result<Ray> {
+        let known = size_of::<BhrRay>();
+        // SAFETY: this function's contract; `element >= known` by `new`.
+        unsafe {
+            let at = self.begin.add(index * self.element);
+            if (known..self.element).any(|offset| at.add(offset).read() != 0) {
+                return Err(Error::argument(format!(
+                    "rays[{index}] is longer than this library's BhrRay ({known} bytes) and not 0 there"
+                )));
+            }
+            Ok(at.cast::<BhrRay>().read_unaligned().into())
+        }
+    }
+
+    /// # Safety
+    /// `index` is less than the count, and the host's array is writable.
+    unsafe fn write_hit(self, index: usize, hit: Hit) {
+        let known = size_of::<BhrHit>();
+        // SAFETY: this function's contract; `element >= known` by `new`.
+        unsafe {
+            let at = self.begin.add(index * self.element);
+            at.cast::<BhrHit>().write_unaligned(hit.into());
+            at.add(known).write_bytes(0, self.element - known);
+        }
+    }
+}
+
+/// # Safety
+/// `rays` and `hits` hold `count` elements.
+unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: usize) -> Result<()> {
+    let mut begin = 0;
+    while begin < count {
+        let length = CHUNK.min(count - begin);
+        // SAFETY: the indices are below `count`.
+        let chunk = (begin..begin + length).map(|index| unsafe { rays.read_ray(index) }).collect::<Result<Vec<_>>>()?;
+        let mut found = vec![Hit::default(); length];
+        renderer.trace_rays(&chunk, &mut found)?;
+        for (index, hit) in (begin..).zip(found) {
+            // SAFETY: as above.
+            unsafe { hits.write_hit(index, hit) };
+        }
+        begin += length;
+    }
+    Ok(())
+}
+
+/// Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
+/// equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
+/// flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
+/// error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled; both
+/// arrays are packed. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below the first version's;
+/// UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_trace_rays(
+    context: *mut BhrContext,
+    rays: *const BhrRay,
+    ray_size: usize,
+    count: usize,
+    out_hits: *mut BhrHit,
+    hit_size: usize,
+) -> BhrStatus {
+    // SAFETY: NULL or count elements, by the header's conventions.
+    unsafe {
+        on_context("bhr_trace_rays", context, |state| {
+            let from = Array::new(rays.cast_mut().cast(), ray_size, size_of::<BhrRay>(), count, ["rays", "ray_size"])?;
+            let to = Array::new(out_hits.cast(), hit_size, size_of::<BhrHit>(), count, ["out_hits", "hit_size"])?;
+            let result = trace_all(&mut state.renderer, from, to, count);
+            if result.is_err() {
+                to.begin.write_bytes(0, count * hit_size);
+            }
+            result
+        })
+    }
+}
+
+/// The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
+/// room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
+/// number. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
+/// < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_trace_path(
+    context: *mut BhrContext,
+    ray: *const BhrRay,
+    capacity: u32,
+    out_points: *mut f64,
+    out_count: *mut u32,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_count);
+        on_context("bhr_trace_path", context, |state| {
+            out.required("out_count")?;
+            for (missing, name) in [(ray.is_null(), "ray"), (out_points.is_null(), "out_points")] {
+                if missing {
+                    return Err(is_null(name));
+                }
+            }
+            if capacity < 2 {
+                return Err(Error::argument(format!("capacity is {capacity}; a path has at least 2 points")));
+            }
+            let mut points = state.renderer.trace_path(&ray.read_unaligned().into(), capacity as usize)?;
+            points.truncate(capacity as usize);
+            std::ptr::copy_nonoverlapping(
+                points.as_ptr().cast::<u8>(),
+                out_points.cast::<u8>(),
+                size_of_val(points.as_slice()),
+            );
+            out.set(points.len() as u32);
+            Ok(())
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_longer_ray_must_be_zero_beyond_what_is_known() {
+        let known = size_of::<BhrRay>();
+        let mut bytes = vec![0u8; 2 * (known + 8)];
+        let array = Array::new(bytes.as_mut_ptr(), known + 8, known, 2, ["rays", "ray_size"]).unwrap();
+        // SAFETY: two elements are there.
+        assert!(unsafe { array.read_ray(1) }.is_ok());
+        bytes[2 * known + 15] = 1;
+        // SAFETY: as above.
+        let error = unsafe { array.read_ray(1) }.unwrap_err();
+        assert!(error.message.contains("rays[1]"), "{error}");
+    }
+
+    #[test]
+    fn a_longer_hit_gets_a_zeroed_tail() {
+        let known = size_of::<BhrHit>();
+        let mut bytes = vec![7u8; known + 8];
+        let array = Array::new(bytes.as_mut_ptr(), known + 4, known, 1, ["hits", "hit_size"]).unwrap();
+        // SAFETY: one element is there.
+        unsafe { array.write_hit(0, Hit::default()) };
+        assert_eq!(bytes[known..], [0, 0, 0, 0, 7, 7, 7, 7]);
+    }
+
+    #[test]
+    fn arrays_that_cannot_be_are_refused() {
+        let one = std::ptr::dangling_mut();
+        for (begin, element, count) in
+            [(one, 55, 1), (one, MAX_ELEMENT + 1, 1), (one, 56, usize::MAX / 40), (std::ptr::null_mut(), 56, 1)]
+        {
+            assert!(Array::new(begin, element, 56, count, ["rays", "ray_size"]).is_err());
+        }
+        assert!(Array::new(std::ptr::null_mut(), 56, 56, 0, ["rays", "ray_size"]).is_ok());
+        assert!(frame_pixels(0, 1).is_err() && frame_pixels(1, MAX_SIDE + 1).is_err());
+        assert_eq!(frame_pixels(MAX_SIDE, 2).unwrap(), 2 << 20);
+    }
+}

@@ -1,0 +1,64 @@
+//! BhrRegion: the part of a larger frame that an image holds.
+
+use super::context::BhrContext;
+use super::entry::on_context;
+use super::pointer::check_reserved;
+use super::status::BhrStatus;
+use super::versioned::{self, Versioned};
+use crate::error::{Error, Result};
+use crate::scene::Region;
+
+/// The image is this part of a larger frame: tiles, dome walls, render farms. Tiles joined give the same bytes as
+/// the frame.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrRegion {
+    /// sizeof(BhrRegion).
+    pub struct_size: u32,
+    /// Pixels of the whole frame, 1 .. 2^20.
+    pub full_width: u32,
+    /// Pixels of the whole frame, 1 .. 2^20.
+    pub full_height: u32,
+    /// Column of the image's left pixels in the frame, < full_width.
+    pub x: u32,
+    /// Row of the image's top pixels in the frame, < full_height.
+    pub y: u32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: repr(C), size first, no padding, integers only.
+unsafe impl Versioned for BhrRegion {
+    const NAME: &'static str = "BhrRegion";
+    fn defaults() -> Self {
+        Self { struct_size: 0, full_width: 0, full_height: 0, x: 0, y: 0, reserved: 0 }
+    }
+}
+
+impl TryFrom<BhrRegion> for Region {
+    type Error = Error;
+
+    fn try_from(given: BhrRegion) -> Result<Self> {
+        check_reserved(given.reserved, "region")?;
+        let region = Self { full_width: given.full_width, full_height: given.full_height, x: given.x, y: given.y };
+        region.check()?;
+        Ok(region)
+    }
+}
+
+/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. An image
+/// that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
+/// INVALID_ARGUMENT.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const BhrRegion) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_region", context, |state| {
+            state.region = match region.is_null() {
+                true => None,
+                false => Some(versioned::read(region, "region")?.try_into()?),
+            };
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,113 @@
+//! Rendering into the host's memory, and the progress callback that goes with it.
+
+use super::context::BhrContext;
+use super::entry::{self, on_context};
+use super::image::{self, BhrImage};
+use super::log::User;
+use super::status::BhrStatus;
+use std::ffi::c_void;
+
+/// Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on. Runs
+/// inside a bhr_ call only, on the calling thread. It must not throw, unwind or longjmp; calls on a context from
+/// inside it return BHR_ERROR_INVALID_STATE.
+pub type BhrProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
+
+/// The host's progress callback with its argument.
+#[derive(Clone, Copy)]
+pub(super) struct Callback {
+    function: unsafe extern "C" fn(*mut c_void, f64) -> i32,
+    user: User,
+}
+
+/// What one frame tells the callback: never less than before, never outside 0 .. 1.
+struct Report {
+    callback: Option<Callback>,
+    told: f64,
+}
+
+impl Report {
+    /// False: cancel.
+    fn tell(&mut self, fraction: f64) -> bool {
+        if fraction > self.told {
+            self.told = fraction.min(1.0);
+        }
+        let Some(callback) = self.callback else {
+            return true;
+        };
+        let _inside = entry::Callback::progress();
+        // SAFETY: the host gave this function with this pointer for this context's frames.
+        unsafe { (callback.function)(callback.user.0, self.told) != 0 }
+    }
+
+    /// The last word, if it has not been said.
+    fn finish(&mut self) {
+        if self.told < 1.0 {
+            self.tell(1.0);
+        }
+    }
+}
+
+/// Sets what bhr_render_image reports to; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_progress(
+    context: *mut BhrContext,
+    r#fn: BhrProgressFn,
+    user: *mut c_void,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_progress", context, |state| {
+            state.progress = r#fn.map(|function| Callback { function, user: User(user) });
+            Ok(())
+        })
+    }
+}
+
+/// Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
+/// a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
+/// INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by
+/// the progress callback; DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target
+/// alone; after that the message says so, and what is not yet rendered is untouched.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_render_image", context, |state| {
+            let mut target = image::read(target, "target")?;
+            let mut report = Report { callback: state.progress, told: 0.0 };
+            let mut frame =
+                state.renderer.render(&mut target.pixels, target.transparent, state.region, &mut |fraction| {
+                    report.tell(fraction)
+                });
+            match frame {
+                Ok(()) => report.finish(),
+                Err(ref mut error) if target.pixels.is_touched() => {
+                    error.message.push_str("; part of the target has been written");
+                }
+                Err(_) => {}
+            }
+            frame
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn progress_never_falls_nor_leaves_its_range() {
+        unsafe extern "C" fn keep(user: *mut c_void, fraction: f64) -> i32 {
+            // SAFETY: the test passes this Vec.
+            unsafe { &mut *user.cast::<Vec<f64>>() }.push(fraction);
+            i32::from(fraction < 0.5)
+        }
+        let mut heard: Vec<f64> = Vec::new();
+        let user = User((&raw mut heard).cast());
+        let mut report = Report { callback: Some(Callback { function: keep, user }), told: 0.0 };
+        let go_on: Vec<bool> = [0.0, 0.25, 0.125, f64::NAN, -1.0, 7.0].map(|fraction| report.tell(fraction)).into();
+        report.finish();
+        assert_eq!(heard, [0.0, 0.25, 0.25, 0.25, 0.25, 1.0]);
+        assert_eq!(go_on, [true, true, true, true, true, false]);
+    }
+}

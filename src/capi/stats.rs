@@ -1,0 +1,74 @@
+//! BhrFrameStats: numbers about the last finished frame.
+
+use super::context::BhrContext;
+use super::entry::on_context;
+use super::job::{self, BhrJob};
+use super::status::BhrStatus;
+use super::versioned::{OutStruct, Versioned};
+use crate::renderer::FrameStats;
+
+/// Numbers about the last finished frame; all 0 before the first. Times in nanoseconds.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrFrameStats {
+    /// sizeof(BhrFrameStats), set by the caller.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// 1 for the first frame of a context.
+    pub frame_index: u64,
+    pub rays: u64,
+    /// Integration steps of all rays.
+    pub steps: u64,
+    /// From the call's begin to its end.
+    pub cpu_ns: u64,
+    /// On the GPU; 0: the adapter has no timestamps.
+    pub gpu_ns: u64,
+    /// From the GPU's memory to the host's.
+    pub readback_ns: u64,
+    /// Device memory that the context holds.
+    pub device_bytes: u64,
+}
+
+// SAFETY: repr(C), size first, no padding, integers only.
+unsafe impl Versioned for BhrFrameStats {
+    const NAME: &'static str = "BhrFrameStats";
+    fn defaults() -> Self {
+        FrameStats::default().into()
+    }
+}
+
+impl From<FrameStats> for BhrFrameStats {
+    fn from(stats: FrameStats) -> Self {
+        Self {
+            struct_size: 0,
+            reserved: 0,
+            frame_index: stats.frame_index,
+            rays: stats.rays,
+            steps: stats.steps,
+            cpu_ns: stats.cpu_ns,
+            gpu_ns: stats.gpu_ns,
+            readback_ns: stats.readback_ns,
+            device_bytes: stats.device_bytes,
+        }
+    }
+}
+
+/// Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_frame_stats(context: *const BhrContext, stats: *mut BhrFrameStats) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let stats = OutStruct::cleared(stats, "stats");
+        on_context("bhr_frame_stats", context, |state| stats.set(&state.renderer.stats().into()))
+    }
+}
+
+/// Numbers about a finished job's frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED
+/// otherwise in this version.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_job_stats(job: *const BhrJob, stats: *mut BhrFrameStats) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    let stats = unsafe { OutStruct::cleared(stats, "stats") };
+    job::on_job("bhr_job_stats", job, || stats.set(&BhrFrameStats::defaults()))
+}

@@ -1,0 +1,227 @@
+//! Structs that may grow: they begin with `struct_size`, the size the host was compiled with. The rule of the
+//! header's conventions stands here once. Copies in and out; never a reference into the host's memory.
+
+use super::pointer::is_null;
+use crate::error::{Error, Result};
+use std::mem::size_of;
+
+/// Larger than any struct will ever be: a greater `struct_size` is memory that nobody initialised.
+const MAX_SIZE: usize = 16 * 1024;
+
+/// A struct of the header that begins with `uint32_t struct_size`.
+///
+/// # Safety
+/// `repr(C)`, its first field is `struct_size: u32`, it has no padding, and every bit pattern is a value of it.
+pub(super) unsafe trait Versioned: Copy {
+    /// As in the header.
+    const NAME: &'static str;
+    /// What the header calls the library's first version. When the struct grows, this stays.
+    const FIRST_SIZE: usize = size_of::<Self>();
+    /// What `*_init` fills in, and what fields hold that the caller's version does not have.
+    fn defaults() -> Self;
+}
+
+fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
+    if size < T::FIRST_SIZE {
+        return Err(Error::argument(format!(
+            "{name} struct_size is {size}; it must be sizeof({}), at least {}",
+            T::NAME,
+            T::FIRST_SIZE
+        )));
+    }
+    if size > MAX_SIZE {
+        return Err(Error::argument(format!(
+            "{name} struct_size is {size}, more than any struct has ({MAX_SIZE}): was it initialised?"
+        )));
+    }
+    Ok(size)
+}
+
+/// The checked `struct_size` in the host's struct.
+///
+/// # Safety
+/// `pointer` is NULL or points to a struct whose `struct_size` is readable.
+pub(super) unsafe fn caller_size<T: Versioned>(pointer: *const T, name: &str) -> Result<usize> {
+    if pointer.is_null() {
+        return Err(is_null(name));
+    }
+    // SAFETY: `struct_size` is the first field of every `Versioned`.
+    let size = unsafe { pointer.cast::<u32>().read_unaligned() };
+    check_size::<T>(size as usize, name)
+}
+
+/// The host's struct: what a shorter one lacks has its default, what a longer one has beyond ours must be zero.
+///
+/// # Safety
+/// `pointer` is NULL or points to `struct_size` readable bytes.
+pub(super) unsafe fn read<T: Versioned>(pointer: *const T, name: &str) -> Result<T> {
+    // SAFETY: this function's contract.
+    let size = unsafe { caller_size(pointer, name) }?;
+    let mut value = T::defaults();
+    let known = size.min(size_of::<T>());
+    // SAFETY: `known` bytes are readable at `pointer` and writable at `value`; any bytes are a `T`.
+    unsafe { std::ptr::copy_nonoverlapping(pointer.cast::<u8>(), (&raw mut value).cast::<u8>(), known) };
+    for offset in known..size {
+        // SAFETY: `offset < struct_size`.
+        if unsafe { pointer.cast::<u8>().add(offset).read() } != 0 {
+            return Err(Error::argument(format!(
+                "{name} has struct_size {size} and byte {offset} set; this library knows {known} bytes of {}, the rest must be 0",
+                T::NAME
+            )));
+        }
+    }
+    Ok(value)
+}
+
+/// Fills the host's struct: its `struct_size` stays, what it has beyond ours becomes zero.
+///
+/// # Safety
+/// `pointer` is NULL or points to `struct_size` writable bytes.
+pub(super) unsafe fn write<T: Versioned>(pointer: *mut T, name: &str, value: &T) -> Result<()> {
+    // SAFETY: this function's contract.
+    let size = unsafe { caller_size(pointer, name) }?;
+    // SAFETY: as above.
+    unsafe { fill(pointer, size, value) };
+    Ok(())
+}
+
+/// A struct that a call fills: cleared when it is taken, but for `struct_size`, so that every failure leaves it so.
+pub(super) struct OutStruct<T> {
+    pointer: *mut T,
+    size: Result<usize>,
+}
+
+impl<T: Versioned> OutStruct<T> {
+    /// # Safety
+    /// `pointer` is NULL or points to `struct_size` writable bytes until the entry point returns.
+    pub(super) unsafe fn cleared(pointer: *mut T, name: &str) -> Self {
+        // SAFETY: this function's contract.
+        let size = unsafe { caller_size(pointer, name) };
+        if let Ok(size) = size {
+            // SAFETY: as above; the first four bytes, `struct_size`, stay.
+            unsafe { pointer.cast::<u8>().add(4).write_bytes(0, size - 4) };
+        }
+        Self { pointer, size }
+    }
+
+    /// Errors: INVALID_ARGUMENT when the host passed NULL or a wrong `struct_size`.
+    pub(super) fn set(&self, value: &T) -> Result<()> {
+        let size = self.size.clone()?;
+        // SAFETY: `size` writable bytes by the contract of `cleared`.
+        unsafe { fill(self.pointer, size, value) };
+        Ok(())
+    }
+}
+
+/// `*_init`: clears `size` bytes and fills in the defaults.
+///
+/// # Safety
+/// `pointer` is NULL or points to `size` writable bytes.
+pub(super) unsafe fn init<T: Versioned>(pointer: *mut T, name: &str, size: usize) -> Result<()> {
+    if pointer.is_null() {
+        return Err(is_null(name));
+    }
+    let size = check_size::<T>(size, name)?;
+    // SAFETY: this function's contract.
+    unsafe { fill(pointer, size, &T::defaults()) };
+    Ok(())
+}
+
+/// # Safety
+/// `pointer` points to `size` writable bytes; `size` went through `check_size`.
+unsafe fn fill<T: Versioned>(pointer: *mut T, size: usize, value: &T) {
+    let known = size.min(size_of::<T>());
+    // SAFETY: `known <= size` writable bytes, and as many readable ones in `value`; `size` fits a u32 by MAX_SIZE.
+    unsafe {
+        std::ptr::copy_nonoverlapping((&raw const *value).cast::<u8>(), pointer.cast::<u8>(), known);
+        pointer.cast::<u8>().add(known).write_bytes(0, size - known);
+        pointer.cast::<u32>().write_unaligned(size as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::ErrorKind;
+
+    /// As if a struct of 12 bytes had grown to 16.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    struct Grown {
+        struct_size: u32,
+        old: [u32; 2],
+        new: u32,
+    }
+
+    // SAFETY: repr(C), only u32, size first.
+    unsafe impl Versioned for Grown {
+        const NAME: &'static str = "Grown";
+        const FIRST_SIZE: usize = 12;
+        fn defaults() -> Self {
+            Self { struct_size: 0, old: [7, 8], new: 9 }
+        }
+    }
+
+    fn read_words(words: &[u32]) -> Result<Grown> {
+        // SAFETY: tests state a size within `words`, or one that is refused before anything else is read.
+        unsafe { read(words.as_ptr().cast(), "grown") }
+    }
+
+    #[test]
+    fn an_old_caller_gets_the_default_of_the_new_field() {
+        assert_eq!(read_words(&[12, 1, 2, 77]).unwrap(), Grown { struct_size: 12, old: [1, 2], new: 9 });
+    }
+
+    #[test]
+    fn a_newer_caller_may_not_set_what_this_library_lacks() {
+        assert_eq!(read_words(&[24, 1, 2, 3, 0, 0]).unwrap().new, 3);
+        let error = read_words(&[24, 1, 2, 3, 0, 1 << 24]).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::InvalidArgument);
+        assert!(error.message.contains("byte 23") || cfg!(target_endian = "big"), "{error}");
+    }
+
+    #[test]
+    fn sizes_below_the_first_version_and_garbage_are_refused() {
+        for size in [0, 4, 11, 16 * 1024 + 1, u32::MAX] {
+            let error = read_words(&[size, 1, 2, 3]).unwrap_err();
+            assert!(error.message.contains(&size.to_string()), "{error}");
+        }
+    }
+
+    #[test]
+    fn writing_keeps_the_size_and_clears_the_tail() {
+        let value = Grown { struct_size: 0, old: [1, 2], new: 3 };
+        let mut words = [24, 9, 9, 9, 9, 9, 9];
+        // SAFETY: 24 bytes are there.
+        unsafe { write(words.as_mut_ptr().cast::<Grown>(), "grown", &value) }.unwrap();
+        assert_eq!(words, [24, 1, 2, 3, 0, 0, 9]);
+        let mut words = [12, 9, 9, 9];
+        // SAFETY: 12 bytes are there.
+        let out = unsafe { OutStruct::cleared(words.as_mut_ptr().cast::<Grown>(), "grown") };
+        assert_eq!(words, [12, 0, 0, 9]);
+        out.set(&value).unwrap();
+        assert_eq!(words, [12, 1, 2, 9]);
+    }
+
+    #[test]
+    fn init_clears_and_fills() {
+        let mut words = [9u32; 7];
+        // SAFETY: 24 bytes are there.
+        unsafe { init(words.as_mut_ptr().cast::<Grown>(), "grown", 24) }.unwrap();
+        assert_eq!(words, [24, 7, 8, 9, 0, 0, 9]);
+        // SAFETY: refused before anything is written.
+        assert!(unsafe { init(words.as_mut_ptr().cast::<Grown>(), "grown", usize::MAX) }.is_err());
+    }
+
+    #[test]
+    fn misaligned_structs_are_read_and_written() {
+        let mut bytes = [0u8; 17];
+        let pointer = bytes.as_mut_ptr().wrapping_add(1).cast::<Grown>();
+        // SAFETY: 16 bytes follow the odd address.
+        let value = unsafe {
+            init(pointer, "grown", 16).unwrap();
+            read(pointer, "grown").unwrap()
+        };
+        assert_eq!(value, Grown { struct_size: 16, ..Grown::defaults() });
+    }
+}

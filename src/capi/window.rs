@@ -1,0 +1,97 @@
+//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Read and checked; never touched.
+
+use super::pointer::{check_reserved, unknown};
+use super::versioned::{self, Versioned};
+use crate::error::{Error, Result};
+use std::ffi::c_void;
+use std::ptr::null_mut;
+
+/// What a BhrWindow holds. Fields that are not named for a kind are ignored.
+pub type BhrWindowKind = i32;
+/// X11 through Xlib: display = Display *, id = Window.
+pub const BHR_WINDOW_XLIB: BhrWindowKind = 1;
+/// X11 through XCB: display = xcb_connection_t *, id = xcb_window_t.
+pub const BHR_WINDOW_XCB: BhrWindowKind = 2;
+/// Wayland: display = wl_display *, handle = wl_surface *.
+pub const BHR_WINDOW_WAYLAND: BhrWindowKind = 3;
+/// Windows: handle = HWND, aux = HINSTANCE or NULL.
+pub const BHR_WINDOW_WIN32: BhrWindowKind = 4;
+/// macOS: handle = NSView *.
+pub const BHR_WINDOW_APPKIT: BhrWindowKind = 5;
+/// iOS: handle = UIView *.
+pub const BHR_WINDOW_UIKIT: BhrWindowKind = 6;
+/// macOS, iOS: handle = CAMetalLayer *.
+pub const BHR_WINDOW_METAL_LAYER: BhrWindowKind = 7;
+/// Android: handle = ANativeWindow *.
+pub const BHR_WINDOW_ANDROID: BhrWindowKind = 8;
+
+/// A window of the host's: not owned, it must outlive every surface made from it. Fields as in the
+/// raw-window-handle crate.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrWindow {
+    /// sizeof(BhrWindow).
+    pub struct_size: u32,
+    /// BHR_WINDOW_*.
+    pub kind: BhrWindowKind,
+    /// By kind.
+    pub display: *mut c_void,
+    /// By kind.
+    pub handle: *mut c_void,
+    /// By kind.
+    pub aux: *mut c_void,
+    /// By kind: an X11 window id.
+    pub id: u64,
+    /// X11: the visual's id; 0 when not known.
+    pub visual_id: u64,
+    /// X11: the screen's number.
+    pub screen: i32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: repr(C), size first, no padding, integers and nullable pointers.
+unsafe impl Versioned for BhrWindow {
+    const NAME: &'static str = "BhrWindow";
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            kind: 0,
+            display: null_mut(),
+            handle: null_mut(),
+            aux: null_mut(),
+            id: 0,
+            visual_id: 0,
+            screen: 0,
+            reserved: 0,
+        }
+    }
+}
+
+/// The host's window, checked. Errors: INVALID_ARGUMENT for NULL, an unknown kind, or a field its kind needs and
+/// that is 0.
+///
+/// # Safety
+/// `window` is NULL or points to a BhrWindow.
+pub(super) unsafe fn read(window: *const BhrWindow, name: &str) -> Result<BhrWindow> {
+    // SAFETY: this function's contract.
+    let given = unsafe { versioned::read(window, name) }?;
+    check_reserved(given.reserved, name)?;
+    let display = ("display", !given.display.is_null());
+    let handle = ("handle", !given.handle.is_null());
+    let id = ("id", given.id != 0);
+    let needed: &[(&str, bool)] = match given.kind {
+        BHR_WINDOW_XLIB | BHR_WINDOW_XCB => &[display, id],
+        BHR_WINDOW_WAYLAND => &[display, handle],
+        BHR_WINDOW_WIN32 | BHR_WINDOW_APPKIT | BHR_WINDOW_UIKIT | BHR_WINDOW_METAL_LAYER | BHR_WINDOW_ANDROID => {
+            &[handle]
+        }
+        kind => return unknown(kind, &format!("{name} kind"), "BHR_WINDOW_XLIB (1) to BHR_WINDOW_ANDROID (8)"),
+    };
+    match needed.iter().find(|(_, present)| !present) {
+        Some((field, _)) => {
+            Err(Error::argument(format!("{name} {field} is 0; windows of kind {} need it", given.kind)))
+        }
+        None => Ok(given),
+    }
+}
