@@ -1,12 +1,15 @@
 //! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the GPU tracer
 //! is held against. Calls `physics`; knows no pixel memory and nothing of C.
 
+mod frame;
 mod rays;
+mod record;
+mod shade;
 
 pub use rays::trace_path;
 
 use crate::error::{Error, ErrorKind, Result};
-use crate::renderer::{AdapterInfo, Backend, FrameRequest, FrameStats, Progress, TileSink};
+use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Hit, Ray, Scene};
 
 /// Most threads a pool may have, whatever the host asks for.
@@ -56,15 +59,5 @@ impl CpuTracer {
     pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         self.pool.install(|| rays::trace_rays(scene, rays, hits));
         Ok(())
-    }
-
-    pub fn render(
-        &mut self,
-        _scene: &Scene,
-        _request: &FrameRequest,
-        _sink: &mut TileSink<'_>,
-        _progress: &mut Progress<'_>,
-    ) -> Result<FrameStats> {
-        Err(Error::unsupported("skeleton"))
     }
 }

@@ -9,7 +9,7 @@ use crate::physics::trace::Settings;
 use crate::scene::observer::Lens;
 use crate::scene::{Disk, Scene, Sky};
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat3, DVec3, Vec4};
+use glam::{DVec3, Vec4};
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -71,19 +71,13 @@ fn zamo(frame: &LocalFrame) -> Vec4 {
     four(zamo_omega(a, frame.r, frame.sin), (big_a / sigma).sqrt() / u, sigma.sqrt(), (sigma * d).sqrt())
 }
 
-/// Takes chart directions to sky axes.
-pub fn chart_to_sky(scene: &Scene) -> DMat3 {
-    let scene_to_sky = DMat3::from_quat(scene.sky.orientation.normalize()).transpose();
-    scene_to_sky * scene.hole.scene_to_chart().transpose()
-}
-
 impl FrameUniform {
     /// `settings`: those of f32 pixels. Errors: as `Scene::lens`.
     pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, transparent: bool) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
         let disk = scene.disk.unwrap_or(Disk::default());
-        let sky = chart_to_sky(scene);
+        let sky = scene.chart_to_sky();
         let stars = scene.sky.flags & Sky::STARS != 0 && scene.sky.stars_brightness > 0.0;
         let isco = scene.disk_isco();
         let u = 1.0 / frame.r;

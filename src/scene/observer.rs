@@ -27,6 +27,12 @@ impl Scene {
         })
     }
 
+    /// Takes chart directions to sky axes.
+    pub fn chart_to_sky(&self) -> DMat3 {
+        let scene_to_sky = DMat3::from_quat(self.sky.orientation.normalize()).transpose();
+        scene_to_sky * self.hole.scene_to_chart().transpose()
+    }
+
     /// The camera's observer. Errors: as `local_frame`; INVALID_STATE where the camera's motion cannot be.
     pub fn observer(&self) -> Result<Observer> {
         self.observer_of(&self.camera)

@@ -1,0 +1,141 @@
+//! A frame on the CPU: tile by tile, sample by sample; rows of a tile in parallel. Knows no host memory: finished tiles go to
+//! the sink.
+
+use super::CpuTracer;
+use super::record::{Record, Recorder};
+use super::shade::{Neighbours, Shader};
+use crate::error::{Error, ErrorKind, Result};
+use crate::film::{FilmParams, develop};
+use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
+use crate::scene::frame::sample_offset;
+use crate::scene::{Scene, View};
+use rayon::prelude::*;
+
+/// Pixels of a tile, and its widest row: small enough for the caches and for prompt progress, large enough to keep every core busy.
+const TILE_PIXELS: u32 = 1 << 15;
+const TILE_WIDTH: u32 = 1024;
+
+/// A frame being rendered.
+struct Frame<'a> {
+    recorder: Recorder<'a>,
+    shader: Shader<'a>,
+    film: FilmParams,
+    request: &'a FrameRequest,
+    samples: u32,
+    light: bool,
+}
+
+impl CpuTracer {
+    /// Errors: as `Renderer::render`.
+    pub fn render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        let lens = scene.lens(&request.region)?;
+        let light = scene.view == View::Light;
+        let frame = Frame {
+            recorder: Recorder::new(scene, &lens),
+            shader: Shader::new(scene, &lens, request.transparent),
+            film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
+            request,
+            samples: if light { scene.quality.samples_per_pixel } else { 1 },
+            light,
+        };
+        let tiles = tiles(request);
+        let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
+        let mut stats = FrameStats {
+            rays: u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples),
+            ..FrameStats::default()
+        };
+        let mut done = 0.0;
+        for tile in tiles {
+            let mut sum = vec![[0.0; 4]; (tile.width * tile.height) as usize];
+            for sample in 0..frame.samples {
+                stats.steps += self.pool.install(|| frame.add_sample(tile, sample, &mut sum));
+                done += 1.0;
+                // The last tile is complete: nothing is left to cancel.
+                if done < total && !progress(done / total) {
+                    return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
+                }
+            }
+            let pixels = self.pool.install(|| frame.develop(tile, &sum));
+            sink(tile, &pixels, tile.width as usize * request.format.bytes_per_pixel())?;
+        }
+        progress(1.0);
+        Ok(stats)
+    }
+}
+
+/// Row by row from the top left.
+fn tiles(request: &FrameRequest) -> Vec<Tile> {
+    let w = request.width.clamp(1, TILE_WIDTH);
+    let h = TILE_PIXELS / w;
+    let columns = (0..request.width).step_by(w as usize);
+    let rows = (0..request.height).step_by(h as usize);
+    rows.flat_map(|y| columns.clone().map(move |x| (x, y)))
+        .map(|(x, y)| Tile { x, y, width: w.min(request.width - x), height: h.min(request.height - y) })
+        .collect()
+}
+
+impl Frame<'_> {
+    /// Traces and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
+    fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
+        let region = self.request.region;
+        let [dx, dy] = sample_offset(sample, self.samples);
+        let place = |column: u32, row: u32| {
+            (f64::from(region.x + tile.x + column) - 1.0 + dx, f64::from(region.y + tile.y + row) - 1.0 + dy)
+        };
+        // One pixel more on each side, for the derivatives.
+        let (width, height) = (tile.width + 2, tile.height + 2);
+        let records: Vec<Vec<Record>> = (0..height)
+            .into_par_iter()
+            .map(|row| {
+                let record = |column| {
+                    let (x, y) = place(column, row);
+                    self.recorder.record(x, y)
+                };
+                (0..width).map(record).collect()
+            })
+            .collect();
+        let weight = 1.0 / f64::from(self.samples);
+        sum.par_chunks_mut(tile.width as usize).zip(records.par_windows(3)).zip(1..height).for_each(
+            |((out, rows), row)| {
+                let [above, middle, below] = rows else { return };
+                let columns = middle.windows(3).zip(above.iter().zip(below).skip(1));
+                for ((pixel, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
+                    let [left, here, right] = across else { continue };
+                    let value = if self.light {
+                        self.shader.pixel_light(&Neighbours { here, left, right, above, below })
+                    } else {
+                        let (x, y) = place(column, row);
+                        [self.shader.view_value(here, x, y), 0.0, 0.0, 1.0]
+                    };
+                    (0..4).for_each(|c| pixel[c] += weight * value[c]);
+                }
+            },
+        );
+        records.iter().flatten().map(|record| u64::from(record.steps)).sum()
+    }
+
+    /// Packed pixels, rows without gaps.
+    fn develop(&self, tile: Tile, sum: &[[f64; 4]]) -> Vec<u8> {
+        let region = self.request.region;
+        let width = tile.width as usize;
+        let row_bytes = width * self.request.format.bytes_per_pixel();
+        let mut pixels = vec![0; row_bytes * tile.height as usize];
+        pixels.par_chunks_mut(row_bytes).zip(sum.par_chunks(width)).enumerate().for_each(|(row, (out, sum))| {
+            let y = region.y + tile.y + row as u32;
+            let out = out.chunks_exact_mut(self.request.format.bytes_per_pixel());
+            for ((out, value), x) in out.zip(sum).zip(region.x + tile.x..) {
+                let packed = develop(&self.film, value.map(|v| v as f32), x, y);
+                if packed.len() == out.len() {
+                    out.copy_from_slice(&packed);
+                }
+            }
+        });
+        pixels
+    }
+}

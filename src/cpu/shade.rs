@@ -1,0 +1,167 @@
+//! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and `shaders/disk.wgsl`. How the records were
+//! made it does not know.
+
+use super::record::Record;
+use crate::physics::blackbody::BlackbodyTable;
+use crate::physics::disk_flux::TemperatureProfile;
+use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
+use crate::physics::trace::Fate;
+use crate::scene::observer::Lens;
+use crate::scene::{Disk, Effects, Scene, Sky, View};
+use crate::sky::StarIndex;
+use glam::{DMat3, DVec3};
+
+/// How the effects let frequency shifts show: the shift that colours, and the one that beams.
+#[derive(Clone, Copy)]
+struct Shift {
+    colour: f64,
+    beaming: f64,
+}
+
+/// A record and its neighbours one pixel to the left, right, above and below.
+pub struct Neighbours<'a> {
+    pub here: &'a Record,
+    pub left: &'a Record,
+    pub right: &'a Record,
+    pub above: &'a Record,
+    pub below: &'a Record,
+}
+
+/// What shading needs of a scene.
+pub struct Shader<'a> {
+    scene: &'a Scene,
+    lens: &'a Lens,
+    colours: &'static BlackbodyTable,
+    profile: TemperatureProfile,
+    /// `None`: no stars.
+    stars: Option<&'static StarIndex>,
+    chart_to_sky: DMat3,
+    transparent: bool,
+}
+
+impl<'a> Shader<'a> {
+    pub fn new(scene: &'a Scene, lens: &'a Lens, transparent: bool) -> Self {
+        let sky = &scene.sky;
+        let stars = sky.flags & Sky::STARS != 0 && sky.stars_brightness > 0.0;
+        Self {
+            scene,
+            lens,
+            colours: BlackbodyTable::shared(),
+            profile: TemperatureProfile::new(scene.matter_spin()),
+            stars: stars.then(StarIndex::shared),
+            chart_to_sky: scene.chart_to_sky(),
+            transparent,
+        }
+    }
+
+    /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
+    pub fn pixel_light(&self, around: &Neighbours<'_>) -> [f64; 4] {
+        let here = around.here;
+        let mut light = [0.0; 3];
+        let mut open = 1.0;
+        if let Some(disk) = &self.scene.disk {
+            for crossing in &here.crossings {
+                if open <= 0.0 {
+                    break;
+                }
+                let gravity = nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
+                let rgb = self.disk_light(disk, crossing.u, self.visible_shift(crossing.g, gravity));
+                (0..3).for_each(|c| light[c] += open * disk.opacity * rgb[c]);
+                open *= 1.0 - disk.opacity;
+            }
+        }
+        if here.fate != Fate::Escaped {
+            return [light[0], light[1], light[2], 1.0];
+        }
+        if let Some(stars) = self.stars.filter(|_| !self.transparent && open > 0.0) {
+            let rgb = self.sky_light(stars, around);
+            (0..3).for_each(|c| light[c] += open * rgb[c]);
+        }
+        [light[0], light[1], light[2], 1.0 - open]
+    }
+
+    /// g = g_gravity g_doppler, split at the local static observers (ZAMOs); `gravity` is the former.
+    fn visible_shift(&self, g: f64, gravity: f64) -> Shift {
+        let effects = self.scene.effects;
+        if effects.all_light() {
+            return Shift { colour: g, beaming: g };
+        }
+        let mut colour = if effects.has(Effects::DOPPLER_SHIFT) { g } else { gravity };
+        if !effects.has(Effects::GRAVITY_SHIFT) {
+            colour /= gravity;
+        }
+        Shift { colour, beaming: if effects.has(Effects::BEAMING) { g } else { 1.0 } }
+    }
+
+    /// nu(ZAMO at a place of the plane).
+    fn nu_zamo_in_plane(&self, u: f64, ray: &Record) -> f64 {
+        let (a, r) = (self.scene.hole.spin, 1.0 / u);
+        let sum = r * r + a * a;
+        let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
+        let lapse = (r * r * delta / (sum * sum - delta * a * a)).sqrt();
+        (ray.energy - zamo_omega(a, r, 1.0) * ray.angular_momentum) / lapse
+    }
+
+    fn disk_light(&self, disk: &Disk, u: f64, shift: Shift) -> [f64; 3] {
+        let temperature = disk.temperature * self.profile.at(1.0 / u);
+        let log_reference = self.colours.ln_luminance(disk.temperature);
+        self.colours
+            .shifted_blackbody(temperature, log_reference, shift.colour, shift.beaming)
+            .map(|v| v * disk.brightness)
+    }
+
+    fn sky_light(&self, stars: &StarIndex, around: &Neighbours<'_>) -> [f64; 3] {
+        let here = around.here;
+        let shift = self.visible_shift(here.sky_redshift, nu_static_eye(self.lens, here.energy) / here.energy);
+        let d = self.chart_to_sky * here.direction;
+        let dx = self.chart_to_sky * derivative_of_direction(here, around.left, around.right);
+        let dy = self.chart_to_sky * derivative_of_direction(here, around.above, around.below);
+        stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * self.scene.sky.stars_brightness)
+    }
+
+    /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.
+    pub fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
+        let first = here.crossings.first();
+        match (self.scene.view, here.fate) {
+            (View::Redshift, fate) => match first {
+                Some(crossing) => crossing.g,
+                None if fate == Fate::Escaped => here.sky_redshift,
+                None => f64::NAN,
+            },
+            (View::Order, fate) => match (first, fate) {
+                (Some(crossing), _) => f64::from(crossing.order),
+                (None, Fate::Escaped) => -1.0,
+                (None, Fate::Captured) => -2.0,
+                (None, Fate::Unresolved) => f64::NAN,
+            },
+            (View::Deflection, Fate::Escaped) => {
+                let look = self.lens.observer.frame.vector(self.lens.look(x, y));
+                look.cross(here.direction).length().atan2(look.dot(here.direction))
+            }
+            (View::Deflection, _) => f64::NAN,
+            (View::Steps, _) => f64::from(here.steps),
+            (View::Metric, _) if here.plane > 0.0 => 1.0 - 2.0 * here.plane,
+            (View::Metric, _) => f64::NAN,
+            // Light has no value; `pixel_light` shows it.
+            (View::Light, _) => f64::NAN,
+        }
+    }
+}
+
+/// nu(static observer or ZAMO at the eye), for E scaled to nu_local = 1; in the rain frame inside the horizon, its own.
+fn nu_static_eye(lens: &Lens, energy: f64) -> f64 {
+    let frame = &lens.observer.frame;
+    let static_lapse = 1.0 - 2.0 / frame.r;
+    if !frame.rain || static_lapse <= 0.0 { 1.0 } else { energy / static_lapse.sqrt() }
+}
+
+/// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided; infinite where neither did, which
+/// only the mean sky can stand for.
+fn derivative_of_direction(here: &Record, before: &Record, after: &Record) -> DVec3 {
+    match (before.fate == Fate::Escaped, after.fate == Fate::Escaped) {
+        (true, true) => 0.5 * (after.direction - before.direction),
+        (false, true) => after.direction - here.direction,
+        (true, false) => here.direction - before.direction,
+        (false, false) => DVec3::splat(1e30),
+    }
+}

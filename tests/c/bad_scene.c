@@ -1,0 +1,493 @@
+/* bad_scene.c -- every setter of the scene asked wrongly: NULL, NaN, infinities, values beyond each documented limit,
+ * unknown constants, structs of other sizes. Each refusal must leave the context as it was. Values at the limits must
+ * be taken. */
+#include "check.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double NOT_FINITE[] = {NAN, INFINITY, -INFINITY};
+
+/* A struct as a newer host passes it, with a tail this version does not know: `grown` has members known and tail, is
+ * filled by `init`, and `set` must take it with a zero tail only. `get` must zero the tail. */
+#define CHECK_STRUCT_SIZES(watch, grown, init, set, get)                                         \
+    do {                                                                                         \
+        memset(&(grown), UNTOUCHED, sizeof(grown));                                              \
+        CHECK_OK(init);                                                                          \
+        CHECK((grown).known.struct_size == sizeof(grown), "init left another struct_size");      \
+        for (size_t at = 0; at < sizeof(grown).tail; at++) {                                     \
+            CHECK((grown).tail[at] == 0, "init left byte %u of the tail", (unsigned)at);         \
+        }                                                                                        \
+        CHECK_OK(set);                                                                           \
+        watch_begin((watch), (watch)->context);                                                  \
+        (grown).tail[sizeof(grown).tail - 1] = 1;                                                \
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                    \
+        (grown).tail[sizeof(grown).tail - 1] = 0;                                                \
+        (grown).known.struct_size = (uint32_t)sizeof(grown).known - 1;                           \
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                    \
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", get);                    \
+        (grown).known.struct_size = 0;                                                           \
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                    \
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", get);                    \
+        memset(&(grown), UNTOUCHED, sizeof(grown));                                              \
+        (grown).known.struct_size = sizeof(grown);                                               \
+        CHECK_OK(get);                                                                           \
+        for (size_t at = 0; at < sizeof(grown).tail; at++) {                                     \
+            CHECK((grown).tail[at] == 0, "a getter left byte %u of the tail", (unsigned)at);     \
+        }                                                                                        \
+        CHECK((grown).known.struct_size == sizeof(grown), "a getter changed struct_size");       \
+    } while (0)
+
+/* A number that a setter must refuse, and what its message must name. */
+typedef struct BadNumber {
+    size_t      offset; /* of the double in its struct */
+    double      value;
+    const char *words;
+} BadNumber;
+
+static void put(void *destination, size_t offset, double value) {
+    memcpy((char *)destination + offset, &value, sizeof value);
+}
+
+/* ---- the hole ---- */
+
+static void mass(Watch *watch, BhrContext *context) {
+    static const double bad[] = {0.0, -0.0, -1.0, NAN, INFINITY, -INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "mass", bhr_set_mass(context, bad[i]));
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_mass(NULL, 1.0));
+}
+
+static void spin(Watch *watch, BhrContext *context) {
+    static const double bad[] = {0.99900001, -0.99900001, 1.0, -1.0, 5.0, NAN, INFINITY, -INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "spin", bhr_set_spin(context, bad[i]));
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_spin(NULL, 0.0));
+    CHECK_OK(bhr_set_spin(context, -0.999));
+    CHECK_OK(bhr_set_spin(context, 0.999));
+    CHECK_OK(bhr_set_spin(context, watch->spin));
+}
+
+static void axis(Watch *watch, BhrContext *context) {
+    static const double zero[3] = {0.0, 0.0, -0.0};
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "axis", bhr_set_axis(context, NULL));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "axis", bhr_set_axis(context, zero));
+    for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
+        for (int k = 0; k < 3; k++) {
+            double bad[3] = {0.1, 0.2, 1.0};
+            bad[k] = NOT_FINITE[i];
+            CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "axis", bhr_set_axis(context, bad));
+        }
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_axis(NULL, watch->axis));
+    /* Any non-zero length is taken. */
+    static const double long_axis[3] = {0.0, 3e300, 4e300}, short_axis[3] = {0.0, 3e-310, 4e-310};
+    double              m, a, got[3];
+    CHECK_OK(bhr_set_axis(context, long_axis));
+    CHECK_OK(bhr_get_hole(context, &m, &a, got));
+    CHECK(fabs(got[1] / got[2] - 0.75) < 1e-12, "axis is (%g, %g, %g)", got[0], got[1], got[2]);
+    CHECK_OK(bhr_set_axis(context, short_axis));
+    CHECK_OK(bhr_get_hole(context, &m, &a, got));
+    CHECK(fabs(got[1] / got[2] - 0.75) < 1e-9, "axis is (%g, %g, %g)", got[0], got[1], got[2]);
+    CHECK_OK(bhr_set_axis(context, watch->axis));
+    check_unchanged(watch, __FILE__, __LINE__, "the axis set back");
+
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_hole(NULL, &m, &a, got));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_mass", bhr_get_hole(context, NULL, &a, got));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_spin", bhr_get_hole(context, &m, NULL, got));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_axis", bhr_get_hole(context, &m, &a, NULL));
+}
+
+/* ---- the camera ---- */
+
+static BhrCamera default_camera(void) {
+    BhrCamera camera;
+    memset(&camera, 0, sizeof camera);
+    CHECK_OK(bhr_camera_init(&camera, sizeof camera));
+    return camera;
+}
+
+static void camera_vectors(Watch *watch, BhrContext *context) {
+    static const struct {
+        size_t      offset;
+        const char *name;
+    } vectors[] = {
+        {offsetof(BhrCamera, position), "position"},
+        {offsetof(BhrCamera, forward), "forward"},
+        {offsetof(BhrCamera, up), "up"},
+        {offsetof(BhrCamera, velocity), "velocity"},
+    };
+    for (size_t v = 0; v < COUNT_OF(vectors); v++) {
+        for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
+            for (size_t k = 0; k < 3; k++) {
+                BhrCamera camera = default_camera();
+                put(&camera, vectors[v].offset + k * sizeof(double), NOT_FINITE[i]);
+                CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, vectors[v].name, bhr_set_camera(context, &camera));
+            }
+        }
+        if (strcmp(vectors[v].name, "velocity") != 0) {
+            BhrCamera camera = default_camera();
+            for (size_t k = 0; k < 3; k++) {
+                put(&camera, vectors[v].offset + k * sizeof(double), 0.0);
+            }
+            CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, vectors[v].name, bhr_set_camera(context, &camera));
+        }
+    }
+}
+
+static void camera_axes(Watch *watch, BhrContext *context) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        BhrCamera camera = default_camera();
+        for (int k = 0; k < 3; k++) {
+            camera.up[k] = 7.0 * sign * camera.forward[k];
+        }
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "parallel", bhr_set_camera(context, &camera));
+    }
+}
+
+static void camera_numbers(Watch *watch, BhrContext *context) {
+    static const double bad_fov[] = {0.0, -0.5, PI, 4.0, NAN, INFINITY, -INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad_fov); i++) {
+        BhrCamera camera = default_camera();
+        camera.fov_y = bad_fov[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "fov_y", bhr_set_camera(context, &camera));
+    }
+    static const double fast[][3] = {{1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, {0.6, 0.6, 0.6}, {0.0, 0.0, 1e300}};
+    for (size_t i = 0; i < COUNT_OF(fast); i++) {
+        BhrCamera camera = default_camera();
+        camera.motion = BHR_MOTION_VELOCITY;
+        memcpy(camera.velocity, fast[i], sizeof fast[i]);
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "velocity", bhr_set_camera(context, &camera));
+    }
+    static const int32_t unknown[] = {-1, 4, 77, INT32_MIN, INT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(unknown); i++) {
+        BhrCamera camera = default_camera();
+        camera.motion = unknown[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "motion", bhr_set_camera(context, &camera));
+        camera = default_camera();
+        camera.projection = unknown[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "projection", bhr_set_camera(context, &camera));
+    }
+    BhrCamera camera = default_camera();
+    camera.reserved = 1;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_camera(context, &camera));
+}
+
+static void camera(Watch *watch, BhrContext *context) {
+    camera_vectors(watch, context);
+    camera_axes(watch, context);
+    camera_numbers(watch, context);
+    BhrCamera good = default_camera();
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_set_camera(context, NULL));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_get_camera(context, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_camera(NULL, &good));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_camera(NULL, &good));
+    /* Just inside the limits. */
+    good.fov_y = PI - 1e-9;
+    good.motion = BHR_MOTION_VELOCITY;
+    good.velocity[0] = 1.0 - 1e-9;
+    CHECK_OK(bhr_set_camera(context, &good));
+    good = default_camera();
+    CHECK_OK(bhr_set_camera(context, &good));
+
+    struct {
+        BhrCamera     known;
+        unsigned char tail[24];
+    } grown;
+    CHECK_STRUCT_SIZES(watch, grown, bhr_camera_init(&grown.known, sizeof grown),
+                       bhr_set_camera(context, &grown.known), bhr_get_camera(context, &grown.known));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_camera_init(NULL, sizeof good));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_init(&good, sizeof good - 1));
+}
+
+/* The helpers that write a camera leave it alone when they fail. */
+static void camera_helpers(void) {
+    static const double at[3] = {0.0, -30.0, 5.0}, origin[3] = {0.0, 0.0, 0.0}, up[3] = {0.0, 0.0, 1.0};
+    static const double along[3] = {0.0, -60.0, 10.0}, not_finite[3] = {0.0, NAN, 0.0};
+    BhrCamera           camera = default_camera();
+    const BhrCamera     before = camera;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_camera_look_at(NULL, at, origin, up));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "position", bhr_camera_look_at(&camera, NULL, origin, up));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "target", bhr_camera_look_at(&camera, at, NULL, up));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "up", bhr_camera_look_at(&camera, at, origin, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "position", bhr_camera_look_at(&camera, not_finite, origin, up));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "target", bhr_camera_look_at(&camera, at, not_finite, up));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "up", bhr_camera_look_at(&camera, at, origin, not_finite));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "target", bhr_camera_look_at(&camera, at, at, up));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "up", bhr_camera_look_at(&camera, at, origin, origin));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "up|parallel", bhr_camera_look_at(&camera, at, origin, along));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_camera_orbit(NULL, 30.0, 0.0, 0.0));
+    static const double bad_distance[] = {0.0, -1.0, NAN, INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad_distance); i++) {
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "distance", bhr_camera_orbit(&camera, bad_distance[i], 0.0, 0.0));
+    }
+    for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "azimuth", bhr_camera_orbit(&camera, 30.0, NOT_FINITE[i], 0.0));
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "elevation", bhr_camera_orbit(&camera, 30.0, 0.0, NOT_FINITE[i]));
+    }
+    CHECK(memcmp(&camera, &before, sizeof camera) == 0, "a failed helper changed the camera");
+    camera.struct_size = 8;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_orbit(&camera, 30.0, 0.0, 0.0));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_look_at(&camera, at, origin, up));
+    camera.struct_size = sizeof camera;
+    CHECK_OK(bhr_camera_orbit(&camera, 30.0, 0.0, PI / 2.0)); /* straight above the pole has axes too */
+    CHECK_OK(bhr_camera_orbit(&camera, 30.0, 0.0, -PI / 2.0));
+    CHECK_OK(bhr_camera_look_at(&camera, at, origin, up));
+}
+
+/* ---- disk, sky, film, quality ---- */
+
+static void disk(Watch *watch, BhrContext *context) {
+    static const BadNumber bad[] = {
+        {offsetof(BhrDisk, inner_radius), -1.0, "inner_radius"},
+        {offsetof(BhrDisk, inner_radius), 20.0, "outer_radius|inner_radius"}, /* as large as the outer one */
+        {offsetof(BhrDisk, inner_radius), NAN, "inner_radius"},
+        {offsetof(BhrDisk, inner_radius), INFINITY, "inner_radius"},
+        {offsetof(BhrDisk, outer_radius), 0.0, "outer_radius"},
+        {offsetof(BhrDisk, outer_radius), -3.0, "outer_radius"},
+        {offsetof(BhrDisk, outer_radius), NAN, "outer_radius"},
+        {offsetof(BhrDisk, outer_radius), INFINITY, "outer_radius"},
+        {offsetof(BhrDisk, temperature), 499.0, "temperature"},
+        {offsetof(BhrDisk, temperature), 1.1e9, "temperature"},
+        {offsetof(BhrDisk, temperature), NAN, "temperature"},
+        {offsetof(BhrDisk, temperature), INFINITY, "temperature"},
+        {offsetof(BhrDisk, opacity), -0.01, "opacity"},
+        {offsetof(BhrDisk, opacity), 1.01, "opacity"},
+        {offsetof(BhrDisk, opacity), NAN, "opacity"},
+        {offsetof(BhrDisk, opacity), -INFINITY, "opacity"},
+        {offsetof(BhrDisk, brightness), -0.01, "brightness"},
+        {offsetof(BhrDisk, brightness), NAN, "brightness"},
+        {offsetof(BhrDisk, brightness), INFINITY, "brightness"},
+        {offsetof(BhrDisk, turbulence), -0.01, "turbulence"},
+        {offsetof(BhrDisk, turbulence), 1.01, "turbulence"},
+        {offsetof(BhrDisk, turbulence), NAN, "turbulence"},
+        {offsetof(BhrDisk, turbulence), INFINITY, "turbulence"},
+    };
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        BhrDisk value;
+        CHECK_OK(bhr_disk_init(&value, sizeof value));
+        put(&value, bad[i].offset, bad[i].value);
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, bad[i].words, bhr_set_disk(context, &value));
+    }
+    BhrDisk value;
+    int32_t present = 7;
+    CHECK_OK(bhr_disk_init(&value, sizeof value));
+    value.flags = 0x40;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_disk(context, &value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "disk", bhr_disk_init(NULL, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_disk_init(&value, sizeof value - 1));
+    CHECK_OK(bhr_disk_init(&value, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_disk(NULL, &value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_disk(NULL, &value, &present));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "disk", bhr_get_disk(context, NULL, &present));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_present", bhr_get_disk(context, &value, NULL));
+
+    struct {
+        BhrDisk       known;
+        unsigned char tail[16];
+    } grown;
+    CHECK_STRUCT_SIZES(watch, grown, bhr_disk_init(&grown.known, sizeof grown), bhr_set_disk(context, &grown.known),
+                       bhr_get_disk(context, &grown.known, &present));
+    CHECK_OK(bhr_set_disk(context, NULL));
+    CHECK_OK(bhr_get_disk(context, &value, &present));
+    CHECK(present == 0, "present is %d without a disk", (int)present);
+    CHECK_OK(bhr_disk_init(&value, sizeof value));
+    CHECK_OK(bhr_set_disk(context, &value));
+    CHECK_OK(bhr_get_disk(context, &value, &present));
+    CHECK(present == 1, "present is %d with a disk", (int)present);
+    watch_begin(watch, context);
+}
+
+static void sky(Watch *watch, BhrContext *context) {
+    static const BadNumber bad[] = {
+        {offsetof(BhrSky, stars_brightness), -1.0, "stars_brightness"},
+        {offsetof(BhrSky, stars_brightness), NAN, "stars_brightness"},
+        {offsetof(BhrSky, stars_brightness), INFINITY, "stars_brightness"},
+        {offsetof(BhrSky, map_brightness), -1.0, "map_brightness"},
+        {offsetof(BhrSky, map_brightness), NAN, "map_brightness"},
+        {offsetof(BhrSky, map_brightness), INFINITY, "map_brightness"},
+        {offsetof(BhrSky, orientation) + 3 * sizeof(double), 0.0, "orientation"}, /* zero length */
+        {offsetof(BhrSky, orientation) + 3 * sizeof(double), 2.0, "orientation"},
+        {offsetof(BhrSky, orientation), NAN, "orientation"},
+        {offsetof(BhrSky, orientation) + sizeof(double), INFINITY, "orientation"},
+        {offsetof(BhrSky, orientation) + 2 * sizeof(double), -INFINITY, "orientation"},
+    };
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        BhrSky value;
+        CHECK_OK(bhr_sky_init(&value, sizeof value));
+        put(&value, bad[i].offset, bad[i].value);
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, bad[i].words, bhr_set_sky(context, &value));
+    }
+    BhrSky value;
+    CHECK_OK(bhr_sky_init(&value, sizeof value));
+    CHECK(value.flags == (BHR_SKY_STARS | BHR_SKY_MILKY_WAY), "the default sky's flags are %#x", (unsigned)value.flags);
+    value.flags = 0x1000;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_sky(context, &value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "sky", bhr_sky_init(NULL, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_sky_init(&value, sizeof value - 1));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_sky(NULL, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_sky(NULL, &value));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "sky", bhr_get_sky(context, NULL));
+
+    struct {
+        BhrSky        known;
+        unsigned char tail[16];
+    } grown;
+    CHECK_STRUCT_SIZES(watch, grown, bhr_sky_init(&grown.known, sizeof grown), bhr_set_sky(context, &grown.known),
+                       bhr_get_sky(context, &grown.known));
+    CHECK_OK(bhr_set_sky(context, NULL));
+    CHECK_OK(bhr_sky_init(&value, sizeof value));
+    CHECK_OK(bhr_get_sky(context, &value));
+    CHECK(value.flags == 0, "a black sky has flags %#x", (unsigned)value.flags);
+    CHECK_OK(bhr_sky_init(&value, sizeof value));
+    CHECK_OK(bhr_set_sky(context, &value));
+    watch_begin(watch, context);
+}
+
+static void film(Watch *watch, BhrContext *context) {
+    static const BadNumber bad[] = {
+        {offsetof(BhrFilm, exposure_ev), 20.01, "exposure_ev"},
+        {offsetof(BhrFilm, exposure_ev), -20.01, "exposure_ev"},
+        {offsetof(BhrFilm, exposure_ev), NAN, "exposure_ev"},
+        {offsetof(BhrFilm, exposure_ev), INFINITY, "exposure_ev"},
+        {offsetof(BhrFilm, bloom), -0.01, "bloom"},
+        {offsetof(BhrFilm, bloom), 1.01, "bloom"},
+        {offsetof(BhrFilm, bloom), NAN, "bloom"},
+        {offsetof(BhrFilm, bloom), INFINITY, "bloom"},
+    };
+    BhrFilm value;
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        CHECK_OK(bhr_film_init(&value, sizeof value));
+        put(&value, bad[i].offset, bad[i].value);
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, bad[i].words, bhr_set_film(context, &value));
+    }
+    static const int32_t unknown[] = {-1, 3, 99};
+    for (size_t i = 0; i < COUNT_OF(unknown); i++) {
+        CHECK_OK(bhr_film_init(&value, sizeof value));
+        value.tone_map = unknown[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "tone_map", bhr_set_film(context, &value));
+    }
+    CHECK_OK(bhr_film_init(&value, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "film", bhr_film_init(NULL, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_film(NULL, &value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_film(NULL, &value));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "film", bhr_set_film(context, NULL));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "film", bhr_get_film(context, NULL));
+    struct {
+        BhrFilm       known;
+        unsigned char tail[16];
+    } grown;
+    CHECK_STRUCT_SIZES(watch, grown, bhr_film_init(&grown.known, sizeof grown), bhr_set_film(context, &grown.known),
+                       bhr_get_film(context, &grown.known));
+}
+
+static void quality(Watch *watch, BhrContext *context) {
+    static const BadNumber bad[] = {
+        {offsetof(BhrQuality, step), -0.1, "step"},
+        {offsetof(BhrQuality, step), 0.9e-3, "step"},
+        {offsetof(BhrQuality, step), 0.51, "step"},
+        {offsetof(BhrQuality, step), NAN, "step"},
+        {offsetof(BhrQuality, step), INFINITY, "step"},
+        {offsetof(BhrQuality, tolerance), -1e-6, "tolerance"},
+        {offsetof(BhrQuality, tolerance), 0.9e-14, "tolerance"},
+        {offsetof(BhrQuality, tolerance), 1.1e-3, "tolerance"},
+        {offsetof(BhrQuality, tolerance), NAN, "tolerance"},
+        {offsetof(BhrQuality, tolerance), INFINITY, "tolerance"},
+        {offsetof(BhrQuality, render_scale), 0.09, "render_scale"},
+        {offsetof(BhrQuality, render_scale), 1.01, "render_scale"},
+        {offsetof(BhrQuality, render_scale), NAN, "render_scale"},
+        {offsetof(BhrQuality, render_scale), INFINITY, "render_scale"},
+    };
+    static const struct {
+        size_t      offset;
+        uint32_t    value;
+        const char *name;
+    } whole[] = {
+        {offsetof(BhrQuality, method), 3, "method"},
+        {offsetof(BhrQuality, method), 0xFFFFFFFFu, "method"},
+        {offsetof(BhrQuality, samples_per_pixel), 0, "samples_per_pixel"},
+        {offsetof(BhrQuality, samples_per_pixel), 257, "samples_per_pixel"},
+        {offsetof(BhrQuality, samples_per_pixel), 0xFFFFFFFFu, "samples_per_pixel"},
+        {offsetof(BhrQuality, max_steps), 15, "max_steps"},
+        {offsetof(BhrQuality, max_steps), 100001, "max_steps"},
+        {offsetof(BhrQuality, max_disk_order), 16, "max_disk_order"},
+        {offsetof(BhrQuality, max_disk_order), 0xFFFFFFFFu, "max_disk_order"},
+        {offsetof(BhrQuality, reserved), 1, "reserved"},
+    };
+    BhrQuality value;
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        CHECK_OK(bhr_quality_init(&value, sizeof value));
+        put(&value, bad[i].offset, bad[i].value);
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, bad[i].words, bhr_set_quality(context, &value));
+    }
+    for (size_t i = 0; i < COUNT_OF(whole); i++) {
+        CHECK_OK(bhr_quality_init(&value, sizeof value));
+        memcpy((char *)&value + whole[i].offset, &whole[i].value, sizeof whole[i].value);
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, whole[i].name, bhr_set_quality(context, &value));
+    }
+    CHECK_OK(bhr_quality_init(&value, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "quality", bhr_quality_init(NULL, sizeof value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_quality(NULL, &value));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_quality(NULL, &value));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "quality", bhr_set_quality(context, NULL));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "quality", bhr_get_quality(context, NULL));
+    struct {
+        BhrQuality    known;
+        unsigned char tail[16];
+    } grown;
+    CHECK_STRUCT_SIZES(watch, grown, bhr_quality_init(&grown.known, sizeof grown),
+                       bhr_set_quality(context, &grown.known), bhr_get_quality(context, &grown.known));
+}
+
+/* ---- the rest ---- */
+
+static void time_effects_view(Watch *watch, BhrContext *context) {
+    for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "time", bhr_set_time(context, NOT_FINITE[i]));
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_time(NULL, 0.0));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_effects(NULL, BHR_EFFECT_ALL));
+    CHECK_OK(bhr_set_effects(context, 0xFFFFFFF0u | BHR_EFFECT_ALL)); /* unknown bits are ignored */
+    check_unchanged(watch, __FILE__, __LINE__, "unknown effects");
+    static const int32_t unknown[] = {-1, 6, 1000, INT32_MIN};
+    for (size_t i = 0; i < COUNT_OF(unknown); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "view", bhr_set_view(context, unknown[i]));
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_view(NULL, BHR_VIEW_LIGHT));
+}
+
+/* A scene in which every setter has been used: the default would hide a refused call that resets something. */
+static void unusual_scene(BhrContext *context) {
+    static const double tilted[3] = {0.1, -0.2, 1.0};
+    BhrCamera           camera = default_camera();
+    CHECK_OK(bhr_set_mass(context, 1.25));
+    CHECK_OK(bhr_set_spin(context, 0.5));
+    CHECK_OK(bhr_set_axis(context, tilted));
+    camera.motion = BHR_MOTION_FREE_FALL;
+    camera.fov_y = 0.9;
+    CHECK_OK(bhr_set_camera(context, &camera));
+    CHECK_OK(bhr_set_time(context, 3.0));
+    CHECK_OK(bhr_set_effects(context, BHR_EFFECT_ALL & ~BHR_EFFECT_BEAMING));
+}
+
+int main(int argc, char **argv) {
+    BhrContext *context = check_context(check_begin(argc, argv));
+    static Watch watch;
+    unusual_scene(context);
+    watch_begin(&watch, context);
+    CHECK(watch.frame_status == BHR_OK, "the watched scene cannot be rendered: %s", bhr_error_message());
+    mass(&watch, context);
+    spin(&watch, context);
+    axis(&watch, context);
+    time_effects_view(&watch, context);
+    camera(&watch, context);
+    camera_helpers();
+    disk(&watch, context);
+    sky(&watch, context);
+    film(&watch, context);
+    quality(&watch, context);
+    bhr_context_destroy(context);
+    return check_end();
+}

@@ -1,0 +1,240 @@
+/* callbacks.c -- the host's functions that the library calls: progress that watches, cancels or calls back in, and
+ * the log. A refused call from inside leaves the frame in progress and the context as they were. */
+#include "check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- progress ---- */
+
+typedef struct Progress {
+    BhrContext *context;
+    int         calls;
+    double      last;         /* fraction heard last; -1: none yet */
+    int         out_of_order; /* a fraction below the one before, or not in 0 .. 1 */
+    double      inside;       /* a fraction strictly between 0 and 1 that was heard; 0: none */
+    double      cancel_at;    /* cancels at the first fraction that is as large; > 1: never */
+    double      cancelled_at;
+    int         call_back_in; /* tries the API at every call */
+} Progress;
+
+/* Every call on the context whose frame is in progress is refused, whatever it is. */
+static void call_back_in(BhrContext *context) {
+    static unsigned char pixels[64];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, 4, 4, pixels, sizeof pixels);
+    const BhrRay         ray = {{30.0, 0.0, 4.0}, {-1.0, 0.0, 0.0}, 1.0};
+    BhrHit               hit;
+    BhrCamera            camera = {.struct_size = sizeof camera};
+    BhrFrameStats        stats = {.struct_size = sizeof stats};
+    BhrHoleInfo          info = {.struct_size = sizeof info};
+    double               m, a, axis[3];
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_set_mass(context, 3.0));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_get_hole(context, &m, &a, axis));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_get_camera(context, &camera));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_hole_info(context, &info));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_render_image(context, &image));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_trace_rays(context, &ray, sizeof ray, 1, &hit, sizeof hit));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_set_progress(context, NULL, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_frame_stats(context, &stats));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_context_recover(context));
+}
+
+static int32_t on_progress(void *user, double fraction) {
+    Progress *progress = user;
+    progress->calls++;
+    if (!(fraction >= 0.0 && fraction <= 1.0) || fraction < progress->last) {
+        progress->out_of_order++;
+    }
+    progress->last = fraction;
+    if (fraction > 0.0 && fraction < 1.0) {
+        progress->inside = fraction;
+    }
+    if (progress->call_back_in) {
+        call_back_in(progress->context);
+    }
+    if (fraction >= progress->cancel_at) {
+        progress->cancelled_at = fraction;
+        return 0;
+    }
+    return 1;
+}
+
+static Progress silent_progress(BhrContext *context) {
+    const Progress progress = {context, 0, -1.0, 0, 0.0, 2.0, -1.0, 0};
+    return progress;
+}
+
+static void progress_from_inside(BhrContext *context) {
+    Watch    watch;
+    Progress progress = silent_progress(context);
+    watch_begin(&watch, context);
+    progress.call_back_in = 1;
+    CHECK_OK(bhr_set_progress(context, on_progress, &progress));
+    check_unchanged(&watch, __FILE__, __LINE__, "a frame whose callback calls back in");
+    CHECK(progress.calls > 0, "the callback was not called");
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+    progress.calls = 0;
+    check_unchanged(&watch, __FILE__, __LINE__, "a frame without a callback");
+    CHECK(progress.calls == 0, "a callback that was taken away was called");
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_progress(NULL, on_progress, &progress));
+}
+
+/* The smallest frame here whose progress has a middle: one that is done in several pieces. 0 when there is none. */
+static uint32_t size_with_a_middle(BhrContext *context) {
+    for (uint32_t size = 64; size <= 4096; size *= 2) {
+        unsigned char *pixels = malloc((size_t)size * size * 4);
+        const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, size, size, pixels, (uint64_t)size * size * 4);
+        Progress       progress = silent_progress(context);
+        CHECK_OK(bhr_set_progress(context, on_progress, &progress));
+        CHECK_OK(bhr_render_image(context, &image));
+        CHECK(progress.out_of_order == 0, "fractions out of order or out of range at %u", (unsigned)size);
+        CHECK(progress.last == 1.0, "the last fraction of a %u x %u frame is %g", (unsigned)size, (unsigned)size,
+              progress.last);
+        free(pixels);
+        if (progress.inside > 0.0) {
+            return size;
+        }
+    }
+    return 0;
+}
+
+/* Cancels at `cancel_at` and looks at what the target became: every pixel is that of the whole frame or untouched,
+ * both are there, and so are the bytes between the rows. */
+static void cancel_halfway(BhrContext *context, uint32_t size) {
+    const size_t   stride = (size_t)size * 4 + 12, bytes = stride * size;
+    unsigned char *whole = malloc(bytes), *part = malloc(bytes);
+    BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, size, size, whole, bytes);
+    Progress       progress = silent_progress(context);
+    image.row_stride = (int64_t)stride;
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+    CHECK_OK(bhr_render_image(context, &image));
+
+    memset(part, UNTOUCHED, bytes);
+    image.pixels = part;
+    progress.cancel_at = 0.4;
+    CHECK_OK(bhr_set_progress(context, on_progress, &progress));
+    CHECK_FAILS(BHR_ERROR_CANCELLED, "cancel", bhr_render_image(context, &image));
+    CHECK(progress.cancelled_at >= 0.4 && progress.cancelled_at < 1.0, "cancelled at %g", progress.cancelled_at);
+    size_t done = 0, untouched = 0, other = 0;
+    for (uint32_t y = 0; y < size; y++) {
+        for (uint32_t x = 0; x < size; x++) {
+            const size_t at = y * stride + x * 4;
+            if (memcmp(part + at, whole + at, 4) == 0) {
+                done++;
+            } else if (all_untouched(part + at, 4)) {
+                untouched++;
+            } else {
+                other++;
+            }
+        }
+        CHECK(all_untouched(part + y * stride + size * 4, stride - size * 4), "padding of row %u written", (unsigned)y);
+    }
+    CHECK(other == 0, "%u pixels are neither finished nor untouched", (unsigned)other);
+    CHECK(done > 0 && untouched > 0, "%u pixels finished, %u untouched", (unsigned)done, (unsigned)untouched);
+    /* Progress says what is done, to a tile or two. */
+    CHECK((double)done / ((double)size * size) > 0.1 && (double)untouched / ((double)size * size) > 0.1,
+          "%u pixels finished, %u untouched, cancelled at %g", (unsigned)done, (unsigned)untouched,
+          progress.cancelled_at);
+
+    /* After that the context renders as before. */
+    progress.cancel_at = 2.0;
+    progress.last = -1.0;
+    CHECK_OK(bhr_render_image(context, &image));
+    size_t differing = 0;
+    for (uint32_t y = 0; y < size; y++) {
+        differing += memcmp(part + y * stride, whole + y * stride, (size_t)size * 4) != 0;
+    }
+    CHECK(differing == 0, "%u rows differ after a cancelled frame", (unsigned)differing);
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+    free(whole);
+    free(part);
+}
+
+/* Cancelled before anything is done: nothing is written, and the numbers about the last frame stay. */
+static void cancel_at_once(BhrContext *context) {
+    static unsigned char pixels[16 * 16 * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, 16, 16, pixels, sizeof pixels);
+    BhrFrameStats        before = {.struct_size = sizeof before}, after = {.struct_size = sizeof after};
+    Progress             progress = silent_progress(context);
+    progress.cancel_at = 0.0;
+    memset(pixels, UNTOUCHED, sizeof pixels);
+    CHECK_OK(bhr_frame_stats(context, &before));
+    CHECK_OK(bhr_set_progress(context, on_progress, &progress));
+    CHECK_FAILS(BHR_ERROR_CANCELLED, "cancel", bhr_render_image(context, &image));
+    CHECK(progress.calls == 1, "called %d times after it cancelled", progress.calls);
+    CHECK(progress.cancelled_at > 0.0 || all_untouched(pixels, sizeof pixels), "cancelled at 0, yet pixels changed");
+    CHECK_OK(bhr_frame_stats(context, &after));
+    CHECK(memcmp(&before, &after, sizeof before) == 0, "a cancelled frame counts as the last finished one");
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+}
+
+/* ---- the log ---- */
+
+typedef struct Log {
+    BhrContext *context;
+    int         messages, destroyed, after_destroy, empty, level_out_of_range;
+    BhrLogLevel limit;
+} Log;
+
+static void on_log(void *user, BhrLogLevel level, const char *message) {
+    Log *log = user;
+    log->messages++;
+    log->after_destroy += log->destroyed;
+    log->empty += message == NULL || message[0] == '\0';
+    log->level_out_of_range += level < BHR_LOG_ERROR || level > log->limit;
+    if (log->context != NULL) {
+        const BhrStatus status = bhr_set_mass(log->context, 3.0);
+        CHECK(status == BHR_ERROR_INVALID_STATE, "a log callback that calls back in got %s", bhr_status_name(status));
+    }
+}
+
+static void check_log(BhrBackend backend, BhrLogLevel level, int expects_messages) {
+    static unsigned char pixels[16 * 16 * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, 16, 16, pixels, sizeof pixels);
+    Log                  log = {NULL, 0, 0, 0, 0, 0, level};
+    BhrContextOptions    options;
+    BhrContext          *context = NULL;
+    CHECK_OK(bhr_context_options_init(&options, sizeof options));
+    options.backend = backend;
+    options.log_level = level;
+    options.log_fn = on_log;
+    options.log_user = &log;
+    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
+        return;
+    }
+    log.context = context;
+    CHECK_OK(bhr_render_image(context, &image));
+    double m = 0.0, a = 0.0, axis[3];
+    CHECK_OK(bhr_get_hole(context, &m, &a, axis));
+    CHECK(m == 1.0, "the log callback set the mass to %g", m);
+    bhr_context_destroy(context);
+    log.context = NULL;
+    log.destroyed = 1;
+    /* Another context's work must not reach a destroyed context's log. */
+    context = check_context(backend);
+    CHECK_OK(bhr_render_image(context, &image));
+    bhr_context_destroy(context);
+    CHECK(log.after_destroy == 0, "%d messages after the context was destroyed", log.after_destroy);
+    CHECK(log.empty == 0, "%d empty messages", log.empty);
+    CHECK(log.level_out_of_range == 0, "%d messages above level %d", log.level_out_of_range, (int)level);
+    CHECK(!expects_messages || log.messages > 0, "no message at level %d", (int)level);
+    CHECK(level != BHR_LOG_OFF || log.messages == 0, "%d messages although the log is off", log.messages);
+}
+
+int main(int argc, char **argv) {
+    const BhrBackend backend = check_begin(argc, argv);
+    BhrContext      *context = check_context(backend);
+    progress_from_inside(context);
+    cancel_at_once(context);
+    const uint32_t size = size_with_a_middle(context);
+    if (CHECK(size != 0, "no frame up to 4096 x 4096 is done in pieces: none can be cancelled halfway")) {
+        cancel_halfway(context, size);
+    }
+    bhr_context_destroy(context);
+    check_log(backend, BHR_LOG_OFF, 0);
+    check_log(backend, BHR_LOG_ERROR, 0);
+    check_log(backend, BHR_LOG_INFO, 0);
+    check_log(backend, BHR_LOG_TRACE, backend == BHR_BACKEND_VULKAN); /* wgpu always has something to say */
+    return check_end();
+}

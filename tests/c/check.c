@@ -1,0 +1,215 @@
+/* check.c -- see check.h. */
+#define _POSIX_C_SOURCE 200809L
+
+#include "check.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static unsigned        passed_count, failed_count;
+static const char     *program_name = "?", *backend_argument = "?";
+
+/* ---- a program's frame ---- */
+
+BhrBackend check_begin(int argc, char **argv) {
+    const char *slash = strrchr(argv[0], '/');
+    program_name = slash != NULL ? slash + 1 : argv[0];
+    if (argc >= 2) {
+        backend_argument = argv[1];
+        if (strcmp(argv[1], "cpu") == 0) {
+            return BHR_BACKEND_CPU;
+        }
+        if (strcmp(argv[1], "vulkan") == 0) {
+            return BHR_BACKEND_VULKAN;
+        }
+        if (strcmp(argv[1], "auto") == 0) {
+            return BHR_BACKEND_AUTO;
+        }
+    }
+    fprintf(stderr, "usage: %s cpu|vulkan|auto\n", program_name);
+    exit(2);
+}
+
+int check_end(void) {
+    printf("%s %s: %u checks passed, %u failed\n", program_name, backend_argument, passed_count, failed_count);
+    return failed_count == 0 && passed_count > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+BhrContext *check_context(BhrBackend backend) {
+    BhrContextOptions options;
+    BhrContext       *context = NULL;
+    if (CHECK_OK(bhr_context_options_init(&options, sizeof options))) {
+        options.backend = backend;
+        if (CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context)) &&
+            CHECK(context != NULL, "success without a context")) {
+            return context;
+        }
+    }
+    exit(check_end());
+}
+
+/* ---- checks ---- */
+
+static int count(int passed) {
+    pthread_mutex_lock(&lock);
+    if (passed) {
+        passed_count++;
+    } else {
+        failed_count++;
+    }
+    pthread_mutex_unlock(&lock);
+    return passed;
+}
+
+int check_that(int passed, const char *file, int line, const char *text, const char *format, ...) {
+    if (!passed) {
+        char    seen[512];
+        va_list arguments;
+        va_start(arguments, format);
+        vsnprintf(seen, sizeof seen, format, arguments);
+        va_end(arguments);
+        printf("%s:%d: not so: %s: %s\n", file, line, text, seen);
+        fflush(stdout);
+    }
+    return count(passed);
+}
+
+int check_ok(BhrStatus status, const char *file, int line, const char *call) {
+    if (status != BHR_OK) {
+        printf("%s:%d: %s gave %s: %s\n", file, line, call, bhr_status_name(status), bhr_error_message());
+        fflush(stdout);
+    }
+    return count(status == BHR_OK);
+}
+
+/* A failure whose message no other call can give: the ABI version that it names is used nowhere else. */
+#define MARK_ABI_VERSION 0xABADCAFEu
+static const char *mark_message(void) {
+    BhrContext *none = NULL;
+    (void)bhr_context_create(MARK_ABI_VERSION, NULL, &none);
+    return bhr_error_message();
+}
+
+void check_mark_message(void) {
+    (void)mark_message();
+}
+
+static int holds_one_of(const char *message, const char *words) {
+    /* A message begins with "function: ", and the function's name is no proof that the argument is named. */
+    const char *colon = strchr(message, ':');
+    message = colon != NULL ? colon : message;
+    while (*words != '\0') {
+        size_t length = strcspn(words, "|");
+        for (const char *at = message; *at != '\0'; at++) {
+            if (strncmp(at, words, length) == 0) {
+                return 1;
+            }
+        }
+        words += length;
+        words += *words == '|';
+    }
+    return 0;
+}
+
+int check_fails(BhrStatus status, BhrStatus expected, const char *words, const char *file, int line, const char *call) {
+    char message[1024];
+    snprintf(message, sizeof message, "%s", bhr_error_message());
+    const char *wrong = NULL;
+    if (status != expected) {
+        wrong = "another status";
+    } else if (message[0] == '\0') {
+        wrong = "no message";
+    } else if (strcmp(message, mark_message()) == 0) {
+        wrong = "an earlier call's message";
+    } else if (words[0] != '\0' && !holds_one_of(message, words)) {
+        wrong = "a message that does not name the argument";
+    }
+    if (wrong != NULL) {
+        printf("%s:%d: %s: %s: got %s (expected %s, words '%s'), message: %s\n", file, line, call, wrong,
+               bhr_status_name(status), bhr_status_name(expected), words, message);
+        fflush(stdout);
+    }
+    return count(wrong == NULL);
+}
+
+/* ---- a watched context ---- */
+
+/* Everything the getters say, and a frame: that holds time, effects, view and region too, which have no getter. */
+void watch_begin(Watch *watch, BhrContext *context) {
+    memset(watch, 0, sizeof *watch);
+    watch->context = context;
+    watch->camera.struct_size = sizeof watch->camera;
+    watch->disk.struct_size = sizeof watch->disk;
+    watch->sky.struct_size = sizeof watch->sky;
+    watch->film.struct_size = sizeof watch->film;
+    watch->quality.struct_size = sizeof watch->quality;
+    CHECK_OK(bhr_get_hole(context, &watch->mass, &watch->spin, watch->axis));
+    CHECK_OK(bhr_get_camera(context, &watch->camera));
+    CHECK_OK(bhr_get_disk(context, &watch->disk, &watch->disk_present));
+    CHECK_OK(bhr_get_sky(context, &watch->sky));
+    CHECK_OK(bhr_get_film(context, &watch->film));
+    CHECK_OK(bhr_get_quality(context, &watch->quality));
+    const BhrImage image =
+        image_of(BHR_FORMAT_RGBA8_SRGB, WATCH_WIDTH, WATCH_HEIGHT, watch->frame, sizeof watch->frame);
+    watch->frame_status = bhr_render_image(context, &image);
+}
+
+int check_unchanged(const Watch *watch, const char *file, int line, const char *call) {
+    Watch now;
+    watch_begin(&now, watch->context);
+    const char *wrong = NULL;
+    if (now.mass != watch->mass || now.spin != watch->spin || memcmp(now.axis, watch->axis, sizeof now.axis) != 0) {
+        wrong = "hole";
+    } else if (memcmp(&now.camera, &watch->camera, sizeof now.camera) != 0) {
+        wrong = "camera";
+    } else if (now.disk_present != watch->disk_present || memcmp(&now.disk, &watch->disk, sizeof now.disk) != 0) {
+        wrong = "disk";
+    } else if (memcmp(&now.sky, &watch->sky, sizeof now.sky) != 0) {
+        wrong = "sky";
+    } else if (memcmp(&now.film, &watch->film, sizeof now.film) != 0) {
+        wrong = "film";
+    } else if (memcmp(&now.quality, &watch->quality, sizeof now.quality) != 0) {
+        wrong = "quality";
+    } else if (now.frame_status != watch->frame_status) {
+        wrong = "status of a frame";
+    } else if (memcmp(now.frame, watch->frame, sizeof now.frame) != 0) {
+        wrong = "frame";
+    }
+    if (wrong != NULL) {
+        printf("%s:%d: %s: a refused call changed the context: %s\n", file, line, call, wrong);
+        fflush(stdout);
+    }
+    return count(wrong == NULL);
+}
+
+/* ---- images ---- */
+
+size_t bytes_per_pixel(BhrFormat format) {
+    return format == BHR_FORMAT_RGBA32F ? 16 : format == BHR_FORMAT_RGBA16F ? 8 : 4;
+}
+
+BhrImage image_of(BhrFormat format, uint32_t width, uint32_t height, void *pixels, uint64_t byte_size) {
+    BhrImage image;
+    memset(&image, 0, sizeof image);
+    image.struct_size = sizeof image;
+    image.format = format;
+    image.width = width;
+    image.height = height;
+    image.pixels = pixels;
+    image.byte_size = byte_size;
+    return image;
+}
+
+int all_untouched(const void *memory, size_t size) {
+    const unsigned char *bytes = memory;
+    for (size_t i = 0; i < size; i++) {
+        if (bytes[i] != UNTOUCHED) {
+            return 0;
+        }
+    }
+    return 1;
+}

@@ -1,0 +1,65 @@
+/* check.h -- the harness of the C tests: counted checks that print file, line and the library's message when they
+ * fail, and a watch that tells whether a refused call changed its context. Knows the C API only; tests nothing by
+ * itself.
+ *
+ * Every program takes the backend as its first argument (cpu, vulkan) and exits with 0 only if all its checks passed.
+ */
+#ifndef BHR_CHECK_H
+#define BHR_CHECK_H
+
+#include <bhr.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
+#define PI 3.14159265358979323846
+
+/* ---- a program's frame ---- */
+BhrBackend  check_begin(int argc, char **argv); /* exits with 2 when there is no backend among the arguments */
+int         check_end(void);                    /* prints the count; the exit status of main */
+BhrContext *check_context(BhrBackend backend);  /* a new one, silent; ends the program when there is none */
+
+/* ---- checks: the condition, then a printf message that says what was seen. Any thread may check. ---- */
+#define CHECK(condition, ...) check_that((condition) != 0, __FILE__, __LINE__, #condition, __VA_ARGS__)
+/* The call succeeds. Its value is whether it did. */
+#define CHECK_OK(call) check_ok((call), __FILE__, __LINE__, #call)
+/* The call fails with this status and a message of its own (not an earlier call's) that holds one of `words`,
+ * separated by |, or is any sentence when words is "". */
+#define CHECK_FAILS(expected, words, call) \
+    (check_mark_message(), check_fails((call), (expected), (words), __FILE__, __LINE__, #call))
+/* The same, and the watched context is as it was: its getters and a small frame. */
+#define CHECK_REFUSED(watch, expected, words, call)     \
+    (CHECK_FAILS(expected, words, call),                \
+     check_unchanged((watch), __FILE__, __LINE__, #call))
+
+int  check_that(int passed, const char *file, int line, const char *text, const char *format, ...);
+int  check_ok(BhrStatus status, const char *file, int line, const char *call);
+void check_mark_message(void);
+int  check_fails(BhrStatus status, BhrStatus expected, const char *words, const char *file, int line, const char *call);
+
+/* ---- a watched context ---- */
+#define WATCH_WIDTH 24
+#define WATCH_HEIGHT 16
+typedef struct Watch {
+    BhrContext   *context;
+    double        mass, spin, axis[3];
+    BhrCamera     camera;
+    BhrDisk       disk;
+    int32_t       disk_present;
+    BhrSky        sky;
+    BhrFilm       film;
+    BhrQuality    quality;
+    BhrStatus     frame_status; /* some scenes cannot be rendered; they stay so */
+    unsigned char frame[WATCH_WIDTH * WATCH_HEIGHT * 4];
+} Watch;
+void watch_begin(Watch *watch, BhrContext *context); /* again after every change that is meant */
+int  check_unchanged(const Watch *watch, const char *file, int line, const char *call);
+
+/* ---- images ---- */
+/* A packed image over `pixels`, of byte_size bytes. */
+BhrImage image_of(BhrFormat format, uint32_t width, uint32_t height, void *pixels, uint64_t byte_size);
+size_t   bytes_per_pixel(BhrFormat format);
+#define UNTOUCHED 0xA5 /* what the tests fill memory with before the library may write to it */
+int all_untouched(const void *memory, size_t size);
+
+#endif

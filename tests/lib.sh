@@ -1,0 +1,81 @@
+# lib.sh -- what tests/run and tests/c/run share: folders, the Vulkan driver, counting. Sourced by them; runs no test.
+# shellcheck shell=bash
+
+tests=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
+root=$(dirname -- "$tests")
+
+# As cargo does, takes a relative CARGO_TARGET_DIR from where it is called.
+case ${CARGO_TARGET_DIR:-} in
+    "") target=$root/target ;;
+    /*) target=$CARGO_TARGET_DIR ;;
+    *) target=$PWD/$CARGO_TARGET_DIR ;;
+esac
+export CARGO_TARGET_DIR=$target
+
+passed=0
+failed=0
+
+# The manifest of lavapipe, Mesa's Vulkan driver for the CPU; fails when it is not installed.
+lavapipe_manifest() {
+    local manifest
+    for manifest in /usr/share/vulkan/icd.d/lvp_icd*.json /usr/local/share/vulkan/icd.d/lvp_icd*.json \
+        /etc/vulkan/icd.d/lvp_icd*.json; do
+        if [ -f "$manifest" ]; then
+            printf '%s\n' "$manifest"
+            return 0
+        fi
+    done
+    return 1
+}
+
+# Picks the Vulkan driver that every test sees: what the caller chose, else the machine's own where there is a GPU,
+# else lavapipe. Makes a run-time folder for drivers that want one. Fails when there is no driver at all.
+use_vulkan_driver() {
+    if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+        XDG_RUNTIME_DIR=$scratch/runtime
+        mkdir -m 700 -- "$XDG_RUNTIME_DIR"
+        export XDG_RUNTIME_DIR
+    fi
+    if [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ]; then
+        return 0
+    fi
+    if compgen -G '/dev/dri/renderD*' >/dev/null || [ -e /dev/nvidia0 ]; then
+        return 0
+    fi
+    VK_DRIVER_FILES=$(lavapipe_manifest) || return 1
+    VK_ICD_FILENAMES=$VK_DRIVER_FILES # the same, for loaders before 1.3.207
+    export VK_DRIVER_FILES VK_ICD_FILENAMES
+}
+
+# without_drivers COMMAND...: as on a machine where neither a Vulkan loader nor EGL is installed. The dynamic linker
+# stops at the first file of a name, and these are no libraries.
+without_drivers() {
+    local name folder=$scratch/no-drivers
+    mkdir -p -- "$folder"
+    for name in libvulkan.so.1 libvulkan.so libEGL.so.1 libEGL.so; do
+        : >"$folder/$name"
+    done
+    LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} "$@"
+}
+
+# check NAME COMMAND...: one test, in a subshell. Says ok or FAIL and the time; shows what it printed only when it
+# failed.
+check() {
+    local name=$1 begin=$SECONDS
+    shift
+    if ("$@") >"$scratch/output" 2>&1 </dev/null; then
+        passed=$((passed + 1))
+        printf 'ok    %s (%d s)\n' "$name" $((SECONDS - begin))
+    else
+        local status=$?
+        failed=$((failed + 1))
+        printf 'FAIL  %s (exit status %d, %d s)\n' "$name" "$status" $((SECONDS - begin))
+        tail -n 100 -- "$scratch/output" | sed 's/^/      /'
+    fi
+}
+
+# Ends a script: the count as a plain line, and the exit status.
+finish() {
+    printf '%d passed, %d failed\n' "$passed" "$failed"
+    [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
+}
