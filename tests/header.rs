@@ -17,7 +17,8 @@ fn the_committed_header_is_the_generated_one() {
     let text = std::fs::read_to_string(&committed).unwrap_or_default();
     assert!(
         text == GENERATED,
-        "include/bhr.h is not what the sources say; update it with: BHR_UPDATE_HEADER=1 cargo test --test header committed"
+        "include/bhr.h is not what the sources say; bring it up to date with\n\
+         BHR_UPDATE_HEADER=1 cargo test --test header committed"
     );
 }
 
@@ -32,7 +33,8 @@ fn every_dialect_takes_the_header() {
     {
         let source = folder.join(name);
         // Twice, for the guard; used, for the linkage.
-        let text = "#include \"bhr.h\"\n#include \"bhr.h\"\nuint32_t used(void);\nuint32_t used(void) { return bhr_version(); }\n";
+        let include = "#include \"bhr.h\"\n";
+        let text = format!("{include}{include}uint32_t used(void);\nuint32_t used(void) {{ return bhr_version(); }}\n");
         std::fs::write(&source, text).unwrap();
         for dialect in dialects {
             let mut command = compiler(cpp);
