@@ -85,7 +85,7 @@ static void print_path(const Settings *s, const double (*points)[4], uint32_t co
         }
         next_row++;
         printf("%11.5g %11.4f %11.4f %11.4f %11.5g\n", length(p) / s->mass, degrees(atan2(hypot(p[0], p[1]), p[2])),
-               degrees(atan2(p[1], p[0])), degrees(swept), p[3] / s->mass);
+               degrees(atan2(p[1], p[0])), degrees(swept), p[3] / s->mass + 0.0); /* -0 would be printed as such */
     }
 }
 
@@ -126,6 +126,7 @@ static void print_fate(const Settings *s, const BhrRay *ray, const BhrHit *hit, 
         printf("sky redshift %.6f = nu(eye) / nu(at infinity)\n", hit->sky_redshift);
     }
     print_crossings(s, hit);
+    putchar('\n');
 }
 
 /* ---- the plot: the plane of the hole, the eye and the look direction, eye to the right, looked-at side up ---- */
@@ -201,7 +202,13 @@ static void print_plot(const Settings *s, const BhrRay *ray, const double (*poin
         memcpy(last, here, sizeof last);
     }
     for (int row = 0; row < PLOT_ROWS; row++) {
-        printf("    %s\n", cells[row]);
+        int end = PLOT_COLUMNS;
+        while (end > 0 && cells[row][end - 1] == ' ') {
+            end--;
+        }
+        if (end > 0) {
+            printf("    %.*s\n", end, cells[row]);
+        }
     }
     printf("    # hole%s, * path; %g M across, the eye to the right\n\n", s->spin == 0.0 ? ", . photon sphere" : "",
            2.0 * PLOT_RADIUS);

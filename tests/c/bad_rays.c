@@ -101,13 +101,13 @@ static void camera_rays(Watch *watch, BhrContext *context) {
     BhrRay rays[12], one;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_camera_rays(NULL, 4, 3, rays));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_rays", bhr_camera_rays(context, 4, 3, NULL));
-    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width|size", bhr_camera_rays(context, 0, 3, rays));
-    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "height|size", bhr_camera_rays(context, 4, 0, rays));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width|frame", bhr_camera_rays(context, 0, 3, rays));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "height|frame", bhr_camera_rays(context, 4, 0, rays));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width|height|frame|size",
                   bhr_camera_rays(context, UINT32_MAX, UINT32_MAX, rays));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_camera_ray(NULL, 4, 3, 0.5, 0.5, &one));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_ray", bhr_camera_ray(context, 4, 3, 0.5, 0.5, NULL));
-    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width|size", bhr_camera_ray(context, 0, 3, 0.5, 0.5, &one));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width|frame", bhr_camera_ray(context, 0, 3, 0.5, 0.5, &one));
     for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "x", bhr_camera_ray(context, 4, 3, NOT_FINITE[i], 0.5, &one));
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "y", bhr_camera_ray(context, 4, 3, 0.5, NOT_FINITE[i], &one));

@@ -184,6 +184,7 @@ static void camera(Watch *watch, BhrContext *context) {
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_get_camera(context, NULL));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_camera(NULL, &good));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_camera(NULL, &good));
+    good = default_camera(); /* a failed getter clears what it was to fill in */
     /* Just inside the limits. */
     good.fov_y = PI - 1e-9;
     good.motion = BHR_MOTION_VELOCITY;
@@ -449,7 +450,8 @@ static void time_effects_view(Watch *watch, BhrContext *context) {
     }
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_time(NULL, 0.0));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_effects(NULL, BHR_EFFECT_ALL));
-    CHECK_OK(bhr_set_effects(context, 0xFFFFFFF0u | BHR_EFFECT_ALL)); /* unknown bits are ignored */
+    /* Unknown bits are ignored: the watched scene is lit with all of them set, all but BEAMING. */
+    CHECK_OK(bhr_set_effects(context, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT | BHR_EFFECT_LIGHT_DELAY));
     check_unchanged(watch, __FILE__, __LINE__, "unknown effects");
     static const int32_t unknown[] = {-1, 6, 1000, INT32_MIN};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
