@@ -1,11 +1,11 @@
-//! Makes the C header, OUT_DIR/bhr.h, from `src/capi` through cbindgen, one section per source file, and sets the shared
-//! library's link options. `tests/header.rs` holds include/bhr.h against it.
+//! Makes the C header, OUT_DIR/bhr.h, from `src/capi` through cbindgen, one section per source file, and sets the
+//! shared library's link options. `tests/header.rs` holds include/bhr.h against it.
 
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 20] = [
+const SECTIONS: [(&str, &str); 21] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -26,17 +26,37 @@ const SECTIONS: [(&str, &str); 20] = [
     ("job", "rendering in the background"),
     ("surface", "rendering into windows"),
     ("rays", "rays: the same tracer, asked directly"),
+    ("stats", "numbers about the last finished frame"),
 ];
 
-/// After `job`, whose type its second function takes.
-const LAST: (&str, &str) = ("stats", "numbers about the last finished frame");
+/// Between the preface and the first section.
+const OPENING: &str = r#"
+#ifndef BHR_H
+#define BHR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+"#;
+
+/// After the last section.
+const CLOSING: &str = "
+#ifdef __cplusplus
+}
+#endif
+
+#endif
+";
 
 fn main() -> Result<(), String> {
     println!("cargo:rerun-if-changed=build.rs");
     println!("cargo:rerun-if-changed=cbindgen.toml");
     println!("cargo:rerun-if-changed=src/capi");
-    // Drivers leave handlers that run at thread exit; unmapping the library under them would crash the host. No soname is set: a
-    // program linked with -lbhr finds libbhr.so by the name that cargo gives it.
+    // Drivers leave handlers that run at thread exit; unmapping the library under them would crash the host. No soname
+    // is set: a program linked with -lbhr finds libbhr.so by the name that cargo gives it.
     if matches!(env::var("CARGO_CFG_TARGET_OS").as_deref(), Ok("linux" | "android" | "freebsd")) {
         println!("cargo:rustc-cdylib-link-arg=-Wl,-z,nodelete");
     }
@@ -48,16 +68,12 @@ fn main() -> Result<(), String> {
 fn make_header() -> Result<String, String> {
     let mut config = cbindgen::Config::from_file("cbindgen.toml")?;
     let preface = config.header.take().unwrap_or_default();
-    let mut header = format!(
-        "{}\n\n#ifndef BHR_H\n#define BHR_H\n\n#include <stddef.h>\n#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n",
-        preface.trim()
-    );
-    for (file, title) in SECTIONS.into_iter().chain([LAST]) {
+    let mut header = format!("{}\n{OPENING}", preface.trim());
+    for (file, title) in SECTIONS {
         let path = Path::new("src/capi").join(file).with_extension("rs");
         header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, &config)?.trim());
     }
-    header += "\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
-    Ok(header)
+    Ok(header + CLOSING)
 }
 
 /// What one source file adds. Types of other sections are named without being known, which is all that C needs.

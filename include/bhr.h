@@ -1,54 +1,59 @@
 /* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
  *
- * Made by build.rs from the Rust sources in src/capi; do not edit. A program needs nothing else to read:
- * make a context (bhr_context_create), set mass, spin and camera, render into memory of your own (bhr_render_image).
+ * Made by build.rs from the Rust sources in src/capi; do not edit. A program needs nothing else to read: make a
+ * context (bhr_context_create), set mass, spin and camera, render into memory of your own (bhr_render_image).
  *
  * Units
- *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild radius is
- *   2 M. Angles in radians, temperatures in kelvin, times in scene lengths. Only disk radii are in units of M.
+ *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild
+ *   radius is 2 M. Angles in radians, temperatures in kelvin, times in scene lengths. Only disk radii are in
+ *   units of M.
  *
  * Coordinates
  *   The hole sits at the origin. x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the
  *   Schwarzschild / Boyer-Lindquist coordinates about the spin axis, which is also the disk's normal: +z unless
- *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that takes +z to
- *   it (about +x for -z): r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart; positions,
- *   directions and BhrHit.sky_direction stay in scene axes. Right-handed.
+ *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that
+ *   takes +z to it (about +x for -z): r, th, ph, the frames below and what BhrHit says refer to the turned chart;
+ *   positions and directions stay in scene axes. Right-handed.
  *
- *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit vectors of
- *   spherical coordinates there (on the axis e_th = x, e_ph = y), standing for the components along the orthonormal frame
- *   of the local static observer (the ZAMO when the hole spins). Any non-zero length is accepted and normalised (velocity:
- *   as it is). A moving camera's axes are that frame boosted without rotation. Inside a spin-0 horizon the frame is that of
- *   the observer falling from rest at infinity; inside a spinning hole's horizon everything is BHR_ERROR_UNSUPPORTED.
+ *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit
+ *   vectors of spherical coordinates there (on the axis e_th = x, e_ph = y), standing for the components along
+ *   the orthonormal frame of the local static observer (the ZAMO when the hole spins). Any non-zero length is
+ *   accepted and normalised (velocity: as it is). A moving camera's axes are that frame boosted without
+ *   rotation. Inside a spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a
+ *   spinning hole's horizon everything is BHR_ERROR_UNSUPPORTED.
  *
  *   Prograde always means +ph about the axis, retrograde -ph; with spin < 0 the hole turns towards -ph.
  *
  * Errors
- *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message says what
- *   was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call fills in is NULL or 0
- *   after a failure. Setters check their own argument only; what combinations forbid (a static camera inside the horizon,
- *   say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means a bug in bhr: only
- *   bhr_context_destroy is valid on that context then.
+ *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message
+ *   says what was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call
+ *   fills in is NULL or 0 after a failure. Setters check their own argument only; what combinations forbid (a
+ *   static camera inside the horizon, say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for.
+ *   BHR_ERROR_INTERNAL means a bug in bhr: only bhr_context_destroy is valid on that context then. Below, errors
+ *   are named without BHR_ERROR_; those that any call may return for NULL, from inside a callback or after
+ *   BHR_ERROR_INTERNAL are not named each time.
  *
  * Structs
- *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than the library's
- *   first version is BHR_ERROR_INVALID_ARGUMENT; larger is accepted as input when the rest is zero, and as output the rest is
- *   zeroed. Fields named reserved are 0. The *_init functions clear struct_size bytes and fill in the defaults. Structs and
- *   arrays need no alignment; pixels do (BhrImage).
+ *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than
+ *   the library's first version is BHR_ERROR_INVALID_ARGUMENT; larger is accepted as input when the rest is zero,
+ *   and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear struct_size bytes
+ *   and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
  *
  * Pointers
- *   A pointer is NULL only where this header says that it may be; NULL elsewhere is BHR_ERROR_INVALID_ARGUMENT. Whatever is
- *   passed in is copied before the call returns; what the host owns (windows, pixels) stays its own.
+ *   A pointer is NULL only where this header says that it may be. Whatever is passed in is copied before the
+ *   call returns; what the host owns (windows, pixels) stays its own.
  *
  * Threads and callbacks
- *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other. (macOS: surfaces
- *   on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the calling thread. From inside
- *   a callback a call on a context, job or surface, bhr_adapter_count and bhr_adapter_info return BHR_ERROR_INVALID_STATE; calls that
- *   work on plain structs and images, versions and messages are allowed. A callback must not wait for another
- *   thread's call on the same context. No callback runs after the destroy call of its context has returned.
+ *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other.
+ *   (macOS: surfaces on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the
+ *   calling thread. From inside a callback, a call on a context, job or surface and bhr_adapter_count and _info
+ *   return BHR_ERROR_INVALID_STATE; calls on plain structs and images, versions and messages are allowed. A
+ *   callback must not wait for another thread's call on the same context. No callback runs after the destroy
+ *   call of its context has returned.
  *
  * The process
- *   The library never writes to stdout or stderr, never calls exit or abort, installs no signal handler, and no Rust panic
- *   leaves it. It stays mapped after dlclose (graphics drivers leave thread-exit handlers behind).
+ *   The library never writes to stdout or stderr, never calls exit or abort, installs no signal handler, and no
+ *   Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind.
  */
 
 #ifndef BHR_H

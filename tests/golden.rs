@@ -1,5 +1,6 @@
-//! Both tracers against the reference values in tests/golden, inside the bars of 'What "right" means' (design.md): every error is
-//! divided by (1 + the case's conditioning). The GPU cases run on whatever adapter comes first and fail when there is none.
+//! Both tracers against the reference values in tests/golden, inside the bars of 'What "right" means' (design.md):
+//! every error is divided by (1 + the case's conditioning). The GPU cases run on whatever adapter comes first and
+//! fail when there is none.
 
 use bhr::renderer::{Backend, Renderer, RendererOptions, adapters};
 use bhr::scene::{Camera, Fate, Hit, Method, Motion, Projection, Ray};

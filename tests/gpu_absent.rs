@@ -1,4 +1,5 @@
-//! Searches for adapters where there is no loader, and where there is no driver: each in a process of its own, in silence.
+//! Searches for adapters where there is no loader, and where there is no driver: each in a process of its own, in
+//! silence.
 #![cfg(target_os = "linux")]
 
 use bhr::gpu::{Search, adapters};

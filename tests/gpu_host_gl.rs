@@ -1,4 +1,5 @@
-//! A host that draws with GL keeps its context while bhr looks for adapters. Needs EGL with a surfaceless platform, as Mesa has.
+//! A host that draws with GL keeps its context while bhr looks for adapters. Needs EGL with a surfaceless platform,
+//! as Mesa has.
 #![cfg(target_os = "linux")]
 
 use bhr::gpu::{Search, adapters};

@@ -1,5 +1,5 @@
-//! Opening and closing GPU devices many times: memory and time. Alone in its process, so that no other test's memory is seen.
-//! Without a Vulkan adapter this fails.
+//! Opening and closing GPU devices many times: memory and time. Alone in its process, so that no other test's
+//! memory is seen. Without a Vulkan adapter this fails.
 #![cfg(target_os = "linux")]
 
 use bhr::gpu::{Device, Search, adapters, forget_drivers};

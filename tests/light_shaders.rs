@@ -1,5 +1,5 @@
-//! The WGSL of colour, stars and film: parses, validates with no capability, and agrees with the Rust that it mirrors on whatever Vulkan
-//! adapter there is (a software one will do; with none that part says so and passes).
+//! The WGSL of colour, stars and film: parses, validates with no capability, and agrees with the Rust that it
+//! mirrors on whatever Vulkan adapter there is (a software one will do; with none that part says so and passes).
 
 use bhr::film::{FilmParams, develop};
 use bhr::image::PixelFormat;

@@ -1,5 +1,5 @@
-//! Translates every shader of the GPU tracer into the languages of Vulkan, Metal, D3D12 and GL, as wgpu does when it makes a
-//! pipeline, so that an interface which nobody here can run is no surprise. Needs no adapter.
+//! Translates every shader of the GPU tracer into the languages of Vulkan, Metal, D3D12 and GL, as wgpu does when
+//! it makes a pipeline, so that an interface which nobody here can run is no surprise. Needs no adapter.
 
 use naga::back::{glsl, hlsl, msl, pipeline_constants::process_overrides, spv};
 use naga::proc::BoundsCheckPolicies;

@@ -175,9 +175,7 @@ fn check_abi(abi_version: u32) -> Result<()> {
     }
     Err(Error::new(
         ErrorKind::IncompatibleAbi,
-        format!(
-            "abi_version is {abi_version}, this library's is {BHR_ABI_VERSION}: compile against the bhr.h that came with it"
-        ),
+        format!("abi_version is {abi_version}, this library's is {BHR_ABI_VERSION}: compile against its own bhr.h"),
     ))
 }
 

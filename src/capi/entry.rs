@@ -8,14 +8,19 @@ use super::pointer::is_null;
 use super::status::{self, BHR_OK, BhrStatus};
 use crate::error::{Error, ErrorKind, Result};
 use std::cell::{Cell, RefCell};
-use std::ffi::{CString, c_char};
+use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::sync::atomic::Ordering;
 use std::sync::{Mutex, Once, PoisonError};
 use std::thread::LocalKey;
 
+/// Room for a message with two longest paths in it.
+const MESSAGE_BYTES: usize = 10_000;
+
 thread_local! {
-    static MESSAGE: RefCell<CString> = RefCell::default();
+    /// Never longer than its capacity, so that it stays where it is: a pointer that a host kept too long shows a later
+    /// message, not freed memory.
+    static MESSAGE: RefCell<Vec<u8>> = RefCell::new(Vec::with_capacity(MESSAGE_BYTES));
     static CALLS: Cell<u32> = const { Cell::new(0) };
     static CALLBACKS: Cell<u32> = const { Cell::new(0) };
     static LOG_CALLBACKS: Cell<u32> = const { Cell::new(0) };
@@ -86,15 +91,27 @@ pub(super) fn finish(function: &str, result: Result<()>) -> BhrStatus {
     };
     let message = format!("{function}: {}", error.message);
     ::log::error!(target: "bhr", "{message}");
-    let message = log::c_string(message);
-    // A thread that is ending has no message any more.
-    let _ = MESSAGE.try_with(|slot| slot.replace(message));
+    keep_message(&message);
     status::of(error.kind)
+}
+
+fn keep_message(message: &str) {
+    let text = log::c_string(message.get(..message.floor_char_boundary(MESSAGE_BYTES - 1)).unwrap_or_default().into());
+    // A thread that is ending has no message any more.
+    let _ = MESSAGE.try_with(|kept| {
+        let mut kept = kept.borrow_mut();
+        kept.clear();
+        kept.extend_from_slice(text.as_bytes_with_nul());
+    });
 }
 
 /// Never NULL.
 pub(super) fn last_message() -> *const c_char {
-    MESSAGE.try_with(|slot| slot.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+    let kept = MESSAGE.try_with(|kept| match kept.borrow() {
+        message if message.is_empty() => c"".as_ptr(),
+        message => message.as_ptr().cast(),
+    });
+    kept.unwrap_or(c"".as_ptr())
 }
 
 fn refuse_in_callback() -> Result<()> {
@@ -213,6 +230,17 @@ mod tests {
         drop(inside);
         // SAFETY: the context lives.
         assert_eq!(unsafe { on_context("bhr_test", context.get(), |_| Ok(())) }, BHR_OK);
+    }
+
+    #[test]
+    fn a_message_stays_where_it_is() {
+        keep_message("first");
+        let place = last_message();
+        for length in [0, 100, MESSAGE_BYTES - 1, MESSAGE_BYTES, 1_000_000] {
+            keep_message(&"\u{e9}".repeat(length / 2));
+            assert_eq!(last_message(), place);
+            assert_eq!(message().len(), (length / 2 * 2).min(MESSAGE_BYTES - 2));
+        }
     }
 
     #[test]

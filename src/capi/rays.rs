@@ -116,14 +116,21 @@ impl From<Hit> for BhrHit {
     }
 }
 
-/// `width * height`. Errors: a side that is 0 or longer than an image's may be; more rays than memory has addresses for.
+/// `width * height`. Errors: a side that is 0 or longer than an image's; more rays than memory has addresses for.
 fn frame_pixels(width: u32, height: u32) -> Result<usize> {
-    let sides = 1..=MAX_SIDE;
-    let bytes = u64::from(width) * u64::from(height) * size_of::<BhrRay>() as u64;
-    if sides.contains(&width) && sides.contains(&height) && isize::try_from(bytes).is_ok() {
-        return Ok(width as usize * height as usize);
+    for (name, side) in [("width", width), ("height", height)] {
+        if side == 0 || side > MAX_SIDE {
+            return Err(Error::argument(format!("frame {name} is {side}; it must lie in [1, {MAX_SIDE}]")));
+        }
     }
-    Err(Error::argument(format!("frame is {width} x {height}; each side must lie in [1, {MAX_SIDE}]")))
+    // At most 2^40 rays of 56 bytes: no overflow in 64 bits.
+    let count = u64::from(width) * u64::from(height);
+    match isize::try_from(count * size_of::<BhrRay>() as u64) {
+        Ok(_) => Ok(count as usize),
+        Err(_) => {
+            Err(Error::argument(format!("frame size is {width} x {height}; there is no memory for so many rays")))
+        }
+    }
 }
 
 /// The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
@@ -363,7 +370,9 @@ mod tests {
             assert!(Array::new(begin, element, 56, count, ["rays", "ray_size"]).is_err());
         }
         assert!(Array::new(std::ptr::null_mut(), 56, 56, 0, ["rays", "ray_size"]).is_ok());
-        assert!(frame_pixels(0, 1).is_err() && frame_pixels(1, MAX_SIDE + 1).is_err());
+        for (width, height) in [(0, 1), (1, 0), (1, MAX_SIDE + 1), (u32::MAX, u32::MAX)] {
+            assert!(frame_pixels(width, height).is_err());
+        }
         assert_eq!(frame_pixels(MAX_SIDE, 2).unwrap(), 2 << 20);
     }
 }

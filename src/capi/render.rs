@@ -5,6 +5,7 @@ use super::entry::{self, on_context};
 use super::image::{self, BhrImage};
 use super::log::User;
 use super::status::BhrStatus;
+use crate::error::{Error, ErrorKind};
 use std::ffi::c_void;
 
 /// Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on. Runs
@@ -75,6 +76,9 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
         on_context("bhr_render_image", context, |state| {
             let mut target = image::read(target, "target")?;
             let mut report = Report { callback: state.progress, told: 0.0 };
+            if !report.tell(0.0) {
+                return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame at its begin"));
+            }
             let mut frame =
                 state.renderer.render(&mut target.pixels, target.transparent, state.region, &mut |fraction| {
                     report.tell(fraction)

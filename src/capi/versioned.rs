@@ -65,7 +65,7 @@ pub(super) unsafe fn read<T: Versioned>(pointer: *const T, name: &str) -> Result
         // SAFETY: `offset < struct_size`.
         if unsafe { pointer.cast::<u8>().add(offset).read() } != 0 {
             return Err(Error::argument(format!(
-                "{name} has struct_size {size} and byte {offset} set; this library knows {known} bytes of {}, the rest must be 0",
+                "{name} struct_size is {size} and byte {offset} is not 0; this library knows {known} bytes of {}",
                 T::NAME
             )));
         }

@@ -91,7 +91,10 @@ impl Layout {
         let bytes = u128::from(self.height - 1) * u128::from(step) + u128::from(row);
         match (isize::try_from(bytes), isize::try_from(stride)) {
             (Ok(bytes), Ok(stride)) => Ok((bytes.unsigned_abs(), stride)),
-            _ => Err(Error::argument(format!("image takes {bytes} bytes; there is no such memory"))),
+            _ => Err(Error::argument(format!(
+                "image row_stride is {stride}; {} rows take {bytes} bytes, more than there can be",
+                self.height
+            ))),
         }
     }
 }
@@ -227,8 +230,8 @@ impl<'a> ImageMut<'a> {
     /// Errors: as `new`, or `pixels` NULL.
     ///
     /// # Safety
-    /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not what lies between them)
-    /// are readable and writable, and nobody else's, during `'a`.
+    /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not what lies
+    /// between them) are readable and writable, and nobody else's, during `'a`.
     pub unsafe fn from_raw(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
         Ok(Self { rows: Rows::new(layout, pixels, byte_size)?, touched: false, memory: PhantomData })
     }
@@ -277,7 +280,7 @@ impl<'a> ImageMut<'a> {
         let needed = (height as usize - 1).checked_mul(bytes_per_row).and_then(|bytes| bytes.checked_add(row));
         if !fits || bytes_per_row < row || needed.is_none_or(|needed| pixels.len() < needed) {
             return Err(Error::internal(format!(
-                "tile {width} x {height} at ({x}, {y}) with {} bytes in rows of {bytes_per_row} does not fit a {} x {} image",
+                "tile {width} x {height} at ({x}, {y}), {} bytes in rows of {bytes_per_row}, does not fit {} x {}",
                 pixels.len(),
                 self.rows.width,
                 self.rows.height

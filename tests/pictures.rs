@@ -1,0 +1,302 @@
+//! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against theory.
+//! The GPU is whatever adapter comes first; without one the tests fail.
+
+use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::physics::shadow::shadow;
+use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::scene::{Camera, Effects, Motion, Region, Sky, View};
+use glam::DVec3;
+use serde_json::Value;
+
+fn cpu() -> Renderer {
+    Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap()
+}
+
+fn gpu() -> Renderer {
+    let renderer = Renderer::new(RendererOptions::default()).unwrap();
+    assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
+    renderer
+}
+
+fn both() -> [(&'static str, Renderer); 2] {
+    [("cpu", cpu()), ("gpu", gpu())]
+}
+
+fn picture(
+    renderer: &mut Renderer,
+    format: PixelFormat,
+    size: [u32; 2],
+    region: Option<Region>,
+    transparent: bool,
+) -> Vec<u8> {
+    let layout = Layout::packed(format, size[0], size[1]);
+    let mut pixels = vec![0; (size[0] * size[1]) as usize * format.bytes_per_pixel()];
+    let mut image = ImageMut::new(layout, &mut pixels).unwrap();
+    renderer.render(&mut image, transparent, region, &mut |_| true).unwrap();
+    pixels
+}
+
+fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
+}
+
+/// A camera that looks at the hole from (r, inclination), azimuth 0.
+fn camera(r: f64, inclination_degrees: f64, fov_degrees: f64, motion: Motion) -> Camera {
+    let theta = inclination_degrees.to_radians();
+    let plane = inclination_degrees == 90.0;
+    let position = DVec3::new(theta.sin(), 0.0, if plane { 0.0 } else { theta.cos() }) * r;
+    let up = if inclination_degrees == 0.0 { DVec3::X } else { DVec3::Z };
+    Camera { position, forward: -position, up, fov_y: fov_degrees.to_radians(), motion, ..Camera::default() }
+}
+
+/// Spin, camera, and what else is unusual.
+fn scenes() -> Vec<(&'static str, Box<dyn Fn(&mut Renderer)>)> {
+    let scene = |name, spin: f64, c: Camera| -> (&'static str, Box<dyn Fn(&mut Renderer)>) {
+        (name, Box::new(move |r| (r.scene.hole.spin, r.scene.camera) = (spin, c)))
+    };
+    let mut list = vec![
+        scene("default", 0.0, Camera::default()),
+        scene("edge-on", 0.0, camera(25.0, 90.0, 60.0, Motion::Static)),
+        scene("polar", 0.7, camera(30.0, 0.0, 60.0, Motion::Static)),
+        // The shadow fills half the sky there: along its edge.
+        scene("r = 3", 0.0, Camera { forward: DVec3::Y, ..camera(3.0, 70.0, 90.0, Motion::Static) }),
+        scene("r = 500", 0.3, camera(500.0, 80.0, 5.0, Motion::Static)),
+        scene("spin 0.998", 0.998, camera(20.0, 75.0, 60.0, Motion::Static)),
+        scene("orbit", 0.5, camera(10.0, 90.0, 80.0, Motion::Orbit)),
+        scene("free fall inside", 0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
+        scene("free fall with spin", 0.9, camera(6.0, 50.0, 100.0, Motion::FreeFall)),
+    ];
+    list.push((
+        "retrograde, translucent, half the effects, fast camera, another axis and mass",
+        Box::new(|r| {
+            r.scene.hole.mass = 3.5;
+            r.scene.hole.spin = -0.8;
+            r.scene.hole.axis = DVec3::new(0.2, -0.5, 0.8).normalize();
+            r.scene.camera = camera(40.0, 65.0, 70.0, Motion::Velocity);
+            r.scene.camera.velocity = DVec3::new(-0.3, 0.4, 0.1);
+            let disk = r.scene.disk.as_mut().unwrap();
+            (disk.retrograde, disk.opacity, disk.outer_radius) = (true, 0.4, 15.0);
+            r.scene.effects = Effects(Effects::DOPPLER_SHIFT | Effects::BEAMING);
+            r.scene.quality.max_disk_order = 6;
+        }),
+    ));
+    list
+}
+
+#[test]
+fn gpu_and_cpu_pictures_agree() {
+    let size = [192, 108];
+    for (name, set) in scenes() {
+        let mut pictures = both().map(|(_, mut renderer)| {
+            set(&mut renderer);
+            picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false)
+        });
+        let [cpu, gpu] = &mut pictures;
+        let pixels = cpu.chunks_exact(4).zip(gpu.chunks_exact(4));
+        let differ = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
+        let share = differ as f64 / f64::from(size[0] * size[1]);
+        println!("{name}: {differ} of {} pixels differ by more than one step", size[0] * size[1]);
+        assert!(share <= 1e-3, "{name}: {differ} pixels differ by more than one step");
+        let lit = cpu.chunks_exact(4).filter(|p| p[0] > 8).count();
+        assert!(lit > 50, "{name}: only {lit} pixels have light");
+    }
+}
+
+#[test]
+fn light_is_finite_in_every_pixel() {
+    for (name, set) in scenes() {
+        for (tracer, mut renderer) in both() {
+            set(&mut renderer);
+            let values = floats(&picture(&mut renderer, PixelFormat::Rgba32F, [96, 54], None, false));
+            let bad = values.iter().filter(|v| !v.is_finite() || **v < 0.0).count();
+            assert_eq!(bad, 0, "{name} on {tracer}");
+            assert!(values.chunks_exact(4).all(|p| p[3] == 1.0), "{name} on {tracer}: alpha");
+        }
+    }
+}
+
+#[test]
+fn views_agree() {
+    let size = [96, 54];
+    for view in [View::Redshift, View::Order, View::Deflection, View::Metric] {
+        let [cpu, gpu] = both().map(|(_, mut renderer)| {
+            (renderer.scene.hole.spin, renderer.scene.view) = (0.6, view);
+            floats(&picture(&mut renderer, PixelFormat::R32F, size, None, false))
+        });
+        let wrong = cpu.iter().zip(&gpu).filter(|(a, b)| a.is_nan() != b.is_nan() || (*a - *b).abs() > 2e-4).count();
+        assert!(wrong * 1000 <= cpu.len(), "{view:?}: {wrong} of {}", cpu.len());
+        assert!(cpu.iter().filter(|v| v.is_finite()).count() > 1000, "{view:?} shows nothing");
+    }
+}
+
+/// Odd tiles, joined, and the frame a second time after another one in between.
+#[test]
+fn tiles_and_repetitions_give_the_same_bytes() {
+    let (width, height) = (75, 50);
+    for (tracer, mut renderer) in both() {
+        renderer.scene.hole.spin = 0.4;
+        renderer.scene.quality.samples_per_pixel = 3;
+        for format in [PixelFormat::Rgba8Srgb, PixelFormat::Rgba16F] {
+            let bytes = format.bytes_per_pixel();
+            let whole = picture(&mut renderer, format, [width, height], None, false);
+            let mut joined = vec![0; whole.len()];
+            for (x, w) in [(0, 7), (7, 33), (40, 35)] {
+                for (y, h) in [(0, 1), (1, 29), (30, 20)] {
+                    let region = Region { full_width: width, full_height: height, x, y };
+                    let tile = picture(&mut renderer, format, [w, h], Some(region), false);
+                    for (row, line) in tile.chunks_exact(w as usize * bytes).enumerate() {
+                        let at = ((y as usize + row) * width as usize + x as usize) * bytes;
+                        joined[at..at + line.len()].copy_from_slice(line);
+                    }
+                }
+            }
+            assert!(whole == joined, "{tracer}: {format:?} tiles");
+            renderer.scene.hole.spin = 0.0;
+            picture(&mut renderer, format, [20, 90], None, false);
+            renderer.scene.hole.spin = 0.4;
+            assert!(whole == picture(&mut renderer, format, [width, height], None, false), "{tracer}: again");
+        }
+    }
+}
+
+/// A frame cut into many submissions equals one that is not: 1400 x 1100 pixels exceed one tile.
+#[test]
+fn large_frames_equal_their_parts() {
+    let mut renderer = gpu();
+    renderer.scene.quality.max_disk_order = 15;
+    let (width, height) = (1100, 700);
+    let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, [width, height], None, false);
+    let region = Region { full_width: width, full_height: height, x: 500, y: 300 };
+    let part = picture(&mut renderer, PixelFormat::Rgba8Srgb, [150, 100], Some(region), false);
+    for (row, line) in part.chunks_exact(600).enumerate() {
+        let at = ((300 + row) * width as usize + 500) * 4;
+        assert!(whole[at..at + 600] == *line, "row {row}");
+    }
+}
+
+/// 1 where the frame is captured, from the alpha of a transparent picture without disk.
+fn silhouette(renderer: &mut Renderer, size: [u32; 2]) -> Vec<bool> {
+    renderer.scene.disk = None;
+    renderer.scene.sky = Sky::black();
+    let pixels = picture(renderer, PixelFormat::Rgba8Srgb, size, None, true);
+    pixels.chunks_exact(4).map(|p| p[3] == 255).collect()
+}
+
+/// Every pixel whose centre lies more than half a pixel inside Synge's (aberrated) circle is dark, every one more than half a
+/// pixel outside is not.
+#[test]
+fn spin_zero_shadow_is_synges_circle() {
+    let size = [200, 200];
+    let cases = [
+        (6.0, 90.0, Motion::Static),
+        (20.0, 40.0, Motion::Static),
+        (200.0, 5.0, Motion::Static),
+        (2.5, 150.0, Motion::Static),
+        (10.0, 70.0, Motion::FreeFall),
+        (1.9, 130.0, Motion::FreeFall),
+        (8.0, 90.0, Motion::Orbit),
+        (30.0, 60.0, Motion::Velocity),
+    ];
+    for (tracer, mut renderer) in both() {
+        for (r, fov, motion) in cases {
+            renderer.scene.camera = camera(r, 80.0, fov, motion);
+            renderer.scene.camera.velocity = DVec3::new(-0.4, 0.3, 0.35);
+            let observer = renderer.scene.observer().unwrap();
+            let circle = shadow(&observer);
+            let region = Region { full_width: size[0], full_height: size[1], x: 0, y: 0 };
+            let lens = renderer.scene.lens(&region).unwrap();
+            let dark = silhouette(&mut renderer, size);
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let at = |dx: f64, dy: f64| lens.look(f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy);
+                    let angle = at(0.0, 0.0).angle_between(circle.center);
+                    let half =
+                        0.5 * at(0.0, 0.0).angle_between(at(1.0, 0.0)).max(at(0.0, 0.0).angle_between(at(0.0, 1.0)));
+                    let found = dark[(y * size[0] + x) as usize];
+                    let case = format!("{tracer}: r {r} {motion:?} ({x}, {y}) angle {angle} of {}", circle.radius);
+                    assert!(found || angle > circle.radius - half, "{case} is not dark");
+                    assert!(!found || angle < circle.radius + half, "{case} is dark");
+                }
+            }
+        }
+    }
+}
+
+/// The radius of the static shadow, from its area in pixels.
+#[test]
+fn shadow_radius_measured_from_the_area() {
+    for (tracer, mut renderer) in both() {
+        for r in [5.0, 15.0, 100.0] {
+            let fov = 2.0 * (1.6 * shadow_sine(r).asin()).min(1.3);
+            renderer.scene.camera = camera(r, 60.0, fov.to_degrees(), Motion::Static);
+            let dark = silhouette(&mut renderer, [256, 256]).iter().filter(|d| **d).count();
+            let pixels = (dark as f64 / std::f64::consts::PI).sqrt();
+            let expect = 128.0 * shadow_sine(r).asin().tan() / (0.5 * fov).tan();
+            assert!((pixels - expect).abs() < 0.5, "{tracer}: r {r}: {pixels} pixels, Synge {expect}");
+        }
+    }
+}
+
+fn shadow_sine(r: f64) -> f64 {
+    (27.0 * (r - 2.0) / r.powi(3)).sqrt()
+}
+
+/// From 10^5 M the silhouette of a spinning hole is Bardeen's curve, of the reference values, to half a pixel.
+#[test]
+fn spinning_shadow_is_bardeens_curve() {
+    let path = format!("{}/tests/golden/kerr_shadow.json", env!("CARGO_MANIFEST_DIR"));
+    let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let (size, r) = ([160_u32, 160_u32], 1e5);
+    // The frame is 16 M wide.
+    let fov = 2.0 * (8.0_f64 / r).atan();
+    let mut judged = 0;
+    for (tracer, mut renderer) in both() {
+        for case in file["cases"].as_array().unwrap() {
+            let (a, inclination) = (case["a"].as_f64().unwrap(), case["inclination_deg"].as_f64().unwrap());
+            renderer.scene.hole.spin = a;
+            renderer.scene.camera = camera(r, inclination, fov.to_degrees(), Motion::Static);
+            let dark = silhouette(&mut renderer, size);
+            let curve = outline(case);
+            for y in 0..size[1] {
+                for x in 0..size[0] {
+                    let scale = 16.0 / f64::from(size[0]);
+                    let alpha = (f64::from(x) + 0.5 - f64::from(size[0]) / 2.0) * scale;
+                    let beta = (f64::from(size[1]) / 2.0 - f64::from(y) - 0.5) * scale;
+                    let (inside, distance) = side(&curve, alpha, beta);
+                    if distance < 0.5 * scale {
+                        continue;
+                    }
+                    judged += 1;
+                    let found = dark[(y * size[0] + x) as usize];
+                    assert_eq!(found, inside, "{tracer}: a {a} i {inclination}: alpha {alpha} beta {beta}");
+                }
+            }
+        }
+    }
+    assert!(judged > 100_000);
+}
+
+/// The closed curve of a reference case.
+fn outline(case: &Value) -> Vec<(f64, f64)> {
+    let point = |p: &Value| (p["alpha"].as_f64().unwrap(), p["beta"].as_f64().unwrap());
+    let upper = case["boundary"].as_array().unwrap().iter().map(point).collect::<Vec<_>>();
+    let lower = upper.iter().rev().map(|&(alpha, beta)| (alpha, -beta)).collect::<Vec<_>>();
+    [upper, lower].concat()
+}
+
+/// Whether a point is inside the polygon (even-odd rule), and its distance from it.
+fn side(polygon: &[(f64, f64)], x: f64, y: f64) -> (bool, f64) {
+    let mut inside = false;
+    let mut distance = f64::INFINITY;
+    for (i, &(x0, y0)) in polygon.iter().enumerate() {
+        let (x1, y1) = polygon[(i + 1) % polygon.len()];
+        if (y0 > y) != (y1 > y) && x < x0 + (y - y0) / (y1 - y0) * (x1 - x0) {
+            inside = !inside;
+        }
+        let (dx, dy) = (x1 - x0, y1 - y0);
+        let length = dx * dx + dy * dy;
+        let t = if length == 0.0 { 0.0 } else { (((x - x0) * dx + (y - y0) * dy) / length).clamp(0.0, 1.0) };
+        distance = distance.min((x - x0 - t * dx).hypot(y - y0 - t * dy));
+    }
+    (inside, distance)
+}
