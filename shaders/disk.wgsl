@@ -3,7 +3,7 @@
 
 const PROFILE_OFFSET: u32 = MEAN_SKY_OFFSET + MEAN_SKY_PARTS;
 // Entries, four to a vector.
-const PROFILE_SIZE: u32 = 2048u;
+const PROFILE_SIZE: u32 = 1024u;
 
 // How the effects let frequency shifts show: the shift that colours, and the one that beams.
 struct Shift {
@@ -51,10 +51,10 @@ fn temperature_profile(u: f32) -> f32 {
     if closeness >= 1.0 {
         return 0.0;
     }
-    let x = sqrt(1.0 - closeness) * f32(PROFILE_SIZE - 1u);
+    let root = sqrt(closeness);
+    let x = arctan2(sqrt(1.0 - closeness), root) / (0.5 * PI) * f32(PROFILE_SIZE - 1u);
     let i = min(u32(x), PROFILE_SIZE - 2u);
     let low = profile_entry(i);
-    let root = sqrt(closeness);
     return (low + (profile_entry(i + 1u) - low) * (x - f32(i))) * root * sqrt(root);
 }
 

@@ -74,7 +74,7 @@ impl GpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
-        let settings = for_f32(scene.pixel_settings(), scene.quality.method);
+        let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let inside = lens.observer.frame.r <= 2.0;
         let variant = variant(scene, &settings, inside);

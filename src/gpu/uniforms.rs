@@ -7,7 +7,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
 use crate::scene::observer::Lens;
-use crate::scene::{Disk, Scene, Sky};
+use crate::scene::{Scene, Sky};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 
@@ -76,7 +76,7 @@ impl FrameUniform {
     pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, transparent: bool) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
-        let disk = scene.disk.unwrap_or(Disk::default());
+        let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let stars = scene.sky.flags & Sky::STARS != 0 && scene.sky.stars_brightness > 0.0;
         let isco = scene.disk_isco();

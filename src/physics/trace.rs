@@ -112,7 +112,8 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut dyn FnM
         if adaptive {
             h_wish = next_step(h, error, settings.tolerance);
             // NaN is no error to accept; a step too small to change anything is.
-            if !(error <= settings.tolerance) && h * c.scale > 1e-9 {
+            let accepted = error <= settings.tolerance || h * c.scale <= 1e-9;
+            if !accepted {
                 continue;
             }
         }

@@ -9,9 +9,11 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
 use crate::physics::trace::{self, RayTrace, Settings};
 
-/// Steps in sigma of the Nystrom method: for rays that a host asks for (1e-11), and for pixels in f64 (1e-7).
+/// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning), of 1e-11.
 pub const RAY_STEP: f64 = 0.025;
-pub const PIXEL_STEP: f64 = 0.2;
+/// The same for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7 for crossing radii, at most 1e-5; a
+/// pixel of a 3840 x 2160 frame is 5e-4 wide.
+pub const PIXEL_STEP: f64 = 0.3;
 
 impl Quality {
     /// For rays of the f64 tracer.
@@ -95,7 +97,7 @@ impl Scene {
                 trace::Fate::Escaped => Fate::Escaped,
                 trace::Fate::Unresolved => Fate::Unresolved,
             },
-            sky_direction: traced.direction,
+            sky_direction: self.hole.scene_to_chart().transpose() * traced.direction,
             sky_redshift: f64::NAN,
             swept_angle: traced.swept,
             steps: traced.steps,
