@@ -3,7 +3,7 @@
 
 const PROFILE_OFFSET: u32 = MEAN_SKY_OFFSET + MEAN_SKY_PARTS;
 // Entries, four to a vector.
-const PROFILE_SIZE: u32 = 1024u;
+const PROFILE_SIZE: u32 = 2048u;
 
 // How the effects let frequency shifts show: the shift that colours, and the one that beams.
 struct Shift {
