@@ -47,7 +47,7 @@ fn profile_entry(i: u32) -> f32 {
 
 // T(r) / T_max (TemperatureProfile::at).
 fn temperature_profile(u: f32) -> f32 {
-    let closeness = frame.hole.w * u;
+    let closeness = abs(frame.hole.w) * u;
     if closeness >= 1.0 {
         return 0.0;
     }
@@ -60,6 +60,6 @@ fn temperature_profile(u: f32) -> f32 {
 
 // Linear radiance of the opaque disk at 1/r = u, seen with g.
 fn disk_light(u: f32, shift: Shift) -> vec3<f32> {
-    let temperature = frame.disk.z * temperature_profile(u);
-    return shifted_blackbody(temperature, frame.disk.w, shift.colour, shift.beaming) * frame.disk_light.y;
+    let temperature = frame.disk.x * temperature_profile(u);
+    return shifted_blackbody(temperature, frame.disk.y, shift.colour, shift.beaming) * frame.disk.w;
 }

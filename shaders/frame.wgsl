@@ -17,27 +17,28 @@ struct Frame {
     place: vec4<f32>,
     // omega, q, sqrt(Sg), sqrt(Sg D) of numerics.md's start values.
     zamo: vec4<f32>,
-    // a, r+, r-, ISCO of the disk's matter.
+    // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
     // Columns that take chart directions to sky axes; w of the first: 1 with stars; of the second: their brightness.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,
-    // Inner and outer radius, temperature, ln Y(temperature).
+    // Temperature, its ln Y, opacity, brightness.
     disk: vec4<f32>,
-    // Opacity, brightness, 0, -1 for retrograde or 1.
-    disk_light: vec4<f32>,
     // Of the full frame, pixels; then step in sigma and tolerance.
     size: vec4<f32>,
+    // 1/r of the disk's outer and inner edge, (1, 0) without one; the same if nothing behind it matters, else (1, 0).
+    disk_u: vec2<f32>,
+    opaque_u: vec2<f32>,
     capture_u: f32,
     max_steps: u32,
     max_crossings: u32,
     rain: u32,
-    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*, 1 with a disk, 1 for TRANSPARENT.
+    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*, 1 for TRANSPARENT.
     effects: u32,
     view: u32,
-    has_disk: u32,
     transparent: u32,
+    reserved: u32,
 }
 
 const VIEW_LIGHT: u32 = 0u;
@@ -55,16 +56,16 @@ const EFFECT_ALL: u32 = 7u;
 // The record of pixel i: word k is records[k * pixels + i].
 const RECORD_DIRECTION: u32 = 0u;
 const RECORD_SKY_REDSHIFT: u32 = 3u;
-// Bits 0 .. 1 the fate; bits 16 + k set: the crossing of order k lies within the disk.
+// Bits 0 .. 1 the fate, of a ray that ended on the opaque disk FATE_HIDDEN; bit 16 + k: the crossing of order k is the disk's.
 const RECORD_META: u32 = 4u;
-// E and L, scaled so that the local frame's observer measures 1.
+// E and L, scaled so that the local frame's observer measures 1; of frames with an effect switched off.
 const RECORD_ENERGY: u32 = 5u;
 const RECORD_ANGULAR_MOMENTUM: u32 = 6u;
+// Of the view that shows them: steps, and 1/r of the first crossing of the plane wherever it is, 0 without one.
 const RECORD_STEPS: u32 = 7u;
-// 1/r of the first crossing of the plane wherever it is; 0 without one.
-const RECORD_PLANE: u32 = 8u;
-// u, azimuth, g, delay of each crossing within the disk, in order.
-const RECORD_CROSSINGS: u32 = 9u;
+const RECORD_PLANE: u32 = 7u;
+// u, g, azimuth, delay of each crossing within the disk, in order.
+const RECORD_CROSSINGS: u32 = 8u;
 const RECORD_CROSSING_WORDS: u32 = 4u;
 
 // Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.

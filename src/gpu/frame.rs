@@ -16,7 +16,7 @@ use wgpu::BufferUsages as Usage;
 
 const GROUP: [u32; 2] = [16, 8];
 /// Words of a record before its crossings, and of a crossing (frame.wgsl).
-const RECORD_WORDS: u64 = 9;
+const RECORD_WORDS: u64 = 8;
 const CROSSING_WORDS: u64 = 4;
 
 /// Buffers that frames of one size share; they grow and stay.
@@ -78,7 +78,9 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let inside = lens.observer.frame.r <= 2.0;
         let variant = variant(scene, &settings, inside);
-        let record_bytes = 4 * (RECORD_WORDS + CROSSING_WORDS * u64::from(variant.max_crossings));
+        // An opaque disk hides all but its first crossing.
+        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u64 };
+        let record_bytes = 4 * (RECORD_WORDS + CROSSING_WORDS * crossings);
         let binding_limit = self.device.limits().max_storage_buffer_binding_size;
         let steps = expected_steps(scene.quality.method, settings.step).min(u64::from(settings.max_steps));
         let plan = Plan::new(request, record_bytes, binding_limit, steps, samples);

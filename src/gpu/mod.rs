@@ -86,6 +86,5 @@ fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant 
         spinning,
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
-        max_crossings: kernels::crossing_room(settings.max_crossings as u32),
     }
 }

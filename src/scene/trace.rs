@@ -31,6 +31,7 @@ impl Quality {
             max_crossings: MAX_CROSSINGS,
             delay: true,
             capture_u: 1.0 / horizon_outer(spin),
+            opaque_u: None,
         }
     }
 }
@@ -45,7 +46,16 @@ impl Scene {
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
         settings.delay = self.needs_delay();
         settings.capture_u = self.pixel_capture_u();
+        let opaque = self.view == super::View::Light && self.disk.is_some_and(|d| d.opacity == 1.0);
+        settings.opaque_u = self.disk_u().filter(|_| opaque);
         settings
+    }
+
+    /// 1/r of the disk's outer and inner edge; no matter orbits inside the ISCO. `None` without a disk, or with all of it inside.
+    pub fn disk_u(&self) -> Option<[f64; 2]> {
+        let disk = self.disk?;
+        let inner = disk.inner_radius.max(self.disk_isco());
+        (inner < disk.outer_radius).then(|| [1.0 / disk.outer_radius, 1.0 / inner])
     }
 
     /// Whether light shows when it left the disk: only structure that moves does.
@@ -95,7 +105,8 @@ impl Scene {
             fate: match traced.fate {
                 trace::Fate::Captured => Fate::Captured,
                 trace::Fate::Escaped => Fate::Escaped,
-                trace::Fate::Unresolved => Fate::Unresolved,
+                // Nothing is opaque for a host's rays.
+                trace::Fate::Unresolved | trace::Fate::Hidden => Fate::Unresolved,
             },
             sky_direction: self.hole.scene_to_chart().transpose() * traced.direction,
             sky_redshift: f64::NAN,
