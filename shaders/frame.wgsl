@@ -1,5 +1,4 @@
-// What the kernels of a frame share: the uniforms, and the ray record of a pixel, the one interface between lensing and shading.
-// src/gpu/uniforms.rs mirrors the structs.
+// The scene as the kernels of a frame see it, and the lens. src/gpu/uniforms.rs mirrors the struct.
 
 // The scene in the hole's units; the same for all tiles and samples of a frame.
 struct Frame {
@@ -52,21 +51,6 @@ const EFFECT_DOPPLER_SHIFT: u32 = 1u;
 const EFFECT_GRAVITY_SHIFT: u32 = 2u;
 const EFFECT_BEAMING: u32 = 4u;
 const EFFECT_ALL: u32 = 7u;
-
-// The record of pixel i: word k is records[k * pixels + i].
-const RECORD_DIRECTION: u32 = 0u;
-const RECORD_SKY_REDSHIFT: u32 = 3u;
-// Bits 0 .. 1 the fate, of a ray that ended on the opaque disk FATE_HIDDEN; bit 16 + k: the crossing of order k is the disk's.
-const RECORD_META: u32 = 4u;
-// E and L, scaled so that the local frame's observer measures 1; of frames with an effect switched off.
-const RECORD_ENERGY: u32 = 5u;
-const RECORD_ANGULAR_MOMENTUM: u32 = 6u;
-// Of the view that shows them: steps, and 1/r of the first crossing of the plane wherever it is, 0 without one.
-const RECORD_STEPS: u32 = 7u;
-const RECORD_PLANE: u32 = 7u;
-// u, g, azimuth, delay of each crossing within the disk, in order.
-const RECORD_CROSSINGS: u32 = 8u;
-const RECORD_CROSSING_WORDS: u32 = 4u;
 
 // Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.
 fn camera_look(x: f32, y: f32) -> vec3<f32> {

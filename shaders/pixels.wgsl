@@ -3,26 +3,6 @@
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
 @group(0) @binding(2) var<storage, read_write> records: array<u32>;
-// Steps of all rays: low and high word, the low one as wide as a submission's steps.
-@group(0) @binding(3) var<storage, read_write> step_sum: atomic<u32>;
-
-var<workgroup> group_steps: atomic<u32>;
-
-@compute @workgroup_size(16, 8)
-fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
-    if local == 0u {
-        atomicStore(&group_steps, 0u);
-    }
-    workgroupBarrier();
-    if id.x < pass_.size.x && id.y < pass_.size.y {
-        atomicAdd(&group_steps, trace_pixel(id.xy));
-    }
-    workgroupBarrier();
-    if local == 0u {
-        atomicAdd(&step_sum, atomicLoad(&group_steps));
-    }
-}
-
 // Of the ray being traced.
 var<private> record: u32;
 var<private> frequency_ratio: f32;
@@ -51,11 +31,14 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     crossing_slot += 1u;
 }
 
-// Traces one pixel of the rectangle into its record; the steps it took.
-fn trace_pixel(pixel: vec2<u32>) -> u32 {
-    let place = vec2<f32>(pass_.origin + vec2<i32>(pixel)) + pass_.offset;
+@compute @workgroup_size(16, 8)
+fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= pass_.size.x || id.y >= pass_.size.y {
+        return;
+    }
+    let place = vec2<f32>(pass_.origin + vec2<i32>(id.xy)) + pass_.offset;
     let begin = begin_ray(camera_look(place.x, place.y));
-    record = pixel.y * pass_.size.x + pixel.x;
+    record = id.y * pass_.size.x + id.x;
     frequency_ratio = begin.frequency_ratio;
     crossing_slot = 0u;
     disk_orders = 0u;
@@ -70,7 +53,8 @@ fn trace_pixel(pixel: vec2<u32>) -> u32 {
         steps = traced.steps;
         fate = traced.fate;
         if fate == FATE_ESCAPED {
-            let direction = bitcast<vec3<u32>>(chart_direction(traced.n, traced.drag));
+            let end = escape(begin.c, traced);
+            let direction = bitcast<vec3<u32>>(chart_direction(end.n, end.drag));
             keep(RECORD_DIRECTION, direction.x);
             keep(RECORD_DIRECTION + 1u, direction.y);
             keep(RECORD_DIRECTION + 2u, direction.z);
@@ -82,10 +66,7 @@ fn trace_pixel(pixel: vec2<u32>) -> u32 {
         }
     }
     keep(RECORD_META, fate | disk_orders);
-    if frame.view == VIEW_STEPS {
-        keep(RECORD_STEPS, steps);
-    }
-    return steps;
+    keep(RECORD_STEPS, steps);
 }
 
 // g of the disk's matter for the local frame's observer (physics::orbit::redshift).

@@ -58,6 +58,12 @@ fn trace_rays(@builtin(global_invocation_id) id: vec3<u32>) {
     crossing_count = 0u;
     let settings = Settings(rays.step, rays.tolerance, rays.max_steps, RAY_CROSSINGS, rays.capture_u, vec2<f32>(1.0, 0.0));
     let traced = trace(c, start, settings);
-    ray_ends[ray_end] = RayEnd(vec4<f32>(traced.n, traced.drag),
-        vec4<u32>(traced.fate, traced.steps, crossing_count, bitcast<u32>(traced.tau)));
+    var end: State;
+    if traced.fate == FATE_ESCAPED {
+        end = escape(c, traced);
+    } else if traced.fate == FATE_CAPTURED && !SPINNING {
+        end.delay = tau_at_horizon(c, traced);
+    }
+    ray_ends[ray_end] = RayEnd(vec4<f32>(end.n, end.drag),
+        vec4<u32>(traced.fate, traced.steps, crossing_count, bitcast<u32>(end.delay)));
 }

@@ -34,10 +34,10 @@ struct PlaneCrossing {
 struct RayTrace {
     fate: u32,
     steps: u32,
-    // N and drag at infinity (escaped).
-    n: vec3<f32>,
-    drag: f32,
-    // Tau to the end: infinity, or the horizon if the ray was followed that far.
+    // The last step, in which the ray ended: its begin, its end, its length, and tau at its begin.
+    from_state: State,
+    to_state: State,
+    h: f32,
     tau: f32,
 }
 
@@ -46,22 +46,21 @@ fn first_side(start: State) -> f32 {
 }
 
 fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
-    var result: RayTrace;
-    result.fate = FATE_UNRESOLVED;
     let u_plus = 1.0 / c.r_plus;
     let h_most = select(settings.step, 0.5, METHOD == METHOD_DORMAND_PRINCE) / c.scale;
     var h_wish = settings.step / c.scale;
     var side = first_side(start);
-    var state = start;
     var order = 0u;
+    var fate = FATE_UNRESOLVED;
+    var steps = 0u;
+    var tau = 0.0;
+    var h = 0.0;
+    var state = start;
+    var next = start;
     loop {
-        var h = 0.0;
-        var next = state;
         var crossed = false;
-        var escaped = false;
-        var captured = false;
-        while result.steps < settings.max_steps {
-            result.steps += 1u;
+        while steps < settings.max_steps {
+            steps += 1u;
             h = min(h_wish, h_most);
             if STEP_LIMIT {
                 h = min(h, step_limit(c, state, settings.step));
@@ -77,76 +76,58 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
             }
             next = step.state;
             crossed = side * next.n.z < 0.0;
-            escaped = next.u <= 0.0;
-            captured = next.du > 0.0 && (next.u >= settings.capture_u || u_plus - next.u < 1e-6 * u_plus);
-            if crossed || escaped || captured {
+            let captured = next.du > 0.0 && (next.u >= settings.capture_u || u_plus - next.u < 1e-6 * u_plus);
+            fate = select(select(FATE_UNRESOLVED, FATE_CAPTURED, captured), FATE_ESCAPED, next.u <= 0.0);
+            if crossed || fate != FATE_UNRESOLVED {
                 break;
             }
-            result.tau += h;
+            tau += h;
             state = next;
         }
-        if crossed {
+        // A loop of one turn at most: lavapipe would run the body of an `if` for rays that only end, too.
+        for (var look = crossed; look; look = false) {
             side = next.n.z;
             if order < settings.max_crossings {
                 let crossing = find_crossing(c, start, state, next, h, order);
                 if crossing.u > 0.0 && crossing.u <= 1.0 / (c.r_plus * (1.0 + 1e-5)) {
                     on_crossing(c, crossing);
                     if crossing.u >= settings.opaque_u.x && crossing.u <= settings.opaque_u.y {
-                        result.fate = FATE_HIDDEN;
-                        break;
+                        fate = FATE_HIDDEN;
                     }
                 }
             }
             order += 1u;
         }
-        if escaped {
-            result.fate = FATE_ESCAPED;
-            let there = escape(c, state, next, h);
-            result.n = there.n;
-            result.drag = there.drag;
-            result.tau += there.delay;
+        // Ended, or out of steps.
+        if fate != FATE_UNRESOLVED || !crossed {
             break;
         }
-        if captured {
-            result.fate = FATE_CAPTURED;
-            if settings.capture_u >= u_plus {
-                result.tau += time_to_horizon(c, state, h);
-            }
-            break;
-        }
-        // Steps ran out.
-        if !crossed {
-            break;
-        }
-        result.tau += h;
+        tau += h;
         state = next;
     }
-    return result;
+    return RayTrace(fate, steps, state, next, h, tau);
 }
 
-// The state at infinity inside the step of `h` from `start` to `to`; its `delay` holds the partial step instead.
-fn escape(c: Constants, start: State, to: State, h: f32) -> State {
-    let partial = h * quintic_root(quintic_of_u(c, start, to, h));
-    var there = step_ray(c, start, partial).state;
+// The state at infinity of an escaped ray; its `delay` holds tau.
+fn escape(c: Constants, traced: RayTrace) -> State {
+    let partial = traced.h * quintic_root(quintic_of_u(c, traced.from_state, traced.to_state, traced.h));
+    var there = step_ray(c, traced.from_state, partial).state;
     let rest = -there.u / there.du;
     there.n += there.dn * rest;
     there.drag += drag_rate(c, 0.0) * rest;
-    there.delay = partial + rest;
+    there.delay = traced.tau + partial + rest;
     return there;
 }
 
-// Tau from `state` to the horizon for a spin-0 ray whose last step was `h`: u is regular there.
-fn time_to_horizon(c: Constants, state: State, h: f32) -> f32 {
-    if SPINNING {
-        return 0.0;
-    }
+// Tau of a captured spin-0 ray at the horizon, through which u is regular.
+fn tau_at_horizon(c: Constants, traced: RayTrace) -> f32 {
     let u_plus = 1.0 / c.r_plus;
-    var t = h;
+    var t = traced.h;
     for (var i = 0; i < 4; i++) {
-        let there = step_ray(c, state, t).state;
-        t += clamp((u_plus - there.u) / there.du, -h, h);
+        let there = step_ray(c, traced.from_state, t).state;
+        t += clamp((u_plus - there.u) / there.du, -traced.h, traced.h);
     }
-    return t;
+    return traced.tau + t;
 }
 
 fn find_crossing(c: Constants, eye: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {

@@ -15,8 +15,10 @@ use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
 const GROUP: [u32; 2] = [16, 8];
-/// Words of a record before its crossings, and of a crossing (frame.wgsl).
-const RECORD_WORDS: u64 = 8;
+/// Workgroups of the kernel that sums steps: COUNTERS threads (count.wgsl).
+const COUNT_GROUPS: [u32; 2] = [128, 1];
+/// Words of a record before its crossings, and of a crossing (record.wgsl).
+const RECORD_WORDS: u64 = 9;
 const CROSSING_WORDS: u64 = 4;
 
 /// Buffers that frames of one size share; they grow and stay.
@@ -52,6 +54,7 @@ struct Stage {
 
 struct Stages {
     trace: Stage,
+    count: Stage,
     shade: Stage,
     develop: Stage,
 }
@@ -180,10 +183,8 @@ impl FrameBuffers {
             Ok::<_, Error>(Stage { compiled, group })
         };
         Ok(Stages {
-            trace: stage(
-                kernels.pixels(device, variant)?,
-                &[frame.clone(), pass.clone(), records.clone(), fixed.step_sum.as_entire_binding()],
-            )?,
+            trace: stage(kernels.pixels(device, variant)?, &[frame.clone(), pass.clone(), records.clone()])?,
+            count: stage(kernels.count(device)?, &[pass.clone(), records.clone(), fixed.step_sum.as_entire_binding()])?,
             shade: stage(
                 kernels.shade(device)?,
                 &[
@@ -285,6 +286,7 @@ impl Frame<'_, '_> {
             for i in 0..range.len() as u32 {
                 let offset = i * stride as u32;
                 dispatch(&self.stages.trace, offset, traced);
+                dispatch(&self.stages.count, offset, COUNT_GROUPS);
                 dispatch(&self.stages.shade, offset, inner);
             }
             if last {

@@ -33,6 +33,7 @@ impl From<Method> for MethodCode {
 enum Name {
     Pixels(Variant),
     Rays(Variant),
+    Count,
     Shade,
     Develop,
 }
@@ -58,6 +59,7 @@ const TRACE_PARTS: [&str; 4] = [
     include_str!("../../shaders/trace.wgsl"),
 ];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
+const RECORD: &str = include_str!("../../shaders/record.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 
 fn rays_source() -> String {
@@ -65,8 +67,13 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let rest = [PASS, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
+    let rest =
+        [PASS, RECORD, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
     [TRACE_PARTS.as_slice(), &rest].concat().join("\n")
+}
+
+fn count_source() -> String {
+    [PASS, RECORD, include_str!("../../shaders/count.wgsl")].join("\n")
 }
 
 fn shade_source() -> String {
@@ -74,6 +81,7 @@ fn shade_source() -> String {
         sky::StarIndex::shared().wgsl_constants().as_str(),
         MATH,
         PASS,
+        RECORD,
         FRAME,
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -89,7 +97,13 @@ fn develop_source() -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    vec![("rays", rays_source()), ("pixels", pixels_source()), ("shade", shade_source()), ("develop", develop_source())]
+    vec![
+        ("rays", rays_source()),
+        ("pixels", pixels_source()),
+        ("count", count_source()),
+        ("shade", shade_source()),
+        ("develop", develop_source()),
+    ]
 }
 
 /// What a binding of group 0 is.
@@ -104,8 +118,13 @@ enum Slot {
 
 impl Kernels {
     pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Write, Slot::Write];
+        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Write];
         self.get(device, Name::Pixels(variant), &slots, "trace_pixels", pixels_source)
+    }
+
+    pub fn count(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = [Slot::UniformPart, Slot::Read, Slot::Write];
+        self.get(device, Name::Count, &slots, "count_steps", count_source)
     }
 
     pub fn rays(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
@@ -154,7 +173,7 @@ impl Kernels {
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants; one over the bits of a word, which loses a bit in every turn; and the star list of a cell,
+/// loops counted over constants or over the pixels of a tile; one over the bits of a word, which loses a bit in every turn; and the star list of a cell,
 /// counted from the host's own table.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
