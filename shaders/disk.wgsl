@@ -47,19 +47,19 @@ fn profile_entry(i: u32) -> f32 {
 
 // T(r) / T_max (TemperatureProfile::at).
 fn temperature_profile(u: f32) -> f32 {
-    let closeness = frame.hole.w * u;
+    let closeness = abs(frame.hole.w) * u;
     if closeness >= 1.0 {
         return 0.0;
     }
-    let x = sqrt(1.0 - closeness) * f32(PROFILE_SIZE - 1u);
+    let root = sqrt(closeness);
+    let x = arctan2(sqrt(1.0 - closeness), root) / (0.5 * PI) * f32(PROFILE_SIZE - 1u);
     let i = min(u32(x), PROFILE_SIZE - 2u);
     let low = profile_entry(i);
-    let root = sqrt(closeness);
     return (low + (profile_entry(i + 1u) - low) * (x - f32(i))) * root * sqrt(root);
 }
 
 // Linear radiance of the opaque disk at 1/r = u, seen with g.
 fn disk_light(u: f32, shift: Shift) -> vec3<f32> {
-    let temperature = frame.disk.z * temperature_profile(u);
-    return shifted_blackbody(temperature, frame.disk.w, shift.colour, shift.beaming) * frame.disk_light.y;
+    let temperature = frame.disk.x * temperature_profile(u);
+    return shifted_blackbody(temperature, frame.disk.y, shift.colour, shift.beaming) * frame.disk.w;
 }

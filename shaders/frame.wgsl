@@ -1,5 +1,4 @@
-// What the kernels of a frame share: the uniforms, and the ray record of a pixel, the one interface between lensing and shading.
-// src/gpu/uniforms.rs mirrors the structs.
+// The scene as the kernels of a frame see it, and the lens. src/gpu/uniforms.rs mirrors the struct.
 
 // The scene in the hole's units; the same for all tiles and samples of a frame.
 struct Frame {
@@ -17,27 +16,28 @@ struct Frame {
     place: vec4<f32>,
     // omega, q, sqrt(Sg), sqrt(Sg D) of numerics.md's start values.
     zamo: vec4<f32>,
-    // a, r+, r-, ISCO of the disk's matter.
+    // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
     // Columns that take chart directions to sky axes; w of the first: 1 with stars; of the second: their brightness.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,
-    // Inner and outer radius, temperature, ln Y(temperature).
+    // Temperature, its ln Y, opacity, brightness.
     disk: vec4<f32>,
-    // Opacity, brightness, 0, -1 for retrograde or 1.
-    disk_light: vec4<f32>,
     // Of the full frame, pixels; then step in sigma and tolerance.
     size: vec4<f32>,
+    // 1/r of the disk's outer and inner edge, (1, 0) without one; the same if nothing behind it matters, else (1, 0).
+    disk_u: vec2<f32>,
+    opaque_u: vec2<f32>,
     capture_u: f32,
     max_steps: u32,
     max_crossings: u32,
     rain: u32,
-    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*, 1 with a disk, 1 for TRANSPARENT.
+    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*, 1 for TRANSPARENT.
     effects: u32,
     view: u32,
-    has_disk: u32,
     transparent: u32,
+    reserved: u32,
 }
 
 const VIEW_LIGHT: u32 = 0u;
@@ -51,21 +51,6 @@ const EFFECT_DOPPLER_SHIFT: u32 = 1u;
 const EFFECT_GRAVITY_SHIFT: u32 = 2u;
 const EFFECT_BEAMING: u32 = 4u;
 const EFFECT_ALL: u32 = 7u;
-
-// The record of pixel i: word k is records[k * pixels + i].
-const RECORD_DIRECTION: u32 = 0u;
-const RECORD_SKY_REDSHIFT: u32 = 3u;
-// Bits 0 .. 1 the fate; bits 16 + k set: the crossing of order k lies within the disk.
-const RECORD_META: u32 = 4u;
-// E and L, scaled so that the local frame's observer measures 1.
-const RECORD_ENERGY: u32 = 5u;
-const RECORD_ANGULAR_MOMENTUM: u32 = 6u;
-const RECORD_STEPS: u32 = 7u;
-// 1/r of the first crossing of the plane wherever it is; 0 without one.
-const RECORD_PLANE: u32 = 8u;
-// u, azimuth, g, delay of each crossing within the disk, in order.
-const RECORD_CROSSINGS: u32 = 9u;
-const RECORD_CROSSING_WORDS: u32 = 4u;
 
 // Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.
 fn camera_look(x: f32, y: f32) -> vec3<f32> {

@@ -33,6 +33,18 @@ struct RaysUniform {
 @group(0) @binding(1) var<storage, read> ray_starts: array<RayStart>;
 @group(0) @binding(2) var<storage, read_write> ray_ends: array<RayEnd>;
 
+// What bhr_trace_rays lists; the host knows it as MAX_CROSSINGS.
+const RAY_CROSSINGS: u32 = 4u;
+
+var<private> ray_end: u32;
+var<private> crossing_count: u32;
+
+fn on_crossing(c: Constants, x: PlaneCrossing) {
+    crossing_count += 1u;
+    ray_ends[ray_end + crossing_count] =
+        RayEnd(vec4<f32>(x.n, x.drag), vec4<u32>(bitcast<u32>(x.u), bitcast<u32>(x.delay), x.order, 0u));
+}
+
 @compute @workgroup_size(64)
 fn trace_rays(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= rays.count {
@@ -42,12 +54,16 @@ fn trace_rays(@builtin(global_invocation_id) id: vec3<u32>) {
     let c = Constants(rays.a, given.light.x, given.light.y, given.light.z, given.curve.x, given.curve.y, given.curve.z,
         given.curve.w, given.dn.w, given.n.w, rays.r_plus, rays.r_minus);
     let start = State(given.n.w, given.light.w, given.n.xyz, given.dn.xyz, 0.0, 0.0);
-    let traced = trace(c, start, Settings(rays.step, rays.tolerance, rays.max_steps, MAX_CROSSINGS, rays.capture_u));
-    let out = id.x * (1u + MAX_CROSSINGS);
-    ray_ends[out] = RayEnd(vec4<f32>(traced.n, traced.drag),
-        vec4<u32>(traced.fate, traced.steps, traced.crossing_count, bitcast<u32>(traced.tau)));
-    for (var i = 0u; i < traced.crossing_count; i++) {
-        let x = traced.crossings[i];
-        ray_ends[out + 1u + i] = RayEnd(vec4<f32>(x.n, x.drag), vec4<u32>(bitcast<u32>(x.u), bitcast<u32>(x.delay), x.order, 0u));
+    ray_end = id.x * (1u + RAY_CROSSINGS);
+    crossing_count = 0u;
+    let settings = Settings(rays.step, rays.tolerance, rays.max_steps, RAY_CROSSINGS, rays.capture_u, vec2<f32>(1.0, 0.0));
+    let traced = trace(c, start, settings);
+    var end: State;
+    if traced.fate == FATE_ESCAPED {
+        end = escape(c, traced);
+    } else if traced.fate == FATE_CAPTURED && !SPINNING {
+        end.delay = tau_at_horizon(c, traced);
     }
+    ray_ends[ray_end] = RayEnd(vec4<f32>(end.n, end.drag),
+        vec4<u32>(traced.fate, traced.steps, crossing_count, bitcast<u32>(end.delay)));
 }

@@ -86,13 +86,13 @@ fn pixel_light(i: u32) -> vec4<f32> {
         orders &= orders - 1u;
         let base = RECORD_CROSSINGS + RECORD_CROSSING_WORDS * slot;
         let u = number(base, i);
-        let g = number(base + 2u, i);
+        let g = number(base + 1u, i);
         var shift = Shift(g, g);
         if partial {
             shift = visible_shift(g, nu_static_eye(energy) / nu_zamo_in_plane(u, energy, angular_momentum));
         }
-        light += open * frame.disk_light.x * disk_light(u, shift);
-        open *= 1.0 - frame.disk_light.x;
+        light += open * frame.disk.z * disk_light(u, shift);
+        open *= 1.0 - frame.disk.z;
     }
     if (meta_word & FATE_MASK) != FATE_ESCAPED {
         return vec4<f32>(light, 1.0);
@@ -125,7 +125,7 @@ fn view_value(i: u32, pixel: vec2<u32>) -> f32 {
     switch frame.view {
         case VIEW_REDSHIFT: {
             if orders != 0u {
-                return number(RECORD_CROSSINGS + 2u, i);
+                return number(RECORD_CROSSINGS + 1u, i);
             }
             if fate == FATE_ESCAPED {
                 return number(RECORD_SKY_REDSHIFT, i);

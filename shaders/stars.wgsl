@@ -71,8 +71,10 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
         single = 1.0 - smoothstep(0.5 * limit, limit, radius);
         light = single * stars_in(cell_of(d, level), d, dx, dy, stretch2, g_colour, g_beaming);
     }
-    if single < 1.0 {
-        light += (1.0 - single) * mean_sky(g_colour, g_beaming);
+    // A loop of no turn instead of an `if`: lavapipe runs both sides of those.
+    for (var i = select(MEAN_SKY_PARTS, 0u, single < 1.0); i < MEAN_SKY_PARTS; i += 1u) {
+        let part = light_tables[MEAN_SKY_OFFSET + i];
+        light += (1.0 - single) * part.z * shifted_blackbody(part.x, part.y, g_colour, g_beaming);
     }
     return min(light, vec3<f32>(MAX_STAR_LIGHT));
 }
@@ -90,21 +92,12 @@ fn stars_in(cell: u32, d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, stretch2: f32
         let star = light_tables[at];
         let e = star.xyz - d;
         let p = vec2<f32>(dot(e, across), dot(e, down));
-        if max(abs(p.x), abs(p.y)) < 1.5 * area {
+        // A loop of one turn at most: see `star_light`.
+        for (var hit = max(abs(p.x), abs(p.y)) < 1.5 * area; hit; hit = false) {
             let spread = star_footprint(p.x / area) * star_footprint(p.y / area) * magnification;
             let kind = light_tables[at + 1u];
             light += spread * star.w * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
         }
-    }
-    return light;
-}
-
-// The light of all stars, spread evenly.
-fn mean_sky(g_colour: f32, g_beaming: f32) -> vec3<f32> {
-    var light = vec3<f32>(0.0);
-    for (var i = 0u; i < MEAN_SKY_PARTS; i += 1u) {
-        let part = light_tables[MEAN_SKY_OFFSET + i];
-        light += part.z * shifted_blackbody(part.x, part.y, g_colour, g_beaming);
     }
     return light;
 }

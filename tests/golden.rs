@@ -1,6 +1,7 @@
 //! Both tracers against the reference values in tests/golden, inside the bars of 'What "right" means' (design.md):
 //! every error is divided by (1 + the case's conditioning). The GPU cases run on whatever adapter comes first and
 //! fail when there is none.
+//! Files are found from the package's root, where cargo runs tests.
 
 use bhr::renderer::{Backend, Renderer, RendererOptions, adapters};
 use bhr::scene::{Camera, Fate, Hit, Method, Motion, Projection, Ray};
@@ -35,7 +36,7 @@ fn gpu() -> Renderer {
 }
 
 fn golden(file: &str) -> Value {
-    let path = format!("{}/tests/golden/{file}", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("tests/golden/{file}");
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -193,7 +194,7 @@ fn rays_of(mut renderer: Renderer, bars: &Bars, file: &str) {
 fn picture(mut renderer: Renderer, bars: &Bars, kind: &str) {
     let file = golden("image.json");
     let scene = file["scenes"].as_array().unwrap().iter().find(|s| s["kind"] == kind).unwrap();
-    let raw = std::fs::read(format!("{}/tests/golden/image_{kind}.f32", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let raw = std::fs::read(format!("tests/golden/image_{kind}.f32")).unwrap();
     let truth = raw.chunks_exact(4).map(|b| f64::from(f32::from_le_bytes(b.try_into().unwrap()))).collect::<Vec<_>>();
     let (width, height) = (64, 48);
     let (r, theta) = (number(&scene["r_o"]), number(&scene["inclination"]));

@@ -49,9 +49,11 @@ fn camera(r: f64, inclination_degrees: f64, fov_degrees: f64, motion: Motion) ->
     Camera { position, forward: -position, up, fov_y: fov_degrees.to_radians(), motion, ..Camera::default() }
 }
 
+type NamedScene = (&'static str, Box<dyn Fn(&mut Renderer)>);
+
 /// Spin, camera, and what else is unusual.
-fn scenes() -> Vec<(&'static str, Box<dyn Fn(&mut Renderer)>)> {
-    let scene = |name, spin: f64, c: Camera| -> (&'static str, Box<dyn Fn(&mut Renderer)>) {
+fn scenes() -> Vec<NamedScene> {
+    let scene = |name, spin: f64, c: Camera| -> NamedScene {
         (name, Box::new(move |r| (r.scene.hole.spin, r.scene.camera) = (spin, c)))
     };
     let mut list = vec![
@@ -244,8 +246,8 @@ fn shadow_sine(r: f64) -> f64 {
 /// From 10^5 M the silhouette of a spinning hole is Bardeen's curve, of the reference values, to half a pixel.
 #[test]
 fn spinning_shadow_is_bardeens_curve() {
-    let path = format!("{}/tests/golden/kerr_shadow.json", env!("CARGO_MANIFEST_DIR"));
-    let file: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let text = std::fs::read_to_string("tests/golden/kerr_shadow.json").unwrap();
+    let file: Value = serde_json::from_str(&text).unwrap();
     let (size, r) = ([160_u32, 160_u32], 1e5);
     // The frame is 16 M wide.
     let fov = 2.0 * (8.0_f64 / r).atan();

@@ -50,5 +50,5 @@ fn the_library_stays_mapped_after_dlclose() {
         .find(|entry| entry.d_tag(endian) == DT_FLAGS_1)
         .map(|entry| entry.d_val(endian))
         .expect("the library has DT_FLAGS_1");
-    assert_ne!(flags & u64::from(DF_1_NODELETE.0), 0, "flags are {flags:#x}");
+    assert_ne!(flags & DF_1_NODELETE.0, 0, "flags are {flags:#x}");
 }

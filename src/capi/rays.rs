@@ -65,7 +65,7 @@ pub struct BhrHit {
     pub fate: BhrFate,
     /// 0 .. BHR_MAX_CROSSINGS.
     pub crossing_count: u32,
-    /// Asymptotic, unit, chart axes; 0 when captured.
+    /// Asymptotic, unit, scene axes; 0 unless escaped.
     pub sky_direction: [f64; 3],
     /// nu(camera) / nu(at infinity).
     pub sky_redshift: f64,

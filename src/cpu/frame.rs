@@ -56,13 +56,15 @@ impl CpuTracer {
             for sample in 0..frame.samples {
                 stats.steps += self.pool.install(|| frame.add_sample(tile, sample, &mut sum));
                 done += 1.0;
+                if sample + 1 == frame.samples {
+                    let pixels = self.pool.install(|| frame.develop(tile, &sum));
+                    sink(tile, &pixels, tile.width as usize * request.format.bytes_per_pixel())?;
+                }
                 // The last tile is complete: nothing is left to cancel.
                 if done < total && !progress(done / total) {
                     return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
                 }
             }
-            let pixels = self.pool.install(|| frame.develop(tile, &sum));
-            sink(tile, &pixels, tile.width as usize * request.format.bytes_per_pixel())?;
         }
         progress(1.0);
         Ok(stats)

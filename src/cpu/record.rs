@@ -1,9 +1,10 @@
 //! The ray record of a pixel: the one interface between lensing and shading. `frame.wgsl` has the same fields.
 
 use crate::physics::geodesic::Constants;
+use crate::physics::orbit::redshift;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate, RayTrace, Settings, trace_look};
+use crate::scene::Scene;
 use crate::scene::observer::Lens;
-use crate::scene::{Disk, Scene};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 
@@ -37,13 +38,13 @@ pub struct Record {
 pub struct Recorder<'a> {
     pub lens: &'a Lens,
     settings: Settings,
-    disk: Option<Disk>,
-    isco: f64,
+    disk_u: Option<[f64; 2]>,
+    retrograde: bool,
 }
 
 impl<'a> Recorder<'a> {
     pub fn new(scene: &Scene, lens: &'a Lens) -> Self {
-        Self { lens, settings: scene.pixel_settings(), disk: scene.disk, isco: scene.disk_isco() }
+        Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
     }
 
     /// The record of position (x, y) of the full frame.
@@ -73,13 +74,12 @@ impl<'a> Recorder<'a> {
         if record.fate == Fate::Escaped {
             record.sky_redshift = frequency_ratio / record.energy;
         }
-        let Some(disk) = self.disk else { return };
-        let inner = disk.inner_radius.max(self.isco);
-        let within = |u: f64| u * inner <= 1.0 && u * disk.outer_radius >= 1.0;
+        let Some([outer, inner]) = self.disk_u else { return };
+        let within = |u: f64| u >= outer && u <= inner;
         record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| DiskCrossing {
             u: x.u,
             order: x.order,
-            g: frequency_ratio * x.redshift(c, disk.retrograde, self.isco),
+            g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
         }));
     }
 }

@@ -132,7 +132,7 @@ impl<'a> Shader<'a> {
                 (Some(crossing), _) => f64::from(crossing.order),
                 (None, Fate::Escaped) => -1.0,
                 (None, Fate::Captured) => -2.0,
-                (None, Fate::Unresolved) => f64::NAN,
+                (None, Fate::Unresolved | Fate::Hidden) => f64::NAN,
             },
             (View::Deflection, Fate::Escaped) => {
                 let look = self.lens.observer.frame.vector(self.lens.look(x, y));

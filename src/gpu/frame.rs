@@ -15,7 +15,9 @@ use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
 const GROUP: [u32; 2] = [16, 8];
-/// Words of a record before its crossings, and of a crossing (frame.wgsl).
+/// Workgroups of the kernel that sums steps: COUNTERS threads (count.wgsl).
+const COUNT_GROUPS: [u32; 2] = [128, 1];
+/// Words of a record before its crossings, and of a crossing (record.wgsl).
 const RECORD_WORDS: u64 = 9;
 const CROSSING_WORDS: u64 = 4;
 
@@ -52,6 +54,7 @@ struct Stage {
 
 struct Stages {
     trace: Stage,
+    count: Stage,
     shade: Stage,
     develop: Stage,
 }
@@ -74,11 +77,13 @@ impl GpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
-        let settings = for_f32(scene.pixel_settings(), scene.quality.method);
+        let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let inside = lens.observer.frame.r <= 2.0;
         let variant = variant(scene, &settings, inside);
-        let record_bytes = 4 * (RECORD_WORDS + CROSSING_WORDS * u64::from(variant.max_crossings));
+        // An opaque disk hides all but its first crossing.
+        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u64 };
+        let record_bytes = 4 * (RECORD_WORDS + CROSSING_WORDS * crossings);
         let binding_limit = self.device.limits().max_storage_buffer_binding_size;
         let steps = expected_steps(scene.quality.method, settings.step).min(u64::from(settings.max_steps));
         let plan = Plan::new(request, record_bytes, binding_limit, steps, samples);
@@ -178,10 +183,8 @@ impl FrameBuffers {
             Ok::<_, Error>(Stage { compiled, group })
         };
         Ok(Stages {
-            trace: stage(
-                kernels.pixels(device, variant)?,
-                &[frame.clone(), pass.clone(), records.clone(), fixed.step_sum.as_entire_binding()],
-            )?,
+            trace: stage(kernels.pixels(device, variant)?, &[frame.clone(), pass.clone(), records.clone()])?,
+            count: stage(kernels.count(device)?, &[pass.clone(), records.clone(), fixed.step_sum.as_entire_binding()])?,
             shade: stage(
                 kernels.shade(device)?,
                 &[
@@ -283,6 +286,7 @@ impl Frame<'_, '_> {
             for i in 0..range.len() as u32 {
                 let offset = i * stride as u32;
                 dispatch(&self.stages.trace, offset, traced);
+                dispatch(&self.stages.count, offset, COUNT_GROUPS);
                 dispatch(&self.stages.shade, offset, inner);
             }
             if last {

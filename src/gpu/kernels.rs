@@ -13,8 +13,6 @@ pub struct Variant {
     pub spinning: bool,
     pub delay: bool,
     pub step_limit: bool,
-    /// Room for this many crossings: 4 or 16.
-    pub max_crossings: u32,
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -31,15 +29,11 @@ impl From<Method> for MethodCode {
     }
 }
 
-/// The room for crossings that serves `wanted`.
-pub fn crossing_room(wanted: u32) -> u32 {
-    if wanted <= 4 { 4 } else { 16 }
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Name {
     Pixels(Variant),
     Rays(Variant),
+    Count,
     Shade,
     Develop,
 }
@@ -65,21 +59,21 @@ const TRACE_PARTS: [&str; 4] = [
     include_str!("../../shaders/trace.wgsl"),
 ];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
+const RECORD: &str = include_str!("../../shaders/record.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 
-fn crossing_constant(max_crossings: u32) -> String {
-    format!("const MAX_CROSSINGS: u32 = {max_crossings}u;\n")
+fn rays_source() -> String {
+    [TRACE_PARTS.as_slice(), &[include_str!("../../shaders/rays.wgsl")]].concat().join("\n")
 }
 
-fn rays_source(max_crossings: u32) -> String {
-    let head = crossing_constant(max_crossings);
-    [&[head.as_str()], TRACE_PARTS.as_slice(), &[include_str!("../../shaders/rays.wgsl")]].concat().join("\n")
+fn pixels_source() -> String {
+    let rest =
+        [PASS, RECORD, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
+    [TRACE_PARTS.as_slice(), &rest].concat().join("\n")
 }
 
-fn pixels_source(max_crossings: u32) -> String {
-    let head = crossing_constant(max_crossings);
-    let rest = [PASS, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
-    [&[head.as_str()], TRACE_PARTS.as_slice(), &rest].concat().join("\n")
+fn count_source() -> String {
+    [PASS, RECORD, include_str!("../../shaders/count.wgsl")].join("\n")
 }
 
 fn shade_source() -> String {
@@ -87,6 +81,7 @@ fn shade_source() -> String {
         sky::StarIndex::shared().wgsl_constants().as_str(),
         MATH,
         PASS,
+        RECORD,
         FRAME,
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -103,9 +98,9 @@ fn develop_source() -> String {
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
     vec![
-        ("rays", rays_source(4)),
-        ("pixels with 4 crossings", pixels_source(4)),
-        ("pixels with 16 crossings", pixels_source(16)),
+        ("rays", rays_source()),
+        ("pixels", pixels_source()),
+        ("count", count_source()),
         ("shade", shade_source()),
         ("develop", develop_source()),
     ]
@@ -123,13 +118,18 @@ enum Slot {
 
 impl Kernels {
     pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Write, Slot::Write];
-        self.get(device, Name::Pixels(variant), &slots, "trace_pixels", || pixels_source(variant.max_crossings))
+        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Write];
+        self.get(device, Name::Pixels(variant), &slots, "trace_pixels", pixels_source)
+    }
+
+    pub fn count(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = [Slot::UniformPart, Slot::Read, Slot::Write];
+        self.get(device, Name::Count, &slots, "count_steps", count_source)
     }
 
     pub fn rays(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
         let slots = [Slot::Uniform, Slot::Read, Slot::Write];
-        self.get(device, Name::Rays(variant), &slots, "trace_rays", || rays_source(variant.max_crossings))
+        self.get(device, Name::Rays(variant), &slots, "trace_rays", rays_source)
     }
 
     pub fn shade(&mut self, device: &Device) -> Result<Compiled> {
@@ -171,9 +171,10 @@ impl Kernels {
     }
 }
 
-/// SAFETY of the promise: every loop in shaders/ is one of: `trace`, which adds 1 to `steps` in every turn before it can
-/// `continue` and ends at `max_steps` <= 100000; counted loops over constants or over counts that the kernel itself bounds by
-/// MAX_CROSSINGS; and the star list of a cell, counted from the host's own table.
+/// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
+/// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
+/// loops counted over constants or over the pixels of a tile; one over the bits of a word, which loses a bit in every turn; and the star list of a cell,
+/// counted from the host's own table.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
 /// Values of the `override` constants that the kernel's source declares.

@@ -32,8 +32,8 @@ use tables::Tables;
 
 /// f32 rounds at 6e-8; a step's error estimate cannot be trusted below a few times that.
 const SMALLEST_TOLERANCE: f64 = 3e-7;
-/// Nystrom step in sigma for given rays and for pixels: truncation stays below rounding.
-const STEP: f64 = 0.2;
+/// Nystrom step in sigma for given rays: truncation stays below rounding.
+const RAY_STEP: f64 = 0.2;
 
 /// Traces on one device.
 pub struct GpuTracer {
@@ -65,11 +65,15 @@ impl GpuTracer {
     }
 }
 
-/// Settings of the f64 tracers brought to what f32 can do.
-fn for_f32(mut settings: Settings, method: Method) -> Settings {
-    settings.tolerance = settings.tolerance.max(SMALLEST_TOLERANCE);
-    if method == Method::Auto {
-        settings.step = STEP;
+/// Settings of the f64 tracer brought to what f32 can do.
+fn for_f32(settings: Settings) -> Settings {
+    Settings { tolerance: settings.tolerance.max(SMALLEST_TOLERANCE), ..settings }
+}
+
+fn ray_settings(scene: &Scene) -> Settings {
+    let mut settings = for_f32(scene.quality.ray_settings(scene.hole.spin));
+    if scene.quality.method == Method::Auto {
+        settings.step = RAY_STEP;
     }
     settings
 }
@@ -82,6 +86,5 @@ fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant 
         spinning,
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
-        max_crossings: kernels::crossing_room(settings.max_crossings as u32),
     }
 }

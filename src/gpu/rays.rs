@@ -1,6 +1,6 @@
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced in f32.
 
-use super::{Buffer, GpuTracer, Readback, for_f32, variant};
+use super::{Buffer, GpuTracer, Readback, ray_settings, variant};
 use crate::error::{Error, Result};
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::observer::LocalFrame;
@@ -97,7 +97,7 @@ impl GpuTracer {
 
     fn run(&mut self, scene: &Scene, starts: &[RayStart]) -> Result<Vec<RayEnd>> {
         let device = &self.device;
-        let settings = for_f32(scene.quality.ray_settings(scene.hole.spin), scene.quality.method);
+        let settings = ray_settings(scene);
         let compiled = self.kernels.rays(device, variant(scene, &settings, true))?;
         if self.ray_buffers.made.is_none() {
             let bytes = |size: usize| (CHUNK * size) as u64;

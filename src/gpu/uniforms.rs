@@ -7,7 +7,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
 use crate::scene::observer::Lens;
-use crate::scene::{Disk, Scene, Sky};
+use crate::scene::{Scene, Sky};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 
@@ -28,16 +28,17 @@ pub struct FrameUniform {
     sky_y: Vec4,
     sky_z: Vec4,
     disk: Vec4,
-    disk_light: Vec4,
     size: Vec4,
+    disk_u: [f32; 2],
+    opaque_u: [f32; 2],
     capture_u: f32,
     max_steps: u32,
     max_crossings: u32,
     rain: u32,
     effects: u32,
     view: u32,
-    has_disk: u32,
     transparent: u32,
+    reserved: u32,
 }
 
 #[repr(C)]
@@ -71,12 +72,17 @@ fn zamo(frame: &LocalFrame) -> Vec4 {
     four(zamo_omega(a, frame.r, frame.sin), (big_a / sigma).sqrt() / u, sigma.sqrt(), (sigma * d).sqrt())
 }
 
+/// An interval of 1/r; (1, 0), which nothing lies in, for none.
+fn range(u: Option<[f64; 2]>) -> [f32; 2] {
+    u.map_or([1.0, 0.0], |u| u.map(|u| u as f32))
+}
+
 impl FrameUniform {
     /// `settings`: those of f32 pixels. Errors: as `Scene::lens`.
     pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, transparent: bool) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
-        let disk = scene.disk.unwrap_or(Disk::default());
+        let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let stars = scene.sky.flags & Sky::STARS != 0 && scene.sky.stars_brightness > 0.0;
         let isco = scene.disk_isco();
@@ -91,26 +97,27 @@ impl FrameUniform {
             e_phi: with(frame.e_phi, 0.0),
             place: four(u, frame.sin, frame.cos, if frame.rain { (2.0 * u).sqrt() } else { frame.lapse }),
             zamo: zamo(frame),
-            hole: four(a, horizon_outer(a), horizon_inner(a), isco),
+            hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
             sky_x: with(sky.x_axis, f64::from(u8::from(stars))),
             sky_y: with(sky.y_axis, scene.sky.stars_brightness),
             sky_z: with(sky.z_axis, 0.0),
             disk: four(
-                disk.inner_radius.max(isco),
-                disk.outer_radius,
                 disk.temperature,
                 BlackbodyTable::shared().ln_luminance(disk.temperature),
+                disk.opacity,
+                disk.brightness,
             ),
-            disk_light: four(disk.opacity, disk.brightness, 0.0, if disk.retrograde { -1.0 } else { 1.0 }),
             size: four(lens.width, lens.height, settings.step, settings.tolerance),
+            disk_u: range(scene.disk_u()),
+            opaque_u: range(settings.opaque_u),
             capture_u: settings.capture_u as f32,
             max_steps: settings.max_steps,
             max_crossings: settings.max_crossings as u32,
             rain: u32::from(frame.rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
-            has_disk: u32::from(scene.disk.is_some()),
             transparent: u32::from(transparent),
+            reserved: 0,
         })
     }
 }

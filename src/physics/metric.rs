@@ -153,9 +153,9 @@ mod tests {
         for (a, r, theta) in PLACES {
             let k = Kerr { a };
             let (g, inv) = (k.metric(r, theta), k.inverse(r, theta));
-            for i in 0..4 {
+            for (i, row) in g.iter().enumerate() {
                 for j in 0..4 {
-                    let sum: f64 = (0..4).map(|m| g[i][m] * inv[m][j]).sum();
+                    let sum: f64 = row.iter().zip(&inv).map(|(g, inv)| g * inv[j]).sum();
                     assert!((sum - f64::from(u8::from(i == j))).abs() < 1e-12, "a {a} r {r}: [{i}][{j}] = {sum}");
                 }
             }

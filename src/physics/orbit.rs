@@ -59,7 +59,7 @@ pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
     let u = 1.0 / r;
     let v = u * u.sqrt();
     let root = (1.0 - 3.0 * u + 2.0 * a * v).sqrt();
-    if !(root > 0.0) || r <= horizon_outer(a) {
+    if root.is_nan() || root <= 0.0 || r <= horizon_outer(a) {
         return None;
     }
     let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));

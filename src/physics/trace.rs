@@ -27,6 +27,8 @@ pub struct Settings {
     pub delay: bool,
     /// 1/r beyond which a ray that moves inwards counts as captured. At most 1/r+; smaller skips what no one asks for.
     pub capture_u: f64,
+    /// A crossing with 1/r in this interval ends the ray: what lies behind is hidden.
+    pub opaque_u: Option<[f64; 2]>,
 }
 
 impl Settings {
@@ -40,6 +42,7 @@ impl Settings {
             max_crossings: CROSSINGS_KEPT,
             delay: true,
             capture_u: 1.0 / super::orbit::horizon_outer(a),
+            opaque_u: None,
         }
     }
 }
@@ -50,6 +53,8 @@ pub enum Fate {
     Escaped,
     /// `max_steps` ran out.
     Unresolved,
+    /// Ended on something opaque in the plane (`Settings::opaque_u`).
+    Hidden,
 }
 
 /// A crossing of the equatorial plane.
@@ -90,6 +95,7 @@ enum End {
     Escaped,
     Captured,
     OutOfSteps,
+    Hidden,
 }
 
 /// Steps of an adaptive method: next = 0.9 h (tolerance / error)^(1/5), at most 5 times more or less.
@@ -97,8 +103,8 @@ fn next_step(h: f64, error: f64, tolerance: f64) -> f64 {
     h * (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0)
 }
 
-/// Follows the ray, calling `visit` for every accepted step; the last one is where it ended.
-fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut dyn FnMut(&Segment)) -> (End, u32) {
+/// Follows the ray, calling `visit` for every accepted step until it returns false; the last one is where it ended.
+fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl FnMut(&Segment) -> bool) -> (End, u32) {
     let adaptive = settings.method == Method::DormandPrince;
     let u_plus = 1.0 / c.r_plus;
     let mut state = *start;
@@ -112,11 +118,14 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut dyn FnM
         if adaptive {
             h_wish = next_step(h, error, settings.tolerance);
             // NaN is no error to accept; a step too small to change anything is.
-            if !(error <= settings.tolerance) && h * c.scale > 1e-9 {
+            let accepted = error <= settings.tolerance || h * c.scale <= 1e-9;
+            if !accepted {
                 continue;
             }
         }
-        visit(&Segment { from: &state, to: &next, tau, h });
+        if !visit(&Segment { from: &state, to: &next, tau, h }) {
+            return (End::Hidden, count);
+        }
         if next.u <= 0.0 {
             return (End::Escaped, count);
         }
@@ -160,19 +169,22 @@ pub fn trace(constants: &Constants, start: &State, settings: &Settings) -> RayTr
         last = (*segment.from, *segment.to, segment.tau, segment.h);
         if side * segment.to.n.z < 0.0 {
             side = segment.to.n.z;
-            if crossings.len() < crossing_limit
-                && let Some(crossing) = find_crossing(c, start, settings, segment, order)
+            order += 1;
+            if order as usize <= crossing_limit
+                && let Some(crossing) = find_crossing(c, start, settings, segment, order - 1)
             {
                 crossings.push(crossing);
+                return !settings.opaque_u.is_some_and(|[low, high]| crossing.u >= low && crossing.u <= high);
             }
-            order += 1;
         }
+        true
     });
     let (from, to, tau, h) = last;
     let mut result = RayTrace { fate: Fate::Unresolved, direction: DVec3::ZERO, swept: f64::NAN, steps, crossings };
     let swept = |tau: f64| if c.a == 0.0 { c.k.max(0.0).sqrt() * tau } else { f64::NAN };
     match end {
         End::OutOfSteps => {}
+        End::Hidden => result.fate = Fate::Hidden,
         End::Escaped => {
             let guess = h * Quintic::of_u(c, &from, &to, h).root();
             // The delay is infinite at infinity and not needed there.
@@ -257,11 +269,7 @@ pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: 
     let u_far = 1.0 / far;
     let mut segments: Vec<(State, f64, f64)> = Vec::new();
     let mut end_tau = 0.0;
-    let mut over = false;
     follow(c, start, settings, &mut |segment| {
-        if over {
-            return;
-        }
         segments.push((*segment.from, segment.tau, segment.h));
         end_tau = segment.tau + segment.h;
         if segment.to.u < u_far && segment.to.du < 0.0 {
@@ -275,8 +283,9 @@ pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: 
                 segment.h,
             );
             end_tau = segment.tau + segment.h * q.root();
-            over = true;
+            return false;
         }
+        true
     });
     let mut index = 0;
     (0..count)

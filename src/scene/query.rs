@@ -225,7 +225,7 @@ struct Fall {
 /// time (Martel & Poisson 2001, eq. 2.5).
 fn fall_schwarzschild(r0: f64, tau: f64) -> Result<Fall> {
     let left = r0.powf(1.5) - 1.5 * std::f64::consts::SQRT_2 * tau;
-    if !(left > 0.0) {
+    if left.is_nan() || left <= 0.0 {
         let limit = r0.powf(1.5) / (1.5 * std::f64::consts::SQRT_2);
         return Err(Error::state(format!(
             "the fall from r = {r0} M ends in the singularity after proper time {limit} M; {tau} M were asked for"

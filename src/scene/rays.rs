@@ -45,7 +45,7 @@ pub struct Crossing {
 pub struct Hit {
     pub fate: Fate,
     pub crossing_count: u32,
-    /// Asymptotic, unit, chart axes; 0 when captured.
+    /// Asymptotic, unit, scene axes; 0 unless escaped.
     pub sky_direction: DVec3,
     /// nu(camera) / nu(at infinity).
     pub sky_redshift: f64,

@@ -9,9 +9,11 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
 use crate::physics::trace::{self, RayTrace, Settings};
 
-/// Steps in sigma of the Nystrom method: for rays that a host asks for (1e-11), and for pixels in f64 (1e-7).
+/// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning), of 1e-11.
 pub const RAY_STEP: f64 = 0.025;
-pub const PIXEL_STEP: f64 = 0.2;
+/// The same for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7 for crossing radii, at most 1e-5; a
+/// pixel of a 3840 x 2160 frame is 5e-4 wide.
+pub const PIXEL_STEP: f64 = 0.3;
 
 impl Quality {
     /// For rays of the f64 tracer.
@@ -29,6 +31,7 @@ impl Quality {
             max_crossings: MAX_CROSSINGS,
             delay: true,
             capture_u: 1.0 / horizon_outer(spin),
+            opaque_u: None,
         }
     }
 }
@@ -43,7 +46,16 @@ impl Scene {
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
         settings.delay = self.needs_delay();
         settings.capture_u = self.pixel_capture_u();
+        let opaque = self.view == super::View::Light && self.disk.is_some_and(|d| d.opacity == 1.0);
+        settings.opaque_u = self.disk_u().filter(|_| opaque);
         settings
+    }
+
+    /// 1/r of the disk's outer and inner edge; no matter orbits inside the ISCO. `None` without a disk, or with all of it inside.
+    pub fn disk_u(&self) -> Option<[f64; 2]> {
+        let disk = self.disk?;
+        let inner = disk.inner_radius.max(self.disk_isco());
+        (inner < disk.outer_radius).then(|| [1.0 / disk.outer_radius, 1.0 / inner])
     }
 
     /// Whether light shows when it left the disk: only structure that moves does.
@@ -93,9 +105,10 @@ impl Scene {
             fate: match traced.fate {
                 trace::Fate::Captured => Fate::Captured,
                 trace::Fate::Escaped => Fate::Escaped,
-                trace::Fate::Unresolved => Fate::Unresolved,
+                // Nothing is opaque for a host's rays.
+                trace::Fate::Unresolved | trace::Fate::Hidden => Fate::Unresolved,
             },
-            sky_direction: traced.direction,
+            sky_direction: self.hole.scene_to_chart().transpose() * traced.direction,
             sky_redshift: f64::NAN,
             swept_angle: traced.swept,
             steps: traced.steps,
