@@ -2,17 +2,31 @@
 // would cost the tracing kernel more than this does.
 
 @group(0) @binding(0) var<uniform> pass_: Pass;
-@group(0) @binding(1) var<storage, read> records: array<u32>;
+@group(0) @binding(1) var record_meta: texture_2d<u32>;
 @group(0) @binding(2) var<storage, read_write> step_sum: atomic<u32>;
 
-const COUNTERS: u32 = 8192u;
+// Pixels of a row that one thread sums.
+const COUNT_RUN: u32 = 8u;
 
-@compute @workgroup_size(64)
-fn count_steps(@builtin(global_invocation_id) id: vec3<u32>) {
-    let pixels = pass_.size.x * pass_.size.y;
-    var sum = 0u;
-    for (var i = id.x; i < pixels; i += COUNTERS) {
-        sum += records[RECORD_STEPS * pixels + i];
+var<workgroup> group_sum: atomic<u32>;
+
+@compute @workgroup_size(16, 8)
+fn count_steps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
+    if local == 0u {
+        atomicStore(&group_sum, 0u);
     }
-    atomicAdd(&step_sum, sum);
+    workgroupBarrier();
+    var sum = 0u;
+    if id.y < pass_.size.y {
+        let begin = id.x * COUNT_RUN;
+        let end = min(begin + COUNT_RUN, pass_.size.x);
+        for (var x = begin; x < end; x += 1u) {
+            sum += unpack_meta(textureLoad(record_meta, vec2<u32>(x, id.y), 0)).steps;
+        }
+    }
+    atomicAdd(&group_sum, sum);
+    workgroupBarrier();
+    if local == 0u {
+        atomicAdd(&step_sum, atomicLoad(&group_sum));
+    }
 }

@@ -24,44 +24,64 @@ fn step_ray(c: Constants, s: State, h: f32) -> Step {
     return Step(nystrom_step(c, s, h), 0.0);
 }
 
-// Nystrom 1925, order 5.
+const B1: f32 = 1.0 / 24.0;
+const B2: f32 = 25.0 / 84.0;
+const B3: f32 = 9.0 / 56.0;
+const D2: f32 = 125.0 / 336.0;
+const D3: f32 = 27.0 / 56.0;
+const D4: f32 = 5.0 / 48.0;
+
+// Nystrom 1925, order 5; without spin N turns evenly, which is exact.
 fn nystrom_step(c: Constants, s: State, h: f32) -> State {
     let h2 = h * h;
-    let f1u = u_acceleration(c, s.u);
-    let f1n = n_acceleration(c, s.n);
-    let u2 = s.u + 0.2 * h * s.du + h2 * (0.02 * f1u);
-    let n2 = s.n + s.dn * (0.2 * h) + f1n * (0.02 * h2);
-    let f2u = u_acceleration(c, u2);
-    let f2n = n_acceleration(c, n2);
-    let u3 = s.u + (2.0 / 3.0) * h * s.du + h2 * ((7.0 * f2u - f1u) / 27.0);
-    let n3 = s.n + s.dn * (2.0 / 3.0 * h) + (f2n * 7.0 - f1n) * (h2 / 27.0);
-    let f3u = u_acceleration(c, u3);
-    let f3n = n_acceleration(c, n3);
-    let u4 = s.u + h * s.du + h2 * (0.3 * f1u - (2.0 / 35.0) * f2u + (9.0 / 35.0) * f3u);
-    let n4 = s.n + s.dn * h + (f1n * 0.3 - f2n * (2.0 / 35.0) + f3n * (9.0 / 35.0)) * h2;
-    let f4u = u_acceleration(c, u4);
-    let f4n = n_acceleration(c, n4);
-    let b1 = 1.0 / 24.0;
-    let b2 = 25.0 / 84.0;
-    let b3 = 9.0 / 56.0;
-    let d2 = 125.0 / 336.0;
-    let d3 = 27.0 / 56.0;
-    let d4 = 5.0 / 48.0;
-    var end: State;
-    end.u = s.u + (h * s.du + h2 * (b1 * f1u + b2 * f2u + b3 * f3u));
-    end.du = s.du + h * (b1 * f1u + d2 * f2u + d3 * f3u + d4 * f4u);
-    end.n = s.n + (s.dn * h + (f1n * b1 + f2n * b2 + f3n * b3) * h2);
-    end.dn = s.dn + (f1n * b1 + f2n * d2 + f3n * d3 + f4n * d4) * h;
-    end.drag = s.drag;
-    end.delay = s.delay;
+    let f1 = u_acceleration(c, s.u);
+    let u2 = s.u + 0.2 * h * s.du + h2 * (0.02 * f1);
+    let f2 = u_acceleration(c, u2);
+    let u3 = s.u + (2.0 / 3.0) * h * s.du + h2 * ((7.0 * f2 - f1) / 27.0);
+    let f3 = u_acceleration(c, u3);
+    let u4 = s.u + h * s.du + h2 * (0.3 * f1 - (2.0 / 35.0) * f2 + (9.0 / 35.0) * f3);
+    let f4 = u_acceleration(c, u4);
+    var end = s;
+    end.u = s.u + (h * s.du + h2 * (B1 * f1 + B2 * f2 + B3 * f3));
+    end.du = s.du + h * (B1 * f1 + D2 * f2 + D3 * f3 + D4 * f4);
     if SPINNING {
-        end.drag += h * (b1 * drag_rate(c, s.u) + d2 * drag_rate(c, u2) + d3 * drag_rate(c, u3) + d4 * drag_rate(c, u4));
-    }
-    if DELAY {
-        end.delay += h * (b1 * delay_rate(c, s.u, s.n.z) + d2 * delay_rate(c, u2, n2.z)
-            + d3 * delay_rate(c, u3, n3.z) + d4 * delay_rate(c, u4, n4.z));
+        end.drag += h * (B1 * drag_rate(c, s.u) + D2 * drag_rate(c, u2) + D3 * drag_rate(c, u3) + D4 * drag_rate(c, u4));
+        let n_z = nystrom_step_of_n(c, s, h, &end);
+        if DELAY {
+            end.delay += h * (B1 * delay_rate(c, s.u, s.n.z) + D2 * delay_rate(c, u2, n_z.x)
+                + D3 * delay_rate(c, u3, n_z.y) + D4 * delay_rate(c, u4, n_z.z));
+        }
+    } else {
+        turn_n(c, s, h, &end);
+        if DELAY {
+            end.delay += h * (B1 * delay_rate(c, s.u, 0.0) + D2 * delay_rate(c, u2, 0.0) + D3 * delay_rate(c, u3, 0.0)
+                + D4 * delay_rate(c, u4, 0.0));
+        }
     }
     return end;
+}
+
+// N and N' of the step; N_z at the nodes.
+fn nystrom_step_of_n(c: Constants, s: State, h: f32, end: ptr<function, State>) -> vec3<f32> {
+    let h2 = h * h;
+    let f1 = n_acceleration(c, s.n);
+    let n2 = s.n + s.dn * (0.2 * h) + f1 * (0.02 * h2);
+    let f2 = n_acceleration(c, n2);
+    let n3 = s.n + s.dn * (2.0 / 3.0 * h) + (f2 * 7.0 - f1) * (h2 / 27.0);
+    let f3 = n_acceleration(c, n3);
+    let n4 = s.n + s.dn * h + (f1 * 0.3 - f2 * (2.0 / 35.0) + f3 * (9.0 / 35.0)) * h2;
+    let f4 = n_acceleration(c, n4);
+    (*end).n = s.n + (s.dn * h + (f1 * B1 + f2 * B2 + f3 * B3) * h2);
+    (*end).dn = s.dn + (f1 * B1 + f2 * D2 + f3 * D3 + f4 * D4) * h;
+    return vec3<f32>(n2.z, n3.z, n4.z);
+}
+
+// a = 0: N'' = -K N turns N by sqrt(K) h in the ray's plane.
+fn turn_n(c: Constants, s: State, h: f32, end: ptr<function, State>) {
+    let kappa = sqrt(max(c.k, 1e-12));
+    let turn = sincos(kappa * h);
+    (*end).n = s.n * turn.y + s.dn * (turn.x / kappa);
+    (*end).dn = s.dn * turn.y - s.n * (turn.x * kappa);
 }
 
 fn derivative(c: Constants, s: State) -> State {
@@ -164,7 +184,7 @@ fn quintic_root(q: Quintic) -> f32 {
     var low = 0.0;
     var high = 1.0;
     var x = clamp(q.low.x / (q.low.x - end), 0.0, 1.0);
-    for (var i = 0; i < 6; i++) {
+    for (var i = 0; i < 4; i++) {
         let value = q.low.x + x * (q.low.y + x * (q.low.z + x * (q.high.x + x * (q.high.y + x * q.high.z))));
         let slope = q.low.y + x * (2.0 * q.low.z + x * (3.0 * q.high.x + x * (4.0 * q.high.y + x * 5.0 * q.high.z)));
         let past = (value > 0.0) == rising;

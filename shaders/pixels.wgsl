@@ -2,33 +2,29 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
-@group(0) @binding(2) var<storage, read_write> records: array<u32>;
-// Of the ray being traced.
-var<private> record: u32;
-var<private> frequency_ratio: f32;
-var<private> crossing_slot: u32;
-var<private> disk_orders: u32;
+@group(0) @binding(2) var record_sky: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(3) var record_meta: texture_storage_2d<rgba32uint, write>;
+@group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
 
-fn keep(word: u32, value: u32) {
-    records[word * pass_.size.x * pass_.size.y + record] = value;
-}
+// Of the ray being traced.
+var<private> pixel: vec2<u32>;
+var<private> frequency_ratio: f32;
+var<private> disk_orders: u32;
+var<private> plane_u: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
-    if frame.view == VIEW_METRIC && crossing.order == 0u {
-        keep(RECORD_PLANE, bitcast<u32>(crossing.u));
+    if crossing.order == 0u {
+        plane_u = crossing.u;
     }
-    if crossing.u < frame.disk_u.x || crossing.u > frame.disk_u.y {
-        return;
+    if crossing.u >= frame.disk_u.x && crossing.u <= frame.disk_u.y {
+        var azimuth = 0.0;
+        if DELAY {
+            azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
+        }
+        let g = frequency_ratio * redshift_of(c, crossing.u);
+        textureStore(record_disk, pixel, countOneBits(disk_orders), vec4<f32>(crossing.u, g, azimuth, crossing.delay));
+        disk_orders |= 1u << crossing.order;
     }
-    let word = RECORD_CROSSINGS + RECORD_CROSSING_WORDS * crossing_slot;
-    keep(word, bitcast<u32>(crossing.u));
-    keep(word + 1u, bitcast<u32>(frequency_ratio * redshift_of(c, crossing.u)));
-    if DELAY {
-        keep(word + 2u, bitcast<u32>(wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag)));
-        keep(word + 3u, bitcast<u32>(crossing.delay));
-    }
-    disk_orders |= 0x10000u << crossing.order;
-    crossing_slot += 1u;
 }
 
 @compute @workgroup_size(16, 8)
@@ -36,37 +32,31 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= pass_.size.x || id.y >= pass_.size.y {
         return;
     }
-    let place = vec2<f32>(pass_.origin + vec2<i32>(id.xy)) + pass_.offset;
+    pixel = id.xy;
+    let place = vec2<f32>(pass_.origin + vec2<i32>(pixel)) + pass_.offset;
     let begin = begin_ray(camera_look(place.x, place.y));
-    record = id.y * pass_.size.x + id.x;
+    let c = begin.c;
     frequency_ratio = begin.frequency_ratio;
-    crossing_slot = 0u;
     disk_orders = 0u;
-    if frame.view == VIEW_METRIC {
-        keep(RECORD_PLANE, 0u);
-    }
-    var steps = 0u;
-    var fate = FATE_CAPTURED;
+    plane_u = 0.0;
+    var sky = vec4<f32>(0.0);
+    var m = RecordMeta(FATE_CAPTURED, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
     if begin.light {
         let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
-        let traced = trace(begin.c, begin.state, settings);
-        steps = traced.steps;
-        fate = traced.fate;
-        if fate == FATE_ESCAPED {
-            let end = escape(begin.c, traced);
-            let direction = bitcast<vec3<u32>>(chart_direction(end.n, end.drag));
-            keep(RECORD_DIRECTION, direction.x);
-            keep(RECORD_DIRECTION + 1u, direction.y);
-            keep(RECORD_DIRECTION + 2u, direction.z);
-            keep(RECORD_SKY_REDSHIFT, bitcast<u32>(frequency_ratio * begin.c.nu_local / begin.c.energy));
-        }
-        if frame.effects != EFFECT_ALL {
-            keep(RECORD_ENERGY, bitcast<u32>(begin.c.energy / begin.c.nu_local));
-            keep(RECORD_ANGULAR_MOMENTUM, bitcast<u32>(begin.c.angular_momentum / begin.c.nu_local));
+        let traced = trace(c, begin.state, settings);
+        m.fate = traced.fate;
+        m.steps = traced.steps;
+        if traced.fate == FATE_ESCAPED {
+            let end = escape(c, traced);
+            sky = vec4<f32>(chart_direction(end.n, end.drag), frequency_ratio / m.energy);
         }
     }
-    keep(RECORD_META, fate | disk_orders);
-    keep(RECORD_STEPS, steps);
+    textureStore(record_sky, pixel, sky);
+    m.orders = disk_orders;
+    if frame.view == VIEW_METRIC {
+        m.energy = plane_u;
+    }
+    textureStore(record_meta, pixel, pack_meta(m));
 }
 
 // g of the disk's matter for the local frame's observer (physics::orbit::redshift).

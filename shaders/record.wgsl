@@ -1,16 +1,25 @@
-// The ray record of a pixel: the one interface between lensing and shading. src/cpu/record.rs has the same fields.
+// The ray record of a pixel: the one interface between lensing and shading. src/cpu/record.rs has the same fields. Textures of the
+// traced rectangle's size, because neighbours are read together and software drivers reach into buffers lane by lane:
 //
-// The record of pixel i: word k is records[k * pixels + i].
-const RECORD_DIRECTION: u32 = 0u;
-const RECORD_SKY_REDSHIFT: u32 = 3u;
-// Bits 0 .. 1 the fate, of a ray that ended on the opaque disk FATE_HIDDEN; bit 16 + k: the crossing of order k is the disk's.
-const RECORD_META: u32 = 4u;
-// E and L, scaled so that the local frame's observer measures 1; of frames with an effect switched off.
-const RECORD_ENERGY: u32 = 5u;
-const RECORD_ANGULAR_MOMENTUM: u32 = 6u;
-const RECORD_STEPS: u32 = 7u;
-// 1/r of the first crossing of the plane wherever it is, 0 without one; of frames that show it.
-const RECORD_PLANE: u32 = 8u;
-// u, g, azimuth, delay of each crossing within the disk, in order.
-const RECORD_CROSSINGS: u32 = 9u;
-const RECORD_CROSSING_WORDS: u32 = 4u;
+//     record_sky    xyz: sky direction, chart; w: sky_redshift, 0 unless the ray escaped.
+//     record_meta   RECORD_* below.
+//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth, delay (the last two with DELAY only).
+
+// x: bits 0 .. 1 the fate, of a ray that ended on the opaque disk FATE_HIDDEN; bit 16 + k: the crossing of order k is the disk's.
+// y: steps. z, w: E and L as f32, scaled so that the local frame's observer measures 1; in the METRIC view z is 1/r of the first
+// crossing of the plane wherever it is, 0 without one.
+struct RecordMeta {
+    fate: u32,
+    orders: u32,
+    steps: u32,
+    energy: f32,
+    angular_momentum: f32,
+}
+
+fn pack_meta(m: RecordMeta) -> vec4<u32> {
+    return vec4<u32>(m.fate | (m.orders << 16u), m.steps, bitcast<u32>(m.energy), bitcast<u32>(m.angular_momentum));
+}
+
+fn unpack_meta(v: vec4<u32>) -> RecordMeta {
+    return RecordMeta(v.x & 3u, v.x >> 16u, v.y, bitcast<f32>(v.z), bitcast<f32>(v.w));
+}

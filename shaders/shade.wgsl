@@ -3,13 +3,14 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
-@group(0) @binding(2) var<storage, read> records: array<u32>;
-@group(0) @binding(3) var<storage, read> light_tables: array<vec4<f32>>;
-@group(0) @binding(4) var<storage, read> star_cells: array<u32>;
+@group(0) @binding(2) var record_sky: texture_2d<f32>;
+@group(0) @binding(3) var record_meta: texture_2d<u32>;
+@group(0) @binding(4) var record_disk: texture_2d_array<f32>;
+@group(0) @binding(5) var<storage, read> light_tables: array<vec4<f32>>;
+@group(0) @binding(6) var<storage, read> star_cells: array<u32>;
 // Of the tile without its margin.
-@group(0) @binding(5) var<storage, read_write> radiance: array<vec4<f32>>;
+@group(0) @binding(7) var<storage, read_write> radiance: array<vec4<f32>>;
 
-const FATE_MASK: u32 = 3u;
 const FATE_CAPTURED: u32 = 0u;
 const FATE_ESCAPED: u32 = 1u;
 
@@ -20,149 +21,99 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let pixel = id.xy + 1u;
-    let i = pixel.y * pass_.size.x + pixel.x;
     let out = id.y * tile.x + id.x;
+    let here = unpack_meta(textureLoad(record_meta, pixel, 0));
     if frame.view != VIEW_LIGHT {
-        radiance[out] = vec4<f32>(view_value(i, pixel), 0.0, 0.0, 1.0);
+        radiance[out] = vec4<f32>(view_value(here, pixel), 0.0, 0.0, 1.0);
         return;
     }
-    var sum = pixel_light(i) * pass_.weight;
-    if pass_.first == 0u {
+    var sum = pixel_light(here, pixel) * pass_.weight;
+    // A loop of one turn at most: lavapipe runs both sides of an `if`.
+    for (var more = pass_.first == 0u; more; more = false) {
         sum += radiance[out];
     }
     radiance[out] = sum;
 }
 
-fn word(k: u32, i: u32) -> u32 {
-    return records[k * pass_.size.x * pass_.size.y + i];
-}
-
-fn number(k: u32, i: u32) -> f32 {
-    return bitcast<f32>(word(k, i));
-}
-
-fn escaped(i: u32) -> bool {
-    return (word(RECORD_META, i) & FATE_MASK) == FATE_ESCAPED;
-}
-
-fn direction(i: u32) -> vec3<f32> {
-    return vec3<f32>(number(RECORD_DIRECTION, i), number(RECORD_DIRECTION + 1u, i), number(RECORD_DIRECTION + 2u, i));
-}
-
-// d(sky direction) / d(pixel) along the neighbours at -+ stride: central where both escaped, else one-sided; infinite where
+// d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; infinite where
 // neither did, which only the mean sky can stand for.
-fn derivative_of_direction(i: u32, here: vec3<f32>, stride: u32) -> vec3<f32> {
-    let before = escaped(i - stride);
-    let after = escaped(i + stride);
-    if before && after {
-        return 0.5 * (direction(i + stride) - direction(i - stride));
-    }
-    if after {
-        return direction(i + stride) - here;
-    }
-    if before {
-        return here - direction(i - stride);
-    }
-    return vec3<f32>(1e30);
+fn derivative_of_direction(pixel: vec2<u32>, here: vec3<f32>, step: vec2<u32>) -> vec3<f32> {
+    let before = textureLoad(record_sky, pixel - step, 0);
+    let after = textureLoad(record_sky, pixel + step, 0);
+    let has_before = before.w != 0.0;
+    let has_after = after.w != 0.0;
+    let first = select(here, before.xyz, has_before);
+    let last = select(here, after.xyz, has_after);
+    let difference = (last - first) * select(1.0, 0.5, has_before && has_after);
+    return select(vec3<f32>(1e30), difference, has_before || has_after);
 }
 
 fn to_sky(d: vec3<f32>) -> vec3<f32> {
     return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
 }
 
-fn pixel_light(i: u32) -> vec4<f32> {
-    let meta_word = word(RECORD_META, i);
-    let partial = frame.effects != EFFECT_ALL;
-    var energy = 1.0;
-    var angular_momentum = 0.0;
-    if partial {
-        energy = number(RECORD_ENERGY, i);
-        angular_momentum = number(RECORD_ANGULAR_MOMENTUM, i);
-    }
+fn pixel_light(here: RecordMeta, pixel: vec2<u32>) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
-    var orders = meta_word >> 16u;
-    for (var slot = 0u; orders != 0u && open > 0.0; slot += 1u) {
-        orders &= orders - 1u;
-        let base = RECORD_CROSSINGS + RECORD_CROSSING_WORDS * slot;
-        let u = number(base, i);
-        let g = number(base + 1u, i);
-        var shift = Shift(g, g);
-        if partial {
-            shift = visible_shift(g, nu_static_eye(energy) / nu_zamo_in_plane(u, energy, angular_momentum));
+    let crossings = countOneBits(here.orders);
+    for (var slot = 0u; slot < crossings && open > 0.0; slot += 1u) {
+        let crossing = textureLoad(record_disk, pixel, slot, 0);
+        let u = crossing.x;
+        var shift = Shift(crossing.y, crossing.y);
+        if frame.effects != EFFECT_ALL {
+            let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(u, here.energy, here.angular_momentum);
+            shift = visible_shift(crossing.y, gravity);
         }
         light += open * frame.disk.z * disk_light(u, shift);
         open *= 1.0 - frame.disk.z;
     }
-    if (meta_word & FATE_MASK) != FATE_ESCAPED {
-        return vec4<f32>(light, 1.0);
+    let sky_seen = here.fate == FATE_ESCAPED && open > 0.0;
+    // A loop of one turn at most: lavapipe runs both sides of an `if`.
+    for (var stars = sky_seen && frame.sky_x.w != 0.0 && frame.transparent == 0u; stars; stars = false) {
+        light += open * sky_light(here, pixel);
     }
-    if frame.sky_x.w != 0.0 && frame.transparent == 0u && open > 0.0 {
-        light += open * sky_light(i, energy, partial);
-    }
-    return vec4<f32>(light, 1.0 - open);
+    return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
 }
 
-fn sky_light(i: u32, energy: f32, partial: bool) -> vec3<f32> {
-    let d = direction(i);
-    let dx = derivative_of_direction(i, d, 1u);
-    let dy = derivative_of_direction(i, d, pass_.size.x);
-    let g = number(RECORD_SKY_REDSHIFT, i);
-    var shift = Shift(g, g);
-    if partial {
-        shift = visible_shift(g, nu_static_eye(energy) / energy);
+fn sky_light(here: RecordMeta, pixel: vec2<u32>) -> vec3<f32> {
+    let sky = textureLoad(record_sky, pixel, 0);
+    let d = sky.xyz;
+    let dx = derivative_of_direction(pixel, d, vec2<u32>(1u, 0u));
+    let dy = derivative_of_direction(pixel, d, vec2<u32>(0u, 1u));
+    var shift = Shift(sky.w, sky.w);
+    if frame.effects != EFFECT_ALL {
+        shift = visible_shift(sky.w, nu_static_eye(here.energy) / here.energy);
     }
     return star_light(to_sky(d), to_sky(dx), to_sky(dy), shift.colour, shift.beaming) * frame.sky_y.w;
 }
 
 // What BHR_VIEW_* shows; NaN where there is nothing.
-fn view_value(i: u32, pixel: vec2<u32>) -> f32 {
+fn view_value(here: RecordMeta, pixel: vec2<u32>) -> f32 {
     // NaN may not be written as a constant.
     let nothing = bitcast<f32>(0x7fc00000u | frame.view);
-    let meta_word = word(RECORD_META, i);
-    let fate = meta_word & FATE_MASK;
-    let orders = meta_word >> 16u;
+    let on_disk = here.orders != 0u;
+    let sky = textureLoad(record_sky, pixel, 0);
+    let in_sky = here.fate == FATE_ESCAPED;
     switch frame.view {
         case VIEW_REDSHIFT: {
-            if orders != 0u {
-                return number(RECORD_CROSSINGS + 1u, i);
-            }
-            if fate == FATE_ESCAPED {
-                return number(RECORD_SKY_REDSHIFT, i);
-            }
-            return nothing;
+            return select(select(nothing, sky.w, in_sky), textureLoad(record_disk, pixel, 0u, 0).y, on_disk);
         }
         case VIEW_ORDER: {
-            if orders != 0u {
-                return f32(firstTrailingBit(orders));
-            }
-            if fate == FATE_ESCAPED {
-                return -1.0;
-            }
-            if fate == FATE_CAPTURED {
-                return -2.0;
-            }
-            return nothing;
+            let elsewhere = select(select(nothing, -2.0, here.fate == FATE_CAPTURED), -1.0, in_sky);
+            return select(elsewhere, f32(firstTrailingBit(here.orders)), on_disk);
         }
         case VIEW_DEFLECTION: {
-            if fate != FATE_ESCAPED {
-                return nothing;
-            }
             let place = vec2<f32>(pass_.origin + vec2<i32>(pixel)) + pass_.offset;
             let n = camera_look(place.x, place.y);
             let look = frame.e_r.xyz * n.x + frame.e_theta.xyz * n.y + frame.e_phi.xyz * n.z;
-            let d = direction(i);
-            return arctan2(length(cross(look, d)), dot(look, d));
+            return select(nothing, arctan2(length(cross(look, sky.xyz)), dot(look, sky.xyz)), in_sky);
         }
         case VIEW_STEPS: {
-            return f32(word(RECORD_STEPS, i));
+            return f32(here.steps);
         }
         default: {
-            let u = number(RECORD_PLANE, i);
-            if u == 0.0 {
-                return nothing;
-            }
-            return 1.0 - 2.0 * u;
+            // METRIC: -g_tt = 1 - 2/r in the plane.
+            return select(nothing, 1.0 - 2.0 * here.energy, here.energy > 0.0);
         }
     }
 }

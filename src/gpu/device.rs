@@ -19,6 +19,9 @@ const WAIT_SLICE: Duration = Duration::from_secs(1);
 /// Largest buffer and storage binding asked for: what a tile of the largest frames needs, not what the adapter could.
 const MAX_BUFFER_SIZE: u64 = 256 << 20;
 
+/// Largest side of a texture asked for: that of a tile.
+const MAX_TEXTURE_SIDE: u32 = 4096;
+
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
@@ -55,6 +58,7 @@ impl Device {
         let limits = wgpu::Limits {
             max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
             max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
+            max_texture_dimension_2d: offered.max_texture_dimension_2d.min(MAX_TEXTURE_SIDE),
             ..required_limits()
         };
         let descriptor = wgpu::DeviceDescriptor {

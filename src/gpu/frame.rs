@@ -1,11 +1,11 @@
 //! A frame on the GPU: tile by tile, sample by sample, trace -> shade -> develop -> readback. Each tile's readback overlaps
 //! the next tile's work. Knows no host memory: finished tiles go to the sink.
 
-use super::kernels::{Compiled, check_groups};
+use super::kernels::{Compiled, RecordTexture, check_groups};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
-use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, for_f32, kernels, variant};
+use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
@@ -15,11 +15,10 @@ use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
 const GROUP: [u32; 2] = [16, 8];
-/// Workgroups of the kernel that sums steps: COUNTERS threads (count.wgsl).
-const COUNT_GROUPS: [u32; 2] = [128, 1];
-/// Words of a record before its crossings, and of a crossing (record.wgsl).
-const RECORD_WORDS: u64 = 9;
-const CROSSING_WORDS: u64 = 4;
+/// Pixels of a row that a thread of count.wgsl sums.
+const COUNT_RUN: u32 = 8;
+/// Bytes of a texel of the record textures, and of a pixel's radiance.
+const TEXEL: u64 = 16;
 
 /// Buffers that frames of one size share; they grow and stay.
 #[derive(Default)]
@@ -40,10 +39,18 @@ struct FixedBuffers {
 }
 
 struct SizedBuffers {
-    key: [u64; 3],
-    records: Buffer,
+    size: Size,
+    records: [Texture; 3],
     radiance: Buffer,
     packed: Buffer,
+}
+
+/// What the sized buffers serve: largest tile, crossings of the disk a record holds, bytes of a packed pixel.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Size {
+    tile: [u32; 2],
+    crossings: u32,
+    pixel_bytes: u64,
 }
 
 /// The pipelines of a frame with their bindings.
@@ -82,18 +89,20 @@ impl GpuTracer {
         let inside = lens.observer.frame.r <= 2.0;
         let variant = variant(scene, &settings, inside);
         // An opaque disk hides all but its first crossing.
-        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u64 };
-        let record_bytes = 4 * (RECORD_WORDS + CROSSING_WORDS * crossings);
-        let binding_limit = self.device.limits().max_storage_buffer_binding_size;
+        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
+        let pixel_bytes = request.format.bytes_per_pixel() as u64;
+        // Two record textures, the radiance, and the crossings.
+        let device_bytes = TEXEL * (3 + u64::from(crossings)) + pixel_bytes;
+        let max_side = self.device.limits().max_texture_dimension_2d;
         let steps = expected_steps(scene.quality.method, settings.step).min(u64::from(settings.max_steps));
-        let plan = Plan::new(request, record_bytes, binding_limit, steps, samples);
+        let plan = Plan::new(request, device_bytes, max_side, steps, samples);
 
         if self.tables.is_none() {
             self.tables = Some(Tables::new(&self.device)?);
         }
         let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
         tables.update(&self.device, scene)?;
-        self.buffers.prepare(&self.device, &plan, record_bytes, request.format.bytes_per_pixel() as u64)?;
+        self.buffers.prepare(&self.device, Size { tile: plan.largest(), crossings, pixel_bytes })?;
         let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, variant)?;
         let uniform = FrameUniform::new(scene, &lens, &settings, request.transparent)?;
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
@@ -131,8 +140,17 @@ fn expected_steps(method: Method, step: f64) -> u64 {
     }
 }
 
+impl Size {
+    /// Whether buffers of this size hold what the other asks for.
+    fn serves(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.tile[i] >= other.tile[i])
+            && self.crossings >= other.crossings
+            && self.pixel_bytes >= other.pixel_bytes
+    }
+}
+
 impl FrameBuffers {
-    fn prepare(&mut self, device: &Device, plan: &Plan, record_bytes: u64, pixel_bytes: u64) -> Result<()> {
+    fn prepare(&mut self, device: &Device, size: Size) -> Result<()> {
         if self.fixed.is_none() {
             let uniform = Usage::UNIFORM | Usage::COPY_DST;
             self.fixed = Some(FixedBuffers {
@@ -143,17 +161,25 @@ impl FrameBuffers {
             });
             self.timer = GpuTimer::new(device, 1)?;
         }
-        let (tile, traced) = plan.largest();
-        let key = [traced * record_bytes, tile * 16, tile * pixel_bytes];
-        let fits = |s: &SizedBuffers| (0..3).all(|i| s.key[i] >= key[i]);
-        if !self.sized.as_ref().is_some_and(fits) {
+        if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.
-            let key = self.sized.take().map_or(key, |old| [0, 1, 2].map(|i| key[i].max(old.key[i])));
+            self.sized = None;
+            let [width, height] = size.tile;
+            let traced = [width + 2, height + 2];
+            let texture = |i: usize, label: &str, layers: u32| {
+                let RecordTexture { format, dimension } = kernels::RECORD[i];
+                device.texture(label, format, dimension, traced, layers)
+            };
+            let pixels = u64::from(width) * u64::from(height);
             self.sized = Some(SizedBuffers {
-                key,
-                records: device.buffer("records", key[0], Usage::STORAGE)?,
-                radiance: device.buffer("radiance", key[1], Usage::STORAGE)?,
-                packed: device.buffer("packed pixels", key[2], Usage::STORAGE | Usage::COPY_SRC)?,
+                size,
+                records: [
+                    texture(0, "record sky", 1)?,
+                    texture(1, "record meta", 1)?,
+                    texture(2, "record disk", size.crossings)?,
+                ],
+                radiance: device.buffer("radiance", pixels * TEXEL, Usage::STORAGE)?,
+                packed: device.buffer("packed pixels", pixels * size.pixel_bytes, Usage::STORAGE | Usage::COPY_SRC)?,
             });
         }
         Ok(())
@@ -177,20 +203,26 @@ impl FrameBuffers {
             size: std::num::NonZeroU64::new(size_of::<PassUniform>() as u64),
         });
         let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
-        let (records, radiance) = (sized.records.as_entire_binding(), sized.radiance.as_entire_binding());
+        let [sky, meta, disk] = sized.records.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let radiance = sized.radiance.as_entire_binding();
         let stage = |compiled: Compiled, resources: &[wgpu::BindingResource<'_>]| {
             let group = compiled.bind(device, resources)?;
             Ok::<_, Error>(Stage { compiled, group })
         };
         Ok(Stages {
-            trace: stage(kernels.pixels(device, variant)?, &[frame.clone(), pass.clone(), records.clone()])?,
-            count: stage(kernels.count(device)?, &[pass.clone(), records.clone(), fixed.step_sum.as_entire_binding()])?,
+            trace: stage(
+                kernels.pixels(device, variant)?,
+                &[frame.clone(), pass.clone(), sky.clone(), meta.clone(), disk.clone()],
+            )?,
+            count: stage(kernels.count(device)?, &[pass.clone(), meta.clone(), fixed.step_sum.as_entire_binding()])?,
             shade: stage(
                 kernels.shade(device)?,
                 &[
                     frame,
                     pass.clone(),
-                    records,
+                    sky,
+                    meta,
+                    disk,
                     tables.light.as_entire_binding(),
                     tables.star_cells.as_entire_binding(),
                     radiance.clone(),
@@ -266,6 +298,7 @@ impl Frame<'_, '_> {
         let groups = |width: u32, height: u32| [width.div_ceil(GROUP[0]), height.div_ceil(GROUP[1])];
         let traced = groups(tile.width + 2, tile.height + 2);
         let inner = groups(tile.width, tile.height);
+        let counting = groups((tile.width + 2).div_ceil(COUNT_RUN), tile.height + 2);
         check_groups(device, traced)?;
         let last = range.end == self.samples;
         let mut encoder = device.encoder("frame")?;
@@ -286,7 +319,7 @@ impl Frame<'_, '_> {
             for i in 0..range.len() as u32 {
                 let offset = i * stride as u32;
                 dispatch(&self.stages.trace, offset, traced);
-                dispatch(&self.stages.count, offset, COUNT_GROUPS);
+                dispatch(&self.stages.count, offset, counting);
                 dispatch(&self.stages.shade, offset, inner);
             }
             if last {

@@ -59,7 +59,7 @@ const TRACE_PARTS: [&str; 4] = [
     include_str!("../../shaders/trace.wgsl"),
 ];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
-const RECORD: &str = include_str!("../../shaders/record.wgsl");
+const RECORD_PART: &str = include_str!("../../shaders/record.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 
 fn rays_source() -> String {
@@ -67,13 +67,18 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let rest =
-        [PASS, RECORD, FRAME, include_str!("../../shaders/camera.wgsl"), include_str!("../../shaders/pixels.wgsl")];
+    let rest = [
+        PASS,
+        RECORD_PART,
+        FRAME,
+        include_str!("../../shaders/camera.wgsl"),
+        include_str!("../../shaders/pixels.wgsl"),
+    ];
     [TRACE_PARTS.as_slice(), &rest].concat().join("\n")
 }
 
 fn count_source() -> String {
-    [PASS, RECORD, include_str!("../../shaders/count.wgsl")].join("\n")
+    [PASS, RECORD_PART, include_str!("../../shaders/count.wgsl")].join("\n")
 }
 
 fn shade_source() -> String {
@@ -81,7 +86,7 @@ fn shade_source() -> String {
         sky::StarIndex::shared().wgsl_constants().as_str(),
         MATH,
         PASS,
-        RECORD,
+        RECORD_PART,
         FRAME,
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -114,16 +119,59 @@ enum Slot {
     UniformPart,
     Read,
     Write,
+    Texture(RecordTexture),
+    TextureWrite(RecordTexture),
+}
+
+/// A texture of ray records.
+#[derive(Clone, Copy)]
+pub struct RecordTexture {
+    pub format: wgpu::TextureFormat,
+    pub dimension: wgpu::TextureViewDimension,
+}
+
+/// `record_sky`, `record_meta` and `record_disk` of record.wgsl.
+pub const RECORD: [RecordTexture; 3] = [
+    RecordTexture { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
+    RecordTexture { format: wgpu::TextureFormat::Rgba32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    RecordTexture { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array },
+];
+
+impl Slot {
+    fn binding_type(self) -> wgpu::BindingType {
+        let buffer =
+            |ty, has_dynamic_offset| wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None };
+        match self {
+            Self::Uniform => buffer(wgpu::BufferBindingType::Uniform, false),
+            Self::UniformPart => buffer(wgpu::BufferBindingType::Uniform, true),
+            Self::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }, false),
+            Self::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }, false),
+            Self::Texture(of) => wgpu::BindingType::Texture {
+                sample_type: match of.format {
+                    wgpu::TextureFormat::Rgba32Uint => wgpu::TextureSampleType::Uint,
+                    _ => wgpu::TextureSampleType::Float { filterable: false },
+                },
+                view_dimension: of.dimension,
+                multisampled: false,
+            },
+            Self::TextureWrite(of) => wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: of.format,
+                view_dimension: of.dimension,
+            },
+        }
+    }
 }
 
 impl Kernels {
     pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Write];
+        let [sky, meta, disk] = RECORD.map(Slot::TextureWrite);
+        let slots = [Slot::Uniform, Slot::UniformPart, sky, meta, disk];
         self.get(device, Name::Pixels(variant), &slots, "trace_pixels", pixels_source)
     }
 
     pub fn count(&mut self, device: &Device) -> Result<Compiled> {
-        let slots = [Slot::UniformPart, Slot::Read, Slot::Write];
+        let slots = [Slot::UniformPart, Slot::Texture(RECORD[1]), Slot::Write];
         self.get(device, Name::Count, &slots, "count_steps", count_source)
     }
 
@@ -133,7 +181,8 @@ impl Kernels {
     }
 
     pub fn shade(&mut self, device: &Device) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Read, Slot::Read, Slot::Read, Slot::Write];
+        let [sky, meta, disk] = RECORD.map(Slot::Texture);
+        let slots = [Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Read, Slot::Read, Slot::Write];
         self.get(device, Name::Shade, &slots, "shade", shade_source)
     }
 
@@ -195,15 +244,7 @@ fn layout(device: &Device, label: &str, slots: &[Slot]) -> Result<wgpu::BindGrou
         .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
-            ty: wgpu::BindingType::Buffer {
-                ty: match slot {
-                    Slot::Uniform | Slot::UniformPart => wgpu::BufferBindingType::Uniform,
-                    Slot::Read => wgpu::BufferBindingType::Storage { read_only: true },
-                    Slot::Write => wgpu::BufferBindingType::Storage { read_only: false },
-                },
-                has_dynamic_offset: matches!(slot, Slot::UniformPart),
-                min_binding_size: None,
-            },
+            ty: slot.binding_type(),
             count: None,
         })
         .collect::<Vec<_>>();

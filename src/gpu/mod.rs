@@ -10,6 +10,7 @@ mod pipeline;
 mod rays;
 mod readback;
 mod tables;
+mod texture;
 mod tiles;
 mod timer;
 mod uniforms;
@@ -21,6 +22,7 @@ pub use device::Device;
 pub use kernels::shader_sources;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 pub use readback::{Copied, Readback};
+pub use texture::Texture;
 pub use timer::GpuTimer;
 
 use crate::error::Result;

@@ -4,8 +4,8 @@ use crate::renderer::{FrameRequest, Tile};
 
 /// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog fires.
 const STEPS_PER_SUBMISSION: u64 = 96 << 20;
-/// Widest tile.
-const MAX_WIDTH: u32 = 4096;
+/// Bytes that the records and the radiance of a tile may take.
+const MEMORY: u64 = 192 << 20;
 /// Samples of one submission at most.
 pub const MAX_BATCH: u32 = 16;
 
@@ -18,16 +18,18 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// `bytes_per_pixel` of the largest storage binding, which may have `binding_limit` bytes; `steps` a ray is expected to take.
-    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, binding_limit: u64, steps: u64, samples: u32) -> Self {
+    /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to take.
+    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, samples: u32) -> Self {
         let steps = steps.max(1);
-        let by_memory = binding_limit / bytes_per_pixel;
+        let max_side = max_side.saturating_sub(2).max(1);
+        let by_memory = MEMORY / bytes_per_pixel.max(1);
         let by_time = STEPS_PER_SUBMISSION / steps;
         let pixels = by_memory.min(by_time).max(1024);
         // The traced rectangle is one pixel wider on each side; wide tiles waste least on short frames, squarer ones on small tiles.
         let wide = (8.0 * (pixels as f64).sqrt()) as u32;
-        let width = request.width.min(MAX_WIDTH).min(wide.max(128)).max(1);
-        let height = ((pixels / u64::from(width + 2)) as u32).saturating_sub(2).clamp(1, request.height.max(1));
+        let width = request.width.min(max_side).min(wide.max(128)).max(1);
+        let height = (pixels / u64::from(width + 2)).saturating_sub(2).clamp(1, u64::from(max_side)) as u32;
+        let height = height.min(request.height.max(1));
         // Even shares: no sliver at the end.
         let share = |full: u32, part: u32| full.div_ceil(full.div_ceil(part).max(1)).max(1);
         let tile = [share(request.width, width), share(request.height, height)];
@@ -36,10 +38,9 @@ impl Plan {
         Self { frame: [request.width, request.height], tile, batch }
     }
 
-    /// Pixels of the largest tile, and of its traced rectangle.
-    pub fn largest(&self) -> (u64, u64) {
-        let [w, h] = self.tile.map(u64::from);
-        (w * h, (w + 2) * (h + 2))
+    /// Width and height of the largest tile.
+    pub fn largest(&self) -> [u32; 2] {
+        self.tile
     }
 
     /// Row by row from the top left.
@@ -77,11 +78,10 @@ mod tests {
     fn tiles_cover_every_pixel_once_within_the_limits() {
         for (width, height, steps) in [(1, 1, 30), (1280, 720, 30), (16384, 16384, 30), (5000, 3, 30), (300, 70, 6000)]
         {
-            let limit = 128 << 20;
-            let plan = Plan::new(&request(width, height), 100, limit, steps, 1);
-            let (tile, traced) = plan.largest();
-            assert!(traced * 100 <= limit, "{width} x {height}: {plan:?}");
-            assert!(tile * steps <= STEPS_PER_SUBMISSION, "{plan:?}");
+            let plan = Plan::new(&request(width, height), 100, 2048, steps, 1);
+            let [w, h] = plan.largest().map(u64::from);
+            assert!((w + 2) * (h + 2) * 100 <= MEMORY, "{width} x {height}: {plan:?}");
+            assert!(w * h * steps <= STEPS_PER_SUBMISSION && w.max(h) + 2 <= 2048, "{plan:?}");
             let pixels = plan.tiles().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>();
             assert_eq!(pixels, u64::from(width) * u64::from(height));
             assert_eq!(plan.tiles().count() as u64, plan.count());
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_frame_of_720_rows_is_one_submission_even_on_the_smallest_devices() {
-        let plan = Plan::new(&request(1280, 720), 100, 128 << 20, 30, 1);
+        let plan = Plan::new(&request(1280, 720), 112, 2048, 30, 1);
         assert_eq!((plan.count(), plan.batch), (1, 1));
     }
 }

@@ -26,48 +26,67 @@ pub fn step(method: Method, c: &Constants, s: &State, h: f64, with_delay: bool) 
     }
 }
 
-/// Nystrom's method for y'' = f(y). Drag and delay, z' = f(u, N), take the weights of y', which keeps order 5.
+/// y weights of Nystrom's method at its first three nodes (the fourth's is 0), and y' weights at all four.
+const B: [f64; 3] = [1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0];
+const D: [f64; 4] = [1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0];
+
+/// Nystrom's method for y'' = f(y); without spin N turns evenly, which is exact. Drag and delay, z' = f(u, N), take the weights of
+/// y', which keeps order 5.
 #[inline]
 pub fn nystrom_step(c: &Constants, s: &State, h: f64, with_delay: bool) -> State {
     let h2 = h * h;
-    let f1 = (c.u_acceleration(s.u), c.n_acceleration(s.n));
-    let at = |node: f64, u_term: f64, n_term: DVec3| {
-        (s.u + node * h * s.du + h2 * u_term, s.n + s.dn * (node * h) + n_term * h2)
-    };
-    let y2 = at(0.2, f1.0 / 50.0, f1.1 * (1.0 / 50.0));
-    let f2 = (c.u_acceleration(y2.0), c.n_acceleration(y2.1));
-    let y3 = at(2.0 / 3.0, (7.0 * f2.0 - f1.0) / 27.0, f2.1 * (7.0 / 27.0) - f1.1 * (1.0 / 27.0));
-    let f3 = (c.u_acceleration(y3.0), c.n_acceleration(y3.1));
-    let y4 = at(
-        1.0,
-        0.3 * f1.0 - 2.0 / 35.0 * f2.0 + 9.0 / 35.0 * f3.0,
-        f1.1 * 0.3 - f2.1 * (2.0 / 35.0) + f3.1 * (9.0 / 35.0),
-    );
-    let f4 = (c.u_acceleration(y4.0), c.n_acceleration(y4.1));
-    let (b1, b2, b3) = (1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0);
-    let (d1, d2, d3, d4) = (1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0);
+    let f1 = c.u_acceleration(s.u);
+    let u2 = s.u + 0.2 * h * s.du + h2 * f1 / 50.0;
+    let f2 = c.u_acceleration(u2);
+    let u3 = s.u + 2.0 / 3.0 * h * s.du + h2 * (7.0 * f2 - f1) / 27.0;
+    let f3 = c.u_acceleration(u3);
+    let u4 = s.u + h * s.du + h2 * (0.3 * f1 - 2.0 / 35.0 * f2 + 9.0 / 35.0 * f3);
+    let f4 = c.u_acceleration(u4);
+    let sum = |y: [f64; 4]| h * (D[0] * y[0] + D[1] * y[1] + D[2] * y[2] + D[3] * y[3]);
+    let nodes = [s.u, u2, u3, u4];
+    let (n, dn, n_z) = if c.a == 0.0 { turn_n(c, s, h) } else { nystrom_step_of_n(c, s, h) };
     let mut end = State {
-        u: s.u + h * s.du + h2 * (b1 * f1.0 + b2 * f2.0 + b3 * f3.0),
-        du: s.du + h * (d1 * f1.0 + d2 * f2.0 + d3 * f3.0 + d4 * f4.0),
-        n: s.n + s.dn * h + (f1.1 * b1 + f2.1 * b2 + f3.1 * b3) * h2,
-        dn: s.dn + (f1.1 * d1 + f2.1 * d2 + f3.1 * d3 + f4.1 * d4) * h,
+        u: s.u + h * s.du + h2 * (B[0] * f1 + B[1] * f2 + B[2] * f3),
+        du: s.du + sum([f1, f2, f3, f4]),
+        n,
+        dn,
         drag: s.drag,
         delay: s.delay,
     };
     if c.a != 0.0 {
-        let rate = |u: f64| c.drag_rate(u);
-        end.drag += h * (d1 * rate(s.u) + d2 * rate(y2.0) + d3 * rate(y3.0) + d4 * rate(y4.0));
+        end.drag += sum(nodes.map(|u| c.drag_rate(u)));
     }
     if with_delay {
         end.delay += match c.clock {
-            Clock::Coordinate => {
-                let rate = |u: f64, n: DVec3| c.delay_rate(u, 0.0, n.z);
-                h * (d1 * rate(s.u, s.n) + d2 * rate(y2.0, y2.1) + d3 * rate(y3.0, y3.1) + d4 * rate(y4.0, y4.1))
-            }
+            Clock::Coordinate => sum(std::array::from_fn(|i| c.delay_rate(nodes[i], 0.0, n_z[i]))),
             Clock::Rain => rain_delay_step(c, s, &end, h),
         };
     }
     end
+}
+
+/// N and N' after the step, and N_z at the nodes.
+#[inline]
+fn nystrom_step_of_n(c: &Constants, s: &State, h: f64) -> (DVec3, DVec3, [f64; 4]) {
+    let h2 = h * h;
+    let f1 = c.n_acceleration(s.n);
+    let n2 = s.n + s.dn * (0.2 * h) + f1 * (h2 / 50.0);
+    let f2 = c.n_acceleration(n2);
+    let n3 = s.n + s.dn * (2.0 / 3.0 * h) + (f2 * 7.0 - f1) * (h2 / 27.0);
+    let f3 = c.n_acceleration(n3);
+    let n4 = s.n + s.dn * h + (f1 * 0.3 - f2 * (2.0 / 35.0) + f3 * (9.0 / 35.0)) * h2;
+    let f4 = c.n_acceleration(n4);
+    let n = s.n + s.dn * h + (f1 * B[0] + f2 * B[1] + f3 * B[2]) * h2;
+    let dn = s.dn + (f1 * D[0] + f2 * D[1] + f3 * D[2] + f4 * D[3]) * h;
+    (n, dn, [s.n.z, n2.z, n3.z, n4.z])
+}
+
+/// a = 0: N'' = -K N turns N by sqrt(K) h in the ray's plane. (N_z enters no rate then.)
+#[inline]
+fn turn_n(c: &Constants, s: &State, h: f64) -> (DVec3, DVec3, [f64; 4]) {
+    let kappa = c.k.max(1e-300).sqrt();
+    let (sin, cos) = (kappa * h).sin_cos();
+    (s.n * cos + s.dn * (sin / kappa), s.dn * cos - s.n * (sin * kappa), [0.0; 4])
 }
 
 /// Rain time over one step: its rate needs u', which Nystrom stages do not have; Gauss-Legendre on the dense output.
