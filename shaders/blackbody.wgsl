@@ -1,5 +1,5 @@
 // Thermal light as the eye sees it: mirrors physics/blackbody.rs (BlackbodyTable), where the formulas and reasons are.
-// Reads light_tables, declared where the bindings are: node i is rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
+// Reads light_table(i), defined where the bindings are: node i is rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
 
 const BLACKBODY_OFFSET: u32 = 0u;
 const BLACKBODY_SIZE: u32 = 512u;
@@ -16,8 +16,8 @@ fn blackbody_lookup(temperature: f32) -> vec4<f32> {
     let position = SCALE / (temperature + COORDINATE_TEMPERATURE);
     let index = min(u32(position), BLACKBODY_SIZE - 2u);
     let share = position - f32(index);
-    let low = light_tables[BLACKBODY_OFFSET + index];
-    let high = light_tables[BLACKBODY_OFFSET + index + 1u];
+    let low = light_table(BLACKBODY_OFFSET + index);
+    let high = light_table(BLACKBODY_OFFSET + index + 1u);
     var value = low + (high - low) * share;
     value.w += log(temperature) - WIEN_TEMPERATURE / temperature;
     return value;

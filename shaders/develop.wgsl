@@ -2,7 +2,7 @@
 
 @group(0) @binding(0) var<uniform> film: FilmParams;
 @group(0) @binding(1) var<uniform> pass_: Pass;
-@group(0) @binding(2) var<storage, read> radiance: array<vec4<f32>>;
+@group(0) @binding(2) var radiance: texture_2d<f32>;
 @group(0) @binding(3) var<storage, read_write> pixels: array<u32>;
 
 @compute @workgroup_size(16, 8)
@@ -13,7 +13,7 @@ fn develop_tile(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let i = id.y * tile.x + id.x;
     let place = vec2<u32>(pass_.origin + vec2<i32>(id.xy) + 1);
-    let words = develop(radiance[i], place.x, place.y);
+    let words = develop(textureLoad(radiance, id.xy, 0), place.x, place.y);
     switch film.format {
         case FORMAT_RGBA16F: {
             pixels[2u * i] = words.x;

@@ -1,9 +1,13 @@
 // Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs. Reads `frame`
-// and light_tables, declared where the bindings are.
+// and light_table(i), defined where the bindings are.
 
-const PROFILE_OFFSET: u32 = MEAN_SKY_OFFSET + MEAN_SKY_PARTS;
+// A row of its own after the tables that never change.
+const PROFILE_OFFSET: u32 = (MEAN_SKY_OFFSET + MEAN_SKY_PARTS + TABLE_WIDTH - 1u) / TABLE_WIDTH * TABLE_WIDTH;
 // Entries, four to a vector.
 const PROFILE_SIZE: u32 = 2048u;
+
+// False: an effect that colours light or changes its brightness is switched off.
+override ALL_EFFECTS: bool = true;
 
 // How the effects let frequency shifts show: the shift that colours, and the one that beams.
 struct Shift {
@@ -42,7 +46,7 @@ fn nu_zamo_in_plane(u: f32, energy: f32, angular_momentum: f32) -> f32 {
 }
 
 fn profile_entry(i: u32) -> f32 {
-    return light_tables[PROFILE_OFFSET + i / 4u][i % 4u];
+    return light_table(PROFILE_OFFSET + i / 4u)[i % 4u];
 }
 
 // T(r) / T_max (TemperatureProfile::at).

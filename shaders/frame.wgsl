@@ -18,7 +18,7 @@ struct Frame {
     zamo: vec4<f32>,
     // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
-    // Columns that take chart directions to sky axes; w of the first: 1 with stars; of the second: their brightness.
+    // Columns that take chart directions to sky axes; w of the first: brightness of the stars.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,
@@ -33,14 +33,12 @@ struct Frame {
     max_steps: u32,
     max_crossings: u32,
     rain: u32,
-    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*, 1 for TRANSPARENT.
+    // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
     effects: u32,
     view: u32,
-    transparent: u32,
-    reserved: u32,
+    reserved: vec2<u32>,
 }
 
-const VIEW_LIGHT: u32 = 0u;
 const VIEW_REDSHIFT: u32 = 1u;
 const VIEW_ORDER: u32 = 2u;
 const VIEW_DEFLECTION: u32 = 3u;
@@ -50,7 +48,6 @@ const VIEW_METRIC: u32 = 5u;
 const EFFECT_DOPPLER_SHIFT: u32 = 1u;
 const EFFECT_GRAVITY_SHIFT: u32 = 2u;
 const EFFECT_BEAMING: u32 = 4u;
-const EFFECT_ALL: u32 = 7u;
 
 // Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.
 fn camera_look(x: f32, y: f32) -> vec3<f32> {

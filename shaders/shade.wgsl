@@ -6,10 +6,26 @@
 @group(0) @binding(2) var record_sky: texture_2d<f32>;
 @group(0) @binding(3) var record_meta: texture_2d<u32>;
 @group(0) @binding(4) var record_disk: texture_2d_array<f32>;
-@group(0) @binding(5) var<storage, read> light_tables: array<vec4<f32>>;
-@group(0) @binding(6) var<storage, read> star_cells: array<u32>;
-// Of the tile without its margin.
-@group(0) @binding(7) var<storage, read_write> radiance: array<vec4<f32>>;
+// Tables as textures, TABLE_WIDTH entries a row: software drivers reach into buffers lane by lane.
+@group(0) @binding(5) var light_tables: texture_2d<f32>;
+@group(0) @binding(6) var star_cells: texture_2d<u32>;
+// Of the tile without its margin: the sum of the samples before, and with this one.
+@group(0) @binding(7) var radiance_before: texture_2d<f32>;
+@group(0) @binding(8) var radiance: texture_storage_2d<rgba32float, write>;
+
+// What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every `if`.
+override SHOWS_LIGHT: bool = true;
+override SHOWS_STARS: bool = true;
+
+const TABLE_WIDTH: u32 = 2048u;
+
+fn light_table(i: u32) -> vec4<f32> {
+    return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
+}
+
+fn star_cell(i: u32) -> u32 {
+    return textureLoad(star_cells, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0).x;
+}
 
 const FATE_CAPTURED: u32 = 0u;
 const FATE_ESCAPED: u32 = 1u;
@@ -21,18 +37,16 @@ fn shade(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let pixel = id.xy + 1u;
-    let out = id.y * tile.x + id.x;
     let here = unpack_meta(textureLoad(record_meta, pixel, 0));
-    if frame.view != VIEW_LIGHT {
-        radiance[out] = vec4<f32>(view_value(here, pixel), 0.0, 0.0, 1.0);
+    if !SHOWS_LIGHT {
+        textureStore(radiance, id.xy, vec4<f32>(view_value(here, pixel), 0.0, 0.0, 1.0));
         return;
     }
     var sum = pixel_light(here, pixel) * pass_.weight;
-    // A loop of one turn at most: lavapipe runs both sides of an `if`.
-    for (var more = pass_.first == 0u; more; more = false) {
-        sum += radiance[out];
+    if pass_.first == 0u {
+        sum += textureLoad(radiance_before, id.xy, 0);
     }
-    radiance[out] = sum;
+    textureStore(radiance, id.xy, sum);
 }
 
 // d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; infinite where
@@ -60,16 +74,14 @@ fn pixel_light(here: RecordMeta, pixel: vec2<u32>) -> vec4<f32> {
         let crossing = textureLoad(record_disk, pixel, slot, 0);
         let u = crossing.x;
         var shift = Shift(crossing.y, crossing.y);
-        if frame.effects != EFFECT_ALL {
+        if !ALL_EFFECTS {
             let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(u, here.energy, here.angular_momentum);
             shift = visible_shift(crossing.y, gravity);
         }
         light += open * frame.disk.z * disk_light(u, shift);
         open *= 1.0 - frame.disk.z;
     }
-    let sky_seen = here.fate == FATE_ESCAPED && open > 0.0;
-    // A loop of one turn at most: lavapipe runs both sides of an `if`.
-    for (var stars = sky_seen && frame.sky_x.w != 0.0 && frame.transparent == 0u; stars; stars = false) {
+    if SHOWS_STARS && here.fate == FATE_ESCAPED && open > 0.0 {
         light += open * sky_light(here, pixel);
     }
     return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
@@ -81,10 +93,10 @@ fn sky_light(here: RecordMeta, pixel: vec2<u32>) -> vec3<f32> {
     let dx = derivative_of_direction(pixel, d, vec2<u32>(1u, 0u));
     let dy = derivative_of_direction(pixel, d, vec2<u32>(0u, 1u));
     var shift = Shift(sky.w, sky.w);
-    if frame.effects != EFFECT_ALL {
+    if !ALL_EFFECTS {
         shift = visible_shift(sky.w, nu_static_eye(here.energy) / here.energy);
     }
-    return star_light(to_sky(d), to_sky(dx), to_sky(dy), shift.colour, shift.beaming) * frame.sky_y.w;
+    return star_light(to_sky(d), to_sky(dx), to_sky(dy), shift.colour, shift.beaming) * frame.sky_x.w;
 }
 
 // What BHR_VIEW_* shows; NaN where there is nothing.

@@ -1,5 +1,5 @@
 // The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule), where the reasons are.
-// Reads light_tables and star_cells, declared where the bindings are; the constants in capitals that are not here come from
+// Reads light_table(i) and star_cell(i), defined where the bindings are; the constants in capitals that are not here come from
 // StarIndex::wgsl_constants.
 
 const STAR_MIN_AREA: f32 = 1e-3;
@@ -65,39 +65,42 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
     // By its bits: not NaN, not infinite.
     let finite = (bitcast<u32>(radius) & 0x7fffffffu) < 0x7f800000u;
     let level = select(STAR_LEVELS, star_level_for(radius), finite);
-    var single = 0.0;
-    var light = vec3<f32>(0.0);
-    if level < STAR_LEVELS {
-        single = 1.0 - smoothstep(0.5 * limit, limit, radius);
-        light = single * stars_in(cell_of(d, level), d, dx, dy, stretch2, g_colour, g_beaming);
-    }
-    // A loop of no turn instead of an `if`: lavapipe runs both sides of those.
-    for (var i = select(MEAN_SKY_PARTS, 0u, single < 1.0); i < MEAN_SKY_PARTS; i += 1u) {
-        let part = light_tables[MEAN_SKY_OFFSET + i];
-        light += (1.0 - single) * part.z * shifted_blackbody(part.x, part.y, g_colour, g_beaming);
-    }
-    return min(light, vec3<f32>(MAX_STAR_LIGHT));
-}
+    let indexed = level < STAR_LEVELS;
+    let single = select(0.0, 1.0 - smoothstep(0.5 * limit, limit, radius), indexed);
 
-// The stars of one cell's list.
-fn stars_in(cell: u32, d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, stretch2: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
     let across = cross(dy, d);
     let down = cross(d, dx);
     let area = abs(dot(cross(dx, dy), d));
     let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
+    let cell = cell_of(d, min(level, STAR_LEVELS - 1u));
+    var i = star_cell(cell);
+    let end = select(i, star_cell(cell + 1u), indexed);
+    var part = select(MEAN_SKY_PARTS, 0u, single < 1.0);
     var light = vec3<f32>(0.0);
-    let end = star_cells[cell + 1u];
-    for (var i = star_cells[cell]; i < end; i += 1u) {
-        let at = STARS_OFFSET + 2u * star_cells[i];
-        let star = light_tables[at];
-        let e = star.xyz - d;
-        let p = vec2<f32>(dot(e, across), dot(e, down));
-        // A loop of one turn at most: see `star_light`.
-        for (var hit = max(abs(p.x), abs(p.y)) < 1.5 * area; hit; hit = false) {
-            let spread = star_footprint(p.x / area) * star_footprint(p.y / area) * magnification;
-            let kind = light_tables[at + 1u];
-            light += spread * star.w * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
+    // The inner loop only looks; a star that is hit, and after the stars each part of the mean sky, is shaded outside it:
+    // lavapipe runs whatever stands in a loop in every turn.
+    loop {
+        var at = 0u;
+        var share = 0.0;
+        var hit = false;
+        while i < end {
+            at = STARS_OFFSET + 2u * star_cell(i);
+            i += 1u;
+            let star = light_table(at);
+            let e = star.xyz - d;
+            let p = vec2<f32>(dot(e, across), dot(e, down));
+            hit = max(abs(p.x), abs(p.y)) < 1.5 * area;
+            if hit {
+                share = single * star_footprint(p.x / area) * star_footprint(p.y / area) * magnification * star.w;
+                break;
+            }
         }
+        if !hit && part == MEAN_SKY_PARTS {
+            break;
+        }
+        let kind = light_table(select(MEAN_SKY_OFFSET + part, at + 1u, hit));
+        part += select(1u, 0u, hit);
+        light += select((1.0 - single) * kind.z, share, hit) * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
     }
-    return light;
+    return min(light, vec3<f32>(MAX_STAR_LIGHT));
 }

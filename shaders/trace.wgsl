@@ -84,8 +84,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
             tau += h;
             state = next;
         }
-        // A loop of one turn at most: lavapipe would run the body of an `if` for rays that only end, too.
-        for (var look = crossed; look; look = false) {
+        if crossed {
             side = next.n.z;
             if order < settings.max_crossings {
                 let crossing = find_crossing(c, start, state, next, h, order);

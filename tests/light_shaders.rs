@@ -1,5 +1,5 @@
 //! The WGSL of colour, stars and film: parses, validates with no capability, and agrees with the Rust that it
-//! mirrors on whatever Vulkan adapter there is (a software one will do; with none that part says so and passes).
+//! mirrors on whatever Vulkan adapter there is (a software one will do; with none it fails).
 
 use bhr::film::{FilmParams, develop};
 use bhr::image::PixelFormat;
@@ -21,6 +21,8 @@ const BINDINGS: &str = "
 @group(0) @binding(2) var<storage, read> inputs: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read_write> outputs: array<vec4<u32>>;
 @group(0) @binding(4) var<uniform> film: FilmParams;
+fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
+fn star_cell(i: u32) -> u32 { return star_cells[i]; }
 ";
 
 /// Every item is four vectors; its result is one.
@@ -80,16 +82,13 @@ struct Gpu {
 }
 
 impl Gpu {
-    fn new() -> Option<Self> {
+    fn new() -> Self {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::VULKAN,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-        let Some(adapter) = adapters.into_iter().next() else {
-            println!("no Vulkan adapter: the WGSL was not run");
-            return None;
-        };
+        let adapter = adapters.into_iter().next().expect("a Vulkan adapter (lavapipe counts)");
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             required_limits: wgpu::Limits::downlevel_defaults(),
             ..Default::default()
@@ -97,7 +96,7 @@ impl Gpu {
         .expect("device");
         let shader = wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(source().into()) };
         let module = device.create_shader_module(shader);
-        Some(Self { device, queue, module })
+        Self { device, queue, module }
     }
 
     fn run(&self, entry: &str, film: FilmParams, items: &[Item]) -> Vec<[u32; 4]> {
@@ -190,7 +189,7 @@ fn widened(v: [f32; 4]) -> DVec3 {
 
 #[test]
 fn gpu_blackbody_agrees() {
-    let Some(gpu) = Gpu::new() else { return };
+    let gpu = Gpu::new();
     let table = BlackbodyTable::shared();
     let mut items: Vec<Item> = Vec::new();
     for i in 0..600 {
@@ -215,7 +214,7 @@ fn gpu_blackbody_agrees() {
 
 #[test]
 fn gpu_stars_agree() {
-    let Some(gpu) = Gpu::new() else { return };
+    let gpu = Gpu::new();
     let index = StarIndex::shared();
     let mut items: Vec<Item> = Vec::new();
     for (i, star) in index.stars.iter().step_by(2 * 89).enumerate() {
@@ -249,7 +248,7 @@ fn gpu_stars_agree() {
 
 #[test]
 fn gpu_film_agrees() {
-    let Some(gpu) = Gpu::new() else { return };
+    let gpu = Gpu::new();
     let mut items: Vec<Item> = Vec::new();
     for i in 0..4000_u32 {
         let value = |k: u32| 2.0_f32.powf((i * (2 * k + 3) % 997) as f32 / 997.0 * 24.0 - 14.0);

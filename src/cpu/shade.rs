@@ -7,7 +7,7 @@ use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
-use crate::scene::{Disk, Effects, Scene, Sky, View};
+use crate::scene::{Disk, Effects, Scene, View};
 use crate::sky::StarIndex;
 use glam::{DMat3, DVec3};
 
@@ -41,14 +41,12 @@ pub struct Shader<'a> {
 
 impl<'a> Shader<'a> {
     pub fn new(scene: &'a Scene, lens: &'a Lens, transparent: bool) -> Self {
-        let sky = &scene.sky;
-        let stars = sky.flags & Sky::STARS != 0 && sky.stars_brightness > 0.0;
         Self {
             scene,
             lens,
             colours: BlackbodyTable::shared(),
             profile: TemperatureProfile::new(scene.matter_spin()),
-            stars: stars.then(StarIndex::shared),
+            stars: scene.shows_stars().then(StarIndex::shared),
             chart_to_sky: scene.chart_to_sky(),
             transparent,
         }

@@ -185,7 +185,7 @@ impl Device {
         })
     }
 
-    fn queue(&self) -> Result<&wgpu::Queue> {
+    pub(super) fn queue(&self) -> Result<&wgpu::Queue> {
         self.queue.as_ref().ok_or_else(|| Error::internal("the device is being closed"))
     }
 }

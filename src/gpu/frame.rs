@@ -1,7 +1,7 @@
 //! A frame on the GPU: tile by tile, sample by sample, trace -> shade -> develop -> readback. Each tile's readback overlaps
 //! the next tile's work. Knows no host memory: finished tiles go to the sink.
 
-use super::kernels::{Compiled, RecordTexture, check_groups};
+use super::kernels::{Compiled, Look, TextureKind, check_groups};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
@@ -41,7 +41,8 @@ struct FixedBuffers {
 struct SizedBuffers {
     size: Size,
     records: [Texture; 3],
-    radiance: Buffer,
+    /// Samples are added by turns: from one to the other. The second is as large as the first only for several samples.
+    radiance: [Texture; 2],
     packed: Buffer,
 }
 
@@ -51,6 +52,7 @@ struct Size {
     tile: [u32; 2],
     crossings: u32,
     pixel_bytes: u64,
+    several_samples: bool,
 }
 
 /// The pipelines of a frame with their bindings.
@@ -62,8 +64,10 @@ struct Stage {
 struct Stages {
     trace: Stage,
     count: Stage,
-    shade: Stage,
-    develop: Stage,
+    /// Of even and of odd samples.
+    shade: [Stage; 2],
+    /// After an even and after an odd last sample.
+    develop: [Stage; 2],
 }
 
 /// A submission that has not been read yet.
@@ -91,8 +95,9 @@ impl GpuTracer {
         // An opaque disk hides all but its first crossing.
         let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
         let pixel_bytes = request.format.bytes_per_pixel() as u64;
-        // Two record textures, the radiance, and the crossings.
-        let device_bytes = TEXEL * (3 + u64::from(crossings)) + pixel_bytes;
+        // Two record textures, the crossings, and the radiance.
+        let textures = 3 + u64::from(crossings) + u64::from(samples > 1);
+        let device_bytes = TEXEL * textures + pixel_bytes;
         let max_side = self.device.limits().max_texture_dimension_2d;
         let steps = expected_steps(scene.quality.method, settings.step).min(u64::from(settings.max_steps));
         let plan = Plan::new(request, device_bytes, max_side, steps, samples);
@@ -102,9 +107,17 @@ impl GpuTracer {
         }
         let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
         tables.update(&self.device, scene)?;
-        self.buffers.prepare(&self.device, Size { tile: plan.largest(), crossings, pixel_bytes })?;
-        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, variant)?;
-        let uniform = FrameUniform::new(scene, &lens, &settings, request.transparent)?;
+        self.buffers.prepare(
+            &self.device,
+            Size { tile: plan.largest(), crossings, pixel_bytes, several_samples: samples > 1 },
+        )?;
+        let look = Look {
+            light: scene.view == View::Light,
+            stars: scene.shows_stars() && !request.transparent,
+            all_effects: scene.effects.all_light(),
+        };
+        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, variant, look)?;
+        let uniform = FrameUniform::new(scene, &lens, &settings)?;
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         self.buffers.write_frame(&self.device, &uniform, &film)?;
 
@@ -146,6 +159,7 @@ impl Size {
         (0..2).all(|i| self.tile[i] >= other.tile[i])
             && self.crossings >= other.crossings
             && self.pixel_bytes >= other.pixel_bytes
+            && (self.several_samples || !other.several_samples)
     }
 }
 
@@ -166,19 +180,23 @@ impl FrameBuffers {
             self.sized = None;
             let [width, height] = size.tile;
             let traced = [width + 2, height + 2];
-            let texture = |i: usize, label: &str, layers: u32| {
-                let RecordTexture { format, dimension } = kernels::RECORD[i];
-                device.texture(label, format, dimension, traced, layers)
+            let texture = |kind: TextureKind, label: &str, size: [u32; 2], layers: u32| {
+                device.texture(label, kind.format, kind.dimension, size, layers)
             };
+            let [sky, meta, disk] = kernels::RECORD;
+            let second = if size.several_samples { size.tile } else { [1, 1] };
             let pixels = u64::from(width) * u64::from(height);
             self.sized = Some(SizedBuffers {
                 size,
                 records: [
-                    texture(0, "record sky", 1)?,
-                    texture(1, "record meta", 1)?,
-                    texture(2, "record disk", size.crossings)?,
+                    texture(sky, "record sky", traced, 1)?,
+                    texture(meta, "record meta", traced, 1)?,
+                    texture(disk, "record disk", traced, size.crossings)?,
                 ],
-                radiance: device.buffer("radiance", pixels * TEXEL, Usage::STORAGE)?,
+                radiance: [
+                    texture(kernels::RADIANCE, "radiance", size.tile, 1)?,
+                    texture(kernels::RADIANCE, "radiance", second, 1)?,
+                ],
                 packed: device.buffer("packed pixels", pixels * size.pixel_bytes, Usage::STORAGE | Usage::COPY_SRC)?,
             });
         }
@@ -195,6 +213,7 @@ impl FrameBuffers {
         kernels: &mut kernels::Kernels,
         tables: &Tables,
         variant: kernels::Variant,
+        look: Look,
     ) -> Result<Stages> {
         let (fixed, sized) = self.parts()?;
         let pass = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
@@ -204,10 +223,30 @@ impl FrameBuffers {
         });
         let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
         let [sky, meta, disk] = sized.records.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let radiance = sized.radiance.as_entire_binding();
+        let radiance = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let stage = |compiled: Compiled, resources: &[wgpu::BindingResource<'_>]| {
             let group = compiled.bind(device, resources)?;
             Ok::<_, Error>(Stage { compiled, group })
+        };
+        let compiled = kernels.shade(device, look)?;
+        let shade = |from: usize, to: usize| {
+            let resources = [
+                frame.clone(),
+                pass.clone(),
+                sky.clone(),
+                meta.clone(),
+                disk.clone(),
+                wgpu::BindingResource::TextureView(&tables.light.view),
+                wgpu::BindingResource::TextureView(&tables.star_cells.view),
+                radiance[from].clone(),
+                radiance[to].clone(),
+            ];
+            stage(compiled.clone(), &resources)
+        };
+        let compiled = kernels.develop(device)?;
+        let develop = |from: usize| {
+            let resources = [film.clone(), pass.clone(), radiance[from].clone(), sized.packed.as_entire_binding()];
+            stage(compiled.clone(), &resources)
         };
         Ok(Stages {
             trace: stage(
@@ -215,20 +254,8 @@ impl FrameBuffers {
                 &[frame.clone(), pass.clone(), sky.clone(), meta.clone(), disk.clone()],
             )?,
             count: stage(kernels.count(device)?, &[pass.clone(), meta.clone(), fixed.step_sum.as_entire_binding()])?,
-            shade: stage(
-                kernels.shade(device)?,
-                &[
-                    frame,
-                    pass.clone(),
-                    sky,
-                    meta,
-                    disk,
-                    tables.light.as_entire_binding(),
-                    tables.star_cells.as_entire_binding(),
-                    radiance.clone(),
-                ],
-            )?,
-            develop: stage(kernels.develop(device)?, &[film, pass, radiance, sized.packed.as_entire_binding()])?,
+            shade: [shade(1, 0)?, shade(0, 1)?],
+            develop: [develop(0)?, develop(1)?],
         })
     }
 
@@ -316,14 +343,14 @@ impl Frame<'_, '_> {
                 pass.set_bind_group(0, &stage.group, &[offset]);
                 pass.dispatch_workgroups(groups[0], groups[1], 1);
             };
-            for i in 0..range.len() as u32 {
-                let offset = i * stride as u32;
+            for (i, sample) in range.clone().enumerate() {
+                let offset = i as u32 * stride as u32;
                 dispatch(&self.stages.trace, offset, traced);
                 dispatch(&self.stages.count, offset, counting);
-                dispatch(&self.stages.shade, offset, inner);
+                dispatch(&self.stages.shade[sample as usize % 2], offset, inner);
             }
             if last {
-                dispatch(&self.stages.develop, 0, inner);
+                dispatch(&self.stages.develop[(self.samples as usize - 1) % 2], 0, inner);
             }
         }
         let time = match &mut self.buffers.timer {

@@ -15,6 +15,16 @@ pub struct Variant {
     pub step_limit: bool,
 }
 
+/// Everything that decides how shading is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Look {
+    /// Light, not another view.
+    pub light: bool,
+    pub stars: bool,
+    /// No effect on light is switched off.
+    pub all_effects: bool,
+}
+
 /// `METHOD_*` of integrator.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MethodCode(u32);
@@ -34,7 +44,7 @@ enum Name {
     Pixels(Variant),
     Rays(Variant),
     Count,
-    Shade,
+    Shade(Look),
     Develop,
 }
 
@@ -119,22 +129,32 @@ enum Slot {
     UniformPart,
     Read,
     Write,
-    Texture(RecordTexture),
-    TextureWrite(RecordTexture),
+    Texture(TextureKind),
+    TextureWrite(TextureKind),
 }
 
-/// A texture of ray records.
+/// A texture as a kernel declares it.
 #[derive(Clone, Copy)]
-pub struct RecordTexture {
+pub struct TextureKind {
     pub format: wgpu::TextureFormat,
     pub dimension: wgpu::TextureViewDimension,
 }
 
 /// `record_sky`, `record_meta` and `record_disk` of record.wgsl.
-pub const RECORD: [RecordTexture; 3] = [
-    RecordTexture { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
-    RecordTexture { format: wgpu::TextureFormat::Rgba32Uint, dimension: wgpu::TextureViewDimension::D2 },
-    RecordTexture { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array },
+pub const RECORD: [TextureKind; 3] = [
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
+    TextureKind { format: wgpu::TextureFormat::Rgba32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array },
+];
+
+/// Radiance of shade.wgsl and develop.wgsl.
+pub const RADIANCE: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// `light_tables` and `star_cells` of shade.wgsl.
+const TABLES: [TextureKind; 2] = [
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
+    TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
 ];
 
 impl Slot {
@@ -148,7 +168,7 @@ impl Slot {
             Self::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }, false),
             Self::Texture(of) => wgpu::BindingType::Texture {
                 sample_type: match of.format {
-                    wgpu::TextureFormat::Rgba32Uint => wgpu::TextureSampleType::Uint,
+                    wgpu::TextureFormat::Rgba32Uint | wgpu::TextureFormat::R32Uint => wgpu::TextureSampleType::Uint,
                     _ => wgpu::TextureSampleType::Float { filterable: false },
                 },
                 view_dimension: of.dimension,
@@ -180,14 +200,25 @@ impl Kernels {
         self.get(device, Name::Rays(variant), &slots, "trace_rays", rays_source)
     }
 
-    pub fn shade(&mut self, device: &Device) -> Result<Compiled> {
+    pub fn shade(&mut self, device: &Device, look: Look) -> Result<Compiled> {
         let [sky, meta, disk] = RECORD.map(Slot::Texture);
-        let slots = [Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Read, Slot::Read, Slot::Write];
-        self.get(device, Name::Shade, &slots, "shade", shade_source)
+        let [light, cells] = TABLES.map(Slot::Texture);
+        let slots = [
+            Slot::Uniform,
+            Slot::UniformPart,
+            sky,
+            meta,
+            disk,
+            light,
+            cells,
+            Slot::Texture(RADIANCE),
+            Slot::TextureWrite(RADIANCE),
+        ];
+        self.get(device, Name::Shade(look), &slots, "shade", shade_source)
     }
 
     pub fn develop(&mut self, device: &Device) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Read, Slot::Write];
+        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Texture(RADIANCE), Slot::Write];
         self.get(device, Name::Develop, &slots, "develop_tile", develop_source)
     }
 
@@ -228,13 +259,21 @@ const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
-    let (Name::Pixels(variant) | Name::Rays(variant)) = name else { return Vec::new() };
-    vec![
-        ("METHOD", f64::from(variant.method.0)),
-        ("SPINNING", f64::from(u8::from(variant.spinning))),
-        ("DELAY", f64::from(u8::from(variant.delay))),
-        ("STEP_LIMIT", f64::from(u8::from(variant.step_limit))),
-    ]
+    let flag = |on: bool| f64::from(u8::from(on));
+    match name {
+        Name::Pixels(variant) | Name::Rays(variant) => vec![
+            ("METHOD", f64::from(variant.method.0)),
+            ("SPINNING", flag(variant.spinning)),
+            ("DELAY", flag(variant.delay)),
+            ("STEP_LIMIT", flag(variant.step_limit)),
+        ],
+        Name::Shade(look) => vec![
+            ("SHOWS_LIGHT", flag(look.light)),
+            ("SHOWS_STARS", flag(look.stars)),
+            ("ALL_EFFECTS", flag(look.all_effects)),
+        ],
+        Name::Count | Name::Develop => Vec::new(),
+    }
 }
 
 fn layout(device: &Device, label: &str, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {

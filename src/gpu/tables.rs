@@ -1,35 +1,46 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made once), and the disk's temperature profile
-//! (made anew when the matter's spin changes).
+//! (made anew when the matter's spin changes). Textures of TABLE_WIDTH entries a row (shade.wgsl says why).
 
-use super::{Buffer, Device};
+use super::{Device, Texture};
 use crate::error::Result;
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::scene::Scene;
 use crate::sky::StarIndex;
 
+/// Entries of a row: a width that every device takes.
+const TABLE_WIDTH: usize = 2048;
+
 pub struct Tables {
-    /// Blackbodies, stars, mean sky, profile: `light_tables` of the shaders.
-    pub light: Buffer,
-    pub star_cells: Buffer,
-    profile_offset: u64,
-    /// Spin as the disk's matter meets it, of the profile in the buffer.
+    /// Blackbodies, stars, mean sky, and in its last row the profile: `light_tables` of the shaders.
+    pub light: Texture,
+    pub star_cells: Texture,
+    profile_row: u32,
+    /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
+}
+
+/// A table in rows, the last one filled up.
+fn rows<T: Copy + Default>(table: &[T]) -> Vec<T> {
+    let mut rows = table.to_vec();
+    rows.resize(table.len().next_multiple_of(TABLE_WIDTH), T::default());
+    rows
 }
 
 impl Tables {
     pub fn new(device: &Device) -> Result<Self> {
         let index = StarIndex::shared();
-        let fixed = index.light_tables();
-        let fixed_bytes: &[u8] = bytemuck::cast_slice(&fixed);
-        let cells: &[u8] = bytemuck::cast_slice(&index.star_cells);
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST;
-        let profile_offset = fixed_bytes.len() as u64;
-        let profile_bytes = (TemperatureProfile::SIZE * size_of::<f32>()) as u64;
-        let light = device.buffer("light tables", profile_offset + profile_bytes, usage)?;
-        let star_cells = device.buffer("star cells", cells.len() as u64, usage)?;
-        device.write(&light, 0, fixed_bytes)?;
-        device.write(&star_cells, 0, cells)?;
-        Ok(Self { light, star_cells, profile_offset, profile_spin: None })
+        let fixed = rows(&index.light_tables());
+        let cells = rows(&index.star_cells);
+        let profile_row = (fixed.len() / TABLE_WIDTH) as u32;
+        let table = |label: &str, format: wgpu::TextureFormat, rows: u32| {
+            device.table(label, format, [TABLE_WIDTH as u32, rows])
+        };
+        let light = table("light tables", wgpu::TextureFormat::Rgba32Float, profile_row + 1)?;
+        let cell_rows = (cells.len() / TABLE_WIDTH) as u32;
+        let star_cells = table("star cells", wgpu::TextureFormat::R32Uint, cell_rows)?;
+        device.write_rows(&light, 0, bytemuck::cast_slice(&fixed))?;
+        device.write_rows(&star_cells, 0, bytemuck::cast_slice(&cells))?;
+        Ok(Self { light, star_cells, profile_row, profile_spin: None })
     }
 
     /// Brings the profile up to the scene's disk.
@@ -39,8 +50,12 @@ impl Tables {
             return Ok(());
         }
         let profile = TemperatureProfile::new(spin);
-        let entries = profile.entries().iter().map(|&t| t as f32).collect::<Vec<_>>();
-        device.write(&self.light, self.profile_offset, bytemuck::cast_slice(&entries))?;
+        // Four entries a texel.
+        let mut row = vec![0.0_f32; 4 * TABLE_WIDTH];
+        for (out, entry) in row.iter_mut().zip(profile.entries()) {
+            *out = *entry as f32;
+        }
+        device.write_rows(&self.light, self.profile_row, bytemuck::cast_slice(&row))?;
         self.profile_spin = Some(spin);
         Ok(())
     }

@@ -1,48 +1,92 @@
 //! Textures on a device: counted while they exist, like buffers.
 
 use super::device::Device;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A texture view whose bytes [`Device::bytes`] counts until it is dropped.
+/// A 2-D texture and its view, whose bytes [`Device::bytes`] counts until it is dropped.
 pub struct Texture {
     pub view: wgpu::TextureView,
+    raw: wgpu::Texture,
     bytes: u64,
     total: Arc<AtomicU64>,
 }
 
 impl Device {
-    /// A 2-D texture, of `layers` layers if `dimension` is an array, that kernels write and read.
-    /// Errors: as [`Device::scoped`].
+    /// A texture, of `layers` layers if `dimension` is an array, that kernels write and read. Errors: as [`Device::scoped`].
     pub fn texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        dimension: wgpu::TextureViewDimension,
+        size: [u32; 2],
+        layers: u32,
+    ) -> Result<Texture> {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        self.any_texture(label, format, dimension, size, layers, usage)
+    }
+
+    /// A texture that the host fills ([`Device::write_rows`]) and kernels read. Errors: as [`Device::scoped`].
+    pub fn table(&self, label: &str, format: wgpu::TextureFormat, size: [u32; 2]) -> Result<Texture> {
+        let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
+        self.any_texture(label, format, wgpu::TextureViewDimension::D2, size, 1, usage)
+    }
+
+    fn any_texture(
         &self,
         label: &str,
         format: wgpu::TextureFormat,
         dimension: wgpu::TextureViewDimension,
         [width, height]: [u32; 2],
         layers: u32,
+        usage: wgpu::TextureUsages,
     ) -> Result<Texture> {
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
-        let view = self.scoped(label, |device| {
-            let texture = device.create_texture(&wgpu::TextureDescriptor {
+        let (raw, view) = self.scoped(label, |device| {
+            let raw = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size,
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format,
-                usage: wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+                usage,
                 view_formats: &[],
             });
-            texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
+            let view = wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() };
+            (raw.clone(), raw.create_view(&view))
         })?;
-        let texel = u64::from(format.block_copy_size(None).unwrap_or(16));
-        let bytes = texel * u64::from(width) * u64::from(height) * u64::from(layers);
+        let bytes = texel_bytes(format) * u64::from(width) * u64::from(height) * u64::from(layers);
         let total = self.byte_count();
         total.fetch_add(bytes, Ordering::Relaxed);
-        Ok(Texture { view, bytes, total })
+        Ok(Texture { view, raw, bytes, total })
     }
+
+    /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no whole number
+    /// of rows; as [`Device::scoped`].
+    pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
+        let width = texture.raw.width();
+        let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
+        if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
+            return Err(Error::internal(format!("{} bytes are no rows of {row_bytes}", data.len())));
+        }
+        let height = (data.len() / row_bytes as usize) as u32;
+        let target = wgpu::TexelCopyTextureInfo {
+            texture: &texture.raw,
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: 0, y: first_row, z: 0 },
+            aspect: wgpu::TextureAspect::All,
+        };
+        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
+        let queue = self.queue()?;
+        self.scoped("writing a texture", |_| queue.write_texture(target, data, layout, size))
+    }
+}
+
+fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
+    format.block_copy_size(None).unwrap_or(0).into()
 }
 
 impl Drop for Texture {

@@ -6,8 +6,8 @@ use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
+use crate::scene::Scene;
 use crate::scene::observer::Lens;
-use crate::scene::{Scene, Sky};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 
@@ -37,8 +37,7 @@ pub struct FrameUniform {
     rain: u32,
     effects: u32,
     view: u32,
-    transparent: u32,
-    reserved: u32,
+    reserved: [u32; 2],
 }
 
 #[repr(C)]
@@ -79,12 +78,11 @@ fn range(u: Option<[f64; 2]>) -> [f32; 2] {
 
 impl FrameUniform {
     /// `settings`: those of f32 pixels. Errors: as `Scene::lens`.
-    pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, transparent: bool) -> Result<Self> {
+    pub fn new(scene: &Scene, lens: &Lens, settings: &Settings) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
         let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
-        let stars = scene.sky.flags & Sky::STARS != 0 && scene.sky.stars_brightness > 0.0;
         let isco = scene.disk_isco();
         let u = 1.0 / frame.r;
         Ok(Self {
@@ -98,8 +96,8 @@ impl FrameUniform {
             place: four(u, frame.sin, frame.cos, if frame.rain { (2.0 * u).sqrt() } else { frame.lapse }),
             zamo: zamo(frame),
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
-            sky_x: with(sky.x_axis, f64::from(u8::from(stars))),
-            sky_y: with(sky.y_axis, scene.sky.stars_brightness),
+            sky_x: with(sky.x_axis, scene.sky.stars_brightness),
+            sky_y: with(sky.y_axis, 0.0),
             sky_z: with(sky.z_axis, 0.0),
             disk: four(
                 disk.temperature,
@@ -116,8 +114,7 @@ impl FrameUniform {
             rain: u32::from(frame.rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
-            transparent: u32::from(transparent),
-            reserved: 0,
+            reserved: [0; 2],
         })
     }
 }

@@ -58,6 +58,10 @@ impl Scene {
         (inner < disk.outer_radius).then(|| [1.0 / disk.outer_radius, 1.0 / inner])
     }
 
+    pub fn shows_stars(&self) -> bool {
+        self.sky.flags & super::Sky::STARS != 0 && self.sky.stars_brightness > 0.0
+    }
+
     /// Whether light shows when it left the disk: only structure that moves does.
     pub fn needs_delay(&self) -> bool {
         self.disk.is_some_and(|d| d.turbulence > 0.0) && self.effects.has(super::Effects::LIGHT_DELAY)
