@@ -81,17 +81,18 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
     // lavapipe runs whatever stands in a loop in every turn.
     loop {
         var at = 0u;
-        var share = 0.0;
+        var p = vec2<f32>(0.0);
+        var flux = 0.0;
         var hit = false;
         while i < end {
             at = STARS_OFFSET + 2u * star_cell(i);
             i += 1u;
             let star = light_table(at);
             let e = star.xyz - d;
-            let p = vec2<f32>(dot(e, across), dot(e, down));
+            p = vec2<f32>(dot(e, across), dot(e, down));
+            flux = star.w;
             hit = max(abs(p.x), abs(p.y)) < 1.5 * area;
             if hit {
-                share = single * star_footprint(p.x / area) * star_footprint(p.y / area) * magnification * star.w;
                 break;
             }
         }
@@ -100,6 +101,7 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
         }
         let kind = light_table(select(MEAN_SKY_OFFSET + part, at + 1u, hit));
         part += select(1u, 0u, hit);
+        let share = single * star_footprint(p.x / area) * star_footprint(p.y / area) * magnification * flux;
         light += select((1.0 - single) * kind.z, share, hit) * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
     }
     return min(light, vec3<f32>(MAX_STAR_LIGHT));
