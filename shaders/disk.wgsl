@@ -2,7 +2,7 @@
 // and light_table(i), defined where the bindings are.
 
 // A row of its own after the tables that never change.
-const PROFILE_OFFSET: u32 = (MEAN_SKY_OFFSET + MEAN_SKY_PARTS + TABLE_WIDTH - 1u) / TABLE_WIDTH * TABLE_WIDTH;
+const PROFILE_OFFSET: u32 = (MEAN_SKY_OFFSET + (STAR_LEVELS + 1u) * MEAN_SKY_PARTS + TABLE_WIDTH - 1u) / TABLE_WIDTH * TABLE_WIDTH;
 // Entries, four to a vector.
 const PROFILE_SIZE: u32 = 2048u;
 

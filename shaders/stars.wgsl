@@ -23,6 +23,10 @@ fn star_level_for(radius: f32) -> u32 {
     return level;
 }
 
+fn star_fade(level: u32, radius: f32) -> f32 {
+    return 1.0 - smoothstep(0.5 * star_margin(level), star_margin(level), radius);
+}
+
 fn star_column(u: f32, side: u32) -> u32 {
     let w = u * (1.0 + STAR_WARP - STAR_WARP * abs(u));
     return min(u32(max((w + 1.0) * 0.5 * f32(side), 0.0)), side - 1u);
@@ -61,21 +65,26 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
     let xy = dot(dx, dy);
     let stretch2 = 0.5 * (xx + yy) + sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
     let radius = 2.1213203 * sqrt(stretch2);
-    let limit = star_margin(STAR_LEVELS - 1u);
     // By its bits: not NaN, not infinite.
     let finite = (bitcast<u32>(radius) & 0x7fffffffu) < 0x7f800000u;
-    let level = select(STAR_LEVELS, star_level_for(radius), finite);
-    let indexed = level < STAR_LEVELS;
-    let single = select(0.0, 1.0 - smoothstep(0.5 * limit, limit, radius), indexed);
+    let found = select(STAR_LEVELS, star_level_for(radius), finite);
+    let indexed = found < STAR_LEVELS;
+    // Beyond the coarsest level nothing is left of its stars.
+    let level = min(found, STAR_LEVELS - 1u);
+    let fade = select(0.0, star_fade(level, radius), indexed);
+    let mean = MEAN_SKY_OFFSET + level * MEAN_SKY_PARTS;
+    let next_limit = light_table(mean + MEAN_SKY_PARTS).w;
 
     let across = cross(dy, d);
     let down = cross(d, dx);
     let area = abs(dot(cross(dx, dy), d));
     let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
-    let cell = cell_of(d, min(level, STAR_LEVELS - 1u));
+    let cell = cell_of(d, level);
     var i = star_cell(cell);
     let end = select(i, star_cell(cell + 1u), indexed);
-    var part = select(MEAN_SKY_PARTS, 0u, single < 1.0);
+    // Parts of this level's mean sky, then of the next one's: the first two levels leave nothing out.
+    var part = select(0u, MEAN_SKY_PARTS, fade == 0.0 || level < 2u);
+    let parts = select(2u * MEAN_SKY_PARTS, MEAN_SKY_PARTS, fade == 1.0 || level == 0u);
     var light = vec3<f32>(0.0);
     // The inner loop only looks; a star that is hit, and after the stars each part of the mean sky, is shaded outside it:
     // lavapipe runs whatever stands in a loop in every turn.
@@ -96,13 +105,15 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
                 break;
             }
         }
-        if !hit && part == MEAN_SKY_PARTS {
+        if !hit && part >= parts {
             break;
         }
-        let kind = light_table(select(MEAN_SKY_OFFSET + part, at + 1u, hit));
+        let kind = light_table(select(mean + part, at + 1u, hit));
+        let shown = select(fade, 1.0, flux >= next_limit);
+        let share = shown * star_footprint(p.x / area) * star_footprint(p.y / area) * magnification * flux;
+        let mean_share = select(1.0 - fade, fade, part < MEAN_SKY_PARTS) * kind.z;
         part += select(1u, 0u, hit);
-        let share = single * star_footprint(p.x / area) * star_footprint(p.y / area) * magnification * flux;
-        light += select((1.0 - single) * kind.z, share, hit) * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
+        light += select(mean_share, share, hit) * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
     }
     return min(light, vec3<f32>(MAX_STAR_LIGHT));
 }

@@ -23,10 +23,14 @@ pub const STAR_REFERENCE_RADIANCE: f64 = 30.0;
 /// (2 tan(30 degrees) / 720)^2 sr: the central pixel of a frame of 720 rows and 60 degrees.
 const REFERENCE_SOLID_ANGLE: f64 = (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
 
-/// Blackbodies that stand for the whole sky where a pixel is wider than the index reaches.
-pub const MEAN_SKY_PARTS: usize = 8;
+/// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many faint stars
+/// that their mean light stands for them, and no list is long (on average below 10).
+const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, f64::INFINITY, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
+
+/// Blackbodies that stand for the stars that a level leaves out.
+pub const MEAN_SKY_PARTS: usize = 6;
 /// K. Upper ends of the temperatures that all but the last gather.
-const MEAN_SKY_BOUNDS: [f64; MEAN_SKY_PARTS - 1] = [3800.0, 4400.0, 5300.0, 6500.0, 8000.0, 10000.0, 13000.0];
+const MEAN_SKY_BOUNDS: [f64; MEAN_SKY_PARTS - 1] = [3900.0, 4800.0, 6500.0, 9000.0, 12500.0];
 
 /// Cells along a cube side.
 pub fn side(level: u32) -> u32 {
@@ -87,6 +91,14 @@ pub struct MeanSkyPart {
     pub radiance: f64,
 }
 
+/// The mean light of faint stars.
+#[derive(Clone, Copy, Debug)]
+pub struct MeanSky {
+    pub parts: [MeanSkyPart; MEAN_SKY_PARTS],
+    /// Flux, as in `StarIndex::stars`, of the faintest star that is not part of it; infinite if all are.
+    pub flux_limit: f32,
+}
+
 /// Stars, cells and mean light, ready to draw.
 pub struct StarIndex {
     /// Two per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. In f32, what the GPU has,
@@ -94,7 +106,8 @@ pub struct StarIndex {
     pub stars: Vec<[f32; 4]>,
     /// For every cell, and one beyond, where its list begins in this same array; then the lists: star numbers.
     pub star_cells: Vec<u32>,
-    pub mean_sky: [MeanSkyPart; MEAN_SKY_PARTS],
+    /// For each level, and one beyond, the mean light of the stars that its lists leave out.
+    pub mean_sky: Vec<MeanSky>,
 }
 
 impl StarIndex {
@@ -118,7 +131,7 @@ impl StarIndex {
         Self {
             stars: packed.map(|v| v.map(|x| x as f32)).collect(),
             star_cells: list_cells(&stars),
-            mean_sky: mean_sky(&stars),
+            mean_sky: FAINTEST.iter().map(|&faintest| mean_sky(&stars, faintest)).collect(),
         }
     }
 
@@ -126,11 +139,11 @@ impl StarIndex {
     pub fn light_tables(&self) -> Vec<[f32; 4]> {
         let mut tables = BlackbodyTable::shared().gpu_table();
         tables.extend_from_slice(&self.stars);
-        tables.extend(
-            self.mean_sky
-                .iter()
-                .map(|part| [part.temperature as f32, part.log_reference as f32, part.radiance as f32, 0.0]),
-        );
+        for mean in &self.mean_sky {
+            tables.extend(mean.parts.iter().map(|part| {
+                [part.temperature as f32, part.log_reference as f32, part.radiance as f32, mean.flux_limit]
+            }));
+        }
         tables
     }
 
@@ -166,7 +179,7 @@ fn scaled_flux(star: &Star) -> f64 {
     star.flux() * STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE
 }
 
-/// Calls `visit` with every cell whose list the star belongs to: on each level, on each cube side whose plane it is near enough to, the two
+/// Calls `visit` with every cell whose list the star belongs to: on each level that is not too coarse for it, on each cube side whose plane it is near enough to, the two
 /// columns by two rows whose enlarged cells hold it.
 fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
     let d = star.direction.to_array();
@@ -179,7 +192,7 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
             continue;
         }
         let (u, v) = (warp(u / along), warp(v / along));
-        for level in 0..STAR_LEVELS {
+        for level in (0..STAR_LEVELS).filter(|&level| star.magnitude <= FAINTEST[level as usize]) {
             let n = side(level) as i32;
             // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 24 moves every level's cells above 0.
             let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 23.5) as i32 - 24;
@@ -216,24 +229,30 @@ fn list_cells(stars: &[Star]) -> Vec<u32> {
     cells
 }
 
-/// The light of all stars, spread evenly, by temperature. A part's 1 / T is the mean of its stars', weighted by light: to first
-/// order the shifted spectra, whose exponents are in 1 / T, then sum to the part's.
-fn mean_sky(stars: &[Star]) -> [MeanSkyPart; MEAN_SKY_PARTS] {
+/// The stars fainter than V = `faintest`, spread evenly, by temperature. A part's 1 / T is the mean of its stars', weighted by light: to
+/// first order the shifted spectra, whose exponents are in 1 / T, then sum to the part's.
+fn mean_sky(stars: &[Star], faintest: f64) -> MeanSky {
     let mut sums = [(0.0, 0.0); MEAN_SKY_PARTS];
+    let mut flux_limit = f32::INFINITY;
     for star in stars {
+        if star.magnitude <= faintest {
+            flux_limit = flux_limit.min(scaled_flux(star) as f32);
+            continue;
+        }
         let (flux, temperature) = (scaled_flux(star), star.temperature());
         let part = MEAN_SKY_BOUNDS.iter().take_while(|&&bound| temperature > bound).count();
         sums[part].0 += flux;
         sums[part].1 += flux / temperature;
     }
-    sums.map(|(flux, flux_by_temperature)| {
+    let parts = sums.map(|(flux, flux_by_temperature)| {
         if flux == 0.0 {
             return MeanSkyPart::default();
         }
         let temperature = flux / flux_by_temperature;
         let log_reference = BlackbodyTable::shared().ln_luminance(temperature);
         MeanSkyPart { temperature, log_reference, radiance: flux / (4.0 * PI) }
-    })
+    });
+    MeanSky { parts, flux_limit }
 }
 
 #[cfg(test)]
@@ -258,7 +277,8 @@ mod tests {
         for direction in directions(300).chain([corner, -corner, edge, DVec3::X, DVec3::NEG_Z]) {
             for level in 0..STAR_LEVELS {
                 let listed: Vec<_> = index.cell_stars(cell_of(direction, level)).map(|(star, _)| star).collect();
-                for star in index.stars.iter().step_by(2) {
+                let limit = index.mean_sky[level as usize].flux_limit;
+                for star in index.stars.iter().step_by(2).filter(|star| star[3] >= limit) {
                     let place = DVec3::new(star[0].into(), star[1].into(), star[2].into());
                     if place.dot(direction) > 0.0 && place.cross(direction).length() <= margin(level) {
                         assert!(listed.contains(star), "{star:?} near {direction} at level {level}");
@@ -327,18 +347,33 @@ mod tests {
         }
     }
 
+    /// What a level lists and what its mean sky holds is all there is.
     #[test]
-    fn mean_sky_has_the_light_of_all_stars_under_any_shift() {
+    fn every_level_has_the_light_of_all_stars() {
+        let index = StarIndex::shared();
+        let sum = |mean: &MeanSky| mean.parts.iter().map(|p| p.radiance * 4.0 * PI).sum::<f64>();
+        let all = index.stars.iter().step_by(2).map(|star| f64::from(star[3])).sum::<f64>();
+        for mean in &index.mean_sky {
+            let bright = index.stars.iter().step_by(2).filter(|star| star[3] >= mean.flux_limit);
+            let listed = bright.map(|star| f64::from(star[3])).sum::<f64>();
+            assert!(((listed + sum(mean)) / all - 1.0).abs() < 1e-6, "{listed} + {} of {all}", sum(mean));
+        }
+        let longest = (0..CELL_COUNT as u32).map(|cell| index.cell_stars(cell).count()).max();
+        assert!(longest.is_some_and(|n| n < 64), "longest list {longest:?}");
+    }
+
+    #[test]
+    fn mean_sky_beyond_the_levels_has_the_light_of_all_stars_under_any_shift() {
         let index = StarIndex::shared();
         let table = BlackbodyTable::shared();
-        for (g, tolerance) in [(0.5, 0.03), (1.0, 0.005), (2.0, 0.03)] {
+        for (g, tolerance) in [(0.5, 0.05), (1.0, 0.01), (2.0, 0.05)] {
             let mut exact = [0.0; 3];
             for star in index.stars.chunks(2) {
                 let light = table.shifted_blackbody(star[1][0].into(), star[1][1].into(), g, g);
                 (0..3).for_each(|c| exact[c] += f64::from(star[0][3]) * light[c] / (4.0 * PI));
             }
             let mut mean = [0.0; 3];
-            for part in index.mean_sky {
+            for part in index.mean_sky[STAR_LEVELS as usize].parts {
                 let light = table.shifted_blackbody(part.temperature, part.log_reference, g, g);
                 (0..3).for_each(|c| mean[c] += part.radiance * light[c]);
             }

@@ -78,27 +78,34 @@ impl StarIndex {
         let mut light = [0.0; 3];
         let mut add = |share: f64, rgb: [f64; 3]| (0..3).for_each(|c| light[c] += share * rgb[c]);
         let table = BlackbodyTable::shared();
-        let limit = margin(STAR_LEVELS - 1);
-        let level = level_for(radius);
-        let single = if level.is_some() { 1.0 - smoothstep(0.5 * limit, limit, radius) } else { 0.0 };
-        if let Some(level) = level {
-            let patch = Patch::new(d, dx, dy, stretch2);
-            for (star, kind) in self.cell_stars(cell_of(d, level)) {
-                let spread = patch.spread(DVec3::new(star[0].into(), star[1].into(), star[2].into()));
-                if spread > 0.0 {
-                    let rgb = table.shifted_blackbody(kind[0].into(), kind[1].into(), g_colour, g_beaming);
-                    add(single * spread * f64::from(star[3]), rgb);
-                }
+        // Beyond the coarsest level, and for NaN, nothing is left of its stars.
+        let found = level_for(radius);
+        let level = found.unwrap_or(STAR_LEVELS - 1);
+        let fade = if found.is_some() { fade(level, radius) } else { 0.0 };
+        let [mean, next] = [0, 1].map(|step| &self.mean_sky[(level + step) as usize]);
+        let patch = Patch::new(d, dx, dy, stretch2);
+        for (star, kind) in self.cell_stars(cell_of(d, level)).take_while(|_| found.is_some()) {
+            let spread = patch.spread(DVec3::new(star[0].into(), star[1].into(), star[2].into()));
+            if spread > 0.0 {
+                let share = if star[3] >= next.flux_limit { 1.0 } else { fade };
+                let rgb = table.shifted_blackbody(kind[0].into(), kind[1].into(), g_colour, g_beaming);
+                add(share * spread * f64::from(star[3]), rgb);
             }
         }
-        if single < 1.0 {
-            for part in self.mean_sky {
+        for (share, mean) in [(fade, mean), (1.0 - fade, next)] {
+            for part in mean.parts.iter().filter(|part| share * part.radiance > 0.0) {
                 let rgb = table.shifted_blackbody(part.temperature, part.log_reference, g_colour, g_beaming);
-                add((1.0 - single) * part.radiance, rgb);
+                add(share * part.radiance, rgb);
             }
         }
         light.map(|v| v.min(MAX_STAR_LIGHT))
     }
+}
+
+/// How much is left, at this footprint, of the stars that the next level leaves out: they go over into the mean sky as the
+/// footprint grows through the second half of the level's margin.
+fn fade(level: u32, radius: f64) -> f64 {
+    1.0 - smoothstep(0.5 * margin(level), margin(level), radius)
 }
 
 fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
@@ -176,7 +183,8 @@ mod tests {
     fn index_and_plain_search_draw_the_same() {
         let index = StarIndex::shared();
         let table = BlackbodyTable::shared();
-        for (i, scale) in [2e-4, 1.6e-3, 4e-3, 8e-3].into_iter().enumerate() {
+        // Footprints of the levels that hold all stars, before any of them fades.
+        for (i, scale) in [2e-4, 1e-3, 1.6e-3, 1.9e-3].into_iter().enumerate() {
             for star in index.stars.iter().step_by(2 * (997 + i)) {
                 let forward = DVec3::new(star[0].into(), star[1].into(), star[2].into()).normalize();
                 let (d, dx, dy) = pixel(forward, scale, 0.3, -0.6);
@@ -202,7 +210,7 @@ mod tests {
     #[test]
     fn wide_pixels_blend_into_the_mean() {
         let index = StarIndex::shared();
-        let mean = index.mean_sky.iter().map(|p| p.radiance).sum::<f64>();
+        let mean = index.mean_sky[STAR_LEVELS as usize].parts.iter().map(|p| p.radiance).sum::<f64>();
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
         assert!((luminance(index.star_light(d, dx, dy, 1.0, 1.0)) / mean - 1.0).abs() < 1e-3);
         let mut before: Option<f64> = None;
