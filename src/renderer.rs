@@ -218,13 +218,22 @@ impl Renderer {
             _ => {}
         }
         let request = FrameRequest { width, height, region, format, transparent };
+        let mut written = 0_u64;
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
+            written += u64::from(tile.width) * u64::from(tile.height);
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
         };
-        let mut stats = match &mut self.tracer {
+        let rendered = match &mut self.tracer {
             Tracer::Cpu(t) => t.render(&self.scene, &request, &mut sink, progress),
             Tracer::Gpu(t) => t.render(&self.scene, &request, &mut sink, progress),
-        }?;
+        };
+        let mut stats = rendered.map_err(|mut error| {
+            if written > 0 {
+                let all = u64::from(width) * u64::from(height);
+                error.message += &format!("; {written} of {all} pixels of the target had been written");
+            }
+            error
+        })?;
         stats.frame_index = self.stats.frame_index + 1;
         stats.cpu_ns = start.elapsed().as_nanos() as u64;
         self.stats = stats;

@@ -10,6 +10,8 @@
 //! a reference, so misaligned structs and arrays are read and written correctly. (Pixels must be aligned; `image`
 //! checks.)
 
+// Item documentation here is the C header: its brackets are cbindgen annotations and C arrays, no links.
+#![allow(rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]
 // The safety contract of every function here is the same, is the header's, and is written once, in `cbindgen.toml`.
 #![allow(clippy::missing_safety_doc)]
 

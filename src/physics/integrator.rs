@@ -91,6 +91,10 @@ fn turn_n(c: &Constants, s: &State, h: f64) -> (DVec3, DVec3, [f64; 4]) {
 
 /// Rain time over one step: its rate needs u', which Nystrom stages do not have; Gauss-Legendre on the dense output.
 fn rain_delay_step(c: &Constants, from: &State, to: &State, h: f64) -> f64 {
+    // The dense output's slope is by the step.
+    if h == 0.0 {
+        return 0.0;
+    }
     let dense = Quintic::of_u(c, from, to, h);
     let offset = 0.6_f64.sqrt() / 2.0;
     let at = |x: f64| {

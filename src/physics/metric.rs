@@ -6,9 +6,9 @@
 use super::orbit::{horizon_inner, horizon_outer};
 use glam::DVec3;
 
-/// A 4 x 4 tensor, [row][column] = [a][b].
+/// A 4 x 4 tensor, `[row][column] = [a][b]`.
 pub type Tensor2 = [[f64; 4]; 4];
-/// Gamma^a_bc as [a][b][c].
+/// Gamma^a_bc as `[a][b][c]`.
 pub type Tensor3 = [[[f64; 4]; 4]; 4];
 
 /// The spacetime of a hole of unit mass and spin `a`.

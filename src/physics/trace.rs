@@ -299,3 +299,97 @@ pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: 
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::orbit::{horizon_inner, horizon_outer};
+
+    /// Boyer-Lindquist time along the ray from the eye to Mino time `tau`, by Simpson's rule on dt/dtau as Carter 1968 has it:
+    /// [(r^2 + a^2)(E (r^2 + a^2) - a L)] / Delta + a (L - a E sin^2 theta).
+    fn coordinate_time(c: &Constants, start: &State, tau: f64) -> f64 {
+        let rate = |s: &State| {
+            let (a, r) = (c.a, 1.0 / s.u);
+            let sum = r * r + a * a;
+            let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
+            let n_z = s.n.z;
+            sum * (c.energy * sum - a * c.angular_momentum) / delta
+                + a * (c.angular_momentum - a * c.energy * (1.0 - n_z * n_z))
+        };
+        let n = 20_000;
+        let h = tau / f64::from(2 * n);
+        let (mut state, mut sum) = (*start, 0.0);
+        for _ in 0..n {
+            let middle = step(Method::Nystrom, c, &state, h, false).0;
+            let end = step(Method::Nystrom, c, &middle, h, false).0;
+            sum += h / 3.0 * (rate(&state) + 4.0 * rate(&middle) + rate(&end));
+            state = end;
+        }
+        sum
+    }
+
+    #[test]
+    fn delay_is_the_integral_of_dt() {
+        let mut compared = 0;
+        for a in [0.0, 0.6, -0.95] {
+            for (r, theta) in [(6.0, 1.2), (30.0, 0.4), (500.0, 1.5)] {
+                let frame = LocalFrame::new(a, super::super::metric::chart(r, theta, 0.7)).unwrap();
+                for i in 0..8 {
+                    let tilt = 8.0 / r * (f64::from(i) / 4.0 - 1.0);
+                    let n = DVec3::new(-1.0, 0.6 * tilt + 0.1 / r, tilt).normalize();
+                    let (c, start) = frame.start(n).unwrap();
+                    let traced = trace(&c, &start, &Settings::exact(a));
+                    for crossing in traced.crossings.iter().filter(|x| x.u > 1e-3 && x.u < 0.4) {
+                        let tau = tau_of(&c, &start, crossing);
+                        let expected = coordinate_time(&c, &start, tau);
+                        let error = (crossing.delay / expected - 1.0).abs();
+                        assert!(error < 1e-9, "a {a} r {r} ray {i}: {} {expected} {error:.1e}", crossing.delay);
+                        compared += 1;
+                    }
+                }
+            }
+        }
+        assert!(compared > 30, "{compared}");
+    }
+
+    /// Mino time of a crossing, by following the ray again.
+    fn tau_of(c: &Constants, start: &State, crossing: &PlaneCrossing) -> f64 {
+        let settings = Settings { delay: false, ..Settings::exact(c.a) };
+        let (mut order, mut side, mut tau) = (0, if start.n.z != 0.0 { start.n.z } else { start.dn.z }, f64::NAN);
+        follow(c, start, &settings, &mut |segment| {
+            if side * segment.to.n.z < 0.0 {
+                side = segment.to.n.z;
+                if order == crossing.order {
+                    let guess = segment.h * Quintic::of_n_z(c, segment.from, segment.to, segment.h).root();
+                    tau = segment.tau + land(c, &settings, segment.from, guess, |s| (s.n.z, s.dn.z)).1;
+                }
+                order += 1;
+            }
+            true
+        });
+        tau
+    }
+
+    /// t = r_eye - r + 2 ln((r_eye - 2) / (r - 2)) along a radial ray; the rain time of an eye inside is finite through r = 2.
+    #[test]
+    fn radial_paths_take_the_textbook_time() {
+        let frame = LocalFrame::new(0.0, DVec3::new(0.0, 40.0, 0.0)).unwrap();
+        let (c, start) = frame.start(DVec3::NEG_X).unwrap();
+        for point in path(&c, &start, &Settings::exact(0.0), 1000.0, 12).iter().take(11) {
+            let r = point.position.length();
+            let expected = 40.0 - r + 2.0 * (38.0 / (r - 2.0)).ln();
+            assert!((point.delay - expected).abs() < 1e-8 * expected.max(1.0), "r {r}: {} {expected}", point.delay);
+        }
+        let inside = LocalFrame::new(0.0, DVec3::new(1.5, 0.0, 0.0)).unwrap();
+        let (c, start) = inside.start(DVec3::X).unwrap();
+        let points = path(&c, &start, &Settings::exact(0.0), 100.0, 9);
+        for pair in points.windows(2) {
+            // Outgoing light looked back along: dT/dr = 1 / (1 + sqrt(2/r)) on the radial ray that falls in with the eye.
+            let [r0, r1] = [0, 1].map(|i| pair[i].position.length());
+            assert!(r1 > r0 && pair[1].delay > pair[0].delay && pair[1].delay.is_finite());
+            let time = |r: f64| r - 2.0 * (2.0 * r).sqrt() + 4.0 * (1.0 + (r / 2.0).sqrt()).ln();
+            let expected = time(r1) - time(r0);
+            assert!((pair[1].delay - pair[0].delay - expected).abs() < 1e-7, "{r0} {r1}: {expected}");
+        }
+    }
+}
