@@ -104,6 +104,23 @@ fn gpu_and_cpu_pictures_agree() {
     }
 }
 
+/// OpenGL ES and OpenGL translate the shaders by themselves, through other paths of wgpu: Mesa's software GL stands for them.
+#[test]
+fn gl_and_cpu_pictures_agree() {
+    let size = [96, 54];
+    for opacity in [1.0, 0.6] {
+        let [cpu, gl] = [Backend::Cpu, Backend::Gl].map(|backend| {
+            let options = RendererOptions { backend: Some(backend), ..Default::default() };
+            let mut renderer = Renderer::new(options).unwrap();
+            renderer.scene.hole.spin = 0.6;
+            renderer.scene.disk.as_mut().unwrap().opacity = opacity;
+            picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false)
+        });
+        let differ = cpu.iter().zip(&gl).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+        assert!(differ < 10, "{differ} bytes differ by more than one step");
+    }
+}
+
 #[test]
 fn light_is_finite_in_every_pixel() {
     for (name, set) in scenes() {

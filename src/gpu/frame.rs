@@ -8,7 +8,7 @@ use super::uniforms::{FrameUniform, PassUniform};
 use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
-use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
+use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::{Method, Scene, View};
 use std::time::{Duration, Instant};
@@ -94,6 +94,8 @@ impl GpuTracer {
         let variant = variant(scene, &settings, inside);
         // An opaque disk hides all but its first crossing.
         let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
+        // wgpu makes no array texture of one layer on GL.
+        let crossings = if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings };
         let pixel_bytes = request.format.bytes_per_pixel() as u64;
         // Two record textures, the crossings, and the radiance.
         let textures = 3 + u64::from(crossings) + u64::from(samples > 1);
