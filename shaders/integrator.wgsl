@@ -145,7 +145,7 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
         return h * s.u / (abs(s.du) + sqrt(curvature * s.u));
     }
     let room = u_plus - s.u;
-    let limit = 0.35 * room / (abs(s.du) + sqrt(curvature * room));
+    let limit = clamp(1.2 * h, 0.03, 0.35) * room / (abs(s.du) + sqrt(curvature * room));
     return select(1e30, limit, s.u > 0.3 * u_plus);
 }
 
