@@ -20,7 +20,8 @@ typedef struct Settings {
     uint32_t    adapter, threads;
     int32_t     method;
     uint32_t    samples, max_order;
-    double      disk_inner, disk_outer, disk_temperature, opacity;
+    double      disk_inner, disk_outer, disk_temperature, opacity, turbulence, time;
+    uint32_t    seed;
     int         no_disk, retrograde, no_stars;
     double      exposure;
     int32_t     tone_map;
@@ -80,6 +81,8 @@ static BhrStatus set_disk(BhrContext *context, const Settings *s) {
     disk.outer_radius = s->disk_outer;
     disk.temperature = s->disk_temperature;
     disk.opacity = s->opacity;
+    disk.turbulence = s->turbulence;
+    disk.seed = s->seed;
     return bhr_set_disk(context, &disk);
 }
 
@@ -117,6 +120,9 @@ static BhrStatus describe_scene(BhrContext *context, const Settings *s) {
     }
     if (status >= 0) {
         status = set_disk(context, s);
+    }
+    if (status >= 0) {
+        status = bhr_set_time(context, s->time * s->mass);
     }
     if (status >= 0 && s->no_stars) {
         status = bhr_set_sky(context, NULL);
@@ -309,6 +315,9 @@ static int run(int argc, char **argv) {
         {"--disk-outer", OPTION_DOUBLE, &s.disk_outer, "R", "in M; default 20", NULL},
         {"--disk-temperature", OPTION_DOUBLE, &s.disk_temperature, "K", "of the hottest ring; default 6500", NULL},
         {"--opacity", OPTION_DOUBLE, &s.opacity, "X", "of the disk, 0 to 1; default 1", NULL},
+        {"--turbulence", OPTION_DOUBLE, &s.turbulence, "X", "structure of the disk, 0 (default) to 1", NULL},
+        {"--seed", OPTION_UINT, &s.seed, "N", "of the turbulence; default 0", NULL},
+        {"--time", OPTION_DOUBLE, &s.time, "T", "in M; turns the disk's structure; default 0", NULL},
         {"--retrograde", OPTION_FLAG, &s.retrograde, NULL, "the disk turns towards -azimuth", NULL},
         {"--no-disk", OPTION_FLAG, &s.no_disk, NULL, "leaves the disk out", NULL},
         {"--no-stars", OPTION_FLAG, &s.no_stars, NULL, "makes the sky black", NULL},

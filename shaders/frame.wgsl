@@ -26,6 +26,8 @@ struct Frame {
     disk: vec4<f32>,
     // Of the full frame, pixels; then step in sigma and tolerance.
     size: vec4<f32>,
+    // Strength, age at the reference time, delay of light of that time (M), 0 of Turbulence in turbulence.rs.
+    turbulence: vec4<f32>,
     // 1/r of the disk's outer and inner edge, (1, 0) without one; the same if nothing behind it matters, else (1, 0).
     disk_u: vec2<f32>,
     opaque_u: vec2<f32>,
@@ -36,7 +38,8 @@ struct Frame {
     // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
     effects: u32,
     view: u32,
-    reserved: vec2<u32>,
+    // Seed of the turbulence, and its generation at the reference time.
+    pattern: vec2<u32>,
 }
 
 const VIEW_REDSHIFT: u32 = 1u;

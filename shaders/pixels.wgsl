@@ -6,6 +6,9 @@
 @group(0) @binding(3) var record_meta: texture_storage_2d<rgba32uint, write>;
 @group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
 
+// Whether shading needs to know where on the disk a crossing is.
+override AZIMUTH: bool = true;
+
 // Of the ray being traced.
 var<private> pixel: vec2<u32>;
 var<private> frequency_ratio: f32;
@@ -18,7 +21,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     }
     if crossing.u >= frame.disk_u.x && crossing.u <= frame.disk_u.y {
         var azimuth = 0.0;
-        if DELAY {
+        if AZIMUTH {
             azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
         }
         let g = frequency_ratio * redshift_of(c, crossing.u);

@@ -3,7 +3,8 @@
 //
 //     record_sky    xyz: sky direction, chart; w: sky_redshift, 0 unless the ray escaped.
 //     record_meta   RECORD_* below.
-//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth, delay (the last two with DELAY only).
+//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth (with AZIMUTH, else 0), delay (with
+//                   DELAY, else 0).
 
 // x: bits 0 .. 1 the fate, of a ray that ended on the opaque disk FATE_HIDDEN; bit 16 + k: the crossing of order k is the disk's.
 // y: steps. z, w: E and L as f32, scaled so that the local frame's observer measures 1; in the METRIC view z is 1/r of the first

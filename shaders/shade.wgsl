@@ -16,6 +16,7 @@
 // What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every `if`.
 override SHOWS_LIGHT: bool = true;
 override SHOWS_STARS: bool = true;
+override TURBULENT: bool = true;
 
 const TABLE_WIDTH: u32 = 2048u;
 
@@ -62,6 +63,35 @@ fn derivative_of_direction(pixel: vec2<u32>, here: vec3<f32>, step: vec2<u32>) -
     return select(vec3<f32>(1e30), difference, has_before || has_after);
 }
 
+fn place(crossing: vec4<f32>) -> Place {
+    return Place(-log(crossing.x), crossing.z, crossing.w);
+}
+
+// The crossing of the plane of this order, if it is the disk's; else 0.
+fn crossing_of_order(pixel: vec2<u32>, order: u32) -> vec4<f32> {
+    let orders = unpack_meta(textureLoad(record_meta, pixel, 0)).orders;
+    if (orders & (1u << order)) == 0u {
+        return vec4<f32>(0.0);
+    }
+    return textureLoad(record_disk, pixel, countOneBits(orders & ((1u << order) - 1u)), 0);
+}
+
+// d(place) / d(pixel) of a crossing, from the crossings of its order at -+ step, as derivative_of_direction.
+fn derivative_of_place(pixel: vec2<u32>, here: vec4<f32>, order: u32, step: vec2<u32>) -> Place {
+    let before = crossing_of_order(pixel - step, order);
+    let after = crossing_of_order(pixel + step, order);
+    let has_before = before.x > 0.0;
+    let has_after = after.x > 0.0;
+    if !has_before && !has_after {
+        return Place(1e30, 0.0, 0.0);
+    }
+    let share = select(1.0, 0.5, has_before && has_after);
+    let first = place(select(here, before, has_before));
+    let last = place(select(here, after, has_after));
+    let turn = wrap_angle(last.azimuth - first.azimuth);
+    return Place(share * (last.ln_r - first.ln_r), share * turn, share * (last.delay - first.delay));
+}
+
 fn to_sky(d: vec3<f32>) -> vec3<f32> {
     return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
 }
@@ -70,6 +100,7 @@ fn pixel_light(here: RecordMeta, pixel: vec2<u32>) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
     let crossings = countOneBits(here.orders);
+    var orders = here.orders;
     for (var slot = 0u; slot < crossings && open > 0.0; slot += 1u) {
         let crossing = textureLoad(record_disk, pixel, slot, 0);
         let u = crossing.x;
@@ -78,7 +109,15 @@ fn pixel_light(here: RecordMeta, pixel: vec2<u32>) -> vec4<f32> {
             let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(u, here.energy, here.angular_momentum);
             shift = visible_shift(crossing.y, gravity);
         }
-        light += open * frame.disk.z * disk_light(u, shift);
+        var structure = 1.0;
+        if TURBULENT {
+            let order = firstTrailingBit(orders);
+            orders &= orders - 1u;
+            let dx = derivative_of_place(pixel, crossing, order, vec2<u32>(1u, 0u));
+            let dy = derivative_of_place(pixel, crossing, order, vec2<u32>(0u, 1u));
+            structure = turbulent_brightness(place(crossing), dx, dy);
+        }
+        light += open * frame.disk.z * structure * disk_light(u, shift);
         open *= 1.0 - frame.disk.z;
     }
     if SHOWS_STARS && here.fate == FATE_ESCAPED && open > 0.0 {

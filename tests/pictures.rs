@@ -82,7 +82,64 @@ fn scenes() -> Vec<NamedScene> {
             r.scene.quality.max_disk_order = 6;
         }),
     ));
+    list.push((
+        "turbulent",
+        Box::new(|r| {
+            (r.scene.hole.spin, r.scene.camera) = (0.7, camera(25.0, 70.0, 60.0, Motion::Static));
+            r.scene.time = 1e6;
+            let disk = r.scene.disk.as_mut().unwrap();
+            (disk.turbulence, disk.seed) = (1.0, 42);
+        }),
+    ));
+    list.push((
+        "turbulent, retrograde, translucent, without delay",
+        Box::new(|r| {
+            (r.scene.hole.mass, r.scene.hole.spin) = (2.0, 0.6);
+            r.scene.camera = camera(50.0, 40.0, 50.0, Motion::Static);
+            r.scene.time = 300.0;
+            r.scene.effects = Effects(Effects::ALL & !Effects::LIGHT_DELAY);
+            let disk = r.scene.disk.as_mut().unwrap();
+            (disk.retrograde, disk.opacity, disk.turbulence, disk.seed) = (true, 0.6, 0.8, 7 << 32);
+        }),
+    ));
+    list.push((
+        "turbulent, from inside the horizon",
+        Box::new(|r| {
+            r.scene.camera = camera(1.5, 60.0, 120.0, Motion::FreeFall);
+            r.scene.disk.as_mut().unwrap().turbulence = 1.0;
+        }),
+    ));
     list
+}
+
+/// Of the turbulent scenes, pixels that change by more than a few steps.
+#[test]
+fn turbulence_shows_its_seed_and_its_time() {
+    let size = [192, 108];
+    type Change = (&'static str, fn(&mut Renderer));
+    let changes: [Change; 4] = [
+        ("strength", |r| r.scene.disk.as_mut().unwrap().turbulence = 0.0),
+        ("seed", |r| r.scene.disk.as_mut().unwrap().seed ^= 1 << 40),
+        ("time", |r| r.scene.time += 20.0),
+        ("delay", |r| r.scene.effects.0 ^= Effects::LIGHT_DELAY),
+    ];
+    for (name, set) in
+        scenes().into_iter().filter(|(name, _)| name.starts_with("turbulent") && !name.contains("inside"))
+    {
+        for (tracer, mut renderer) in both() {
+            for (what, change) in changes {
+                renderer.scene = Default::default();
+                set(&mut renderer);
+                let before = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
+                change(&mut renderer);
+                let after = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
+                let pixels = before.chunks_exact(4).zip(after.chunks_exact(4));
+                let differ = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 8)).count();
+                println!("{name} on {tracer}: another {what} changes {differ} pixels");
+                assert!(differ > 1000, "{name} on {tracer}: another {what} changes {differ} pixels");
+            }
+        }
+    }
 }
 
 #[test]
@@ -155,6 +212,7 @@ fn tiles_and_repetitions_give_the_same_bytes() {
     for (tracer, mut renderer) in both() {
         renderer.scene.hole.spin = 0.4;
         renderer.scene.quality.samples_per_pixel = 3;
+        renderer.scene.disk.as_mut().unwrap().turbulence = 1.0;
         for format in [PixelFormat::Rgba8Srgb, PixelFormat::Rgba16F] {
             let bytes = format.bytes_per_pixel();
             let whole = picture(&mut renderer, format, [width, height], None, false);

@@ -16,6 +16,10 @@ pub struct DiskCrossing {
     pub order: u32,
     /// g, the camera's motion included.
     pub g: f64,
+    /// Chart, (-pi, pi].
+    pub azimuth: f64,
+    /// M; 0 unless the scene needs it.
+    pub delay: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -80,6 +84,8 @@ impl<'a> Recorder<'a> {
             u: x.u,
             order: x.order,
             g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
+            azimuth: x.azimuth,
+            delay: x.delay,
         }));
     }
 }

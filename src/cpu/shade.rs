@@ -1,12 +1,14 @@
 //! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and `shaders/disk.wgsl`. How the records were
 //! made it does not know.
 
-use super::record::Record;
+use super::record::{DiskCrossing, Record};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::disk_flux::TemperatureProfile;
+use crate::physics::geodesic::wrap_angle;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
+use crate::scene::turbulence::{Place, Turbulence};
 use crate::scene::{Disk, Effects, Scene, View};
 use crate::sky::StarIndex;
 use glam::{DMat3, DVec3};
@@ -33,6 +35,7 @@ pub struct Shader<'a> {
     lens: &'a Lens,
     colours: &'static BlackbodyTable,
     profile: TemperatureProfile,
+    turbulence: Option<Turbulence>,
     /// `None`: no stars.
     stars: Option<&'static StarIndex>,
     chart_to_sky: DMat3,
@@ -46,6 +49,7 @@ impl<'a> Shader<'a> {
             lens,
             colours: BlackbodyTable::shared(),
             profile: TemperatureProfile::new(scene.matter_spin()),
+            turbulence: scene.turbulence(),
             stars: scene.shows_stars().then(StarIndex::shared),
             chart_to_sky: scene.chart_to_sky(),
             transparent,
@@ -64,7 +68,8 @@ impl<'a> Shader<'a> {
                 }
                 let gravity = nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
                 let rgb = self.disk_light(disk, crossing.u, self.visible_shift(crossing.g, gravity));
-                (0..3).for_each(|c| light[c] += open * disk.opacity * rgb[c]);
+                let structure = self.turbulence.map_or(1.0, |t| turbulent_brightness(&t, crossing, around));
+                (0..3).for_each(|c| light[c] += open * disk.opacity * structure * rgb[c]);
                 open *= 1.0 - disk.opacity;
             }
         }
@@ -161,5 +166,31 @@ fn derivative_of_direction(here: &Record, before: &Record, after: &Record) -> DV
         (false, true) => after.direction - here.direction,
         (true, false) => here.direction - before.direction,
         (false, false) => DVec3::splat(1e30),
+    }
+}
+
+fn turbulent_brightness(turbulence: &Turbulence, here: &DiskCrossing, around: &Neighbours<'_>) -> f64 {
+    let dx = derivative_of_place(here, around.left, around.right);
+    let dy = derivative_of_place(here, around.above, around.below);
+    turbulence.brightness(place(here), [dx, dy])
+}
+
+fn place(crossing: &DiskCrossing) -> Place {
+    Place { ln_r: -crossing.u.ln(), azimuth: crossing.azimuth, delay: crossing.delay }
+}
+
+/// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
+fn derivative_of_place(here: &DiskCrossing, before: &Record, after: &Record) -> Place {
+    let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(place);
+    let (before, after) = (same(before), same(after));
+    if before.is_none() && after.is_none() {
+        return Place { ln_r: 1e30, azimuth: 0.0, delay: 0.0 };
+    }
+    let share = if before.is_some() && after.is_some() { 0.5 } else { 1.0 };
+    let (first, last) = (before.unwrap_or(place(here)), after.unwrap_or(place(here)));
+    Place {
+        ln_r: share * (last.ln_r - first.ln_r),
+        azimuth: share * wrap_angle(last.azimuth - first.azimuth),
+        delay: share * (last.delay - first.delay),
     }
 }

@@ -91,7 +91,8 @@ impl GpuTracer {
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let inside = lens.observer.frame.r <= 2.0;
-        let variant = variant(scene, &settings, inside);
+        let turbulent = scene.turbulence().is_some();
+        let variant = kernels::Variant { azimuth: turbulent, ..variant(scene, &settings, inside) };
         // An opaque disk hides all but its first crossing.
         let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
         // wgpu makes no array texture of one layer on GL.
@@ -117,6 +118,7 @@ impl GpuTracer {
             light: scene.view == View::Light,
             stars: scene.shows_stars() && !request.transparent,
             all_effects: scene.effects.all_light(),
+            turbulent,
         };
         let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, variant, look)?;
         let uniform = FrameUniform::new(scene, &lens, &settings)?;

@@ -13,6 +13,8 @@ pub struct Variant {
     pub spinning: bool,
     pub delay: bool,
     pub step_limit: bool,
+    /// Whether pixels keep where on the disk a crossing is; given rays always do.
+    pub azimuth: bool,
 }
 
 /// Everything that decides how shading is compiled.
@@ -23,6 +25,7 @@ pub struct Look {
     pub stars: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
+    pub turbulent: bool,
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -101,6 +104,7 @@ fn shade_source() -> String {
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
         include_str!("../../shaders/disk.wgsl"),
+        include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
     ]
     .join("\n")
@@ -257,20 +261,29 @@ impl Kernels {
 /// counted from the host's own table.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
+fn flag(on: bool) -> f64 {
+    f64::from(u8::from(on))
+}
+
+fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
+    vec![
+        ("METHOD", f64::from(variant.method.0)),
+        ("SPINNING", flag(variant.spinning)),
+        ("DELAY", flag(variant.delay)),
+        ("STEP_LIMIT", flag(variant.step_limit)),
+    ]
+}
+
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
-    let flag = |on: bool| f64::from(u8::from(on));
     match name {
-        Name::Pixels(variant) | Name::Rays(variant) => vec![
-            ("METHOD", f64::from(variant.method.0)),
-            ("SPINNING", flag(variant.spinning)),
-            ("DELAY", flag(variant.delay)),
-            ("STEP_LIMIT", flag(variant.step_limit)),
-        ],
+        Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
+        Name::Rays(variant) => trace_constants(variant),
         Name::Shade(look) => vec![
             ("SHOWS_LIGHT", flag(look.light)),
             ("SHOWS_STARS", flag(look.stars)),
             ("ALL_EFFECTS", flag(look.all_effects)),
+            ("TURBULENT", flag(look.turbulent)),
         ],
         Name::Count | Name::Develop => Vec::new(),
     }

@@ -80,7 +80,7 @@ fn ray_settings(scene: &Scene) -> Settings {
     settings
 }
 
-/// What the tracing kernels of a scene are compiled with.
+/// What the tracing kernels of a scene are compiled with; pixels add what their shading needs.
 fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant {
     let spinning = scene.hole.spin != 0.0;
     Variant {
@@ -88,5 +88,6 @@ fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant 
         spinning,
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
+        azimuth: false,
     }
 }

@@ -29,6 +29,7 @@ pub struct FrameUniform {
     sky_z: Vec4,
     disk: Vec4,
     size: Vec4,
+    turbulence: Vec4,
     disk_u: [f32; 2],
     opaque_u: [f32; 2],
     capture_u: f32,
@@ -37,7 +38,7 @@ pub struct FrameUniform {
     rain: u32,
     effects: u32,
     view: u32,
-    reserved: [u32; 2],
+    pattern: [u32; 2],
 }
 
 #[repr(C)]
@@ -84,6 +85,7 @@ impl FrameUniform {
         let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let isco = scene.disk_isco();
+        let turbulence = scene.turbulence();
         let u = 1.0 / frame.r;
         Ok(Self {
             right: with(lens.axes.x_axis, 0.0),
@@ -106,6 +108,7 @@ impl FrameUniform {
                 disk.brightness,
             ),
             size: four(lens.width, lens.height, settings.step, settings.tolerance),
+            turbulence: turbulence.map_or(Vec4::ZERO, |t| four(t.strength, t.age, t.reference_delay, 0.0)),
             disk_u: range(scene.disk_u()),
             opaque_u: range(settings.opaque_u),
             capture_u: settings.capture_u as f32,
@@ -114,7 +117,7 @@ impl FrameUniform {
             rain: u32::from(frame.rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
-            reserved: [0; 2],
+            pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
         })
     }
 }

@@ -12,6 +12,7 @@ pub mod query;
 pub mod rays;
 pub mod sky;
 pub mod trace;
+pub mod turbulence;
 
 pub use camera::{Camera, Motion, Projection};
 pub use disk::Disk;

@@ -62,11 +62,6 @@ impl Scene {
         self.sky.flags & super::Sky::STARS != 0 && self.sky.stars_brightness > 0.0
     }
 
-    /// Whether light shows when it left the disk: only structure that moves does.
-    pub fn needs_delay(&self) -> bool {
-        self.disk.is_some_and(|d| d.turbulence > 0.0) && self.effects.has(super::Effects::LIGHT_DELAY)
-    }
-
     /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde photon
     /// orbit, and no disk is drawn there, the ISCO being outside it; only METRIC looks deeper.
     pub fn pixel_capture_u(&self) -> f64 {
