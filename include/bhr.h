@@ -577,9 +577,12 @@ typedef struct BhrDisk {
     double opacity;
     /** 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
     double brightness;
-    /** 0 smooth (default) .. 1. */
+    /**
+     * Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns about the smooth
+     * disk, is carried along by bhr_set_time, and lives for 120 M before it is made anew.
+     */
     double turbulence;
-    /** Of the turbulence. Default 0. */
+    /** Another one gives another turbulence, the same one always the same. Default 0. */
     uint64_t seed;
 } BhrDisk;
 
@@ -805,7 +808,7 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 /** Intensity follows g^3 (I_nu), g^4 (bolometric). */
 #define BHR_EFFECT_BEAMING 4u
 
-/** The moving disk is seen at its retarded time. */
+/** The moving disk is seen at its retarded time (turbulence only; an eye at or inside the horizon sees all of it at the scene's time). */
 #define BHR_EFFECT_LIGHT_DELAY 8u
 
 /** What a new context has. */
@@ -1064,7 +1067,7 @@ typedef struct BhrHit {
     BhrFate fate;
     /** 0 .. BHR_MAX_CROSSINGS. */
     uint32_t crossing_count;
-    /** Asymptotic, unit, chart axes; 0 when captured. */
+    /** Asymptotic, unit, scene axes; 0 unless escaped. */
     double sky_direction[3];
     /** nu(camera) / nu(at infinity). */
     double sky_redshift;

@@ -30,9 +30,10 @@ pub struct BhrDisk {
     pub opacity: f64,
     /// 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1.
     pub brightness: f64,
-    /// 0 smooth (default) .. 1.
+    /// Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns about the smooth
+    /// disk, is carried along by bhr_set_time, and lives for 120 M before it is made anew.
     pub turbulence: f64,
-    /// Of the turbulence. Default 0.
+    /// Another one gives another turbulence, the same one always the same. Default 0.
     pub seed: u64,
 }
 

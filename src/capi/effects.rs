@@ -13,7 +13,7 @@ pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
 pub const BHR_EFFECT_GRAVITY_SHIFT: u32 = 2u32;
 /// Intensity follows g^3 (I_nu), g^4 (bolometric).
 pub const BHR_EFFECT_BEAMING: u32 = 4u32;
-/// The moving disk is seen at its retarded time.
+/// The moving disk is seen at its retarded time (turbulence only; an eye at or inside the horizon sees all of it at the scene's time).
 pub const BHR_EFFECT_LIGHT_DELAY: u32 = 8u32;
 /// What a new context has.
 pub const BHR_EFFECT_ALL: u32 = 0xffff_ffffu32;
