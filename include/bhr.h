@@ -12,7 +12,7 @@
  *   The hole sits at the origin. x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the
  *   Schwarzschild / Boyer-Lindquist coordinates about the spin axis, which is also the disk's normal: +z unless
  *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that
- *   takes +z to it (about +x for -z): r, th, ph, the frames below and what BhrHit says refer to the turned chart;
+ *   takes +z to it (about +x for -z): r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart;
  *   positions and directions stay in scene axes. Right-handed.
  *
  *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit
@@ -53,7 +53,8 @@
  *
  * The process
  *   The library never writes to stdout or stderr, never calls exit or abort, installs no signal handler, and no
- *   Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind.
+ *   Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind. After fork()
+ *   the child may only exec: neither drivers nor threads live on in it.
  */
 
 #ifndef BHR_H
@@ -233,8 +234,8 @@ typedef struct BhrAdapterInfo {
 #define BHR_BACKEND_GL 5
 
 /**
- * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Asks the drivers anew at
- * every call. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+ * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than
+ * GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
  */
 BhrStatus bhr_adapter_count(uint32_t *out_count);
 
@@ -932,7 +933,8 @@ BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 /* ---- rendering into memory ---- */
 
 /**
- * Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on. Runs
+ * Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
+ * the frame is complete and the answer is ignored. Runs
  * inside a bhr_ call only, on the calling thread. It must not throw, unwind or longjmp; calls on a context from
  * inside it return BHR_ERROR_INVALID_STATE.
  */
@@ -1069,7 +1071,7 @@ typedef struct BhrHit {
     uint32_t crossing_count;
     /** Asymptotic, unit, scene axes; 0 unless escaped. */
     double sky_direction[3];
-    /** nu(camera) / nu(at infinity). */
+    /** nu(camera) / nu(at infinity); NaN unless escaped. */
     double sky_redshift;
     /** Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN. */
     double swept_angle;
@@ -1131,7 +1133,8 @@ BhrStatus bhr_trace_rays(BhrContext *context,
 /**
  * The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
  * room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
- * number. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
+ * number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the eye's radius, but at
+ * least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
  * < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
  */
 BhrStatus bhr_trace_path(BhrContext *context,

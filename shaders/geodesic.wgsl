@@ -43,9 +43,13 @@ fn n_acceleration(c: Constants, n: vec3<f32>) -> vec3<f32> {
     return vec3<f32>(f.xy, f.z + c.a2e2 * n.z);
 }
 
-// D from its roots: no cancellation near the horizon.
+// Nearer to the horizon than this, relative, f32 cannot place anything.
+const HORIZON_ROOM: f32 = 2e-7;
+
+// D from its roots: no cancellation near the horizon; never 0.
 fn horizon_function(c: Constants, u: f32) -> f32 {
-    return (1.0 - c.r_plus * u) * (1.0 - c.r_minus * u);
+    let outer = 1.0 - c.r_plus * u;
+    return select(outer, HORIZON_ROOM, abs(outer) < HORIZON_ROOM) * (1.0 - c.r_minus * u);
 }
 
 fn drag_rate(c: Constants, u: f32) -> f32 {

@@ -19,6 +19,19 @@ pub enum Backend {
     Gl = 5,
 }
 
+/// As in `BHR_BACKEND_*`.
+impl std::fmt::Display for Backend {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Cpu => "CPU",
+            Self::Vulkan => "VULKAN",
+            Self::Metal => "METAL",
+            Self::D3d12 => "D3D12",
+            Self::Gl => "GL",
+        })
+    }
+}
+
 /// What a tracer runs on.
 #[derive(Clone, Debug)]
 pub struct AdapterInfo {
@@ -138,7 +151,7 @@ impl Renderer {
             if options.backend.is_some_and(|wanted| wanted != backend) {
                 return Err(Error::new(
                     ErrorKind::NoAdapter,
-                    format!("adapter {index} is of backend {backend:?}, not {:?}", options.backend),
+                    format!("adapter {index} is of backend {backend}, not the one asked for"),
                 ));
             }
             return match found.into_iter().nth(index as usize) {
@@ -165,7 +178,7 @@ impl Renderer {
             Some(backend) => Err(Error::new(
                 ErrorKind::NoAdapter,
                 format!(
-                    "no usable adapter of backend {backend:?} ({}); BHR_BACKEND_AUTO falls back to the CPU tracer",
+                    "no usable adapter of backend {backend} ({}); BHR_BACKEND_AUTO falls back to the CPU tracer",
                     if reasons.is_empty() { "none found".into() } else { reasons.join("; ") }
                 ),
             )),
@@ -213,7 +226,7 @@ impl Renderer {
                 return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
             }
             (view, PixelFormat::Rgba16F | PixelFormat::Rgba32F) if view != View::Light => {
-                return Err(Error::argument(format!("view {view:?} goes into 8-bit formats or R32F, not {format:?}")));
+                return Err(Error::argument(format!("view {view:?} goes into 8-bit formats or R32F, not {format}")));
             }
             _ => {}
         }

@@ -39,7 +39,16 @@ const MASSES: [f64; 5] = [1.0, 1e-12, 1e12, 1e-100, 1e100];
 /// A place in units of M outside the horizon, often beside it, on the axis, or in the plane.
 fn place(random: &mut Random, spin: f64) -> DVec3 {
     let horizon = 1.0 + (1.0 - spin * spin).sqrt();
-    let r = random.pick(&[horizon + 1e-6, horizon * 1.001, 3.0, 10.0, 1e3, 1e6]);
+    let r = random.pick(&[
+        horizon * (1.0 + 1e-13),
+        horizon * (1.0 + 1e-7),
+        horizon + 1e-6,
+        horizon * 1.001,
+        3.0,
+        10.0,
+        1e3,
+        1e6,
+    ]);
     let random_direction = random.direction();
     let toward = random.pick(&[DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_Y, random_direction, random_direction]);
     toward * r

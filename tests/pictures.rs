@@ -66,6 +66,11 @@ fn scenes() -> Vec<NamedScene> {
         scene("spin 0.998", 0.998, camera(20.0, 75.0, 60.0, Motion::Static)),
         scene("orbit", 0.5, camera(10.0, 90.0, 80.0, Motion::Orbit)),
         scene("free fall inside", 0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
+        // Looking back out; nearer still, f32 cannot tell the eye from the horizon.
+        scene("free fall at a spinning horizon", 0.5, {
+            let inward = camera((1.0 + 0.75_f64.sqrt()) * (1.0 + 1e-5), 60.0, 120.0, Motion::FreeFall);
+            Camera { forward: -inward.forward, ..inward }
+        }),
         scene("free fall with spin", 0.9, camera(6.0, 50.0, 100.0, Motion::FreeFall)),
     ];
     list.push((

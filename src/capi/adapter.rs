@@ -107,8 +107,8 @@ pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
     }))
 }
 
-/// How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Asks the drivers anew at
-/// every call. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+/// How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than
+/// GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -67,7 +67,7 @@ pub struct BhrHit {
     pub crossing_count: u32,
     /// Asymptotic, unit, scene axes; 0 unless escaped.
     pub sky_direction: [f64; 3],
-    /// nu(camera) / nu(at infinity).
+    /// nu(camera) / nu(at infinity); NaN unless escaped.
     pub sky_redshift: f64,
     /// Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN.
     pub swept_angle: f64,
@@ -298,7 +298,8 @@ pub unsafe extern "C" fn bhr_trace_rays(
 
 /// The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
 /// room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
-/// number. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
+/// number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the eye's radius, but at
+/// least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
 /// < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(

@@ -11,8 +11,9 @@ use crate::scene::frame::sample_offset;
 use crate::scene::{Scene, View};
 use rayon::prelude::*;
 
-/// Pixels of a tile, and its widest row: small enough for the caches and for prompt progress, large enough to keep every core busy.
-const TILE_PIXELS: u32 = 1 << 15;
+/// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for prompt
+/// progress, large enough to keep every core busy.
+const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
 /// A frame being rendered.
@@ -44,7 +45,7 @@ impl CpuTracer {
             samples: if light { scene.quality.samples_per_pixel } else { 1 },
             light,
         };
-        let tiles = tiles(request);
+        let tiles = tiles(request, scene.expected_steps());
         let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
         let mut stats = FrameStats {
             rays: u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples),
@@ -72,9 +73,10 @@ impl CpuTracer {
 }
 
 /// Row by row from the top left.
-fn tiles(request: &FrameRequest) -> Vec<Tile> {
-    let w = request.width.clamp(1, TILE_WIDTH);
-    let h = TILE_PIXELS / w;
+fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
+    let pixels = (TILE_STEPS / steps).clamp(256, 1 << 15) as u32;
+    let w = request.width.clamp(1, TILE_WIDTH.min(pixels / 4));
+    let h = pixels / w;
     let columns = (0..request.width).step_by(w as usize);
     let rows = (0..request.height).step_by(h as usize);
     rows.flat_map(|y| columns.clone().map(move |x| (x, y)))

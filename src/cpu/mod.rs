@@ -6,7 +6,7 @@ mod rays;
 mod record;
 mod shade;
 
-pub use rays::trace_path;
+pub use rays::{trace_path, trace_ray};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, Backend};

@@ -11,7 +11,8 @@ pub fn trace_rays(scene: &Scene, rays: &[Ray], hits: &mut [Hit]) {
     rays.par_iter().zip(hits).with_min_len(16).for_each(|(ray, hit)| *hit = trace_ray(scene, &settings, ray));
 }
 
-fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
+/// One of them.
+pub fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
     let Some((frame, start)) = scene.start(ray) else { return Hit { fate: Fate::Invalid, ..Hit::default() } };
     let Some((constants, state)) = start else {
         return Hit { fate: Fate::Captured, sky_redshift: f64::NAN, swept_angle: 0.0, ..Hit::default() };
@@ -20,7 +21,10 @@ fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
     scene.hit(ray, &frame, Some(&constants), &traced)
 }
 
-/// The curve a ray follows, from the eye: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most, evenly
+/// Most points of a path: more than any plot shows, and bounded memory.
+const MAX_PATH: usize = 1 << 16;
+
+/// The curve a ray follows, from the eye: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most (65536 in any case), evenly
 /// spaced in Mino time, the last one its end: just outside the horizon, or, for a ray that escapes, at ten times the eye's
 /// radius, but at least 1000 M.
 /// Errors: INVALID_ARGUMENT for a ray that is not valid.
@@ -36,7 +40,7 @@ pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64;
     let settings = scene.quality.ray_settings(scene.hole.spin);
     let far = (10.0 * frame.r).max(1000.0);
     let to_scene = scene.hole.scene_to_chart().transpose();
-    Ok(path(&constants, &state, &settings, far, capacity)
+    Ok(path(&constants, &state, &settings, far, capacity.min(MAX_PATH))
         .into_iter()
         .map(|p| {
             let place = to_scene * p.position * scene.hole.mass;

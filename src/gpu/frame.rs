@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
-use crate::scene::{Method, Scene, View};
+use crate::scene::{Scene, View};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
@@ -102,8 +102,7 @@ impl GpuTracer {
         let textures = 3 + u64::from(crossings) + u64::from(samples > 1);
         let device_bytes = TEXEL * textures + pixel_bytes;
         let max_side = self.device.limits().max_texture_dimension_2d;
-        let steps = expected_steps(scene.quality.method, settings.step).min(u64::from(settings.max_steps));
-        let plan = Plan::new(request, device_bytes, max_side, steps, samples);
+        let plan = Plan::new(request, device_bytes, max_side, scene.expected_steps(), samples);
 
         if self.tables.is_none() {
             self.tables = Some(Tables::new(&self.device)?);
@@ -113,6 +112,7 @@ impl GpuTracer {
         self.buffers.prepare(
             &self.device,
             Size { tile: plan.largest(), crossings, pixel_bytes, several_samples: samples > 1 },
+            self.adapter.software,
         )?;
         let look = Look {
             light: scene.view == View::Light,
@@ -148,15 +148,6 @@ impl GpuTracer {
     }
 }
 
-/// Steps a ray takes on average, for planning: sigma runs to about 5.
-fn expected_steps(method: Method, step: f64) -> u64 {
-    match method {
-        // A rejected step costs as much, and each has seven evaluations.
-        Method::Adaptive => 60,
-        _ => (6.0 / step).ceil() as u64,
-    }
-}
-
 impl Size {
     /// Whether buffers of this size hold what the other asks for.
     fn serves(&self, other: &Self) -> bool {
@@ -168,7 +159,7 @@ impl Size {
 }
 
 impl FrameBuffers {
-    fn prepare(&mut self, device: &Device, size: Size) -> Result<()> {
+    fn prepare(&mut self, device: &Device, size: Size, software: bool) -> Result<()> {
         if self.fixed.is_none() {
             let uniform = Usage::UNIFORM | Usage::COPY_DST;
             self.fixed = Some(FixedBuffers {
@@ -177,7 +168,8 @@ impl FrameBuffers {
                 passes: device.buffer("passes", u64::from(MAX_BATCH) * pass_stride(device), uniform)?,
                 step_sum: device.buffer("step sum", 4, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)?,
             });
-            self.timer = GpuTimer::new(device, 1)?;
+            // The clocks of software drivers tell nothing about their threads.
+            self.timer = if software { None } else { GpuTimer::new(device, 1)? };
         }
         if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.

@@ -1,4 +1,5 @@
-//! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced in f32.
+//! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced in f32; but for
+//! eyes so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
 
 use super::{Buffer, GpuTracer, Readback, ray_settings, variant};
 use crate::error::{Error, Result};
@@ -14,6 +15,8 @@ use wgpu::BufferUsages as Usage;
 
 /// Rays of one submission.
 const CHUNK: usize = 1 << 14;
+/// Distance of an eye from the horizon, relative to its radius, below which u in f32 is off by more than 1e-3 of that distance.
+const TOO_NEAR: f64 = 1e-4;
 /// `RayEnd`s of a ray: its end and its crossings.
 const ENDS: usize = 1 + MAX_CROSSINGS;
 
@@ -69,6 +72,8 @@ impl GpuTracer {
     }
 
     fn trace_chunk(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
+        let horizon = horizon_outer(scene.hole.spin);
+        let exact = scene.quality.ray_settings(scene.hole.spin);
         let mut begun = Vec::new();
         let mut starts = Vec::new();
         for (index, (ray, hit)) in rays.iter().zip(hits.iter_mut()).enumerate() {
@@ -78,6 +83,9 @@ impl GpuTracer {
                 Some((frame, None)) => {
                     let nothing = RayTrace { fate: trace::Fate::Captured, swept: 0.0, ..unresolved() };
                     *hit = scene.hit(ray, &frame, None, &nothing);
+                }
+                Some((frame, _)) if (frame.r / horizon - 1.0).abs() < TOO_NEAR => {
+                    *hit = crate::cpu::trace_ray(scene, &exact, ray);
                 }
                 Some((frame, Some((constants, state)))) => {
                     starts.push(ray_start(&constants, &state));
@@ -180,6 +188,9 @@ fn finish(scene: &Scene, ray: &Ray, begun: &Begun, ends: &[RayEnd]) -> Hit {
         1 => {
             (traced.fate, traced.swept) = (trace::Fate::Escaped, swept());
             traced.direction = place(end).chart_direction();
+            if !traced.direction.is_finite() {
+                traced = RayTrace { steps, ..unresolved() };
+            }
         }
         _ => {}
     }

@@ -22,6 +22,19 @@ pub enum PixelFormat {
     R32F = 5,
 }
 
+/// As in `BHR_FORMAT_*`.
+impl std::fmt::Display for PixelFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Rgba8Srgb => "RGBA8_SRGB",
+            Self::Bgra8Srgb => "BGRA8_SRGB",
+            Self::Rgba16F => "RGBA16F",
+            Self::Rgba32F => "RGBA32F",
+            Self::R32F => "R32F",
+        })
+    }
+}
+
 impl PixelFormat {
     pub fn bytes_per_pixel(self) -> usize {
         match self {
@@ -77,14 +90,14 @@ impl Layout {
         let step = stride.unsigned_abs();
         if step < row {
             return Err(Error::argument(format!(
-                "image row_stride is {stride}; a row of {} pixels {:?} takes {row} bytes",
+                "image row_stride is {stride}; a row of {} pixels {} takes {row} bytes",
                 self.width, self.format
             )));
         }
         let channel = self.format.channel_bytes() as u64;
         if !step.is_multiple_of(channel) {
             return Err(Error::argument(format!(
-                "image row_stride is {stride}; for {:?} it must be a multiple of {channel}",
+                "image row_stride is {stride}; for {} it must be a multiple of {channel}",
                 self.format
             )));
         }
@@ -120,13 +133,13 @@ impl Rows {
         let channel = layout.format.channel_bytes();
         if !top_left.addr().is_multiple_of(channel) {
             return Err(Error::argument(format!(
-                "image pixels is {top_left:p}; for {:?} it must be a multiple of {channel}",
+                "image pixels is {top_left:p}; for {} it must be a multiple of {channel}",
                 layout.format
             )));
         }
         if byte_size < bytes as u64 {
             return Err(Error::argument(format!(
-                "image byte_size is {byte_size}; {} x {} {:?} at stride {stride} needs {bytes}",
+                "image byte_size is {byte_size}; {} x {} {} at stride {stride} needs {bytes}",
                 layout.width, layout.height, layout.format
             )));
         }

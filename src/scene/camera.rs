@@ -27,6 +27,18 @@ pub enum Motion {
     Velocity = 3,
 }
 
+impl Motion {
+    /// As in `BHR_MOTION_*`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Static => "STATIC",
+            Self::FreeFall => "FREE_FALL",
+            Self::Orbit => "ORBIT",
+            Self::Velocity => "VELOCITY",
+        }
+    }
+}
+
 /// Position and axes in scene axes and lengths. `forward` and `up` keep the length the host gave them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -8,11 +8,23 @@ use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use glam::{DMat3, DVec3};
 
+/// Where observers may be, in M: beyond, f32 tracers could not hold a ray's constants.
+pub const MIN_RADIUS: f64 = 1e-6;
+pub const MAX_RADIUS: f64 = 1e15;
+
 impl Scene {
     /// The local frame at a place given in scene axes and lengths.
-    /// Errors: INVALID_ARGUMENT for no place at all, UNSUPPORTED at or inside a spinning hole's horizon.
+    /// Errors: INVALID_ARGUMENT for no place at all, INVALID_STATE outside 1e-6 .. 1e15 M, UNSUPPORTED at or inside a spinning hole's horizon.
     pub fn local_frame(&self, position: DVec3) -> Result<LocalFrame> {
         let chart = self.hole.scene_to_chart() * position / self.hole.mass;
+        let r = chart.length();
+        // NaN and r = 0 are the frame's business.
+        if position.is_finite() && (r > MAX_RADIUS || (r > 0.0 && r < MIN_RADIUS)) {
+            return Err(Error::state(format!(
+                "position lies at r = {r:e} M (mass is {:e}); it must lie in [{MIN_RADIUS:e}, {MAX_RADIUS:e}] M",
+                self.hole.mass
+            )));
+        }
         LocalFrame::new(self.hole.spin, chart).map_err(|why| match why {
             NoFrame::NotAPlace => Error::argument(format!(
                 "position ({}, {}, {}) is no place for an observer: it must be finite, and not the hole's centre",
@@ -43,8 +55,9 @@ impl Scene {
         let spin = self.hole.spin;
         if frame.rain && camera.motion != Motion::FreeFall {
             return Err(Error::state(format!(
-                "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {:?}: there only FREE_FALL is possible",
-                frame.r, camera.motion
+                "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {}: there only FREE_FALL is possible",
+                frame.r,
+                camera.motion.name()
             )));
         }
         match camera.motion {

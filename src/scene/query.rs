@@ -10,6 +10,9 @@ use crate::physics::orbit::{circular_orbit, ergosphere, horizon_inner, horizon_o
 use crate::physics::shadow::{CRITICAL_IMPACT_PARAMETER, shadow};
 use glam::{DQuat, DVec3};
 
+/// Farthest pixel position that `camera_ray` takes.
+const MAX_PIXEL: f64 = 1e9;
+
 /// Lengths in scene units; NaN where not defined. Field by field `BhrHoleInfo`.
 #[derive(Clone, Copy, Debug)]
 pub struct HoleInfo {
@@ -44,7 +47,7 @@ impl Scene {
             isco_retrograde: m * isco(-a),
             critical_impact_parameter: if spinless { m * CRITICAL_IMPACT_PARAMETER } else { f64::NAN },
             shadow_angular_radius: observer.filter(|_| spinless).map_or(f64::NAN, |o| shadow(&o).radius),
-            camera_radius: self.camera.position.length(),
+            camera_radius: self.camera.position.x.hypot(self.camera.position.y).hypot(self.camera.position.z),
             camera_time_rate: observer.map_or(f64::NAN, |o| o.time_rate()),
         })
     }
@@ -74,7 +77,7 @@ impl Scene {
     pub fn metric_at(&self, position: DVec3) -> Result<[f64; 16]> {
         let (r, theta) = self.place(position)?;
         let g = Kerr { a: self.hole.spin }.metric(r, theta);
-        Ok(std::array::from_fn(|i| g[i / 4][i % 4] * self.hole.mass.powi(angles(&[i / 4, i % 4]))))
+        finite(std::array::from_fn(|i| g[i / 4][i % 4] * self.hole.mass.powi(angles(&[i / 4, i % 4]))))
     }
 
     /// Gamma^a_bc at `position`, [16 a + 4 b + c]. Errors: as `metric_at`, and on the axis.
@@ -87,7 +90,7 @@ impl Scene {
             ));
         }
         let gamma = Kerr { a: self.hole.spin }.christoffel(r, theta);
-        Ok(std::array::from_fn(|i| {
+        finite(std::array::from_fn(|i| {
             let (up, b, c) = (i / 16, i / 4 % 4, i % 4);
             // In lengths M^(1 - 1 - 1) per coordinate t, r below and above; an angle takes away one length each.
             gamma[up][b][c] * self.hole.mass.powi(angles(&[b, c]) - angles(&[up]) - 1)
@@ -98,8 +101,8 @@ impl Scene {
     /// Errors: INVALID_ARGUMENT sizes, region overrun, x or y not finite; INVALID_STATE / UNSUPPORTED where the camera
     /// cannot be.
     pub fn camera_ray(&self, width: u32, height: u32, region: Option<Region>, x: f64, y: f64) -> Result<Ray> {
-        if !(x.is_finite() && y.is_finite()) {
-            return Err(Error::argument(format!("pixel position ({x}, {y}) must be finite")));
+        if !(x.abs() <= MAX_PIXEL && y.abs() <= MAX_PIXEL) {
+            return Err(Error::argument(format!("pixel position ({x:e}, {y:e}) must lie within +-{MAX_PIXEL:e}")));
         }
         let (eye, region) = self.eye(width, height, region)?;
         Ok(eye.ray(self, x + f64::from(region.x), y + f64::from(region.y)))
@@ -191,6 +194,14 @@ impl Scene {
     }
 }
 
+/// Errors: INVALID_ARGUMENT where a component is beyond the range of doubles.
+fn finite<const N: usize>(components: [f64; N]) -> Result<[f64; N]> {
+    if components.iter().all(|v| v.is_finite()) {
+        return Ok(components);
+    }
+    Err(Error::argument("position and mass are so large or small that a component is not finite"))
+}
+
 /// How many of the Boyer-Lindquist indices are angles: each carries one length.
 fn angles(indices: &[usize]) -> i32 {
     indices.iter().filter(|&&i| i >= 2).count() as i32
@@ -236,8 +247,10 @@ fn fall_schwarzschild(r0: f64, tau: f64) -> Result<Fall> {
         let (x, h) = (r.sqrt(), std::f64::consts::SQRT_2);
         2.0 * (2.0 * r).sqrt() + 2.0 * ((x - h) / (x + h)).abs().ln()
     };
-    let inside = radius <= 2.0 || r0 <= 2.0;
-    let time = if inside { tau } else { tau - (horizon_time(radius) - horizon_time(r0)) };
+    let outside = radius > 2.0 && r0 > 2.0;
+    let time = tau - if outside { horizon_time(radius) - horizon_time(r0) } else { 0.0 };
+    // Rounding can end the fall so near to the horizon that t is infinite.
+    let time = if time.is_finite() { time } else { tau };
     Ok(Fall { radius, azimuth: 0.0, time })
 }
 
@@ -257,7 +270,7 @@ fn fall_kerr(a: f64, r0: f64, cos: f64, tau: f64) -> Result<Fall> {
         if !r.is_finite() {
             return Err(Error::argument(format!("proper_time of {tau} M leads beyond all finite radii")));
         }
-        if r - r_plus < 1e-6 {
+        if tau > 0.0 && r - r_plus < 1e-6 {
             return Err(Error::state(format!(
                 "the fall from r = {r0} M reaches the horizon, {r_plus} M, within the proper time {tau} M asked for; \
                  inside a spinning hole no camera is possible"

@@ -62,6 +62,17 @@ impl Scene {
         self.sky.flags & super::Sky::STARS != 0 && self.sky.stars_brightness > 0.0
     }
 
+    /// Steps a ray of a pixel takes on average, for planning: sigma runs to about 6.
+    pub fn expected_steps(&self) -> u64 {
+        let settings = self.pixel_settings();
+        let steps = match self.quality.method {
+            // A rejected step costs as much, and each has seven evaluations.
+            Method::Adaptive => 60,
+            _ => (6.0 / settings.step).ceil() as u64,
+        };
+        steps.clamp(1, settings.max_steps.into())
+    }
+
     /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde photon
     /// orbit, and no disk is drawn there, the ISCO being outside it; only METRIC looks deeper.
     pub fn pixel_capture_u(&self) -> f64 {
