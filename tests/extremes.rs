@@ -111,7 +111,7 @@ fn frames_at_the_extremes() {
         let position =
             if inside { random.direction() * random.pick(&[1e-3, 1.0, 2.0]) } else { place(&mut random, spin) };
         let (forward, velocity) = (random.direction(), random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]));
-        let fov_y = random.pick(&[1e-6, 0.3, 1.0, 3.0, 3.14]);
+        let fov_y = random.pick(&[1e-6, 0.3, 1.0, 3.0, 3.1]);
         let camera = Camera {
             position: position * mass,
             forward,

@@ -68,7 +68,7 @@ fn scenes() -> Vec<NamedScene> {
         scene("free fall inside", 0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
         // Looking back out; nearer still, f32 cannot tell the eye from the horizon.
         scene("free fall at a spinning horizon", 0.5, {
-            let inward = camera((1.0 + 0.75_f64.sqrt()) * (1.0 + 1e-5), 60.0, 120.0, Motion::FreeFall);
+            let inward = camera((1.0 + 0.75_f64.sqrt()) * (1.0 + 1e-3), 60.0, 120.0, Motion::FreeFall);
             Camera { forward: -inward.forward, ..inward }
         }),
         scene("free fall with spin", 0.9, camera(6.0, 50.0, 100.0, Motion::FreeFall)),
