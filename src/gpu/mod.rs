@@ -25,9 +25,9 @@ pub use readback::{Copied, Readback};
 pub use texture::Texture;
 pub use timer::GpuTimer;
 
-use crate::error::Result;
+use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;
-use crate::renderer::AdapterInfo;
+use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Method, Scene};
 use kernels::{Kernels, Variant};
 use tables::Tables;
@@ -52,10 +52,15 @@ impl GpuTracer {
     /// Opens a device. Pipelines and sky follow with the first frame. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Device::open(&adapter)?;
+        let mut kernels = Kernels::default();
+        if adapter.info.backend == Backend::Gl {
+            // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now.
+            kernels.develop(&device).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
+        }
         Ok(Self {
             adapter: adapter.info.clone(),
             device,
-            kernels: Kernels::default(),
+            kernels,
             tables: None,
             buffers: Default::default(),
             ray_buffers: Default::default(),

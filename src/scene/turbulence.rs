@@ -208,7 +208,6 @@ mod tests {
             assert!((average - 1.0).abs() < 0.02, "step {step}: {average}");
             assert!(all().all(|b| (0.0..7.4).contains(&b)));
             let variance = mean(all().map(|b| (b - average).powi(2)));
-            println!("step {step}: mean {average}, standard deviation {}", variance.sqrt());
             assert!(variance > 0.04, "step {step}: {variance}");
         }
         let blurred = turbulence(0.5, false, 0.0, 0).brightness(at(2.0, 1.0), [at(1e30, 0.0); 2]);
@@ -235,7 +234,6 @@ mod tests {
         assert!(early[0] > early[1], "{early:?}: not sheared");
         for begin in [1e6, 1e9] {
             let late = slopes(begin);
-            println!("slopes {early:?}, from {begin:e} on {late:?}");
             (0..2).for_each(|i| assert!((late[i] / early[i] - 1.0).abs() < 0.1, "{early:?} {late:?}"));
         }
     }
