@@ -53,7 +53,7 @@ static void vulkan(void) {
     BhrContext       *context = (BhrContext *)&options;
     CHECK_OK(bhr_context_options_init(&options, sizeof options));
     options.backend = BHR_BACKEND_VULKAN;
-    CHECK_FAILS(BHR_ERROR_NO_ADAPTER, "ulkan", bhr_context_create(BHR_ABI_VERSION, &options, &context));
+    CHECK_FAILS(BHR_ERROR_NO_ADAPTER, "VULKAN", bhr_context_create(BHR_ABI_VERSION, &options, &context));
     CHECK(context == NULL, "a context without an adapter");
 }
 
