@@ -46,10 +46,9 @@ fn n_acceleration(c: Constants, n: vec3<f32>) -> vec3<f32> {
 // Nearer to the horizon than this, relative, f32 cannot place anything.
 const HORIZON_ROOM: f32 = 2e-7;
 
-// D from its roots: no cancellation near the horizon; never 0.
+// D from its roots: no cancellation near the horizon. Never 0; what drag and delay are inside, no one asks.
 fn horizon_function(c: Constants, u: f32) -> f32 {
-    let outer = 1.0 - c.r_plus * u;
-    return select(outer, HORIZON_ROOM, abs(outer) < HORIZON_ROOM) * (1.0 - c.r_minus * u);
+    return max(1.0 - c.r_plus * u, HORIZON_ROOM) * (1.0 - c.r_minus * u);
 }
 
 fn drag_rate(c: Constants, u: f32) -> f32 {
