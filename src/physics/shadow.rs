@@ -76,7 +76,7 @@ pub fn bardeen_curve(a: f64, inclination: f64, count: usize) -> Vec<CriticalPoin
         eta + (a * cos).powi(2) - (lambda * cos / sin).powi(2)
     };
     // beta^2 > 0 between two radii, which lie about the polar photon orbit (lambda = 0).
-    let polar = bisect(|r| spherical_photon_orbit(a, r).0 * a, 1.0 + 1e-9 + super::orbit::horizon_outer(a) - 1.0, 4.0);
+    let polar = bisect(|r| spherical_photon_orbit(a, r).0 * a, super::orbit::horizon_outer(a) + 1e-9, 4.0);
     let low = bisect(beta2, super::orbit::photon_orbit(a.abs()) * (1.0 - 1e-12), polar);
     let high = bisect(beta2, super::orbit::photon_orbit(-a.abs()) * (1.0 + 1e-12), polar);
     (0..count)

@@ -49,8 +49,8 @@ impl Region {
     }
 }
 
-/// Where in its pixel sample `index` of `count` lies, 0 .. 1 each way: the centre for one sample, else a rank-1 lattice with
-/// the generator of R. Korobov's form nearest to the golden ratio (Niederreiter 1992, section 5), centred.
+/// Where in its pixel sample `index` of `count` lies, 0 .. 1 each way: the centre for one sample, else even steps in x and
+/// steps of the golden ratio, modulo 1, in y: evenly spread for any count, the same for every pixel and machine.
 pub fn sample_offset(index: u32, count: u32) -> [f64; 2] {
     let (i, n) = (f64::from(index), f64::from(count));
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
