@@ -1,6 +1,11 @@
 // Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film`, declared where
 // the bindings are.
 
+// What a pipeline is made for; the numbers of ToneMap and PixelFormat, and whether a view's value is shown.
+override TONE_MAP: u32 = 1u;
+override FORMAT: u32 = 1u;
+override FALSE_COLOUR: bool = false;
+
 struct FilmParams {
     exposure: f32,
     tone_map: u32,
@@ -24,13 +29,19 @@ const MAX_F32: f32 = 3.40282347e38;
 
 // One pixel, in as many of the four words as the format has: 1 (8-bit, R32F), 2 (RGBA16F) or 4 (RGBA32F).
 fn develop(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    switch film.format {
-        case FORMAT_RGBA16F: { return vec4<u32>(develop_rgba16f(radiance), 0u, 0u); }
-        case FORMAT_RGBA32F: { return develop_rgba32f(radiance); }
-        case FORMAT_R32F: { return vec4<u32>(bitcast<u32>(radiance.x), 0u, 0u, 0u); }
-        case FORMAT_BGRA8: { return vec4<u32>(develop_bgra8(radiance, x, y), 0u, 0u, 0u); }
-        default: { return vec4<u32>(develop_rgba8(radiance, x, y), 0u, 0u, 0u); }
+    if FORMAT == FORMAT_RGBA16F {
+        return vec4<u32>(develop_rgba16f(radiance), 0u, 0u);
     }
+    if FORMAT == FORMAT_RGBA32F {
+        return develop_rgba32f(radiance);
+    }
+    if FORMAT == FORMAT_R32F {
+        return vec4<u32>(bitcast<u32>(radiance.x), 0u, 0u, 0u);
+    }
+    if FORMAT == FORMAT_BGRA8 {
+        return vec4<u32>(develop_bgra8(radiance, x, y), 0u, 0u, 0u);
+    }
+    return vec4<u32>(develop_rgba8(radiance, x, y), 0u, 0u, 0u);
 }
 
 fn develop_rgba8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
@@ -44,7 +55,7 @@ fn develop_bgra8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
 }
 
 fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    if film.false_colour != 0u {
+    if FALSE_COLOUR {
         let share = (radiance.x - film.view_low) * film.view_scale;
         return vec4<u32>(vec3<u32>(false_colour(share) * 255.0 + 0.5), 255u);
     }
@@ -97,11 +108,13 @@ fn dither(x: u32, y: u32) -> f32 {
 }
 
 fn tone_map(rgb: vec3<f32>) -> vec3<f32> {
-    switch film.tone_map {
-        case TONE_MAP_ACES: { return aces(rgb); }
-        case TONE_MAP_AGX: { return agx(rgb); }
-        default: { return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0)); }
+    if TONE_MAP == TONE_MAP_ACES {
+        return aces(rgb);
     }
+    if TONE_MAP == TONE_MAP_AGX {
+        return agx(rgb);
+    }
+    return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
 // A matrix whose rows sum to 1, by what each component takes from the other two.

@@ -1,4 +1,4 @@
-// One sample of one tile. The traced rectangle is the tile and one pixel around it, for the derivatives.
+// One sample of one tile: the uniform `pass_`, declared where the bindings are. The traced rectangle is the tile and one pixel around it, for the derivatives.
 struct Pass {
     // Of the traced rectangle's top-left pixel in the full frame.
     origin: vec2<i32>,
@@ -10,4 +10,13 @@ struct Pass {
     weight: f32,
     // 1: begins a new sum.
     first: u32,
+}
+
+fn outside_tile(id: vec2<u32>) -> bool {
+    return id.x >= pass_.size.x - 2u || id.y >= pass_.size.y - 2u;
+}
+
+// Of the sample in the tile's pixel `id`: its place in the full frame, pixels.
+fn pixel_place(id: vec2<u32>) -> vec2<f32> {
+    return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset;
 }

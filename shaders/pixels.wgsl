@@ -1,4 +1,4 @@
-// Kernel: traces the pixels of a tile's rectangle into ray records. What shading will do with them it does not know.
+// Kernel: traces the pixels of a tile's rectangle into record textures. What shading will do with them it does not know.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
@@ -43,7 +43,7 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     disk_orders = 0u;
     plane_u = 0.0;
     var sky = vec4<f32>(0.0);
-    var m = RecordMeta(FATE_CAPTURED, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
+    var m = TracedMeta(FATE_CAPTURED, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
     if begin.light {
         let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
         let traced = trace(c, begin.state, settings);

@@ -1,26 +1,44 @@
-// The ray record of a pixel: the one interface between lensing and shading. src/cpu/record.rs has the same fields. Textures of the
-// traced rectangle's size, because neighbours are read together and software drivers reach into buffers lane by lane:
+// The ray record of a pixel: the one interface between lensing and shading. src/scene/record.rs has the same fields. However it was
+// made, whoever makes records (traced.wgsl, lens_*.wgsl) defines
 //
-//     record_sky    xyz: sky direction, chart; w: sky_redshift, 0 unless the ray escaped.
-//     record_meta   RECORD_* below.
-//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth (with AZIMUTH, else 0), delay (with
-//                   DELAY, else 0).
+//     fn ray_record(id: vec2<u32>) -> Record      of the tile's pixel `id`
+//     fn next_crossing() -> Crossing              of that record, front to back, within the disk's radii
 
-// x: bits 0 .. 1 the fate, of a ray that ended on the opaque disk FATE_HIDDEN; bit 16 + k: the crossing of order k is the disk's.
-// y: steps. z, w: E and L as f32, scaled so that the local frame's observer measures 1; in the METRIC view z is 1/r of the first
-// crossing of the plane wherever it is, 0 without one.
-struct RecordMeta {
+// Where and when the light of a crossing left, or the change of it from pixel to pixel.
+struct Place {
+    ln_r: f32,
+    azimuth: f32,
+    delay: f32,
+}
+
+struct Record {
     fate: u32,
-    orders: u32,
+    // Integration steps spent on the pixel.
     steps: u32,
+    // E and L, scaled so that the local frame's observer measures 1.
     energy: f32,
     angular_momentum: f32,
+    // 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
+    plane_u: f32,
+    // nu(camera) / nu(at infinity); 0 unless escaped.
+    sky_redshift: f32,
+    // Sky direction, chart, and its change to the next pixel right and down; 1e30 where it has none.
+    sky: vec3<f32>,
+    sky_dx: vec3<f32>,
+    sky_dy: vec3<f32>,
 }
 
-fn pack_meta(m: RecordMeta) -> vec4<u32> {
-    return vec4<u32>(m.fate | (m.orders << 16u), m.steps, bitcast<u32>(m.energy), bitcast<u32>(m.angular_momentum));
+// A crossing within the disk's radii; u is 0 when there is no further one.
+struct Crossing {
+    u: f32,
+    g: f32,
+    order: u32,
+    // ln_r; azimuth and delay where shading needs them, else 0.
+    place: Place,
+    // With FOOTPRINTS: change to the next pixel right and down.
+    dx: Place,
+    dy: Place,
 }
 
-fn unpack_meta(v: vec4<u32>) -> RecordMeta {
-    return RecordMeta(v.x & 3u, v.x >> 16u, v.y, bitcast<f32>(v.z), bitcast<f32>(v.w));
-}
+// Whether shading needs the footprint of crossings.
+override FOOTPRINTS: bool = true;

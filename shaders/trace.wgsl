@@ -7,11 +7,6 @@
 //
 // which keeps a crossing of the equatorial plane.
 
-const FATE_CAPTURED: u32 = 0u;
-const FATE_ESCAPED: u32 = 1u;
-const FATE_UNRESOLVED: u32 = 2u;
-const FATE_HIDDEN: u32 = 3u;
-
 struct Settings {
     // Step in sigma.
     step: f32,

@@ -6,13 +6,6 @@ const CELLS_PER_E_FOLD: f32 = 2.5;
 const AMPLITUDES: vec4<f32> = vec4<f32>(0.8, 0.7, 0.6, 0.5);
 const GAIN: f32 = 2.2;
 
-// Where and when the light of a crossing left, or the change of it from pixel to pixel.
-struct Place {
-    ln_r: f32,
-    azimuth: f32,
-    delay: f32,
-}
-
 // What the disk's radiance is multiplied by. dx, dy: change of `at` to the next pixel.
 fn turbulent_brightness(at: Place, dx: Place, dy: Place) -> f32 {
     let since = frame.turbulence.y + (frame.turbulence.z - at.delay);

@@ -5,6 +5,7 @@ use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, GpuTracer, Search};
 use crate::image::{ImageMut, PixelFormat};
+use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
 use std::time::Instant;
 
@@ -251,6 +252,19 @@ impl Renderer {
         stats.cpu_ns = start.elapsed().as_nanos() as u64;
         self.stats = stats;
         Ok(())
+    }
+
+    /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for tests. On the GPU
+    /// the first four crossings of each.
+    #[doc(hidden)]
+    pub fn ray_records(&mut self, width: u32, height: u32) -> Result<Vec<Record>> {
+        let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
+        region.check()?;
+        let request = FrameRequest { width, height, region, format: PixelFormat::Rgba32F, transparent: false };
+        match &mut self.tracer {
+            Tracer::Cpu(t) => t.ray_records(&self.scene, &request),
+            Tracer::Gpu(t) => t.ray_records(&self.scene, &request),
+        }
     }
 
     /// Traces `rays`; `hits` is as long. A ray that is not valid becomes `Fate::Invalid`.

@@ -142,12 +142,17 @@ impl Gpu {
             bind_group_layouts: &[Some(&layout)],
             ..Default::default()
         });
+        let constants = [
+            ("FORMAT", f64::from(film.format)),
+            ("TONE_MAP", f64::from(film.tone_map)),
+            ("FALSE_COLOUR", f64::from(film.false_colour)),
+        ];
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: None,
             layout: Some(&pipeline_layout),
             module: &self.module,
             entry_point: Some(entry),
-            compilation_options: Default::default(),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() },
             cache: None,
         });
         let entries: Vec<_> = buffers

@@ -2,12 +2,14 @@
 //! the sink.
 
 use super::CpuTracer;
-use super::record::{Record, Recorder};
-use super::shade::{Neighbours, Shader};
+use super::record::{Neighbours, Recorder};
+use super::shade::Shader;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::{FilmParams, develop};
 use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
+use crate::scene::observer::Lens;
+use crate::scene::record::Record;
 use crate::scene::{Scene, View};
 use rayon::prelude::*;
 
@@ -36,15 +38,7 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
-        let light = scene.view == View::Light;
-        let frame = Frame {
-            recorder: Recorder::new(scene, &lens),
-            shader: Shader::new(scene, &lens, request.transparent),
-            film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
-            request,
-            samples: if light { scene.quality.samples_per_pixel } else { 1 },
-            light,
-        };
+        let frame = Frame::new(scene, &lens, request);
         let tiles = tiles(request, scene.expected_steps());
         let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
         let mut stats = FrameStats {
@@ -72,6 +66,19 @@ impl CpuTracer {
     }
 }
 
+impl CpuTracer {
+    /// The records of a frame, row by row. Errors: as `Scene::lens`.
+    pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
+        let lens = scene.lens(&request.region)?;
+        let frame = Frame::new(scene, &lens, request);
+        let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
+        let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
+        let mut records = vec![Record::captured(); request.width as usize * request.height as usize];
+        self.pool.install(|| frame.with_records(tile, origin, &mut records, |record, _, _, out| *out = record.clone()));
+        Ok(records)
+    }
+}
+
 /// Row by row from the top left.
 fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
     let pixels = (TILE_STEPS / steps).clamp(256, 1 << 15) as u32;
@@ -84,40 +91,58 @@ fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
         .collect()
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    fn new(scene: &'a Scene, lens: &'a Lens, request: &'a FrameRequest) -> Self {
+        let light = scene.view == View::Light;
+        Self {
+            recorder: Recorder::new(scene, lens),
+            shader: Shader::new(scene, lens, request.transparent),
+            film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
+            request,
+            samples: if light { scene.quality.samples_per_pixel } else { 1 },
+            light,
+        }
+    }
+
     /// Traces and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
     fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
         let region = self.request.region;
-        let [dx, dy] = sample_offset(sample, self.samples);
-        let place = |column: u32, row: u32| {
-            (f64::from(region.x + tile.x + column) - 1.0 + dx, f64::from(region.y + tile.y + row) - 1.0 + dy)
-        };
+        let offset = sample_offset(sample, self.samples);
+        let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
+        let weight = 1.0 / f64::from(self.samples);
+        self.with_records(tile, origin, sum, |record, x, y, pixel| {
+            let value = if self.light {
+                self.shader.pixel_light(record)
+            } else {
+                [self.shader.view_value(record, x, y), 0.0, 0.0, 1.0]
+            };
+            (0..4).for_each(|c| pixel[c] += weight * value[c]);
+        })
+    }
+
+    /// Calls `take` with the record of each pixel of `tile` (the first one's ray passing through `origin` of the full frame), its
+    /// place, and its item of `out`; the steps of all rays.
+    fn with_records<T: Send>(
+        &self,
+        tile: Tile,
+        origin: [f64; 2],
+        out: &mut [T],
+        take: impl Fn(&Record, f64, f64, &mut T) + Sync,
+    ) -> u64 {
+        let place = |column: u32, row: u32| (origin[0] - 1.0 + f64::from(column), origin[1] - 1.0 + f64::from(row));
         // One pixel more on each side, for the derivatives.
         let (width, height) = (tile.width + 2, tile.height + 2);
-        let records: Vec<Vec<Record>> = (0..height)
-            .into_par_iter()
-            .map(|row| {
-                let record = |column| {
-                    let (x, y) = place(column, row);
-                    self.recorder.record(x, y)
-                };
-                (0..width).map(record).collect()
-            })
-            .collect();
-        let weight = 1.0 / f64::from(self.samples);
-        sum.par_chunks_mut(tile.width as usize).zip(records.par_windows(3)).zip(1..height).for_each(
+        let trace_row =
+            |row| (0..width).map(|column| place(column, row)).map(|(x, y)| self.recorder.trace(x, y)).collect();
+        let records: Vec<Vec<Record>> = (0..height).into_par_iter().map(trace_row).collect();
+        out.par_chunks_mut(tile.width as usize).zip(records.par_windows(3)).zip(1..height).for_each(
             |((out, rows), row)| {
                 let [above, middle, below] = rows else { return };
                 let columns = middle.windows(3).zip(above.iter().zip(below).skip(1));
-                for ((pixel, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
+                for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
                     let [left, here, right] = across else { continue };
-                    let value = if self.light {
-                        self.shader.pixel_light(&Neighbours { here, left, right, above, below })
-                    } else {
-                        let (x, y) = place(column, row);
-                        [self.shader.view_value(here, x, y), 0.0, 0.0, 1.0]
-                    };
-                    (0..4).for_each(|c| pixel[c] += weight * value[c]);
+                    let (x, y) = place(column, row);
+                    take(&Neighbours { left, right, above, below }.complete(here), x, y, item);
                 }
             },
         );

@@ -1,44 +1,15 @@
-//! The ray record of a pixel: the one interface between lensing and shading. `frame.wgsl` has the same fields.
+//! Ray records of pixels, made by tracing each ray in f64; derivatives come from the neighbours' rays.
 
-use crate::physics::geodesic::Constants;
+use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::orbit::redshift;
-use crate::physics::trace::{CROSSINGS_KEPT, Fate, RayTrace, Settings, trace_look};
+use crate::physics::trace::{Fate, RayTrace, Settings, trace_look};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
-use arrayvec::ArrayVec;
+use crate::scene::record::{DiskCrossing, Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
+use crate::scene::turbulence::Place;
 use glam::DVec3;
 
-/// A crossing within the disk's radii.
-#[derive(Clone, Copy, Debug)]
-pub struct DiskCrossing {
-    pub u: f64,
-    /// Number of the crossing of the plane, from 0.
-    pub order: u32,
-    /// g, the camera's motion included.
-    pub g: f64,
-    /// Chart, (-pi, pi].
-    pub azimuth: f64,
-    /// M; 0 unless the scene needs it.
-    pub delay: f64,
-}
-
-#[derive(Clone, Debug)]
-pub struct Record {
-    pub fate: Fate,
-    /// Sky direction, chart; 0 unless escaped.
-    pub direction: DVec3,
-    /// nu(camera) / nu(at infinity); of an escaped ray.
-    pub sky_redshift: f64,
-    /// E and L, scaled so that the local frame's observer measures 1.
-    pub energy: f64,
-    pub angular_momentum: f64,
-    pub steps: u32,
-    /// 1/r of the first crossing of the plane wherever it is; 0 without one.
-    pub plane: f64,
-    pub crossings: ArrayVec<DiskCrossing, CROSSINGS_KEPT>,
-}
-
-/// What makes records of a frame.
+/// What traces the records of a frame.
 pub struct Recorder<'a> {
     pub lens: &'a Lens,
     settings: Settings,
@@ -46,25 +17,30 @@ pub struct Recorder<'a> {
     retrograde: bool,
 }
 
+/// The records one pixel to the left, right, above and below.
+pub struct Neighbours<'a> {
+    pub left: &'a Record,
+    pub right: &'a Record,
+    pub above: &'a Record,
+    pub below: &'a Record,
+}
+
 impl<'a> Recorder<'a> {
     pub fn new(scene: &Scene, lens: &'a Lens) -> Self {
         Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
     }
 
-    /// The record of position (x, y) of the full frame.
-    pub fn record(&self, x: f64, y: f64) -> Record {
+    /// The record of position (x, y) of the full frame, without footprints.
+    pub fn trace(&self, x: f64, y: f64) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.look(self.lens.look(x, y));
         let (constants, traced) = trace_look(&observer.frame, n, &self.settings);
         let mut record = Record {
             fate: traced.fate,
             direction: traced.direction,
-            sky_redshift: f64::NAN,
-            energy: 1.0,
-            angular_momentum: 0.0,
             steps: traced.steps,
-            plane: traced.crossings.first().map_or(0.0, |c| c.u),
-            crossings: ArrayVec::new(),
+            plane_u: traced.crossings.first().map_or(0.0, |c| c.u),
+            ..Record::captured()
         };
         if let Some(c) = constants {
             self.complete(&mut record, &c, &traced, frequency_ratio);
@@ -84,8 +60,49 @@ impl<'a> Recorder<'a> {
             u: x.u,
             order: x.order,
             g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
-            azimuth: x.azimuth,
-            delay: x.delay,
+            place: Place { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
+            footprint: [UNKNOWN_PLACE; 2],
         }));
+    }
+}
+
+impl Neighbours<'_> {
+    /// `here` with its footprints.
+    pub fn complete(&self, here: &Record) -> Record {
+        let mut record = here.clone();
+        let pairs = [(self.left, self.right), (self.above, self.below)];
+        if here.fate == Fate::Escaped {
+            record.footprint = pairs.map(|(before, after)| derivative_of_direction(here, before, after));
+        }
+        for crossing in &mut record.crossings {
+            crossing.footprint = pairs.map(|(before, after)| derivative_of_place(crossing, before, after));
+        }
+        record
+    }
+}
+
+/// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided.
+fn derivative_of_direction(here: &Record, before: &Record, after: &Record) -> DVec3 {
+    match (before.fate == Fate::Escaped, after.fate == Fate::Escaped) {
+        (true, true) => 0.5 * (after.direction - before.direction),
+        (false, true) => after.direction - here.direction,
+        (true, false) => here.direction - before.direction,
+        (false, false) => UNKNOWN_DIRECTION,
+    }
+}
+
+/// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
+fn derivative_of_place(here: &DiskCrossing, before: &Record, after: &Record) -> Place {
+    let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(|c| c.place);
+    let (before, after) = (same(before), same(after));
+    if before.is_none() && after.is_none() {
+        return UNKNOWN_PLACE;
+    }
+    let share = if before.is_some() && after.is_some() { 0.5 } else { 1.0 };
+    let (first, last) = (before.unwrap_or(here.place), after.unwrap_or(here.place));
+    Place {
+        ln_r: share * (last.ln_r - first.ln_r),
+        azimuth: share * wrap_angle(last.azimuth - first.azimuth),
+        delay: share * (last.delay - first.delay),
     }
 }

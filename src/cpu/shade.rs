@@ -1,32 +1,22 @@
 //! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and `shaders/disk.wgsl`. How the records were
 //! made it does not know.
 
-use super::record::{DiskCrossing, Record};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::disk_flux::TemperatureProfile;
-use crate::physics::geodesic::wrap_angle;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
-use crate::scene::turbulence::{Place, Turbulence};
+use crate::scene::record::Record;
+use crate::scene::turbulence::Turbulence;
 use crate::scene::{Disk, Effects, Scene, View};
 use crate::sky::StarIndex;
-use glam::{DMat3, DVec3};
+use glam::DMat3;
 
 /// How the effects let frequency shifts show: the shift that colours, and the one that beams.
 #[derive(Clone, Copy)]
 struct Shift {
     colour: f64,
     beaming: f64,
-}
-
-/// A record and its neighbours one pixel to the left, right, above and below.
-pub struct Neighbours<'a> {
-    pub here: &'a Record,
-    pub left: &'a Record,
-    pub right: &'a Record,
-    pub above: &'a Record,
-    pub below: &'a Record,
 }
 
 /// What shading needs of a scene.
@@ -57,8 +47,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
-    pub fn pixel_light(&self, around: &Neighbours<'_>) -> [f64; 4] {
-        let here = around.here;
+    pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
         let mut light = [0.0; 3];
         let mut open = 1.0;
         if let Some(disk) = &self.scene.disk {
@@ -68,7 +57,7 @@ impl<'a> Shader<'a> {
                 }
                 let gravity = nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
                 let rgb = self.disk_light(disk, crossing.u, self.visible_shift(crossing.g, gravity));
-                let structure = self.turbulence.map_or(1.0, |t| turbulent_brightness(&t, crossing, around));
+                let structure = self.turbulence.map_or(1.0, |t| t.brightness(crossing.place, crossing.footprint));
                 (0..3).for_each(|c| light[c] += open * disk.opacity * structure * rgb[c]);
                 open *= 1.0 - disk.opacity;
             }
@@ -77,7 +66,7 @@ impl<'a> Shader<'a> {
             return [light[0], light[1], light[2], 1.0];
         }
         if let Some(stars) = self.stars.filter(|_| !self.transparent && open > 0.0) {
-            let rgb = self.sky_light(stars, around);
+            let rgb = self.sky_light(stars, here);
             (0..3).for_each(|c| light[c] += open * rgb[c]);
         }
         [light[0], light[1], light[2], 1.0 - open]
@@ -113,12 +102,10 @@ impl<'a> Shader<'a> {
             .map(|v| v * disk.brightness)
     }
 
-    fn sky_light(&self, stars: &StarIndex, around: &Neighbours<'_>) -> [f64; 3] {
-        let here = around.here;
+    fn sky_light(&self, stars: &StarIndex, here: &Record) -> [f64; 3] {
         let shift = self.visible_shift(here.sky_redshift, nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
-        let dx = self.chart_to_sky * derivative_of_direction(here, around.left, around.right);
-        let dy = self.chart_to_sky * derivative_of_direction(here, around.above, around.below);
+        let [dx, dy] = here.footprint.map(|change| self.chart_to_sky * change);
         stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * self.scene.sky.stars_brightness)
     }
 
@@ -143,7 +130,7 @@ impl<'a> Shader<'a> {
             }
             (View::Deflection, _) => f64::NAN,
             (View::Steps, _) => f64::from(here.steps),
-            (View::Metric, _) if here.plane > 0.0 => 1.0 - 2.0 * here.plane,
+            (View::Metric, _) if here.plane_u > 0.0 => 1.0 - 2.0 * here.plane_u,
             (View::Metric, _) => f64::NAN,
             // Light has no value; `pixel_light` shows it.
             (View::Light, _) => f64::NAN,
@@ -156,41 +143,4 @@ fn nu_static_eye(lens: &Lens, energy: f64) -> f64 {
     let frame = &lens.observer.frame;
     let static_lapse = 1.0 - 2.0 / frame.r;
     if !frame.rain || static_lapse <= 0.0 { 1.0 } else { energy / static_lapse.sqrt() }
-}
-
-/// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided; infinite where neither did, which
-/// only the mean sky can stand for.
-fn derivative_of_direction(here: &Record, before: &Record, after: &Record) -> DVec3 {
-    match (before.fate == Fate::Escaped, after.fate == Fate::Escaped) {
-        (true, true) => 0.5 * (after.direction - before.direction),
-        (false, true) => after.direction - here.direction,
-        (true, false) => here.direction - before.direction,
-        (false, false) => DVec3::splat(1e30),
-    }
-}
-
-fn turbulent_brightness(turbulence: &Turbulence, here: &DiskCrossing, around: &Neighbours<'_>) -> f64 {
-    let dx = derivative_of_place(here, around.left, around.right);
-    let dy = derivative_of_place(here, around.above, around.below);
-    turbulence.brightness(place(here), [dx, dy])
-}
-
-fn place(crossing: &DiskCrossing) -> Place {
-    Place { ln_r: -crossing.u.ln(), azimuth: crossing.azimuth, delay: crossing.delay }
-}
-
-/// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
-fn derivative_of_place(here: &DiskCrossing, before: &Record, after: &Record) -> Place {
-    let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(place);
-    let (before, after) = (same(before), same(after));
-    if before.is_none() && after.is_none() {
-        return Place { ln_r: 1e30, azimuth: 0.0, delay: 0.0 };
-    }
-    let share = if before.is_some() && after.is_some() { 0.5 } else { 1.0 };
-    let (first, last) = (before.unwrap_or(place(here)), after.unwrap_or(place(here)));
-    Place {
-        ln_r: share * (last.ln_r - first.ln_r),
-        azimuth: share * wrap_angle(last.azimuth - first.azimuth),
-        delay: share * (last.delay - first.delay),
-    }
 }

@@ -1,7 +1,9 @@
-//! A frame on the GPU: tile by tile, sample by sample, trace -> shade -> develop -> readback. Each tile's readback overlaps
+//! A frame on the GPU: tile by tile, sample by sample, records -> shade -> develop -> readback. Each tile's readback overlaps
 //! the next tile's work. Knows no host memory: finished tiles go to the sink.
 
-use super::kernels::{Compiled, Look, TextureKind, check_groups};
+use super::export::{EXPORT_BYTES, imported};
+use super::kernels::{FilmLook, Look, Source, Stage, TextureKind, check_groups, pixel_groups};
+use super::records::{STEP_SUM, Shared, TraceStages, TracedRecords, step_sum};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
@@ -10,21 +12,20 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
+use crate::scene::record::Record;
 use crate::scene::{Scene, View};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
-const GROUP: [u32; 2] = [16, 8];
-/// Pixels of a row that a thread of count.wgsl sums.
-const COUNT_RUN: u32 = 8;
-/// Bytes of a texel of the record textures, and of a pixel's radiance.
-const TEXEL: u64 = 16;
+/// Bytes of a pixel's radiance.
+const RADIANCE_BYTES: u64 = 16;
 
 /// Buffers that frames of one size share; they grow and stay.
 #[derive(Default)]
 pub struct FrameBuffers {
     fixed: Option<FixedBuffers>,
     sized: Option<SizedBuffers>,
+    traced: TracedRecords,
     pixels: Readback,
     steps: Readback,
     timer: Option<GpuTimer>,
@@ -40,34 +41,43 @@ struct FixedBuffers {
 
 struct SizedBuffers {
     size: Size,
-    records: [Texture; 3],
-    /// Samples are added by turns: from one to the other. The second is as large as the first only for several samples.
+    /// Samples are added by turns: from one to the other; as large as a tile only for several samples.
     radiance: [Texture; 2],
     packed: Buffer,
 }
 
-/// What the sized buffers serve: largest tile, crossings of the disk a record holds, bytes of a packed pixel.
+/// What the sized buffers serve: largest tile, bytes of a packed pixel.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Size {
     tile: [u32; 2],
-    crossings: u32,
     pixel_bytes: u64,
     several_samples: bool,
 }
 
-/// The pipelines of a frame with their bindings.
-struct Stage {
-    compiled: Compiled,
-    group: wgpu::BindGroup,
+/// What turns ray records into packed pixels.
+enum Shading {
+    /// Of the only sample.
+    Only(Stage),
+    Samples {
+        /// Of even and of odd samples.
+        shade: [Stage; 2],
+        /// After an even and after an odd last sample.
+        develop: [Stage; 2],
+    },
 }
 
 struct Stages {
-    trace: Stage,
-    count: Stage,
-    /// Of even and of odd samples.
-    shade: [Stage; 2],
-    /// After an even and after an odd last sample.
-    develop: [Stage; 2],
+    trace: TraceStages,
+    shading: Shading,
+}
+
+/// How a frame's kernels are compiled.
+struct Looks {
+    variant: kernels::Variant,
+    source: Source,
+    look: Look,
+    film: FilmLook,
+    several_samples: bool,
 }
 
 /// A submission that has not been read yet.
@@ -76,6 +86,16 @@ struct Pending {
     pixels: Option<(Tile, Copied)>,
     steps: Copied,
     time: Option<Copied>,
+}
+
+/// What a frame is set up with before its tiles run.
+pub(super) struct Setup {
+    looks: Looks,
+    samples: u32,
+    /// Of the disk, that a record holds at most.
+    crossings: u32,
+    uniform: FrameUniform,
+    film: FilmParams,
 }
 
 impl GpuTracer {
@@ -87,20 +107,11 @@ impl GpuTracer {
         sink: &mut TileSink<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
-        let lens = scene.lens(&request.region)?;
-        let settings = for_f32(scene.pixel_settings());
-        let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
-        let inside = lens.observer.frame.r <= 2.0;
-        let turbulent = scene.turbulence().is_some();
-        let variant = kernels::Variant { azimuth: turbulent, ..variant(scene, &settings, inside) };
-        // An opaque disk hides all but its first crossing.
-        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
-        // wgpu makes no array texture of one layer on GL.
-        let crossings = if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings };
+        let setup = self.set_up(scene, request)?;
+        let samples = setup.samples;
         let pixel_bytes = request.format.bytes_per_pixel() as u64;
-        // Two record textures, the crossings, and the radiance.
-        let textures = 3 + u64::from(crossings) + u64::from(samples > 1);
-        let device_bytes = TEXEL * textures + pixel_bytes;
+        let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
+        let device_bytes = TracedRecords::bytes_per_pixel(setup.crossings) + sums + pixel_bytes;
         let max_side = self.device.limits().max_texture_dimension_2d;
         let plan = Plan::new(request, device_bytes, max_side, scene.expected_steps(), samples);
 
@@ -109,21 +120,9 @@ impl GpuTracer {
         }
         let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
         tables.update(&self.device, scene)?;
-        self.buffers.prepare(
-            &self.device,
-            Size { tile: plan.largest(), crossings, pixel_bytes, several_samples: samples > 1 },
-            self.adapter.software,
-        )?;
-        let look = Look {
-            light: scene.view == View::Light,
-            stars: scene.shows_stars() && !request.transparent,
-            all_effects: scene.effects.all_light(),
-            turbulent,
-        };
-        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, variant, look)?;
-        let uniform = FrameUniform::new(scene, &lens, &settings)?;
-        let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
-        self.buffers.write_frame(&self.device, &uniform, &film)?;
+        let size = Size { tile: plan.largest(), pixel_bytes, several_samples: samples > 1 };
+        self.buffers.prepare(&self.device, size, &setup, self.adapter.software)?;
+        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup.looks)?;
 
         let mut frame = Frame {
             device: &self.device,
@@ -146,27 +145,97 @@ impl GpuTracer {
         stats.device_bytes = self.device.bytes();
         Ok(stats)
     }
+
+    pub(super) fn set_up(&self, scene: &Scene, request: &FrameRequest) -> Result<Setup> {
+        let lens = scene.lens(&request.region)?;
+        let settings = for_f32(scene.pixel_settings());
+        let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
+        let inside = lens.observer.frame.r <= 2.0;
+        let turbulent = scene.turbulence().is_some();
+        let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
+        let looks = Looks {
+            variant: kernels::Variant { azimuth: turbulent, ..variant(scene, &settings, inside) },
+            source: TracedRecords::SOURCE,
+            look: Look {
+                light: scene.view == View::Light,
+                stars: scene.shows_stars() && !request.transparent,
+                all_effects: scene.effects.all_light(),
+                footprints: turbulent,
+            },
+            film: FilmLook::from(&film),
+            several_samples: samples > 1,
+        };
+        // An opaque disk hides all but its first crossing.
+        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
+        // wgpu makes no array texture of one layer on GL.
+        let crossings = if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings };
+        Ok(Setup { looks, samples, crossings, uniform: FrameUniform::new(scene, &lens, &settings)?, film })
+    }
+
+    /// The records of a frame, row by row; for tests. Errors: as `render`; INTERNAL for more than one tile holds.
+    pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
+        let setup = self.set_up(scene, request)?;
+        let tile = [request.width, request.height];
+        let device = &self.device;
+        let size = Size { tile, pixel_bytes: EXPORT_BYTES, several_samples: false };
+        self.buffers.prepare(device, size, &setup, self.adapter.software)?;
+        let (fixed, sized) = self.buffers.parts()?;
+        let (frame, pass) = (fixed.frame.as_entire_binding(), fixed.pass());
+        let footprints = setup.looks.look.footprints;
+        let exported: &[_] = &[frame.clone(), pass.clone(), sized.packed.as_entire_binding()];
+        let compiled = self.kernels.export(device, setup.looks.source, footprints)?;
+        let export = compiled.stage(device, &[exported, &self.buffers.traced.group()?])?;
+        let shared = Shared { frame, pass, step_sum: fixed.step_sum.as_entire_binding() };
+        let trace = self.buffers.traced.stages(device, &mut self.kernels, setup.looks.variant, &shared)?;
+
+        let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
+        device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1)))?;
+        let mut encoder = device.encoder("records")?;
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            trace.encode(&mut pass, 0, tile);
+            export.dispatch(&mut pass, 0, tile);
+        }
+        let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
+        let mut readback = Readback::new();
+        let copied = readback.copy(device, &mut encoder, &sized.packed, bytes)?;
+        let submission = device.submit(encoder)?;
+        readback.read(device, copied, &submission, |bytes| {
+            Ok(bytes.chunks_exact(EXPORT_BYTES as usize).map(imported).collect())
+        })
+    }
 }
 
 impl Size {
     /// Whether buffers of this size hold what the other asks for.
     fn serves(&self, other: &Self) -> bool {
         (0..2).all(|i| self.tile[i] >= other.tile[i])
-            && self.crossings >= other.crossings
             && self.pixel_bytes >= other.pixel_bytes
             && (self.several_samples || !other.several_samples)
     }
 }
 
+impl FixedBuffers {
+    /// The `PassUniform` that a dispatch's offset chooses.
+    fn pass(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.passes,
+            offset: 0,
+            size: std::num::NonZeroU64::new(size_of::<PassUniform>() as u64),
+        })
+    }
+}
+
 impl FrameBuffers {
-    fn prepare(&mut self, device: &Device, size: Size, software: bool) -> Result<()> {
+    /// Makes room, and writes what all tiles share.
+    fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
         if self.fixed.is_none() {
             let uniform = Usage::UNIFORM | Usage::COPY_DST;
             self.fixed = Some(FixedBuffers {
                 frame: device.buffer("frame", size_of::<FrameUniform>() as u64, uniform)?,
                 film: device.buffer("film", size_of::<FilmParams>() as u64, uniform)?,
                 passes: device.buffer("passes", u64::from(MAX_BATCH) * pass_stride(device), uniform)?,
-                step_sum: device.buffer("step sum", 4, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)?,
+                step_sum: step_sum(device)?,
             });
             // The clocks of software drivers tell nothing about their threads.
             self.timer = if software { None } else { GpuTimer::new(device, 1)? };
@@ -174,29 +243,20 @@ impl FrameBuffers {
         if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.
             self.sized = None;
-            let [width, height] = size.tile;
-            let traced = [width + 2, height + 2];
-            let texture = |kind: TextureKind, label: &str, size: [u32; 2], layers: u32| {
-                device.texture(label, kind.format, kind.dimension, size, layers)
-            };
-            let [sky, meta, disk] = kernels::RECORD;
-            let second = if size.several_samples { size.tile } else { [1, 1] };
-            let pixels = u64::from(width) * u64::from(height);
+            let TextureKind { format, dimension } = kernels::RADIANCE;
+            let summed = if size.several_samples { size.tile } else { [1, 1] };
+            let radiance = || device.texture("radiance", format, dimension, summed, 1);
+            let bytes = u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes;
             self.sized = Some(SizedBuffers {
                 size,
-                records: [
-                    texture(sky, "record sky", traced, 1)?,
-                    texture(meta, "record meta", traced, 1)?,
-                    texture(disk, "record disk", traced, size.crossings)?,
-                ],
-                radiance: [
-                    texture(kernels::RADIANCE, "radiance", size.tile, 1)?,
-                    texture(kernels::RADIANCE, "radiance", second, 1)?,
-                ],
-                packed: device.buffer("packed pixels", pixels * size.pixel_bytes, Usage::STORAGE | Usage::COPY_SRC)?,
+                radiance: [radiance()?, radiance()?],
+                packed: device.buffer("packed pixels", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
             });
         }
-        Ok(())
+        self.traced.prepare(device, size.tile, setup.crossings)?;
+        let (fixed, _) = self.parts()?;
+        device.write(&fixed.frame, 0, bytemuck::bytes_of(&setup.uniform))?;
+        device.write(&fixed.film, 0, bytemuck::bytes_of(&setup.film))
     }
 
     fn parts(&self) -> Result<(&FixedBuffers, &SizedBuffers)> {
@@ -208,57 +268,34 @@ impl FrameBuffers {
         device: &Device,
         kernels: &mut kernels::Kernels,
         tables: &Tables,
-        variant: kernels::Variant,
-        look: Look,
+        looks: &Looks,
     ) -> Result<Stages> {
         let (fixed, sized) = self.parts()?;
-        let pass = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &fixed.passes,
-            offset: 0,
-            size: std::num::NonZeroU64::new(size_of::<PassUniform>() as u64),
-        });
+        let pass = fixed.pass();
         let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
-        let [sky, meta, disk] = sized.records.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let radiance = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let stage = |compiled: Compiled, resources: &[wgpu::BindingResource<'_>]| {
-            let group = compiled.bind(device, resources)?;
-            Ok::<_, Error>(Stage { compiled, group })
+        let step_sum = fixed.step_sum.as_entire_binding();
+        let packed = sized.packed.as_entire_binding();
+        let records = self.traced.group()?;
+        let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let shade = |compiled: &kernels::Compiled, a: &wgpu::BindingResource<'_>, b: &wgpu::BindingResource<'_>| {
+            let shared = [frame.clone(), pass.clone(), light.clone(), cells.clone(), a.clone(), b.clone()];
+            compiled.stage(device, &[&shared, &records])
         };
-        let compiled = kernels.shade(device, look)?;
-        let shade = |from: usize, to: usize| {
-            let resources = [
-                frame.clone(),
-                pass.clone(),
-                sky.clone(),
-                meta.clone(),
-                disk.clone(),
-                wgpu::BindingResource::TextureView(&tables.light.view),
-                wgpu::BindingResource::TextureView(&tables.star_cells.view),
-                radiance[from].clone(),
-                radiance[to].clone(),
-            ];
-            stage(compiled.clone(), &resources)
+        let shading = if looks.several_samples {
+            let compiled = kernels.shade_sample(device, looks.source, looks.look)?;
+            let shade = [shade(&compiled, &odd, &even)?, shade(&compiled, &even, &odd)?];
+            let compiled = kernels.develop(device, looks.film)?;
+            let develop = |from: &wgpu::BindingResource<'_>| {
+                compiled.stage(device, &[&[film.clone(), pass.clone(), from.clone(), packed.clone()]])
+            };
+            Shading::Samples { shade, develop: [develop(&even)?, develop(&odd)?] }
+        } else {
+            let compiled = kernels.shade_only(device, looks.source, looks.look, looks.film)?;
+            Shading::Only(shade(&compiled, &film, &packed)?)
         };
-        let compiled = kernels.develop(device)?;
-        let develop = |from: usize| {
-            let resources = [film.clone(), pass.clone(), radiance[from].clone(), sized.packed.as_entire_binding()];
-            stage(compiled.clone(), &resources)
-        };
-        Ok(Stages {
-            trace: stage(
-                kernels.pixels(device, variant)?,
-                &[frame.clone(), pass.clone(), sky.clone(), meta.clone(), disk.clone()],
-            )?,
-            count: stage(kernels.count(device)?, &[pass.clone(), meta.clone(), fixed.step_sum.as_entire_binding()])?,
-            shade: [shade(1, 0)?, shade(0, 1)?],
-            develop: [develop(0)?, develop(1)?],
-        })
-    }
-
-    fn write_frame(&self, device: &Device, frame: &FrameUniform, film: &FilmParams) -> Result<()> {
-        let (fixed, _) = self.parts()?;
-        device.write(&fixed.frame, 0, bytemuck::bytes_of(frame))?;
-        device.write(&fixed.film, 0, bytemuck::bytes_of(film))
+        let shared = Shared { frame, pass, step_sum };
+        Ok(Stages { trace: self.traced.stages(device, kernels, looks.variant, &shared)?, shading })
     }
 }
 
@@ -313,16 +350,13 @@ impl Frame<'_, '_> {
     fn submit(&mut self, tile: Tile, range: std::ops::Range<u32>) -> Result<Pending> {
         let device = self.device;
         let stride = pass_stride(device);
-        let passes = range.clone().map(|sample| self.pass(tile, sample));
+        let passes = range.clone().map(|sample| pass_of(self.request, tile, sample, self.samples));
         let mut bytes = vec![0; range.len() * stride as usize];
         for (slot, pass) in bytes.chunks_exact_mut(stride as usize).zip(passes) {
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
-        let groups = |width: u32, height: u32| [width.div_ceil(GROUP[0]), height.div_ceil(GROUP[1])];
-        let traced = groups(tile.width + 2, tile.height + 2);
-        let inner = groups(tile.width, tile.height);
-        let counting = groups((tile.width + 2).div_ceil(COUNT_RUN), tile.height + 2);
-        check_groups(device, traced)?;
+        let size = [tile.width, tile.height];
+        check_groups(device, pixel_groups(size.map(|side| side + 2)))?;
         let last = range.end == self.samples;
         let mut encoder = device.encoder("frame")?;
         {
@@ -334,19 +368,16 @@ impl Frame<'_, '_> {
             let timestamps = self.buffers.timer.as_mut().and_then(GpuTimer::next_pass);
             let descriptor = wgpu::ComputePassDescriptor { label: Some("frame"), timestamp_writes: timestamps };
             let mut pass = encoder.begin_compute_pass(&descriptor);
-            let mut dispatch = |stage: &Stage, offset: u32, groups: [u32; 2]| {
-                pass.set_pipeline(&stage.compiled.pipeline);
-                pass.set_bind_group(0, &stage.group, &[offset]);
-                pass.dispatch_workgroups(groups[0], groups[1], 1);
-            };
             for (i, sample) in range.clone().enumerate() {
                 let offset = i as u32 * stride as u32;
-                dispatch(&self.stages.trace, offset, traced);
-                dispatch(&self.stages.count, offset, counting);
-                dispatch(&self.stages.shade[sample as usize % 2], offset, inner);
+                self.stages.trace.encode(&mut pass, offset, size);
+                match &self.stages.shading {
+                    Shading::Only(stage) => stage.dispatch(&mut pass, offset, size),
+                    Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(&mut pass, offset, size),
+                }
             }
-            if last {
-                dispatch(&self.stages.develop[(self.samples as usize - 1) % 2], 0, inner);
+            if let (Shading::Samples { develop, .. }, true) = (&self.stages.shading, last) {
+                develop[(self.samples as usize - 1) % 2].dispatch(&mut pass, 0, size);
             }
         }
         let time = match &mut self.buffers.timer {
@@ -355,7 +386,7 @@ impl Frame<'_, '_> {
         };
         let step_sum =
             self.buffers.fixed.as_ref().map(|f| &f.step_sum).ok_or_else(|| Error::internal("no step sum"))?;
-        let steps = self.buffers.steps.copy(device, &mut encoder, step_sum, 4)?;
+        let steps = self.buffers.steps.copy(device, &mut encoder, step_sum, STEP_SUM)?;
         let pixels = match (&self.buffers.sized, last) {
             (Some(sized), true) => {
                 let size =
@@ -366,18 +397,6 @@ impl Frame<'_, '_> {
         };
         let submission = device.submit(encoder)?;
         Ok(Pending { submission, pixels, steps, time })
-    }
-
-    fn pass(&self, tile: Tile, sample: u32) -> PassUniform {
-        let region = self.request.region;
-        let [dx, dy] = sample_offset(sample, self.samples);
-        PassUniform {
-            origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
-            size: [tile.width + 2, tile.height + 2],
-            offset: [dx as f32, dy as f32],
-            weight: 1.0 / self.samples as f32,
-            first: u32::from(sample == 0),
-        }
     }
 
     /// Waits for a submission and takes what it made.
@@ -398,5 +417,17 @@ impl Frame<'_, '_> {
         }
         self.read_time += started.elapsed();
         Ok(())
+    }
+}
+
+fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32) -> PassUniform {
+    let region = request.region;
+    let [dx, dy] = sample_offset(sample, samples);
+    PassUniform {
+        origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
+        size: [tile.width + 2, tile.height + 2],
+        offset: [dx as f32, dy as f32],
+        weight: 1.0 / samples as f32,
+        first: u32::from(sample == 0),
     }
 }

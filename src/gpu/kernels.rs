@@ -2,6 +2,7 @@
 
 use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
+use crate::film::FilmParams;
 use crate::physics::integrator::Method;
 use crate::sky;
 use std::collections::HashMap;
@@ -25,7 +26,29 @@ pub struct Look {
     pub stars: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
-    pub turbulent: bool,
+    /// Whether crossings need their footprint.
+    pub footprints: bool,
+}
+
+/// Everything that decides how development is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FilmLook {
+    format: u32,
+    tone_map: u32,
+    false_colour: bool,
+}
+
+impl From<&FilmParams> for FilmLook {
+    fn from(film: &FilmParams) -> Self {
+        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0 }
+    }
+}
+
+/// Who makes the ray records that a kernel reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// traced.wgsl
+    Traced,
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -47,8 +70,10 @@ enum Name {
     Pixels(Variant),
     Rays(Variant),
     Count,
-    Shade(Look),
-    Develop,
+    ShadeSample(Source, Look),
+    ShadeOnly(Source, Look, FilmLook),
+    Develop(FilmLook),
+    Export(Source, bool),
 }
 
 /// The pipelines of one device.
@@ -57,61 +82,90 @@ pub struct Kernels {
     made: HashMap<Name, Compiled>,
 }
 
-/// A pipeline and the layout of its group 0.
+/// A pipeline and the layouts of its groups.
 #[derive(Clone)]
 pub struct Compiled {
-    pub pipeline: wgpu::ComputePipeline,
-    pub layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
+    layouts: Vec<wgpu::BindGroupLayout>,
 }
 
+/// A pipeline with what it binds; its group 0 has one `UniformPart`.
+pub struct Stage {
+    pipeline: wgpu::ComputePipeline,
+    groups: Vec<wgpu::BindGroup>,
+}
+
+/// Threads of a workgroup of the kernels that go over pixels.
+const GROUP: [u32; 2] = [16, 8];
+
 const MATH: &str = include_str!("../../shaders/math.wgsl");
-const TRACE_PARTS: [&str; 4] = [
+const FATE: &str = include_str!("../../shaders/fate.wgsl");
+const TRACE_PARTS: [&str; 5] = [
     MATH,
+    FATE,
     include_str!("../../shaders/geodesic.wgsl"),
     include_str!("../../shaders/integrator.wgsl"),
     include_str!("../../shaders/trace.wgsl"),
 ];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
-const RECORD_PART: &str = include_str!("../../shaders/record.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
+const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
+const RECORD: &str = include_str!("../../shaders/record.wgsl");
+const FILM_PARTS: [&str; 2] = [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/packed.wgsl")];
+
+fn join(parts: &[&[&str]]) -> String {
+    parts.concat().join("\n")
+}
 
 fn rays_source() -> String {
-    [TRACE_PARTS.as_slice(), &[include_str!("../../shaders/rays.wgsl")]].concat().join("\n")
+    join(&[&TRACE_PARTS, &[include_str!("../../shaders/rays.wgsl")]])
 }
 
 fn pixels_source() -> String {
-    let rest = [
-        PASS,
-        RECORD_PART,
-        FRAME,
-        include_str!("../../shaders/camera.wgsl"),
-        include_str!("../../shaders/pixels.wgsl"),
-    ];
-    [TRACE_PARTS.as_slice(), &rest].concat().join("\n")
+    let camera = include_str!("../../shaders/camera.wgsl");
+    join(&[&TRACE_PARTS, &[PASS, TRACED_LAYOUT, FRAME, camera, include_str!("../../shaders/pixels.wgsl")]])
 }
 
 fn count_source() -> String {
-    [PASS, RECORD_PART, include_str!("../../shaders/count.wgsl")].join("\n")
+    join(&[&[PASS, TRACED_LAYOUT, include_str!("../../shaders/count.wgsl")]])
 }
 
-fn shade_source() -> String {
-    [
-        sky::StarIndex::shared().wgsl_constants().as_str(),
-        MATH,
-        PASS,
-        RECORD_PART,
-        FRAME,
+impl Source {
+    /// The WGSL that makes records, without what shading needs as well.
+    fn parts(self) -> Vec<&'static str> {
+        match self {
+            Self::Traced => vec![TRACED_LAYOUT, include_str!("../../shaders/traced.wgsl")],
+        }
+    }
+}
+
+fn shade_source(source: Source, rest: &[&str]) -> String {
+    let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
         include_str!("../../shaders/disk.wgsl"),
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
-    ]
-    .join("\n")
+    ];
+    let constants = sky::StarIndex::shared().wgsl_constants();
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME], &source.parts(), &shade, rest])
+}
+
+fn shade_sample_source(source: Source) -> String {
+    shade_source(source, &[include_str!("../../shaders/shade_sample.wgsl")])
+}
+
+fn shade_only_source(source: Source) -> String {
+    let [film, packed] = FILM_PARTS;
+    shade_source(source, &[film, packed, include_str!("../../shaders/shade_only.wgsl")])
+}
+
+fn export_source(source: Source) -> String {
+    join(&[&[MATH, FATE, PASS, RECORD, FRAME], &source.parts(), &[include_str!("../../shaders/export.wgsl")]])
 }
 
 fn develop_source() -> String {
-    [PASS, include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/develop.wgsl")].join("\n")
+    join(&[&[PASS], &FILM_PARTS, &[include_str!("../../shaders/develop.wgsl")]])
 }
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
@@ -120,12 +174,14 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("rays", rays_source()),
         ("pixels", pixels_source()),
         ("count", count_source()),
-        ("shade", shade_source()),
+        ("shade sample, traced", shade_sample_source(Source::Traced)),
+        ("shade only, traced", shade_only_source(Source::Traced)),
+        ("export, traced", export_source(Source::Traced)),
         ("develop", develop_source()),
     ]
 }
 
-/// What a binding of group 0 is.
+/// What a binding is.
 #[derive(Clone, Copy)]
 enum Slot {
     Uniform,
@@ -144,14 +200,14 @@ pub struct TextureKind {
     pub dimension: wgpu::TextureViewDimension,
 }
 
-/// `record_sky`, `record_meta` and `record_disk` of record.wgsl.
-pub const RECORD: [TextureKind; 3] = [
+/// `record_sky`, `record_meta` and `record_disk` of traced_layout.wgsl.
+pub const TRACED: [TextureKind; 3] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::Rgba32Uint, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array },
 ];
 
-/// Radiance of shade.wgsl and develop.wgsl.
+/// Radiance of shade_sample.wgsl and develop.wgsl.
 pub const RADIANCE: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
 
@@ -187,57 +243,70 @@ impl Slot {
     }
 }
 
+impl Source {
+    /// Group 1.
+    fn slots(self) -> Vec<Slot> {
+        match self {
+            Self::Traced => TRACED.map(Slot::Texture).into(),
+        }
+    }
+}
+
+/// Bindings 0 .. 3 of shade.wgsl, then `rest`.
+fn shade_slots(rest: [Slot; 2]) -> Vec<Slot> {
+    let [light, cells] = TABLES.map(Slot::Texture);
+    [[Slot::Uniform, Slot::UniformPart, light, cells].as_slice(), &rest].concat()
+}
+
 impl Kernels {
     pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
-        let [sky, meta, disk] = RECORD.map(Slot::TextureWrite);
-        let slots = [Slot::Uniform, Slot::UniformPart, sky, meta, disk];
-        self.get(device, Name::Pixels(variant), &slots, "trace_pixels", pixels_source)
+        let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
+        let slots = vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk];
+        self.get(device, Name::Pixels(variant), &[slots], "trace_pixels", pixels_source)
     }
 
     pub fn count(&mut self, device: &Device) -> Result<Compiled> {
-        let slots = [Slot::UniformPart, Slot::Texture(RECORD[1]), Slot::Write];
-        self.get(device, Name::Count, &slots, "count_steps", count_source)
+        let slots = vec![Slot::UniformPart, Slot::Texture(TRACED[1]), Slot::Write];
+        self.get(device, Name::Count, &[slots], "count_steps", count_source)
     }
 
     pub fn rays(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::Read, Slot::Write];
-        self.get(device, Name::Rays(variant), &slots, "trace_rays", rays_source)
+        let slots = vec![Slot::Uniform, Slot::Read, Slot::Write];
+        self.get(device, Name::Rays(variant), &[slots], "trace_rays", rays_source)
     }
 
-    pub fn shade(&mut self, device: &Device, look: Look) -> Result<Compiled> {
-        let [sky, meta, disk] = RECORD.map(Slot::Texture);
-        let [light, cells] = TABLES.map(Slot::Texture);
-        let slots = [
-            Slot::Uniform,
-            Slot::UniformPart,
-            sky,
-            meta,
-            disk,
-            light,
-            cells,
-            Slot::Texture(RADIANCE),
-            Slot::TextureWrite(RADIANCE),
-        ];
-        self.get(device, Name::Shade(look), &slots, "shade", shade_source)
+    pub fn shade_sample(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
+        let groups = [shade_slots([Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]), source.slots()];
+        self.get(device, Name::ShadeSample(source, look), &groups, "shade_sample", || shade_sample_source(source))
     }
 
-    pub fn develop(&mut self, device: &Device) -> Result<Compiled> {
-        let slots = [Slot::Uniform, Slot::UniformPart, Slot::Texture(RADIANCE), Slot::Write];
-        self.get(device, Name::Develop, &slots, "develop_tile", develop_source)
+    pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
+        let groups = [shade_slots([Slot::Uniform, Slot::Write]), source.slots()];
+        self.get(device, Name::ShadeOnly(source, look, film), &groups, "shade_only", || shade_only_source(source))
+    }
+
+    pub fn develop(&mut self, device: &Device, film: FilmLook) -> Result<Compiled> {
+        let slots = vec![Slot::Uniform, Slot::UniformPart, Slot::Texture(RADIANCE), Slot::Write];
+        self.get(device, Name::Develop(film), &[slots], "develop_tile", develop_source)
+    }
+
+    pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
+        let groups = [vec![Slot::Uniform, Slot::UniformPart, Slot::Write], source.slots()];
+        self.get(device, Name::Export(source, footprints), &groups, "export_records", || export_source(source))
     }
 
     fn get(
         &mut self,
         device: &Device,
         name: Name,
-        slots: &[Slot],
+        groups: &[Vec<Slot>],
         entry_point: &str,
         source: impl FnOnce() -> String,
     ) -> Result<Compiled> {
         if let Some(compiled) = self.made.get(&name) {
             return Ok(compiled.clone());
         }
-        let layout = layout(device, entry_point, slots)?;
+        let layouts = groups.iter().map(|slots| layout(device, entry_point, slots)).collect::<Result<Vec<_>>>()?;
         let constants = constants(name);
         let source = source();
         let pipeline = device.compute_pipeline(&Kernel {
@@ -247,9 +316,9 @@ impl Kernels {
             entry_point,
             constants: &constants,
             zero_workgroup_memory: false,
-            groups: &[&layout],
+            groups: &layouts.iter().collect::<Vec<_>>(),
         })?;
-        let compiled = Compiled { pipeline, layout };
+        let compiled = Compiled { pipeline, layouts };
         self.made.insert(name, compiled.clone());
         Ok(compiled)
     }
@@ -274,18 +343,29 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
+fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
+    vec![
+        ("SHOWS_LIGHT", flag(look.light)),
+        ("SHOWS_STARS", flag(look.stars)),
+        ("ALL_EFFECTS", flag(look.all_effects)),
+        ("FOOTPRINTS", flag(look.footprints)),
+    ]
+}
+
+fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
+    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", flag(film.false_colour))]
+}
+
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
         Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
         Name::Rays(variant) => trace_constants(variant),
-        Name::Shade(look) => vec![
-            ("SHOWS_LIGHT", flag(look.light)),
-            ("SHOWS_STARS", flag(look.stars)),
-            ("ALL_EFFECTS", flag(look.all_effects)),
-            ("TURBULENT", flag(look.turbulent)),
-        ],
-        Name::Count | Name::Develop => Vec::new(),
+        Name::ShadeSample(_, look) => look_constants(look),
+        Name::ShadeOnly(_, look, film) => [look_constants(look), film_constants(film)].concat(),
+        Name::Develop(film) => film_constants(film),
+        Name::Export(_, footprints) => vec![("FOOTPRINTS", flag(footprints))],
+        Name::Count => Vec::new(),
     }
 }
 
@@ -305,16 +385,41 @@ fn layout(device: &Device, label: &str, slots: &[Slot]) -> Result<wgpu::BindGrou
 }
 
 impl Compiled {
-    /// Group 0 with `resources` in the order of its slots.
-    pub fn bind(&self, device: &Device, resources: &[wgpu::BindingResource<'_>]) -> Result<wgpu::BindGroup> {
-        let entries = resources
-            .iter()
-            .zip(0..)
-            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-            .collect::<Vec<_>>();
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout: &self.layout, entries: &entries };
-        device.scoped("binding buffers", |d| d.create_bind_group(&descriptor))
+    /// The pipeline with `groups`: of each the resources in the order of its slots.
+    pub fn stage(&self, device: &Device, groups: &[&[wgpu::BindingResource<'_>]]) -> Result<Stage> {
+        let bind = |(resources, layout): (&&[wgpu::BindingResource<'_>], &wgpu::BindGroupLayout)| {
+            let entries = resources
+                .iter()
+                .zip(0..)
+                .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+                .collect::<Vec<_>>();
+            let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+            device.scoped("binding buffers", |d| d.create_bind_group(&descriptor))
+        };
+        let groups = groups.iter().zip(&self.layouts).map(bind).collect::<Result<Vec<_>>>()?;
+        Ok(Stage { pipeline: self.pipeline.clone(), groups })
     }
+}
+
+impl Stage {
+    /// Binds the stage and runs `groups` workgroups. `offset`: of the `UniformPart` of group 0; `None` if it has none.
+    pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, offset: Option<u32>, groups: [u32; 2]) {
+        pass.set_pipeline(&self.pipeline);
+        for (group, index) in self.groups.iter().zip(0..) {
+            pass.set_bind_group(index, group, if index == 0 { offset.as_slice() } else { &[] });
+        }
+        pass.dispatch_workgroups(groups[0], groups[1], 1);
+    }
+
+    /// One thread for each pixel of a rectangle.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, size: [u32; 2]) {
+        self.run(pass, Some(offset), pixel_groups(size));
+    }
+}
+
+/// Workgroups over a rectangle of pixels.
+pub fn pixel_groups([width, height]: [u32; 2]) -> [u32; 2] {
+    [width.div_ceil(GROUP[0]), height.div_ceil(GROUP[1])]
 }
 
 /// Errors: INTERNAL if a count of workgroups exceeds what the device takes.

@@ -4,11 +4,13 @@
 mod adapter;
 mod buffer;
 mod device;
+mod export;
 mod frame;
 mod kernels;
 mod pipeline;
 mod rays;
 mod readback;
+mod records;
 mod tables;
 mod texture;
 mod tiles;
@@ -55,7 +57,7 @@ impl GpuTracer {
         let mut kernels = Kernels::default();
         if adapter.info.backend == Backend::Gl {
             // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now.
-            kernels.develop(&device).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
+            kernels.count(&device).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         }
         Ok(Self {
             adapter: adapter.info.clone(),

@@ -131,14 +131,12 @@ impl GpuTracer {
         };
         device.write(uniform, 0, bytemuck::bytes_of(&values))?;
         device.write(input, 0, bytemuck::cast_slice(starts))?;
-        let group = compiled
-            .bind(device, &[uniform.as_entire_binding(), input.as_entire_binding(), output.as_entire_binding()])?;
+        let stage = compiled
+            .stage(device, &[&[uniform.as_entire_binding(), input.as_entire_binding(), output.as_entire_binding()]])?;
         let mut encoder = device.encoder("rays")?;
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&compiled.pipeline);
-            pass.set_bind_group(0, &group, &[]);
-            pass.dispatch_workgroups(values.count.div_ceil(64), 1, 1);
+            stage.run(&mut pass, None, [values.count.div_ceil(64), 1]);
         }
         let size = (starts.len() * ENDS * size_of::<RayEnd>()) as u64;
         let copied = self.ray_buffers.readback.copy(device, &mut encoder, output, size)?;

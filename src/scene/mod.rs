@@ -10,6 +10,7 @@ pub mod observer;
 pub mod quality;
 pub mod query;
 pub mod rays;
+pub mod record;
 pub mod sky;
 pub mod trace;
 pub mod turbulence;

@@ -1,0 +1,38 @@
+// Kernel: the ray records of a tile into a buffer, for tests: src/gpu/records.rs reads them.
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> pass_: Pass;
+@group(0) @binding(2) var<storage, read_write> exported: array<vec4<f32>>;
+
+// Crossings of a record, and vectors: four of the ray, three of each crossing.
+const EXPORT_CROSSINGS: u32 = 4u;
+const EXPORT_SIZE: u32 = 4u + 3u * EXPORT_CROSSINGS;
+
+fn export_place(p: Place, w: f32) -> vec4<f32> {
+    return vec4<f32>(p.ln_r, p.azimuth, p.delay, w);
+}
+
+@compute @workgroup_size(16, 8)
+fn export_records(@builtin(global_invocation_id) id: vec3<u32>) {
+    if outside_tile(id.xy) {
+        return;
+    }
+    let r = ray_record(id.xy);
+    let at = (id.y * (pass_.size.x - 2u) + id.x) * EXPORT_SIZE;
+    var count = 0u;
+    for (var k = 0u; k < EXPORT_CROSSINGS; k += 1u) {
+        let crossing = next_crossing();
+        if crossing.u <= 0.0 {
+            break;
+        }
+        let slot = at + 4u + 3u * k;
+        exported[slot] = export_place(crossing.place, f32(crossing.order));
+        exported[slot + 1u] = export_place(crossing.dx, crossing.u);
+        exported[slot + 2u] = export_place(crossing.dy, crossing.g);
+        count += 1u;
+    }
+    exported[at] = vec4<f32>(f32(r.fate), f32(r.steps), f32(count), r.plane_u);
+    exported[at + 1u] = vec4<f32>(r.sky, r.sky_redshift);
+    exported[at + 2u] = vec4<f32>(r.sky_dx, r.energy);
+    exported[at + 3u] = vec4<f32>(r.sky_dy, r.angular_momentum);
+}

@@ -1,0 +1,64 @@
+//! The ray record of a pixel: the one interface between lensing and shading, on both tracers (shaders/record.wgsl has the same
+//! fields). However it was made, shading cannot tell. Plain data.
+
+use super::turbulence::Place;
+use crate::physics::trace::{CROSSINGS_KEPT, Fate};
+use arrayvec::ArrayVec;
+use glam::DVec3;
+
+/// A crossing within the disk's radii.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DiskCrossing {
+    /// 1/r.
+    pub u: f64,
+    /// Number of the crossing of the plane, from 0.
+    pub order: u32,
+    /// g, the camera's motion included.
+    pub g: f64,
+    /// Azimuth and delay only where shading needs them, else 0.
+    pub place: Place,
+    /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
+    pub footprint: [Place; 2],
+}
+
+/// What became of a pixel's ray. Directions in the chart.
+#[derive(Clone, Debug)]
+pub struct Record {
+    pub fate: Fate,
+    /// Sky direction; 0 unless escaped.
+    pub direction: DVec3,
+    /// Change of `direction` to the next pixel right and down; 1e30 where it is not known.
+    pub footprint: [DVec3; 2],
+    /// nu(camera) / nu(at infinity); NaN unless escaped.
+    pub sky_redshift: f64,
+    /// E and L, scaled so that the local frame's observer measures 1.
+    pub energy: f64,
+    pub angular_momentum: f64,
+    /// Integration steps spent on the pixel.
+    pub steps: u32,
+    /// 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
+    pub plane_u: f64,
+    pub crossings: ArrayVec<DiskCrossing, CROSSINGS_KEPT>,
+}
+
+impl Record {
+    /// A captured ray of which nothing else is known.
+    pub fn captured() -> Self {
+        Self {
+            fate: Fate::Captured,
+            direction: DVec3::ZERO,
+            footprint: [UNKNOWN_DIRECTION; 2],
+            sky_redshift: f64::NAN,
+            energy: 1.0,
+            angular_momentum: 0.0,
+            steps: 0,
+            plane_u: 0.0,
+            crossings: ArrayVec::new(),
+        }
+    }
+}
+
+/// A footprint that nothing is known of: only the mean sky can stand for it.
+pub const UNKNOWN_DIRECTION: DVec3 = DVec3::splat(1e30);
+/// The same of a crossing.
+pub const UNKNOWN_PLACE: Place = Place { ln_r: 1e30, azimuth: 0.0, delay: 0.0 };
