@@ -10,15 +10,40 @@ struct RayBegin {
     light: bool,
 }
 
-fn begin_ray(look: vec3<f32>) -> RayBegin {
-    // Aberration; beta = 0 leaves everything as it is.
+// The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and nu(camera) /
+// nu(observer of the local frame).
+struct LocalLook {
+    n: vec3<f32>,
+    frequency_ratio: f32,
+}
+
+fn local_look(look: vec3<f32>) -> LocalLook {
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
     let along = dot(beta, look);
     let ratio = 1.0 / (gamma * (1.0 - along));
-    let n = normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio);
+    return LocalLook(normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
+}
+
+// Change of `seen.n` when the look direction in the camera's own frame changes by `change`.
+fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
+    let beta = frame.beta.xyz;
+    let gamma = frame.beta.w;
+    let along = dot(beta, change);
+    return seen.frequency_ratio * (change + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
+}
+
+fn begin_ray(look: vec3<f32>) -> RayBegin {
+    let seen = local_look(look);
+    var begin = begin_local(seen.n);
+    begin.frequency_ratio = seen.frequency_ratio;
+    return begin;
+}
+
+// For a look direction in the local frame; frequency_ratio 1.
+fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
-    begin.frequency_ratio = ratio;
+    begin.frequency_ratio = 1.0;
     if frame.rain != 0u {
         begin_rain(&begin, n);
     } else {
@@ -69,4 +94,10 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     (*begin).c = constants(1.0, frame.place.y * w, polar * polar + cw * cw, k, e);
     (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).light = energy > 0.0;
+}
+
+// g of the disk's matter for the local frame's observer (physics::orbit::redshift).
+fn redshift_of(c: Constants, u: f32) -> f32 {
+    let v = sign(frame.hole.w) * u * sqrt(u);
+    return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0)) / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
 }

@@ -24,14 +24,7 @@ fn step_ray(c: Constants, s: State, h: f32) -> Step {
     return Step(nystrom_step(c, s, h), 0.0);
 }
 
-const B1: f32 = 1.0 / 24.0;
-const B2: f32 = 25.0 / 84.0;
-const B3: f32 = 9.0 / 56.0;
-const D2: f32 = 125.0 / 336.0;
-const D3: f32 = 27.0 / 56.0;
-const D4: f32 = 5.0 / 48.0;
-
-// Nystrom 1925, order 5; without spin N turns evenly, which is exact.
+// Order 5 (nystrom.wgsl); without spin N turns evenly, which is exact.
 fn nystrom_step(c: Constants, s: State, h: f32) -> State {
     let h2 = h * h;
     let f1 = u_acceleration(c, s.u);
@@ -43,18 +36,18 @@ fn nystrom_step(c: Constants, s: State, h: f32) -> State {
     let f4 = u_acceleration(c, u4);
     var end = s;
     end.u = s.u + (h * s.du + h2 * (B1 * f1 + B2 * f2 + B3 * f3));
-    end.du = s.du + h * (B1 * f1 + D2 * f2 + D3 * f3 + D4 * f4);
+    end.du = s.du + h * (D1 * f1 + D2 * f2 + D3 * f3 + D4 * f4);
     if SPINNING {
-        end.drag += h * (B1 * drag_rate(c, s.u) + D2 * drag_rate(c, u2) + D3 * drag_rate(c, u3) + D4 * drag_rate(c, u4));
+        end.drag += h * (D1 * drag_rate(c, s.u) + D2 * drag_rate(c, u2) + D3 * drag_rate(c, u3) + D4 * drag_rate(c, u4));
         let n_z = nystrom_step_of_n(c, s, h, &end);
         if DELAY {
-            end.delay += h * (B1 * delay_rate(c, s.u, s.n.z) + D2 * delay_rate(c, u2, n_z.x)
+            end.delay += h * (D1 * delay_rate(c, s.u, s.n.z) + D2 * delay_rate(c, u2, n_z.x)
                 + D3 * delay_rate(c, u3, n_z.y) + D4 * delay_rate(c, u4, n_z.z));
         }
     } else {
         turn_n(c, s, h, &end);
         if DELAY {
-            end.delay += h * (B1 * delay_rate(c, s.u, 0.0) + D2 * delay_rate(c, u2, 0.0) + D3 * delay_rate(c, u3, 0.0)
+            end.delay += h * (D1 * delay_rate(c, s.u, 0.0) + D2 * delay_rate(c, u2, 0.0) + D3 * delay_rate(c, u3, 0.0)
                 + D4 * delay_rate(c, u4, 0.0));
         }
     }
@@ -72,7 +65,7 @@ fn nystrom_step_of_n(c: Constants, s: State, h: f32, end: ptr<function, State>) 
     let n4 = s.n + s.dn * h + (f1 * 0.3 - f2 * (2.0 / 35.0) + f3 * (9.0 / 35.0)) * h2;
     let f4 = n_acceleration(c, n4);
     (*end).n = s.n + (s.dn * h + (f1 * B1 + f2 * B2 + f3 * B3) * h2);
-    (*end).dn = s.dn + (f1 * B1 + f2 * D2 + f3 * D3 + f4 * D4) * h;
+    (*end).dn = s.dn + (f1 * D1 + f2 * D2 + f3 * D3 + f4 * D4) * h;
     return vec3<f32>(n2.z, n3.z, n4.z);
 }
 

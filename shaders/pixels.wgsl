@@ -61,9 +61,3 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     textureStore(record_meta, pixel, pack_meta(m));
 }
-
-// g of the disk's matter for the local frame's observer (physics::orbit::redshift).
-fn redshift_of(c: Constants, u: f32) -> f32 {
-    let v = sign(frame.hole.w) * u * sqrt(u);
-    return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0)) / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
-}

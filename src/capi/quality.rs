@@ -6,7 +6,7 @@ use super::pointer::{check_reserved, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
-use crate::scene::{Method, Quality};
+use crate::scene::{LensTables, Method, Quality};
 
 /// The integrator.
 pub type BhrMethod = i32;
@@ -84,6 +84,7 @@ impl TryFrom<BhrQuality> for Quality {
             tolerance: given.tolerance,
             max_disk_order: given.max_disk_order,
             render_scale: given.render_scale,
+            lens_tables: LensTables::Auto,
         };
         quality.check()?;
         Ok(quality)

@@ -3,6 +3,7 @@
 
 use super::export::{EXPORT_BYTES, imported};
 use super::kernels::{FilmLook, Look, Source, Stage, TextureKind, check_groups, pixel_groups};
+use super::lens::{LensStages, SchwarzschildTables};
 use super::records::{STEP_SUM, Shared, TraceStages, TracedRecords, step_sum};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
@@ -10,10 +11,11 @@ use super::uniforms::{FrameUniform, PassUniform};
 use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
+use crate::physics::observer::LocalFrame;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::record::Record;
-use crate::scene::{Scene, View};
+use crate::scene::{Lensing, Scene, View};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
@@ -26,6 +28,7 @@ pub struct FrameBuffers {
     fixed: Option<FixedBuffers>,
     sized: Option<SizedBuffers>,
     traced: TracedRecords,
+    schwarzschild: SchwarzschildTables,
     pixels: Readback,
     steps: Readback,
     timer: Option<GpuTimer>,
@@ -66,8 +69,15 @@ enum Shading {
     },
 }
 
+/// What makes records, or what they are looked up in.
+enum Records {
+    Traced(TraceStages),
+    /// Before the frame's first tile, if the tables are stale.
+    Lens(Option<LensStages>),
+}
+
 struct Stages {
-    trace: TraceStages,
+    records: Records,
     shading: Shading,
 }
 
@@ -94,6 +104,7 @@ pub(super) struct Setup {
     samples: u32,
     /// Of the disk, that a record holds at most.
     crossings: u32,
+    eye: LocalFrame,
     uniform: FrameUniform,
     film: FilmParams,
 }
@@ -111,9 +122,15 @@ impl GpuTracer {
         let samples = setup.samples;
         let pixel_bytes = request.format.bytes_per_pixel() as u64;
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
-        let device_bytes = TracedRecords::bytes_per_pixel(setup.crossings) + sums + pixel_bytes;
         let max_side = self.device.limits().max_texture_dimension_2d;
-        let plan = Plan::new(request, device_bytes, max_side, scene.expected_steps(), samples);
+        let plan = match setup.looks.source {
+            Source::Traced => {
+                let bytes = TracedRecords::bytes_per_pixel(setup.crossings) + sums + pixel_bytes;
+                Plan::new(request, bytes, max_side, scene.expected_steps(), samples)
+            }
+            // As long as one step, at most.
+            Source::Schwarzschild { .. } => Plan::new(request, sums + pixel_bytes, max_side, 1, samples),
+        };
 
         if self.tables.is_none() {
             self.tables = Some(Tables::new(&self.device)?);
@@ -122,7 +139,7 @@ impl GpuTracer {
         tables.update(&self.device, scene)?;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.software)?;
-        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup.looks)?;
+        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup)?;
 
         let mut frame = Frame {
             device: &self.device,
@@ -139,9 +156,13 @@ impl GpuTracer {
             pending: None,
             read_time: Duration::ZERO,
         };
-        frame.run(plan, progress)?;
+        let outcome = frame.run(plan, progress);
         let mut stats = frame.stats;
         stats.readback_ns = frame.read_time.as_nanos() as u64;
+        if outcome.is_err() {
+            self.buffers.schwarzschild.forget();
+        }
+        outcome?;
         stats.device_bytes = self.device.bytes();
         Ok(stats)
     }
@@ -153,9 +174,15 @@ impl GpuTracer {
         let inside = lens.observer.frame.r <= 2.0;
         let turbulent = scene.turbulence().is_some();
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
+        let region = &request.region;
+        let pixels = u64::from(region.full_width) * u64::from(region.full_height);
+        let source = match scene.lensing(&lens.observer.frame, pixels) {
+            Lensing::Traced => Source::Traced,
+            Lensing::Schwarzschild => Source::Schwarzschild { delay: settings.delay },
+        };
         let looks = Looks {
             variant: kernels::Variant { azimuth: turbulent, ..variant(scene, &settings, inside) },
-            source: TracedRecords::SOURCE,
+            source,
             look: Look {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
@@ -169,7 +196,8 @@ impl GpuTracer {
         let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
         // wgpu makes no array texture of one layer on GL.
         let crossings = if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings };
-        Ok(Setup { looks, samples, crossings, uniform: FrameUniform::new(scene, &lens, &settings)?, film })
+        let uniform = FrameUniform::new(scene, &lens, &settings)?;
+        Ok(Setup { looks, samples, crossings, eye: lens.observer.frame, uniform, film })
     }
 
     /// The records of a frame, row by row; for tests. Errors: as `render`; INTERNAL for more than one tile holds.
@@ -179,21 +207,26 @@ impl GpuTracer {
         let device = &self.device;
         let size = Size { tile, pixel_bytes: EXPORT_BYTES, several_samples: false };
         self.buffers.prepare(device, size, &setup, self.adapter.software)?;
-        let (fixed, sized) = self.buffers.parts()?;
+        let buffers = &mut self.buffers;
+        let (fixed, sized) = buffers
+            .fixed
+            .as_ref()
+            .zip(buffers.sized.as_ref())
+            .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.as_entire_binding(), fixed.pass());
         let footprints = setup.looks.look.footprints;
         let exported: &[_] = &[frame.clone(), pass.clone(), sized.packed.as_entire_binding()];
-        let compiled = self.kernels.export(device, setup.looks.source, footprints)?;
-        let export = compiled.stage(device, &[exported, &self.buffers.traced.group()?])?;
-        let shared = Shared { frame, pass, step_sum: fixed.step_sum.as_entire_binding() };
-        let trace = self.buffers.traced.stages(device, &mut self.kernels, setup.looks.variant, &shared)?;
+        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
+        let records = records(&buffers.traced, &mut buffers.schwarzschild, device, &mut self.kernels, &setup, &shared)?;
+        let group = records_group(&buffers.traced, &buffers.schwarzschild, setup.looks.source)?;
+        let export = self.kernels.export(device, setup.looks.source, footprints)?.stage(device, &[exported, &group])?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1)))?;
         let mut encoder = device.encoder("records")?;
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            trace.encode(&mut pass, 0, tile);
+            records.encode(&mut pass, true, 0, tile);
             export.dispatch(&mut pass, 0, tile);
         }
         let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
@@ -212,6 +245,46 @@ impl Size {
         (0..2).all(|i| self.tile[i] >= other.tile[i])
             && self.pixel_bytes >= other.pixel_bytes
             && (self.several_samples || !other.several_samples)
+    }
+}
+
+impl Records {
+    /// `begins`: these are the frame's first.
+    fn encode(&self, pass: &mut wgpu::ComputePass<'_>, begins: bool, offset: u32, tile: [u32; 2]) {
+        match self {
+            Self::Traced(stages) => stages.encode(pass, offset, tile),
+            Self::Lens(Some(stages)) if begins => stages.encode(pass),
+            Self::Lens(_) => {}
+        }
+    }
+}
+
+/// The stages that `setup` asks for; tables are brought up to its eye.
+fn records(
+    traced: &TracedRecords,
+    schwarzschild: &mut SchwarzschildTables,
+    device: &Device,
+    kernels: &mut kernels::Kernels,
+    setup: &Setup,
+    shared: &Shared<'_>,
+) -> Result<Records> {
+    Ok(match setup.looks.source {
+        Source::Traced => Records::Traced(traced.stages(device, kernels, setup.looks.variant, shared)?),
+        Source::Schwarzschild { delay } => {
+            Records::Lens(schwarzschild.update(device, kernels, &setup.eye, delay, shared.frame.clone())?)
+        }
+    })
+}
+
+/// Group 1 of a kernel that reads records.
+fn records_group<'a>(
+    traced: &'a TracedRecords,
+    schwarzschild: &'a SchwarzschildTables,
+    source: Source,
+) -> Result<Vec<wgpu::BindingResource<'a>>> {
+    match source {
+        Source::Traced => traced.group(),
+        Source::Schwarzschild { .. } => schwarzschild.group(),
     }
 }
 
@@ -253,7 +326,9 @@ impl FrameBuffers {
                 packed: device.buffer("packed pixels", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
             });
         }
-        self.traced.prepare(device, size.tile, setup.crossings)?;
+        if setup.looks.source == Source::Traced {
+            self.traced.prepare(device, size.tile, setup.crossings)?;
+        }
         let (fixed, _) = self.parts()?;
         device.write(&fixed.frame, 0, bytemuck::bytes_of(&setup.uniform))?;
         device.write(&fixed.film, 0, bytemuck::bytes_of(&setup.film))
@@ -264,18 +339,22 @@ impl FrameBuffers {
     }
 
     fn stages(
-        &self,
+        &mut self,
         device: &Device,
         kernels: &mut kernels::Kernels,
         tables: &Tables,
-        looks: &Looks,
+        setup: &Setup,
     ) -> Result<Stages> {
-        let (fixed, sized) = self.parts()?;
+        let looks = &setup.looks;
+        let (fixed, sized) =
+            self.fixed.as_ref().zip(self.sized.as_ref()).ok_or_else(|| Error::internal("a frame without buffers"))?;
         let pass = fixed.pass();
         let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
         let step_sum = fixed.step_sum.as_entire_binding();
         let packed = sized.packed.as_entire_binding();
-        let records = self.traced.group()?;
+        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
+        let made = records(&self.traced, &mut self.schwarzschild, device, kernels, setup, &shared)?;
+        let records = records_group(&self.traced, &self.schwarzschild, looks.source)?;
         let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let shade = |compiled: &kernels::Compiled, a: &wgpu::BindingResource<'_>, b: &wgpu::BindingResource<'_>| {
@@ -294,8 +373,7 @@ impl FrameBuffers {
             let compiled = kernels.shade_only(device, looks.source, looks.look, looks.film)?;
             Shading::Only(shade(&compiled, &film, &packed)?)
         };
-        let shared = Shared { frame, pass, step_sum };
-        Ok(Stages { trace: self.traced.stages(device, kernels, looks.variant, &shared)?, shading })
+        Ok(Stages { records: made, shading })
     }
 }
 
@@ -327,7 +405,8 @@ impl Frame<'_, '_> {
         for tile in plan.tiles() {
             for begin in (0..self.samples).step_by(self.batch as usize) {
                 let end = (begin + self.batch).min(self.samples);
-                let next = self.submit(tile, begin..end)?;
+                let begins = self.pending.is_none();
+                let next = self.submit(tile, begin..end, begins)?;
                 let before = self.pending.replace(next);
                 if let Some(before) = before {
                     self.finish(before)?;
@@ -347,7 +426,7 @@ impl Frame<'_, '_> {
     }
 
     /// Starts samples `range` of `tile`; the last ones are followed by development and the copy to the host.
-    fn submit(&mut self, tile: Tile, range: std::ops::Range<u32>) -> Result<Pending> {
+    fn submit(&mut self, tile: Tile, range: std::ops::Range<u32>, begins: bool) -> Result<Pending> {
         let device = self.device;
         let stride = pass_stride(device);
         let passes = range.clone().map(|sample| pass_of(self.request, tile, sample, self.samples));
@@ -370,7 +449,7 @@ impl Frame<'_, '_> {
             let mut pass = encoder.begin_compute_pass(&descriptor);
             for (i, sample) in range.clone().enumerate() {
                 let offset = i as u32 * stride as u32;
-                self.stages.trace.encode(&mut pass, offset, size);
+                self.stages.records.encode(&mut pass, begins && i == 0, offset, size);
                 match &self.stages.shading {
                     Shading::Only(stage) => stage.dispatch(&mut pass, offset, size),
                     Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(&mut pass, offset, size),

@@ -49,6 +49,8 @@ impl From<&FilmParams> for FilmLook {
 pub enum Source {
     /// traced.wgsl
     Traced,
+    /// lens_schwarzschild_record.wgsl
+    Schwarzschild { delay: bool },
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -74,6 +76,8 @@ enum Name {
     ShadeOnly(Source, Look, FilmLook),
     Develop(FilmLook),
     Export(Source, bool),
+    SchwarzschildEnds,
+    SchwarzschildColumns { delay: bool },
 }
 
 /// The pipelines of one device.
@@ -100,10 +104,15 @@ const GROUP: [u32; 2] = [16, 8];
 
 const MATH: &str = include_str!("../../shaders/math.wgsl");
 const FATE: &str = include_str!("../../shaders/fate.wgsl");
-const TRACE_PARTS: [&str; 5] = [
+const GEODESIC: &str = include_str!("../../shaders/geodesic.wgsl");
+const NYSTROM: &str = include_str!("../../shaders/nystrom.wgsl");
+const CAMERA: &str = include_str!("../../shaders/camera.wgsl");
+const SCHWARZSCHILD: &str = include_str!("../../shaders/lens_schwarzschild.wgsl");
+const TRACE_PARTS: [&str; 6] = [
     MATH,
     FATE,
-    include_str!("../../shaders/geodesic.wgsl"),
+    GEODESIC,
+    NYSTROM,
     include_str!("../../shaders/integrator.wgsl"),
     include_str!("../../shaders/trace.wgsl"),
 ];
@@ -122,8 +131,7 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let camera = include_str!("../../shaders/camera.wgsl");
-    join(&[&TRACE_PARTS, &[PASS, TRACED_LAYOUT, FRAME, camera, include_str!("../../shaders/pixels.wgsl")]])
+    join(&[&TRACE_PARTS, &[PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")]])
 }
 
 fn count_source() -> String {
@@ -135,8 +143,33 @@ impl Source {
     fn parts(self) -> Vec<&'static str> {
         match self {
             Self::Traced => vec![TRACED_LAYOUT, include_str!("../../shaders/traced.wgsl")],
+            Self::Schwarzschild { .. } => {
+                vec![GEODESIC, CAMERA, SCHWARZSCHILD, include_str!("../../shaders/lens_schwarzschild_record.wgsl")]
+            }
         }
     }
+
+    /// Values of the `override` constants that the parts declare.
+    fn constants(self) -> Vec<(&'static str, f64)> {
+        match self {
+            Self::Traced => Vec::new(),
+            Self::Schwarzschild { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
+        }
+    }
+}
+
+/// The kernels that fill a spin-0 lens: `kernel` on top of the rays of the nodes.
+fn schwarzschild_build_source(kernel: &str) -> String {
+    let curve = include_str!("../../shaders/lens_schwarzschild_curve.wgsl");
+    join(&[&[MATH, GEODESIC, NYSTROM, FRAME, CAMERA, SCHWARZSCHILD, curve, kernel]])
+}
+
+fn schwarzschild_ends_source() -> String {
+    schwarzschild_build_source(include_str!("../../shaders/lens_schwarzschild_ends.wgsl"))
+}
+
+fn schwarzschild_columns_source() -> String {
+    schwarzschild_build_source(include_str!("../../shaders/lens_schwarzschild_columns.wgsl"))
 }
 
 fn shade_source(source: Source, rest: &[&str]) -> String {
@@ -178,6 +211,11 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("shade only, traced", shade_only_source(Source::Traced)),
         ("export, traced", export_source(Source::Traced)),
         ("develop", develop_source()),
+        ("shade sample, spin-0 lens", shade_sample_source(Source::Schwarzschild { delay: true })),
+        ("shade only, spin-0 lens", shade_only_source(Source::Schwarzschild { delay: true })),
+        ("export, spin-0 lens", export_source(Source::Schwarzschild { delay: true })),
+        ("spin-0 lens, ends", schwarzschild_ends_source()),
+        ("spin-0 lens, columns", schwarzschild_columns_source()),
     ]
 }
 
@@ -210,6 +248,14 @@ pub const TRACED: [TextureKind; 3] = [
 /// Radiance of shade_sample.wgsl and develop.wgsl.
 pub const RADIANCE: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// Tables of a lens: a row for each branch; and columns, a layer for each branch.
+pub const LENS_ROWS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+pub const LENS_COLUMNS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array };
+/// Threads of a workgroup of the kernels that build lenses.
+pub const LENS_GROUP: u32 = 32;
 
 /// `light_tables` and `star_cells` of shade.wgsl.
 const TABLES: [TextureKind; 2] = [
@@ -248,6 +294,10 @@ impl Source {
     fn slots(self) -> Vec<Slot> {
         match self {
             Self::Traced => TRACED.map(Slot::Texture).into(),
+            Self::Schwarzschild { .. } => {
+                let [swept, u, delay] = [LENS_ROWS, LENS_COLUMNS, LENS_COLUMNS].map(Slot::Texture);
+                vec![Slot::Uniform, swept, u, delay]
+            }
         }
     }
 }
@@ -293,6 +343,18 @@ impl Kernels {
     pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart, Slot::Write], source.slots()];
         self.get(device, Name::Export(source, footprints), &groups, "export_records", || export_source(source))
+    }
+
+    pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = vec![Slot::Uniform, Slot::Uniform, Slot::TextureWrite(LENS_ROWS)];
+        self.get(device, Name::SchwarzschildEnds, &[slots], "find_ends", schwarzschild_ends_source)
+    }
+
+    pub fn fill_schwarzschild_columns(&mut self, device: &Device, delay: bool) -> Result<Compiled> {
+        let [swept, u, delays] = [LENS_ROWS, LENS_COLUMNS, LENS_COLUMNS].map(Slot::TextureWrite);
+        let slots = vec![Slot::Uniform, Slot::Uniform, Slot::Texture(LENS_ROWS), swept, u, delays];
+        let name = Name::SchwarzschildColumns { delay };
+        self.get(device, name, &[slots], "fill_columns", schwarzschild_columns_source)
     }
 
     fn get(
@@ -361,10 +423,14 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
         Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
         Name::Rays(variant) => trace_constants(variant),
-        Name::ShadeSample(_, look) => look_constants(look),
-        Name::ShadeOnly(_, look, film) => [look_constants(look), film_constants(film)].concat(),
+        Name::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
+        Name::ShadeOnly(source, look, film) => {
+            [source.constants(), look_constants(look), film_constants(film)].concat()
+        }
         Name::Develop(film) => film_constants(film),
-        Name::Export(_, footprints) => vec![("FOOTPRINTS", flag(footprints))],
+        Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
+        Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
+        Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
         Name::Count => Vec::new(),
     }
 }

@@ -7,6 +7,7 @@ mod device;
 mod export;
 mod frame;
 mod kernels;
+mod lens;
 mod pipeline;
 mod rays;
 mod readback;

@@ -1,6 +1,6 @@
 //! Where a frame's ray records come from: traced pixel by pixel into textures. Gives shading its group 1 and knows nothing else of it.
 
-use super::kernels::{self, Kernels, Source, Stage, TextureKind, Variant};
+use super::kernels::{self, Kernels, Stage, TextureKind, Variant};
 use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
 
@@ -37,8 +37,6 @@ pub struct TraceStages {
 }
 
 impl TracedRecords {
-    pub const SOURCE: Source = Source::Traced;
-
     /// Bytes of a pixel on the device.
     pub fn bytes_per_pixel(crossings: u32) -> u64 {
         TEXEL * (2 + u64::from(crossings))

@@ -1,5 +1,6 @@
 //! How exactly to trace, as the host states it.
 
+use super::LensTables;
 use crate::error::{Error, Result};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +29,9 @@ pub struct Quality {
     pub max_disk_order: u32,
     /// Windows: traced size / window size, 0.1 .. 1. Default 1.
     pub render_scale: f64,
+    /// Whether AUTO looks rays up; not the host's to choose.
+    #[doc(hidden)]
+    pub lens_tables: LensTables,
 }
 
 impl Default for Quality {
@@ -40,6 +44,7 @@ impl Default for Quality {
             tolerance: 0.0,
             max_disk_order: 3,
             render_scale: 1.0,
+            lens_tables: LensTables::Auto,
         }
     }
 }

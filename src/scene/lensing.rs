@@ -1,0 +1,52 @@
+//! Whether a frame looks its rays up in tables of the eye's lens or integrates each. Decided by scene and frame size alone, so that
+//! a frame's bytes never depend on those before it.
+
+use super::{Method, Scene, View};
+use crate::physics::observer::LocalFrame;
+
+/// Where tables are used; anything but `Auto` is for tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LensTables {
+    /// In frames large enough to pay for them.
+    #[default]
+    Auto,
+    /// In frames of any size.
+    Always,
+    Never,
+}
+
+/// Pixels times samples that pay for the tables of a spin-0 lens.
+const SCHWARZSCHILD_WORTH: u64 = 4096;
+/// 1/r .. of eyes whose spin-0 lens is tabulated: at rest, and falling.
+const SCHWARZSCHILD_STATIC: std::ops::RangeInclusive<f64> = 2.0005..=1e6;
+const SCHWARZSCHILD_RAIN: std::ops::RangeInclusive<f64> = 0.9..=1e6;
+
+/// How the rays of a frame are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lensing {
+    /// Each by itself.
+    Traced,
+    /// In the tables of a spin-0 lens.
+    Schwarzschild,
+}
+
+impl Scene {
+    /// How the rays of a frame of `pixels` pixels (the full frame's, of which an image may be a part) are found by an eye at `frame`.
+    pub fn lensing(&self, frame: &LocalFrame, pixels: u64) -> Lensing {
+        // METRIC looks where no disk is: tables end before.
+        if self.quality.method != Method::Auto || self.view == View::Metric {
+            return Lensing::Traced;
+        }
+        let work = pixels.saturating_mul(self.quality.samples_per_pixel.into());
+        let pays = |worth: u64| match self.quality.lens_tables {
+            LensTables::Auto => work >= worth,
+            LensTables::Always => true,
+            LensTables::Never => false,
+        };
+        let range = if frame.rain { SCHWARZSCHILD_RAIN } else { SCHWARZSCHILD_STATIC };
+        if frame.a == 0.0 && range.contains(&frame.r) && pays(SCHWARZSCHILD_WORTH) {
+            return Lensing::Schwarzschild;
+        }
+        Lensing::Traced
+    }
+}
