@@ -4,8 +4,9 @@
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Method};
+use bhr::scene::{Camera, LensTables, Method};
 use criterion::Criterion;
+use glam::DQuat;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -20,6 +21,19 @@ struct Stage {
     layout: Layout,
     /// Time by the GPU's timestamps instead of the wall clock.
     timestamps: bool,
+    /// What changes from frame to frame.
+    change: Change,
+    frames: u32,
+}
+
+/// What a host moves from frame to frame.
+#[derive(Clone, Copy)]
+enum Change {
+    Nothing,
+    /// The view turns by a hundredth of a degree.
+    View,
+    /// The eye moves outward by 1e-4 of its distance, and back.
+    Eye,
 }
 
 impl Stage {
@@ -28,10 +42,36 @@ impl Stage {
         set(&mut renderer);
         let layout = Layout::packed(PixelFormat::Rgba8Srgb, width, height);
         let timestamps = !renderer.adapter().software;
-        Self { renderer, pixels: vec![0; width as usize * height as usize * 4], layout, timestamps }
+        Self {
+            renderer,
+            pixels: vec![0; width as usize * height as usize * 4],
+            layout,
+            timestamps,
+            change: Change::Nothing,
+            frames: 0,
+        }
+    }
+
+    fn with(self, change: Change) -> Self {
+        Self { change, ..self }
+    }
+
+    fn move_on(&mut self) {
+        self.frames += 1;
+        let back = self.frames % 200 >= 100;
+        let camera = &mut self.renderer.scene.camera;
+        match self.change {
+            Change::Nothing => {}
+            Change::View => {
+                let turn = DQuat::from_axis_angle(camera.up.normalize(), if back { -1.7e-4 } else { 1.7e-4 });
+                camera.forward = turn * camera.forward;
+            }
+            Change::Eye => camera.position *= if back { 1.0 / 1.0001 } else { 1.0001 },
+        }
     }
 
     fn frame(&mut self) -> Duration {
+        self.move_on();
         let started = Instant::now();
         let mut image = ImageMut::new(self.layout, &mut self.pixels).expect("an image");
         self.renderer.render(&mut image, false, None, &mut |_| true).expect("a frame");
@@ -62,24 +102,38 @@ fn method(a: f64, method: Method) -> impl FnOnce(&mut Renderer) {
     move |renderer| (renderer.scene.hole.spin, renderer.scene.quality.method) = (a, method)
 }
 
+fn traced(a: f64) -> impl FnOnce(&mut Renderer) {
+    move |renderer| (renderer.scene.hole.spin, renderer.scene.quality.lens_tables) = (a, LensTables::Never)
+}
+
 fn gpu(criterion: &mut Criterion, times: &Times) {
     let software = Stage::new(None, [16, 16], |_| ()).renderer.adapter().software;
-    let (name, size) = if software { ("1280x720", [1280, 720]) } else { ("3840x2160", [3840, 2160]) };
-    for a in [0.0, 0.5, 0.9, 0.998] {
-        measure(criterion, times, &format!("gpu {name} default scene, spin {a}"), Stage::new(None, size, spin(a)));
+    let size = if software { [1280, 720] } else { [3840, 2160] };
+    let mut measured = |what: &str, size: [u32; 2], change: Change, set: Box<dyn FnOnce(&mut Renderer)>| {
+        let name = format!("gpu {}x{} {what}", size[0], size[1]);
+        measure(criterion, times, &name, Stage::new(None, size, set).with(change));
+    };
+    for a in [0.0, 0.9] {
+        measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
+        measured(&format!("spin {a}, view turning"), size, Change::View, Box::new(spin(a)));
+        measured(&format!("spin {a}, eye moving"), size, Change::Eye, Box::new(spin(a)));
+        measured(&format!("spin {a}, each ray integrated"), size, Change::Nothing, Box::new(traced(a)));
+        measured(&format!("spin {a}, RK4"), size, Change::Nothing, Box::new(method(a, Method::Rk4)));
     }
-    let no_disk = |renderer: &mut Renderer| renderer.scene.disk = None;
-    measure(criterion, times, &format!("gpu {name} no disk, spin 0"), Stage::new(None, size, no_disk));
-    let black = |renderer: &mut Renderer| renderer.scene.sky.flags = 0;
-    measure(criterion, times, &format!("gpu {name} no stars, spin 0"), Stage::new(None, size, black));
-    let rk4 = Stage::new(None, size, method(0.0, Method::Rk4));
-    measure(criterion, times, &format!("gpu {name} RK4, spin 0"), rk4);
-    let adaptive = Stage::new(None, size, method(0.0, Method::Adaptive));
-    measure(criterion, times, &format!("gpu {name} ADAPTIVE, spin 0"), adaptive);
+    for a in [0.5, 0.998] {
+        measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
+    }
+    measured("spin 0, ADAPTIVE", size, Change::Nothing, Box::new(method(0.0, Method::Adaptive)));
+    measured("spin 0, no disk", size, Change::Nothing, Box::new(|r| r.scene.disk = None));
+    measured("spin 0, no stars", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = 0));
+    measured("spin 0, neither", size, Change::Nothing, Box::new(|r| (r.scene.disk, r.scene.sky.flags) = (None, 0)));
+    let turbulent = |r: &mut Renderer| r.scene.disk.iter_mut().for_each(|d| d.turbulence = 1.0);
+    measured("spin 0, turbulent", size, Change::Nothing, Box::new(turbulent));
     if !software {
         for size in [[1920, 1080], [7680, 4320]] {
-            let name = format!("gpu {}x{} default scene, spin 0.9", size[0], size[1]);
-            measure(criterion, times, &name, Stage::new(None, size, spin(0.9)));
+            for a in [0.0, 0.9] {
+                measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
+            }
         }
     }
 }
