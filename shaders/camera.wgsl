@@ -17,7 +17,13 @@ struct LocalLook {
     frequency_ratio: f32,
 }
 
+// False: the camera rests in the local frame.
+override MOVING: bool = true;
+
 fn local_look(look: vec3<f32>) -> LocalLook {
+    if !MOVING {
+        return LocalLook(look, 1.0);
+    }
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
     let along = dot(beta, look);
@@ -27,6 +33,9 @@ fn local_look(look: vec3<f32>) -> LocalLook {
 
 // Change of `seen.n` when the look direction in the camera's own frame changes by `change`.
 fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
+    if !MOVING {
+        return change;
+    }
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
     let along = dot(beta, change);

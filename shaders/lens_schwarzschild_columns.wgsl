@@ -23,24 +23,48 @@ fn fill_columns(@builtin(global_invocation_id) id: vec3<u32>) {
 
     let t = node_t(id.xy);
     let curve = curve_of(t.x, t.y);
-    let h = here.y / f32(LENS_INTERVALS);
+    // A step makes two intervals: its middle is interpolated.
+    let h = 2.0 * here.y / f32(LENS_INTERVALS);
+    let decay = step_decay(curve, h);
     let tau = h / curve.c.scale;
     var inner: vec3<f32>;
     var at = CurvePoint(0.0, curve.v, curve.dv);
-    // Value and slope by y.
-    var u = vec2<f32>(curve_u(curve, at), here.y * curve_slope(curve, at));
-    var delay = vec2<f32>(0.0, here.y / curve.c.scale * delay_rate(curve.c, u.x, 0.0));
-    for (var j = 0u; j < LENS_INTERVALS; j += 1u) {
-        at = curve_step(curve, at, h, &inner);
-        let next = vec2<f32>(curve_u(curve, at), here.y * curve_slope(curve, at));
-        textureStore(u_out, vec2<u32>(id.x, j), id.y, vec4<f32>(u, next));
+    var u = column_point(curve, at);
+    var delay = vec2<f32>(0.0, delay_slope(curve, u.x));
+    for (var j = 0u; j < LENS_INTERVALS; j += 2u) {
+        at = curve_step(curve, at, h, decay, &inner);
+        let end = column_point(curve, at);
+        let middle = column_middle(u, end, h);
+        let by_y = vec2<f32>(1.0, here.y);
+        textureStore(u_out, vec2<u32>(id.x, j), id.y, vec4<f32>(u.xy * by_y, middle * by_y));
+        textureStore(u_out, vec2<u32>(id.x, j + 1u), id.y, vec4<f32>(middle * by_y, end.xy * by_y));
         if DELAY {
             let sum = D1 * delay_rate(curve.c, u.x, 0.0) + D2 * delay_rate(curve.c, inner.x, 0.0)
                 + D3 * delay_rate(curve.c, inner.y, 0.0) + D4 * delay_rate(curve.c, inner.z, 0.0);
-            let next_delay = vec2<f32>(delay.x + tau * sum, here.y / curve.c.scale * delay_rate(curve.c, next.x, 0.0));
-            textureStore(delay_out, vec2<u32>(id.x, j), id.y, vec4<f32>(delay, next_delay));
-            delay = next_delay;
+            let next = vec2<f32>(delay.x + tau * sum, delay_slope(curve, end.x));
+            let middle_delay = 0.5 * (delay.x + next.x) + 0.125 * h * (delay.y - next.y);
+            let between = vec2<f32>(middle_delay, delay_slope(curve, middle.x)) * by_y;
+            textureStore(delay_out, vec2<u32>(id.x, j), id.y, vec4<f32>(delay * by_y, between));
+            textureStore(delay_out, vec2<u32>(id.x, j + 1u), id.y, vec4<f32>(between, next * by_y));
+            delay = next;
         }
-        u = next;
+        u = end;
     }
+}
+
+// u, du/dsigma and its slope.
+fn column_point(curve: Curve, at: CurvePoint) -> vec3<f32> {
+    let u = curve_u(curve, at);
+    return vec3<f32>(u, curve_slope(curve, at), curve.kappa * curve.kappa * u * (3.0 * u - 1.0));
+}
+
+// Value and slope at the middle of a step of h, by the quintic through both ends.
+fn column_middle(a: vec3<f32>, b: vec3<f32>, h: f32) -> vec2<f32> {
+    return vec2<f32>(0.5 * (a.x + b.x) + h * (5.0 / 32.0 * (a.y - b.y) + h / 64.0 * (a.z + b.z)),
+        15.0 / 8.0 * (b.x - a.x) / h - 7.0 / 16.0 * (a.y + b.y) - h / 32.0 * (a.z - b.z));
+}
+
+// By sigma.
+fn delay_slope(curve: Curve, u: f32) -> f32 {
+    return delay_rate(curve.c, u, 0.0) / curve.c.scale;
 }

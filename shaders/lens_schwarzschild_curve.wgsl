@@ -75,14 +75,18 @@ fn curve_acceleration(curve: Curve, e: f32, v: f32) -> f32 {
     return curve.kappa * curve.kappa * v * (rest + 3.0 * v);
 }
 
-// Nystrom 1925, as nystrom_step; u at the inner nodes goes to `inner`.
-fn curve_step(curve: Curve, s: CurvePoint, h: f32, inner: ptr<function, vec3<f32>>) -> CurvePoint {
+// What e decays by from a step's begin to its inner nodes and its end.
+fn step_decay(curve: Curve, h: f32) -> vec3<f32> {
+    return exp(vec3<f32>(0.2, 2.0 / 3.0, 1.0) * (-curve.kappa * h));
+}
+
+// Nystrom's method, as nystrom_step; u at the inner nodes goes to `inner`.
+fn curve_step(curve: Curve, s: CurvePoint, h: f32, decay: vec3<f32>, inner: ptr<function, vec3<f32>>) -> CurvePoint {
     let h2 = h * h;
-    let decay = -curve.kappa * h;
     let e1 = curve.e0 * exp(-curve.kappa * s.sigma);
-    let e2 = e1 * exp(0.2 * decay);
-    let e3 = e1 * exp((2.0 / 3.0) * decay);
-    let e4 = e1 * exp(decay);
+    let e2 = e1 * decay.x;
+    let e3 = e1 * decay.y;
+    let e4 = e1 * decay.z;
     let f1 = curve_acceleration(curve, e1, s.v);
     let v2 = s.v + 0.2 * h * s.dv + h2 * (0.02 * f1);
     let f2 = curve_acceleration(curve, e2, v2);

@@ -8,10 +8,8 @@
 
 // The record at hand: what its crossings need.
 struct Looked {
-    c: Constants,
-    // u' at the eye, by tau.
-    du: f32,
-    frequency_ratio: f32,
+    // Look direction in the local frame, and nu(camera) / nu(local frame).
+    seen: LocalLook,
     branch: u32,
     place: LensPlace,
     // Angle to the end of the ray, and to the first crossing of the plane; the number of the next crossing.
@@ -35,7 +33,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     let changes = camera_change(at.x, at.y, look);
     let seen = local_look(look);
     let n = seen.n;
-    let begin = begin_local(n);
+    let energy = local_energy(n);
     let dx = local_change(seen, changes[0]);
     let dy = local_change(seen, changes[1]);
 
@@ -49,7 +47,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     let t_hat = max(abs(t) / lens.critical.w, exp2(-LENS_OCTAVES));
     let branch = select(1u, 0u, escaped);
     let nodes = select(lens.inner_nodes, lens.outer_nodes, escaped);
-    let has_column = nodes > 2u && begin.light;
+    let has_column = nodes > 2u && energy > 0.0;
     let place = lens_place(t_hat, max(nodes, 3u) - 3u);
     let ends = textureLoad(lens_swept, vec2<u32>(place.node, branch), 0);
     let swept = select(0.0, dot(lagrange(place.share), ends), has_column);
@@ -61,9 +59,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     let tangent = select(vec2<f32>(1.0, 0.0), n.yz / s, s > 0.0);
     let d_psi = vec2<f32>(s * dx.x - n.x * dot(tangent, dx.yz), s * dy.x - n.x * dot(tangent, dy.yz));
     let d_across = vec2<f32>(tangent.x * dx.z - tangent.y * dx.y, tangent.x * dy.z - tangent.y * dy.y);
-    looked.c = begin.c;
-    looked.du = begin.state.du;
-    looked.frequency_ratio = seen.frequency_ratio;
+    looked.seen = seen;
     looked.branch = branch;
     looked.place = place;
     looked.swept = swept;
@@ -75,9 +71,9 @@ fn ray_record(id: vec2<u32>) -> Record {
     looked.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
     looked.first = first_crossing_angle(tangent.x);
 
-    let energy = begin.c.energy / begin.c.nu_local;
-    var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0),
-        vec3<f32>(1e30), vec3<f32>(1e30));
+    // L = r sin(theta) p_phi, p = -n.
+    let momentum = -frame.place.y * n.z / frame.place.x;
+    var record = Record(FATE_CAPTURED, 0u, energy, momentum, 0.0, 0.0, vec3<f32>(0.0), vec3<f32>(1e30), vec3<f32>(1e30));
     if escaped {
         let turn = sincos(swept);
         let e_r = frame.e_r.xyz;
@@ -94,6 +90,11 @@ fn ray_record(id: vec2<u32>) -> Record {
     return record;
 }
 
+// E of the look direction n, at nu_local = 1: the lapse, or 1 - sqrt(2 u) cos psi in the rain frame; <= 0: no light comes from there.
+fn local_energy(n: vec3<f32>) -> f32 {
+    return select(frame.place.w, 1.0 + frame.place.w * n.x, frame.rain != 0u);
+}
+
 // phi of the first zero of N_z = cos(theta) cos(phi) - sin(theta) n_theta sin(phi), in (0, pi]; never for a ray in the plane.
 fn first_crossing_angle(n_theta: f32) -> f32 {
     let sine = frame.place.y;
@@ -105,25 +106,27 @@ fn first_crossing_angle(n_theta: f32) -> f32 {
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
+    if !DISK {
+        return crossing;
+    }
     let disk = frame.disk_u;
-    var phi = 0.0;
     // u, and its derivatives by place and by y.
     var at = vec3<f32>(0.0);
-    while looked.order < frame.max_crossings {
-        phi = looked.first + PI * f32(looked.order);
-        looked.order += 1u;
-        if phi >= looked.swept {
-            looked.order = frame.max_crossings;
+    loop {
+        let phi = looked.first + PI * f32(looked.order);
+        if phi >= looked.swept || looked.order >= frame.max_crossings {
+            break;
         }
-        at = column_at(lens_u, phi / max(looked.swept, 1e-6));
-        if phi < looked.swept && at.x >= disk.x && at.x <= disk.y {
+        looked.order += 1u;
+        at = column_at(lens_u, phi / looked.swept);
+        if at.x >= disk.x && at.x <= disk.y {
             crossing.u = at.x;
             crossing.order = looked.order - 1u;
             break;
         }
     }
     if crossing.u > 0.0 {
-        complete(&crossing, phi, at);
+        complete(&crossing, looked.first + PI * f32(crossing.order), at);
     }
     return crossing;
 }
@@ -152,9 +155,10 @@ fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
 }
 
 fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
-    let c = looked.c;
+    let begin = begin_local(looked.seen.n);
+    let c = begin.c;
     let u = at.x;
-    (*crossing).g = looked.frequency_ratio * redshift_of(c, u);
+    (*crossing).g = looked.seen.frequency_ratio * redshift_of(c, u);
     if !FOOTPRINTS {
         return;
     }
@@ -167,7 +171,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
     (*crossing).place = Place(-log(u), arctan2(n.y, n.x), 0.0);
     if DELAY {
         let integral = column_at(lens_delay, phi / looked.swept).x;
-        (*crossing).place.delay = delay_boundary(c, u, du) - delay_boundary(c, frame.place.x, looked.du) + integral;
+        (*crossing).place.delay = delay_boundary(c, u, du) - delay_boundary(c, frame.place.x, begin.state.du) + integral;
     }
     // How far a turn of the ray's plane moves the crossing along the ray and around the disk, and how far the next pixel moves it in u.
     let lift = -looked.across.z * turn.x / tangent.z;

@@ -40,5 +40,6 @@ struct Crossing {
     dy: Place,
 }
 
-// Whether shading needs the footprint of crossings.
+// Whether there is a disk, and whether shading needs the footprint of crossings.
+override DISK: bool = true;
 override FOOTPRINTS: bool = true;

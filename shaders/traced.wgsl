@@ -42,7 +42,7 @@ fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec3<f32> {
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
-    if traced_orders == 0u {
+    if !DISK || traced_orders == 0u {
         return crossing;
     }
     crossing.order = firstTrailingBit(traced_orders);

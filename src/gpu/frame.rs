@@ -16,6 +16,7 @@ use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSin
 use crate::scene::frame::sample_offset;
 use crate::scene::record::Record;
 use crate::scene::{Lensing, Scene, View};
+use glam::DVec3;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
 
@@ -178,7 +179,9 @@ impl GpuTracer {
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let source = match scene.lensing(&lens.observer.frame, pixels) {
             Lensing::Traced => Source::Traced,
-            Lensing::Schwarzschild => Source::Schwarzschild { delay: settings.delay },
+            Lensing::Schwarzschild => {
+                Source::Schwarzschild { delay: settings.delay, moving: lens.observer.beta != DVec3::ZERO }
+            }
         };
         let looks = Looks {
             variant: kernels::Variant { azimuth: turbulent, ..variant(scene, &settings, inside) },
@@ -187,6 +190,7 @@ impl GpuTracer {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
                 all_effects: scene.effects.all_light(),
+                disk: scene.disk_u().is_some(),
                 footprints: turbulent,
             },
             film: FilmLook::from(&film),
@@ -270,7 +274,7 @@ fn records(
 ) -> Result<Records> {
     Ok(match setup.looks.source {
         Source::Traced => Records::Traced(traced.stages(device, kernels, setup.looks.variant, shared)?),
-        Source::Schwarzschild { delay } => {
+        Source::Schwarzschild { delay, .. } => {
             Records::Lens(schwarzschild.update(device, kernels, &setup.eye, delay, shared.frame.clone())?)
         }
     })

@@ -26,6 +26,7 @@ pub struct Look {
     pub stars: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
+    pub disk: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
 }
@@ -50,7 +51,7 @@ pub enum Source {
     /// traced.wgsl
     Traced,
     /// lens_schwarzschild_record.wgsl
-    Schwarzschild { delay: bool },
+    Schwarzschild { delay: bool, moving: bool },
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -153,7 +154,9 @@ impl Source {
     fn constants(self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Traced => Vec::new(),
-            Self::Schwarzschild { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
+            Self::Schwarzschild { delay, moving } => {
+                vec![("SPINNING", 0.0), ("DELAY", flag(delay)), ("MOVING", flag(moving))]
+            }
         }
     }
 }
@@ -203,6 +206,7 @@ fn develop_source() -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
+    let schwarzschild = Source::Schwarzschild { delay: true, moving: true };
     vec![
         ("rays", rays_source()),
         ("pixels", pixels_source()),
@@ -211,9 +215,9 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("shade only, traced", shade_only_source(Source::Traced)),
         ("export, traced", export_source(Source::Traced)),
         ("develop", develop_source()),
-        ("shade sample, spin-0 lens", shade_sample_source(Source::Schwarzschild { delay: true })),
-        ("shade only, spin-0 lens", shade_only_source(Source::Schwarzschild { delay: true })),
-        ("export, spin-0 lens", export_source(Source::Schwarzschild { delay: true })),
+        ("shade sample, spin-0 lens", shade_sample_source(schwarzschild)),
+        ("shade only, spin-0 lens", shade_only_source(schwarzschild)),
+        ("export, spin-0 lens", export_source(schwarzschild)),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
         ("spin-0 lens, columns", schwarzschild_columns_source()),
     ]
@@ -410,6 +414,7 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
         ("SHOWS_LIGHT", flag(look.light)),
         ("SHOWS_STARS", flag(look.stars)),
         ("ALL_EFFECTS", flag(look.all_effects)),
+        ("DISK", flag(look.disk)),
         ("FOOTPRINTS", flag(look.footprints)),
     ]
 }
