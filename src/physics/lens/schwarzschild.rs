@@ -12,11 +12,14 @@
 //! ```
 //!
 //! with d = psi - psi_c: no nearly equal numbers are subtracted, so rays as near the critical one as one likes come out right,
-//! in f32 too. e_0 > 0, = 0, < 0 for eyes outside, on, inside the photon sphere. The parameter is sigma, phi = kappa sigma,
-//! kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is singular for radial rays, and past the poles of the
-//! sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi oddly.
+//! in f32 too. e_0 > 0, = 0, < 0 for eyes outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would lose
+//! by the subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray it is small
+//! where u is well conditioned, so that few points suffice however long the ray winds.
+//!
+//! The parameter is sigma, phi = kappa sigma, kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is singular for
+//! radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi oddly.
 
-use super::coordinate::{Angle, Coordinate};
+use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE};
 use crate::physics::geodesic::{Clock, Constants};
 use crate::physics::integrator::{B, D, Quintic, gauss_legendre};
 use crate::physics::observer::LocalFrame;
@@ -32,6 +35,8 @@ pub const CAPTURE_U: f64 = 0.25;
 const LEAST_CAPTURE_RADIUS: f64 = 6.0;
 /// Of this radius or less, all rays that escape move outwards only.
 const PHOTON_SPHERE: f64 = 3.0;
+/// Escaping rays from |t_hat| = 2^-2 on have v = u; the ray there is in the table in both ways.
+const FREE_OCTAVE: f64 = -2.0;
 /// Steps to the end of a ray before it is given up; one near the critical ray takes some 20 / `Resolution::step`.
 const MOST_STEPS: u32 = 10_000;
 
@@ -82,8 +87,8 @@ pub struct Family {
 pub struct Column {
     /// The angle swept to the ray's end, and its slope by x; odd about the poles of the sky.
     pub swept: [f64; 2],
-    /// u, u_x, u_y, u_xy at `intervals` + 1 even steps of y.
-    pub u: Vec<[f64; 4]>,
+    /// v, v_x, v_y, v_xy at `intervals` + 1 even steps of y; `Family::reference` leads to u.
+    pub v: Vec<[f64; 4]>,
     /// J and J_y there, the integral part of the delay (`Family::delay`); empty unless asked for.
     pub delay: Vec<[f64; 2]>,
 }
@@ -94,7 +99,10 @@ struct Ray {
     kappa: f64,
     /// d kappa / dx at constant g.
     kappa_x: f64,
-    /// dv / d sigma at the eye, and its derivative by x.
+    /// 1 where v is the deviation from the critical ray, 0 where v = u.
+    reference: f64,
+    /// v and dv / d sigma at the eye, and the derivative of du / d sigma by x.
+    v: f64,
     slope: f64,
     slope_x: f64,
     /// d sigma / d tau, tau the Mino time of `geodesic`.
@@ -139,12 +147,12 @@ impl Step {
 }
 
 impl Point {
-    fn u(&self) -> f64 {
-        separatrix(self.e) + self.v
+    fn u(&self, ray: &Ray) -> f64 {
+        ray.reference * separatrix(self.e) + self.v
     }
 
     fn du(&self, ray: &Ray) -> f64 {
-        ray.kappa * separatrix_slope(self.e) + self.dv
+        ray.kappa * ray.reference * separatrix_slope(self.e) + self.dv
     }
 }
 
@@ -152,7 +160,7 @@ impl Ray {
     /// v'' and w'' by sigma: kappa^2 v (6 u_s - 1 + 3 v); kappa^2 w (6 u - 1) + 2 kappa kappa_x u (3 u - 1), the latter because
     /// w is taken at fixed sigma and not at fixed phi, where it is singular for radial rays.
     fn accelerations(&self, e: f64, v: f64, w: f64) -> [f64; 2] {
-        let u_s = separatrix(e);
+        let u_s = self.reference * separatrix(e);
         let u = u_s + v;
         let k2 = self.kappa * self.kappa;
         let source = 2.0 * self.kappa * self.kappa_x * u * (3.0 * u - 1.0);
@@ -186,16 +194,16 @@ impl Ray {
     /// sigma from the eye to where u = `end`. `None`: not within `MOST_STEPS`.
     fn length(&self, start: Point, end: f64, h: f64) -> Option<f64> {
         let step = Step::new(self, h);
-        let side = start.u() > end;
+        let side = start.u(self) > end;
         let mut point = start;
         for count in 0..MOST_STEPS {
             let next = self.step(&point, &step);
-            let u = next.u();
+            let u = next.u(self);
             if !u.is_finite() {
                 return None;
             }
             if (u > end) != side {
-                return Some(f64::from(count) * h + self.land(&point, end, h * (point.u() - end) / (point.u() - u)));
+                return Some(f64::from(count) * h + self.land(&point, end, h * (point.u(self) - end) / (point.u(self) - u)));
             }
             point = next;
         }
@@ -206,7 +214,7 @@ impl Ray {
     fn land(&self, from: &Point, end: f64, guess: f64) -> f64 {
         (0..4).fold(guess, |h, _| {
             let point = self.step(from, &Step::new(self, h));
-            h - (point.u() - end) / point.du(self)
+            h - (point.u(self) - end) / point.du(self)
         })
     }
 }
@@ -238,23 +246,39 @@ impl Family {
         })
     }
 
-    /// Number of rays of a branch; 0 where the branch is of no use.
-    pub fn nodes(&self, branch: Branch) -> usize {
+    /// Number of columns of a branch; 0 where the branch is of no use.
+    pub fn columns(&self, branch: Branch) -> usize {
         match branch {
-            Branch::Escaping => self.coordinate.nodes(true),
+            Branch::Escaping => self.coordinate.nodes(true) + 1,
             Branch::Captured if self.r > LEAST_CAPTURE_RADIUS => self.coordinate.nodes(false),
             Branch::Captured => 0,
         }
     }
 
-    /// Integrates the ray of node `index` of a branch: once to its end, then again in even steps of y. `None`: it does not end.
+    /// The columns of a branch with v = u start here, with the same ray as the one before.
+    pub fn first_free_column(&self, branch: Branch) -> usize {
+        match branch {
+            Branch::Escaping => (self.coordinate.nodes_per_octave * (FREE_OCTAVE - LEAST_OCTAVE)) as usize + 1,
+            Branch::Captured => usize::MAX,
+        }
+    }
+
+    /// u - v and its derivative by phi.
+    pub fn reference(&self, phi: f64) -> (f64, f64) {
+        let e = self.e_eye * (-phi).exp();
+        (separatrix(e), separatrix_slope(e))
+    }
+
+    /// Integrates the ray of one column: once to its end, then again in even steps of y. `None`: it does not end.
     pub fn column(&self, branch: Branch, index: usize) -> Option<Column> {
         let (sign, end) = match branch {
             Branch::Escaping => (1.0, 0.0),
             Branch::Captured => (-1.0, CAPTURE_U),
         };
-        let ray = self.ray(&self.coordinate.angle(sign * self.coordinate.t_hat_at(index as f64)));
-        let start = Point { e: self.e_eye, v: 0.0, dv: ray.slope, w: 0.0, dw: ray.slope_x };
+        let free = index >= self.first_free_column(branch);
+        let node = if free { index - 1 } else { index };
+        let ray = self.ray(&self.coordinate.angle(sign * self.coordinate.t_hat_at(node as f64)), free);
+        let start = Point { e: self.e_eye, v: ray.v, dv: ray.slope, w: 0.0, dw: ray.slope_x };
         let length = ray.length(start, end, self.resolution.step)?;
         let points = self.points(&ray, start, length);
         let last = points.last()?;
@@ -262,21 +286,25 @@ impl Family {
         let length_x = -last.w / last.du(&ray);
         Some(Column {
             swept: [ray.kappa * length, ray.kappa_x * length + ray.kappa * length_x],
-            u: self.row(&ray, &points, length, length_x),
+            v: self.row(&ray, &points, length, length_x),
             delay: if self.with_delay { self.delay_row(&ray, &points, length) } else { Vec::new() },
         })
     }
 
-    fn ray(&self, angle: &Angle) -> Ray {
+    /// `free`: v = u.
+    fn ray(&self, angle: &Angle, free: bool) -> Ray {
         let (f, u_eye, beta) = (self.f, self.u_eye, self.beta);
         let g = (1.0 / angle.sin.abs().max(f64::MIN_POSITIVE)).min(self.r / (3.0 * f));
         let psi_x = self.coordinate.psi_slope(angle.tan_half);
-        let off = angle.sin_half * (angle.cos_half - beta * angle.cos_mean);
         let inverse_b = f * u_eye * (1.0 - beta * angle.cos);
+        let off = angle.sin_half * (angle.cos_half - beta * angle.cos_mean);
+        let off = -2.0 * off / self.coordinate.sin_critical;
         Ray {
             kappa: g * angle.sin,
             kappa_x: g * angle.cos * psi_x,
-            slope: -2.0 * g * f * u_eye * off / self.coordinate.sin_critical,
+            reference: if free { 0.0 } else { 1.0 },
+            v: if free { u_eye } else { 0.0 },
+            slope: g * f * u_eye * if free { angle.cos - beta } else { off },
             slope_x: -g * f * u_eye * angle.sin * psi_x,
             per_tau: 1.0 / (g * inverse_b),
             b: angle.sin / inverse_b,
@@ -298,12 +326,18 @@ impl Family {
         points
     }
 
-    /// u(x, y) = U(y length(x); x) with its derivatives, w being dU/dx at fixed sigma.
+    /// v(x, y) = V(y length(x); x) with its derivatives. w being dU/dx at fixed sigma, that of V is w - u_s' kappa_x sigma.
     fn row(&self, ray: &Ray, points: &[Point], length: f64, length_x: f64) -> Vec<[f64; 4]> {
         let values = points.iter().enumerate().map(|(i, p)| {
-            let sigma_x = i as f64 / f64::from(self.resolution.intervals) * length_x;
-            let (u, du) = (p.u(), p.du(ray));
-            [u, p.w + du * sigma_x, length * du, length * (p.dw + ray.curvature(u) * sigma_x) + length_x * du]
+            let y = i as f64 / f64::from(self.resolution.intervals);
+            let curvature = ray.accelerations(p.e, p.v, p.w)[0];
+            let u_s = separatrix(p.e);
+            let (slope_s, curvature_s) = (ray.reference * separatrix_slope(p.e), ray.reference * u_s * (3.0 * u_s - 1.0));
+            let phi_x = ray.kappa_x * length;
+            let v_x = p.w + y * (p.dv * length_x - slope_s * phi_x);
+            let v_xy = length * (p.dw + y * curvature * length_x) + p.dv * length_x
+                - phi_x * (slope_s + y * curvature_s * ray.kappa * length);
+            [p.v, v_x, length * p.dv, v_xy]
         });
         values.collect()
     }
@@ -320,9 +354,9 @@ impl Family {
         let mut sum = 0.0;
         let mut before: Option<&Point> = None;
         for p in points {
-            let (u, du) = (p.u(), p.du(ray));
+            let (u, du) = (p.u(ray), p.du(ray));
             if let Some(q) = before {
-                let (u0, du0) = (q.u(), q.du(ray));
+                let (u0, du0) = (q.u(ray), q.du(ray));
                 let dense = Quintic::new(u0, du0, ray.curvature(u0), u, du, ray.curvature(u), h);
                 sum += dy
                     * gauss_legendre(|x| {

@@ -1,7 +1,7 @@
 //! The lens table of one eye at spin 0, and looking directions up in it: what becomes of a ray and where it is after a swept
 //! angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane` leads to the chart).
 //!
-//! Interpolation: the swept angle cubic Hermite in x; u bicubic Hermite in (x, y); the delay's integral part cubic Hermite in y
+//! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's integral part cubic Hermite in y
 //! and Lagrange with four nodes in x.
 
 use super::schwarzschild::{Branch, Column, Family, Resolution};
@@ -13,7 +13,7 @@ use glam::DVec3;
 #[derive(Clone, Debug, Default)]
 struct BranchTable {
     swept: Vec<[f64; 2]>,
-    u: Vec<[f64; 4]>,
+    v: Vec<[f64; 4]>,
     delay: Vec<[f64; 2]>,
 }
 
@@ -30,9 +30,11 @@ pub struct SchwarzschildLens {
 pub struct Look<'a> {
     family: &'a Family,
     table: &'a BranchTable,
-    /// Node below, and the fraction to the next one.
-    node: usize,
+    /// Column of the node below, and the fraction to the next one.
+    column: usize,
     fraction: f64,
+    /// The first and last column of those with the same meaning of v.
+    alike: [usize; 2],
     /// dx / d psi.
     x_slope: f64,
     pub escaped: bool,
@@ -78,14 +80,14 @@ impl BranchTable {
     fn new(family: &Family, branch: Branch, columns: Vec<Column>) -> Option<Self> {
         let length = family.resolution.intervals as usize + 1;
         let delays = if family.with_delay { length } else { 0 };
-        let fit = columns.iter().all(|c| c.u.len() == length && c.delay.len() == delays);
-        if columns.len() != family.nodes(branch) || !fit {
+        let fit = columns.iter().all(|c| c.v.len() == length && c.delay.len() == delays);
+        if columns.len() != family.columns(branch) || !fit {
             return None;
         }
         let mut table = Self::default();
         for mut column in columns {
             table.swept.push(column.swept);
-            table.u.append(&mut column.u);
+            table.v.append(&mut column.v);
             table.delay.append(&mut column.delay);
         }
         Some(table)
@@ -100,7 +102,7 @@ impl SchwarzschildLens {
 
     /// Builds all columns on this thread.
     pub fn build(family: Family) -> Option<Self> {
-        let columns = |branch| (0..family.nodes(branch)).map(|i| family.column(branch, i)).collect::<Option<Vec<_>>>();
+        let columns = |branch| (0..family.columns(branch)).map(|i| family.column(branch, i)).collect::<Option<Vec<_>>>();
         Self::from_columns(family, columns(Branch::Escaping)?, columns(Branch::Captured)?)
     }
 
@@ -125,8 +127,9 @@ impl SchwarzschildLens {
         let mut look = Look {
             family: &self.family,
             table,
-            node: 0,
+            column: 0,
             fraction: 0.0,
+            alike: [0, 0],
             x_slope: 0.0,
             escaped,
             t_hat,
@@ -152,12 +155,18 @@ impl Look<'_> {
     fn locate(&mut self) {
         let coordinate = &self.family.coordinate;
         let x = coordinate.x(self.t_hat);
-        self.node = (x as usize).min(self.table.swept.len() - 2);
-        self.fraction = x - self.node as f64;
+        let branch = if self.escaped { Branch::Escaping } else { Branch::Captured };
+        let (free, last) = (self.family.first_free_column(branch), self.table.swept.len() - 1);
+        let is_free = x as usize + 1 >= free;
+        // The ray at the seam has two columns.
+        let shift = usize::from(is_free);
+        self.alike = if is_free { [free, last] } else { [0, last.min(free - 1)] };
+        self.column = (x as usize + shift).min(last - 1);
+        self.fraction = x - (self.column - shift) as f64;
         // At the least |t_hat| where there is less.
         let t = (self.t_hat.abs().max(coordinate.t_hat_at(0.0)) * coordinate.scale).copysign(self.t_hat);
         self.x_slope = 1.0 / coordinate.psi_slope(t);
-        let [[y0, d0], [y1, d1]] = [0, 1].map(|i| self.table.swept[self.node + i]);
+        let [[y0, d0], [y1, d1]] = [0, 1].map(|i| self.table.swept[self.column + i]);
         let (swept, slope) = hermite(y0, d0, y1, d1, self.fraction);
         self.swept = swept;
         self.swept_slope = slope * self.x_slope;
@@ -179,20 +188,23 @@ impl Look<'_> {
         let intervals = f64::from(self.family.resolution.intervals);
         let (interval, y) = self.interval(phi);
         let length = self.family.resolution.intervals as usize + 1;
-        // Along the rays on either side: u and u_x, and their slopes by y.
+        // Along the rays on either side: v and v_x, and their slopes by y.
         let sides = [0, 1].map(|i| {
-            let at = (self.node + i) * length + interval;
-            let ([p, q], h) = ([self.table.u[at], self.table.u[at + 1]], 1.0 / intervals);
-            let (u, u_y) = hermite(p[0], h * p[2], q[0], h * q[2], y);
-            let (u_x, u_xy) = hermite(p[1], h * p[3], q[1], h * q[3], y);
-            [u, u_x, u_y * intervals, u_xy * intervals]
+            let at = (self.column + i) * length + interval;
+            let ([p, q], h) = ([self.table.v[at], self.table.v[at + 1]], 1.0 / intervals);
+            let (v, v_y) = hermite(p[0], h * p[2], q[0], h * q[2], y);
+            let (v_x, v_xy) = hermite(p[1], h * p[3], q[1], h * q[3], y);
+            [v, v_x, v_y * intervals, v_xy * intervals]
         });
         let [p, q] = sides;
-        let (u, u_x) = hermite(p[0], p[1], q[0], q[1], self.fraction);
-        let (u_y, _) = hermite(p[2], p[3], q[2], q[3], self.fraction);
-        let u_phi = u_y / self.swept;
+        let (v, v_x) = hermite(p[0], p[1], q[0], q[1], self.fraction);
+        let (v_y, _) = hermite(p[2], p[3], q[2], q[3], self.fraction);
+        let v_phi = v_y / self.swept;
         let y = phi / self.swept;
-        Some(Crossing { phi, u, u_psi: u_x * self.x_slope - u_phi * y * self.swept_slope, u_phi })
+        // The reference is the same for all rays: du/dpsi at fixed phi is dv/dpsi.
+        let (u_s, slope_s) = if self.alike[0] > 0 { (0.0, 0.0) } else { self.family.reference(phi) };
+        let u_psi = v_x * self.x_slope - v_phi * y * self.swept_slope;
+        Some(Crossing { phi, u: v + u_s, u_psi, u_phi: v_phi + slope_s })
     }
 
     /// Time since light left a crossing (`Family::clock`), M; 0 if the table has no delays.
@@ -209,14 +221,14 @@ impl Look<'_> {
         let (interval, y) = self.interval(phi);
         let length = self.family.resolution.intervals as usize + 1;
         let h = 1.0 / f64::from(self.family.resolution.intervals);
-        // The first of the four nodes; the ends of the table have no node before or behind.
-        let first = self.node.saturating_sub(1).min(self.table.swept.len() - 4);
+        // The first of the four columns; the ends and the seam of the table have none before or behind.
+        let first = self.column.saturating_sub(1).clamp(self.alike[0], self.alike[1] - 3);
         let values = std::array::from_fn(|i| {
             let at = (first + i) * length + interval;
             let [p, q] = [self.table.delay[at], self.table.delay[at + 1]];
             hermite(p[0], h * p[1], q[0], h * q[1], y).0
         });
-        lagrange(values, (self.node - first) as f64 - 1.0 + self.fraction)
+        lagrange(values, (self.column - first) as f64 - 1.0 + self.fraction)
     }
 
     /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay to the eye

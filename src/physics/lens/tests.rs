@@ -105,16 +105,8 @@ fn errors(frame: &LocalFrame, resolution: Resolution, rays: usize) -> [Errors; 3
 #[test]
 #[ignore = "a measurement: prints the errors by resolution"]
 fn measure() {
-    for (nodes_per_octave, intervals, step) in [
-        (32, 128, 0.1),
-        (32, 128, 0.05),
-        (16, 128, 0.1),
-        (64, 128, 0.1),
-        (32, 64, 0.1),
-        (16, 64, 0.1),
-        (8, 64, 0.2),
-        (64, 256, 0.05),
-    ] {
+    let resolutions = [(32, 128, 0.1), (16, 128, 0.1), (16, 64, 0.1), (16, 32, 0.1), (16, 64, 0.05), (8, 64, 0.1), (8, 32, 0.2)];
+    for (nodes_per_octave, intervals, step) in resolutions {
         println!("{nodes_per_octave} nodes per octave, {intervals} intervals, step {step}");
         for frame in eyes() {
             let resolution = Resolution { nodes_per_octave, intervals, step };
@@ -127,7 +119,7 @@ fn measure() {
             let with = SchwarzschildLens::build(family).is_some();
             let time_with = begin.elapsed().as_secs_f64() * 1e3;
             assert!(built && with);
-            let nodes = [Branch::Escaping, Branch::Captured].map(|b| family.nodes(b));
+            let nodes = [Branch::Escaping, Branch::Captured].map(|b| family.columns(b));
             print!("r {:7.1} rain {:5} nodes {nodes:4?} {time:5.1} {time_with:5.1} ms", frame.r, frame.rain);
             for mut e in errors(&frame, resolution, 1500) {
                 print!("  {:.0e} {:.0e} {:.0e}", e.at(0.5), e.at(0.99), e.at(1.0));
