@@ -40,20 +40,21 @@ const FREE_OCTAVE: f64 = -2.0;
 /// Steps to the end of a ray before it is given up; one near the critical ray takes some 20 / `Resolution::step`.
 const MOST_STEPS: u32 = 10_000;
 
-/// How finely a table is made.
+/// How finely a table is made. Largest errors over (1 + conditioning), eyes at 1 to 1000 M: nodes per octave x intervals
+/// 32 x 128: 5e-9 in swept angle, 5e-10 in u; 16 x 64: 2e-8, 1e-8; 8 x 32 with step 0.2: 4e-7, 1e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Resolution {
     /// Rays per octave of distance from the critical direction, at least 1.
     pub nodes_per_octave: u32,
     /// Intervals along a ray from the eye to its end, at least 1.
     pub intervals: u32,
-    /// Largest step in sigma, > 0; 0.05 leaves 1e-10.
+    /// Largest step in sigma, > 0.
     pub step: f64,
 }
 
 impl Default for Resolution {
     fn default() -> Self {
-        Self { nodes_per_octave: 32, intervals: 128, step: 0.1 }
+        Self { nodes_per_octave: 16, intervals: 64, step: 0.1 }
     }
 }
 
@@ -203,7 +204,9 @@ impl Ray {
                 return None;
             }
             if (u > end) != side {
-                return Some(f64::from(count) * h + self.land(&point, end, h * (point.u(self) - end) / (point.u(self) - u)));
+                return Some(
+                    f64::from(count) * h + self.land(&point, end, h * (point.u(self) - end) / (point.u(self) - u)),
+                );
             }
             point = next;
         }
@@ -332,7 +335,8 @@ impl Family {
             let y = i as f64 / f64::from(self.resolution.intervals);
             let curvature = ray.accelerations(p.e, p.v, p.w)[0];
             let u_s = separatrix(p.e);
-            let (slope_s, curvature_s) = (ray.reference * separatrix_slope(p.e), ray.reference * u_s * (3.0 * u_s - 1.0));
+            let (slope_s, curvature_s) =
+                (ray.reference * separatrix_slope(p.e), ray.reference * u_s * (3.0 * u_s - 1.0));
             let phi_x = ray.kappa_x * length;
             let v_x = p.w + y * (p.dv * length_x - slope_s * phi_x);
             let v_xy = length * (p.dw + y * curvature * length_x) + p.dv * length_x

@@ -102,7 +102,8 @@ impl SchwarzschildLens {
 
     /// Builds all columns on this thread.
     pub fn build(family: Family) -> Option<Self> {
-        let columns = |branch| (0..family.columns(branch)).map(|i| family.column(branch, i)).collect::<Option<Vec<_>>>();
+        let columns =
+            |branch| (0..family.columns(branch)).map(|i| family.column(branch, i)).collect::<Option<Vec<_>>>();
         Self::from_columns(family, columns(Branch::Escaping)?, columns(Branch::Captured)?)
     }
 
