@@ -87,7 +87,7 @@ impl OrbitPlane {
     /// N_z stays 0: dphi = -sin(phi) dT_z / N'_z. The delay follows from its gradient (`Look::delay_gradient`).
     pub fn image_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> PlaneImage {
         let (at, heading) = (self.position(crossing.phi), self.heading(crossing.phi));
-        let swing = turn.dtangent * (crossing.phi.sin() / look.sin);
+        let swing = turn.dtangent * (crossing.phi.sin() / look.sin.max(f64::MIN_POSITIVE));
         let dphi = -swing.z / heading.z;
         let moved = swing + heading * dphi;
         let du = crossing.u_psi * turn.dpsi + crossing.u_phi * dphi;

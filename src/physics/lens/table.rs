@@ -233,12 +233,17 @@ impl Look<'_> {
     }
 
     /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay to the eye
-    /// is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi). Rain time adds w / (u^2 D),
-    /// w = sqrt(2 u).
+    /// is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
+    ///
+    /// Rain time adds w / (u^2 D), w = sqrt(2 u); as u'^2 = 1 - b^2 u^2 D the sum is (b^2 - 1 / u^2) / (w - u'), and u' < 0 there.
     pub fn delay_gradient(&self, crossing: &Crossing) -> (f64, f64) {
-        let u = crossing.u;
-        let flow = if self.family.clock() == Clock::Rain { (2.0 * u).sqrt() } else { 0.0 };
-        (self.b, (self.b * crossing.u_phi + flow) / (u * u * (1.0 - 2.0 * u)))
+        let (b, u) = (self.b, crossing.u);
+        let slope = b * crossing.u_phi;
+        let by_u = match self.family.clock() {
+            Clock::Rain => (b * b - 1.0 / (u * u)) / ((2.0 * u).sqrt() - slope),
+            Clock::Coordinate => slope / (u * u * (1.0 - 2.0 * u)),
+        };
+        (b, by_u)
     }
 }
 
