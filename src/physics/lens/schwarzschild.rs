@@ -2,19 +2,20 @@
 //! independent of the others. Knows neither threads nor how the tables are interpolated.
 //!
 //! In the ray's plane, with phi the angle swept from the eye and primes for d/dphi: u'' = -u + 3 u^2, u = 1/r. The eye is at
-//! u_e, the ray leaves it at the angle psi from the inward radius: u' = f u_e (cos psi - beta) / sin psi, with f = sqrt(1 - 2 u_e),
-//! beta = 0 for the static frame and f = 1, beta = sqrt(2 u_e) for the rain frame. Integrated is the deviation v = u - u_s from
-//! the critical ray, which is known in closed form (Darwin 1959, in the form of tanh^2):
+//! u_e, the ray leaves it at the angle psi from the inward radius: u' = f u_e (cos psi - beta) / sin psi, with
+//! f = sqrt(1 - 2 u_e), beta = 0 for the static frame and f = 1, beta = sqrt(2 u_e) for the rain frame. Integrated is the
+//! deviation v = u - u_s from the critical ray, which is known in closed form (Darwin 1959, tanh^2 being written out):
 //!
 //! ```text
 //! u_s = -1/6 + ((1 - e) / (1 + e))^2 / 2,   e = e_0 exp(-phi),   e_0 = 2 (1/3 - u_e) / (1 + sqrt(2 u_e + 1/3))^2
-//! v'' = v (6 u_s - 1 + 3 v),   v(0) = 0,   v'(0) = -2 f u_e sin(d/2) (cos(d/2) - beta cos((psi + psi_c)/2)) / (sin psi sin psi_c)
+//! v'' = v (6 u_s - 1 + 3 v),   v(0) = 0,
+//! v'(0) = -2 f u_e sin(d/2) (cos(d/2) - beta cos((psi + psi_c)/2)) / (sin psi sin psi_c),   d = psi - psi_c
 //! ```
 //!
-//! with d = psi - psi_c: no nearly equal numbers are subtracted, so rays as near the critical one as one likes come out right,
-//! in f32 too. e_0 > 0, = 0, < 0 for eyes outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would lose
-//! by the subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray it is small
-//! where u is well conditioned, so that few points suffice however long the ray winds.
+//! No nearly equal numbers are subtracted, so rays as near the critical one as one likes come out right, in f32 too. e_0 > 0,
+//! = 0, < 0 for eyes outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would lose by the
+//! subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray it is small where
+//! u is well conditioned, so that few points suffice however long the ray winds.
 //!
 //! The parameter is sigma, phi = kappa sigma, kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is singular for
 //! radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi oddly.

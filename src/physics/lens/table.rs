@@ -1,8 +1,8 @@
 //! The lens table of one eye at spin 0, and looking directions up in it: what becomes of a ray and where it is after a swept
 //! angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane` leads to the chart).
 //!
-//! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's integral part cubic Hermite in y
-//! and Lagrange with four nodes in x.
+//! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's integral part
+//! cubic Hermite in y and Lagrange with four nodes in x.
 
 use super::schwarzschild::{Branch, Column, Family, Resolution};
 use crate::physics::geodesic::Clock;
@@ -232,10 +232,10 @@ impl Look<'_> {
         lagrange(values, (self.column - first) as f64 - 1.0 + self.fraction)
     }
 
-    /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay to the eye
-    /// is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
+    /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay to the
+    /// eye is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
     ///
-    /// Rain time adds w / (u^2 D), w = sqrt(2 u); as u'^2 = 1 - b^2 u^2 D the sum is (b^2 - 1 / u^2) / (w - u'), and u' < 0 there.
+    /// Rain time adds w / (u^2 D), w = sqrt(2 u). As u'^2 = 1 - b^2 u^2 D the sum is (b^2 - 1 / u^2) / (w - u'), with u' < 0.
     pub fn delay_gradient(&self, crossing: &Crossing) -> (f64, f64) {
         let (b, u) = (self.b, crossing.u);
         let slope = b * crossing.u_phi;
