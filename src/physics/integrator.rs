@@ -27,8 +27,8 @@ pub fn step(method: Method, c: &Constants, s: &State, h: f64, with_delay: bool) 
 }
 
 /// y weights of Nystrom's method at its first three nodes (the fourth's is 0), and y' weights at all four.
-const B: [f64; 3] = [1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0];
-const D: [f64; 4] = [1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0];
+pub(super) const B: [f64; 3] = [1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0];
+pub(super) const D: [f64; 4] = [1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0];
 
 /// Nystrom's method for y'' = f(y); without spin N turns evenly, which is exact. Drag and delay, z' = f(u, N), take the weights of
 /// y', which keeps order 5.
@@ -96,12 +96,16 @@ fn rain_delay_step(c: &Constants, from: &State, to: &State, h: f64) -> f64 {
         return 0.0;
     }
     let dense = Quintic::of_u(c, from, to, h);
-    let offset = 0.6_f64.sqrt() / 2.0;
-    let at = |x: f64| {
+    h * gauss_legendre(|x| {
         let (u, du) = dense.at(x);
         c.delay_rate(u, du, 0.0)
-    };
-    h / 18.0 * (5.0 * at(0.5 - offset) + 8.0 * at(0.5) + 5.0 * at(0.5 + offset))
+    })
+}
+
+/// The integral of `f` over [0, 1]: Gauss-Legendre with three points, exact to the fifth degree.
+pub(super) fn gauss_legendre(f: impl Fn(f64) -> f64) -> f64 {
+    let offset = 0.6_f64.sqrt() / 2.0;
+    (5.0 * f(0.5 - offset) + 8.0 * f(0.5) + 5.0 * f(0.5 + offset)) / 18.0
 }
 
 /// u, u', N, N', drag, delay as one vector, for the methods that treat the system as of first order.

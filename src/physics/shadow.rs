@@ -27,10 +27,7 @@ pub fn shadow(observer: &Observer) -> Shadow {
     if observer.frame.rain {
         return Shadow { radius: rain_shadow_radius(r), center: inward };
     }
-    let sin2 = 27.0 * (r - 2.0) / (r * r * r);
-    // r^3 - 27 r + 54 = (r - 3)^2 (r + 6): 1 - sin^2 psi without cancellation at the photon sphere.
-    let cos = (r - 3.0) * (r + 6.0).sqrt() / (r * r.sqrt());
-    let sin = sin2.sqrt();
+    let (sin, cos) = critical_direction(r, false);
     let (cot, k) = (cos / sin, inward / sin);
     let (beta, gamma) = (observer.beta, observer.gamma);
     let time = gamma * (cot + beta.dot(k));
@@ -38,14 +35,26 @@ pub fn shadow(observer: &Observer) -> Shadow {
     Shadow { radius: 1.0_f64.atan2(time), center: space.normalize() }
 }
 
-/// r sin psi = b_c (1 - sqrt(2/r) cos psi): the shadow seen by the observer falling from rest at infinity, inside too.
-pub fn rain_shadow_radius(r: f64) -> f64 {
+/// (sin, cos) of psi_c, the angle from the inward radius at which a spin-0 ray winds up on the photon sphere, for the static
+/// observer at `r` > 2 or, with `rain`, for the one that falls from rest at infinity, at any `r` > 0.
+///
+/// Static: sin psi = b_c sqrt(1 - 2/r) / r (Synge 1966). Rain: r sin psi = b_c (1 - sqrt(2/r) cos psi), inside the horizon too.
+/// r^3 - 27 r + 54 = (r - 3)^2 (r + 6) is 1 - sin^2 psi without cancellation at the photon sphere, and the root's sign.
+pub fn critical_direction(r: f64, rain: bool) -> (f64, f64) {
     let b = CRITICAL_IMPACT_PARAMETER;
-    let lean = b * (2.0 / r).sqrt();
-    let amplitude = r.hypot(lean);
-    let offset = lean.atan2(r);
-    let angle = (b / amplitude).min(1.0).asin();
-    if r >= 3.0 { angle - offset } else { std::f64::consts::PI - angle - offset }
+    let root = (r - 3.0) * ((r + 6.0) / r).sqrt();
+    if !rain {
+        return (b * ((r - 2.0) / r).sqrt() / r, root / r);
+    }
+    let speed = (2.0 / r).sqrt();
+    let amplitude2 = r * r + 54.0 / r;
+    (b * (r - speed * root) / amplitude2, (r * root + b * b * speed) / amplitude2)
+}
+
+/// The shadow seen by the observer falling from rest at infinity, inside too: `critical_direction` as an angle.
+pub fn rain_shadow_radius(r: f64) -> f64 {
+    let (sin, cos) = critical_direction(r, true);
+    sin.atan2(cos)
 }
 
 /// A point of the critical curve on the sky of an observer at infinity.

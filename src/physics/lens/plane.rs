@@ -1,0 +1,128 @@
+//! From a spin-0 ray in its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane, and how
+//! both change with the look direction. Geometry of great circles; the ray itself comes from `table::Look`.
+//!
+//! The ray lies at N(phi) = e_r cos phi + T sin phi, T the unit vector of (e_th n_th + e_ph n_ph).
+
+use super::table::{Crossing, Look};
+use crate::physics::observer::LocalFrame;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// Of sin psi_c: nearer than this to straight outwards the ratio sin(swept) / sin psi is taken for its limit.
+const RADIAL: f64 = 1e-3;
+
+/// The plane of one ray.
+#[derive(Clone, Copy, Debug)]
+pub struct OrbitPlane {
+    pub e_r: DVec3,
+    /// T; any unit vector across e_r for a radial ray.
+    pub tangent: DVec3,
+    /// sin psi T, as long as the look direction's part across e_r.
+    across: DVec3,
+    /// Of the eye's polar angle: exactly 0 in the plane.
+    cos_theta: f64,
+}
+
+/// How a ray changes with its look direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    pub dpsi: f64,
+    /// sin psi dT.
+    pub dtangent: DVec3,
+}
+
+/// A crossing of the equatorial plane as seen along a ray, or its change.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneImage {
+    pub u: f64,
+    /// In (-pi, pi].
+    pub azimuth: f64,
+    /// Time since light left there, M; 0 if the table has no delays.
+    pub delay: f64,
+}
+
+impl OrbitPlane {
+    /// The plane of the look direction `n` (components, unit).
+    pub fn new(frame: &LocalFrame, n: DVec3) -> Self {
+        let across = frame.e_theta * n.y + frame.e_phi * n.z;
+        let sin = n.y.hypot(n.z);
+        let tangent = if sin > 0.0 { across / sin } else { frame.e_theta };
+        Self { e_r: frame.e_r, tangent, across, cos_theta: frame.cos }
+    }
+
+    /// N(phi).
+    pub fn position(&self, phi: f64) -> DVec3 {
+        let (sin, cos) = phi.sin_cos();
+        self.e_r * cos + self.tangent * sin
+    }
+
+    /// dN/dphi.
+    pub fn heading(&self, phi: f64) -> DVec3 {
+        let (sin, cos) = phi.sin_cos();
+        self.tangent * cos - self.e_r * sin
+    }
+
+    /// The angle at which the ray crosses the equatorial plane for the (`order` + 1)-th time, however far it goes: the zeros of
+    /// N_z = cos(theta) cos(phi) + T_z sin(phi), the eye's own place not counted. `None`: the ray lies in that plane.
+    pub fn crossing_angle(&self, order: u32) -> Option<f64> {
+        if self.cos_theta == 0.0 {
+            return (self.tangent.z != 0.0).then(|| PI * (f64::from(order) + 1.0));
+        }
+        let first = self.cos_theta.abs().atan2(-self.tangent.z * self.cos_theta.signum());
+        Some(first + PI * f64::from(order))
+    }
+
+    /// The (`order` + 1)-th crossing. `None`: the ray ends before.
+    pub fn crossing(&self, look: &Look, order: u32) -> Option<Crossing> {
+        look.crossing(self.crossing_angle(order)?)
+    }
+
+    pub fn image(&self, look: &Look, crossing: &Crossing) -> PlaneImage {
+        let at = self.position(crossing.phi);
+        PlaneImage { u: crossing.u, azimuth: at.y.atan2(at.x), delay: look.delay(crossing) }
+    }
+
+    /// The change of `image` with the look direction.
+    ///
+    /// N_z stays 0: dphi = -sin(phi) dT_z / N'_z. The delay follows from its gradient (`Look::delay_gradient`).
+    pub fn image_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> PlaneImage {
+        let (at, heading) = (self.position(crossing.phi), self.heading(crossing.phi));
+        let swing = turn.dtangent * (crossing.phi.sin() / look.sin.max(f64::MIN_POSITIVE));
+        let dphi = -swing.z / heading.z;
+        let moved = swing + heading * dphi;
+        let du = crossing.u_psi * turn.dpsi + crossing.u_phi * dphi;
+        let (by_phi, by_u) = look.delay_gradient(crossing);
+        PlaneImage {
+            u: du,
+            azimuth: (at.x * moved.y - at.y * moved.x) / (at.x * at.x + at.y * at.y),
+            delay: by_phi * dphi + by_u * du,
+        }
+    }
+
+    /// The change of the ray for a small change `dn` (components) of the look direction `n`, dn across n.
+    pub fn turn(&self, frame: &LocalFrame, look: &Look, dn: DVec3) -> Turn {
+        let across = frame.e_theta * dn.y + frame.e_phi * dn.z;
+        let along = self.tangent.dot(across);
+        // psi = atan2(sin psi, -n_r).
+        Turn { dpsi: look.sin * dn.x + look.cos * along, dtangent: across - self.tangent * along }
+    }
+
+    /// Where on the sky an escaping ray ends, chart, unit: N(swept).
+    pub fn sky_direction(&self, look: &Look) -> DVec3 {
+        self.e_r * look.swept.cos() + self.across * sine_ratio(look)
+    }
+
+    /// The change of `sky_direction` with the look direction.
+    pub fn sky_change(&self, look: &Look, turn: &Turn) -> DVec3 {
+        self.heading(look.swept) * (look.swept_slope * turn.dpsi) + turn.dtangent * sine_ratio(look)
+    }
+}
+
+/// sin(swept) / sin psi; -d swept / d psi straight outwards, where both vanish.
+fn sine_ratio(look: &Look) -> f64 {
+    if look.cos < 0.0 && look.sin < RADIAL * look.sin_critical() {
+        -look.swept_slope
+    } else {
+        look.swept.sin() / look.sin
+    }
+}
