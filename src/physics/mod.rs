@@ -9,6 +9,7 @@ pub mod cie1931;
 pub mod disk_flux;
 pub mod geodesic;
 pub mod integrator;
+pub mod lens;
 pub mod metric;
 pub mod observer;
 pub mod orbit;
