@@ -137,8 +137,8 @@ impl Constants {
         if !self.is_unit_energy() {
             return self.energy * (1.0 / (u * u) + 2.0 / u) + frame + horizon;
         }
-        // At u <= 0, past infinity, only the step that finds the escape looks; it does not use the delay.
-        let l = (u / self.u_eye).max(f64::MIN_POSITIVE).ln();
+        // |u|: the lens table continues rays past infinity, where u ln |u| is continuous.
+        let l = (u / self.u_eye).abs().max(f64::MIN_POSITIVE).ln();
         let a2q = a2 * self.carter;
         let by_parts = (k - a2) * u * (1.0 + l) - self.b * u * u * (2.0 + 3.0 * l) + a2q * u * u * u * (1.0 + 2.0 * l);
         self.b * u - a2q * u * u + 2.0 * by_parts + frame + horizon

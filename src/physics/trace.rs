@@ -141,7 +141,13 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
 
 /// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method with
 /// the integrator itself, so that dense output only has to be good enough to begin with.
-fn land(c: &Constants, s: &Settings, from: &State, guess: f64, value: impl Fn(&State) -> (f64, f64)) -> (State, f64) {
+pub(super) fn land(
+    c: &Constants,
+    s: &Settings,
+    from: &State,
+    guess: f64,
+    value: impl Fn(&State) -> (f64, f64),
+) -> (State, f64) {
     let mut h = guess;
     let mut state = step(s.method, c, from, h, s.delay).0;
     for _ in 0..3 {

@@ -1,0 +1,320 @@
+//! The critical curve - the shadow's edge - on the sky of an eye outside the photon region, as a table over the angle along it,
+//! and polar coordinates about its centre. Knows the ray's constants and the local frame; integrates nothing.
+//!
+//! An inward ray is captured when the radial potential has no zero between the eye and the horizon. The potential
+//!
+//! ```text
+//! P(u) = u'^2 = E^2 + (a^2 E^2 - K) u^2 + 2 B u^3 - a^2 Q u^4
+//! ```
+//!
+//! (Carter 1968) is least at the smaller root of P'(u) / u = 0, a quadratic; the critical rays have P = P' = 0 there: they
+//! wind up on a spherical photon orbit (Teo 2003). Components are (n_r, n_th, n_ph) of the local frame.
+
+use crate::physics::geodesic::Constants;
+use crate::physics::observer::LocalFrame;
+use crate::physics::orbit::photon_orbit;
+use crate::physics::shadow::CRITICAL_IMPACT_PARAMETER;
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Nodes of the table over chi in [0, 2 pi).
+pub const CRITICAL_NODES: usize = 512;
+
+/// Eyes from this many radii of the retrograde photon orbit: no spherical photon orbit reaches them, so that every captured ray
+/// starts inward, and the curve stays away from the directions with n_r = 0.
+pub const NEAREST_EYE: f64 = 1.03;
+
+/// Farthest eye, in M.
+pub const FARTHEST_EYE: f64 = 1e5;
+
+/// Most evaluations of the potential for one node; four to six are usual.
+const MAX_EVALUATIONS: usize = 40;
+
+/// P(u) = u'^2.
+pub fn radial_potential(c: &Constants, u: f64) -> f64 {
+    let quadratic = c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter));
+    c.energy * c.energy + u * u * quadratic
+}
+
+/// u of the least P between infinity and the horizon: 2 a^2 Q u^2 - 3 B u + K - a^2 E^2 = 0, the smaller root, in the form that
+/// holds for a^2 Q -> 0. 0 when P rises all the way, 1/r+ when it falls all the way.
+pub fn potential_minimum(c: &Constants) -> f64 {
+    let rise = c.k - c.a2e2;
+    let b3 = 3.0 * c.b;
+    let root = (b3 * b3 - 8.0 * c.a * c.a * c.carter * rise).max(0.0).sqrt();
+    let horizon = 1.0 / c.r_plus;
+    // B >= 0 for light: B = Q + (L - a E)^2 is Carter's other constant, Sigma^2 theta'^2 + (...)^2.
+    let u = 2.0 * rise.max(0.0) / (b3 + root).max(f64::MIN_POSITIVE);
+    u.min(horizon)
+}
+
+/// > 0: an inward ray with these constants falls in; < 0: it turns; its size measures how far it is from the critical one.
+pub fn capture_margin(c: &Constants) -> f64 {
+    radial_potential(c, potential_minimum(c))
+}
+
+/// The critical curve of one eye, about its centre k: n = k cos psi + (e1 sin chi + e2 cos chi) sin psi. The curve lies at
+/// psi = R(chi); R(-chi) = R(chi), as the potential knows n_th only by its square.
+#[derive(Clone, Debug)]
+pub struct CriticalCurve {
+    pub k: DVec3,
+    pub e1: DVec3,
+    pub e2: DVec3,
+    /// T = tan(R / 2) and dT/dchi at chi = 2 pi i / `CRITICAL_NODES`.
+    nodes: Vec<[f64; 2]>,
+}
+
+/// A look direction in polar coordinates about the centre of the curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Polar {
+    /// cos psi and sin psi >= 0.
+    pub cos: f64,
+    pub sin: f64,
+    /// In (-pi, pi].
+    pub chi: f64,
+    /// Unit tangent d n / d psi.
+    pub outward: DVec3,
+    /// Unit tangent along growing chi.
+    pub along: DVec3,
+}
+
+impl CriticalCurve {
+    /// `None` for an eye in or near the photon region, too far, or in the rain frame.
+    pub fn new(frame: &LocalFrame) -> Option<Self> {
+        let nearest = NEAREST_EYE * photon_orbit(-frame.a.abs());
+        if frame.rain || !(frame.r > nearest && frame.r <= FARTHEST_EYE) {
+            return None;
+        }
+        let mut curve = Self::centred(frame);
+        let half: Vec<f64> = curve.half(frame);
+        let last = CRITICAL_NODES as isize;
+        let mirrored = |i: isize| half[i.rem_euclid(last).min((-i).rem_euclid(last)) as usize];
+        curve.nodes = (0..last).map(|i| [mirrored(i), periodic_slope(&mirrored, i)]).collect();
+        Some(curve)
+    }
+
+    /// Basis only: the centre is the middle of the curve's two points with n_th = 0.
+    fn centred(frame: &LocalFrame) -> Self {
+        let plain = |e2| Self { k: DVec3::NEG_X, e1: DVec3::Y, e2, nodes: Vec::new() };
+        // Spin 0: sin R = b_c lapse / r (Synge 1966).
+        let sin = (CRITICAL_IMPACT_PARAMETER * frame.lapse / frame.r).min(0.9);
+        let guess = sin / (1.0 + ((1.0 - sin) * (1.0 + sin)).sqrt());
+        let radius = |side| 2.0 * plain(side).critical_tangent(frame, 0.0, guess).atan();
+        let tilt = 0.5 * (radius(DVec3::Z) - radius(DVec3::NEG_Z));
+        let (sin, cos) = tilt.sin_cos();
+        Self { k: DVec3::new(-cos, 0.0, sin), e2: DVec3::new(sin, 0.0, cos), ..plain(DVec3::Z) }
+    }
+
+    /// T at chi = 0 .. pi, each from the two before.
+    fn half(&self, frame: &LocalFrame) -> Vec<f64> {
+        let mut found = Vec::with_capacity(CRITICAL_NODES / 2 + 1);
+        let mut guess = (0.5 * CRITICAL_IMPACT_PARAMETER / frame.r).min(0.5);
+        for i in 0..=CRITICAL_NODES / 2 {
+            let t = self.critical_tangent(frame, TAU * i as f64 / CRITICAL_NODES as f64, guess);
+            // The next by linear extrapolation; the curve is smooth.
+            guess = found.last().map_or(t, |before| 2.0 * t - before);
+            found.push(t);
+        }
+        found
+    }
+
+    /// tan(R / 2) at `chi`: the zero of the capture margin, by the secant method inside a bracket.
+    fn critical_tangent(&self, frame: &LocalFrame, chi: f64, guess: f64) -> f64 {
+        let margin = |t: f64| {
+            let n = self.direction_by_tangent(t, chi);
+            frame.start(n).map_or(1.0, |(c, _)| capture_margin(&c))
+        };
+        // Captured at the centre; not beyond n_r = 0: k cos psi + e sin psi has no radial part there.
+        let psi = (-self.k.x).atan2(self.e2.x * chi.cos());
+        let (mut low, mut high) = (0.0, (0.5 * psi.min(FRAC_PI_2 * 1.9)).tan());
+        let mut t = guess.min(0.999 * high);
+        let mut value = margin(t);
+        // The margin is nearly 1 - (t / T)^2: a first step from its value alone, long enough to learn the slope.
+        let mut next = t * (1.0 + (0.5 * value).abs().clamp(1e-5, 0.3).copysign(value));
+        for _ in 1..MAX_EVALUATIONS {
+            if value > 0.0 {
+                low = t
+            } else {
+                high = t
+            }
+            let slack = 1e-7 * t;
+            // A root that rounding puts beside the bracket's end is in it.
+            if !(next > low - slack && next < high + slack) {
+                next = 0.5 * (low + high);
+            }
+            // The secant method's next error is about this step times the one before: below rounding.
+            if (next - t).abs() <= slack {
+                return next;
+            }
+            let new_value = margin(next);
+            let secant = next - new_value * (next - t) / (new_value - value);
+            (t, value, next) = (next, new_value, if secant.is_finite() { secant } else { 0.5 * (low + high) });
+        }
+        t
+    }
+
+    /// T = tan(R / 2) and dT/dchi, by cubic Hermite interpolation; `chi` any angle.
+    pub fn at(&self, chi: f64) -> (f64, f64) {
+        let h = TAU / CRITICAL_NODES as f64;
+        let position = (chi / h).rem_euclid(CRITICAL_NODES as f64);
+        let index = (position as usize).min(CRITICAL_NODES - 1);
+        let x = position - index as f64;
+        let [y0, d0] = self.nodes[index];
+        let [y1, d1] = self.nodes[(index + 1) % CRITICAL_NODES];
+        let rise = y1 - y0;
+        let (c2, c3) = (3.0 * rise - h * (2.0 * d0 + d1), h * (d0 + d1) - 2.0 * rise);
+        (y0 + x * (h * d0 + x * (c2 + x * c3)), d0 + x * (2.0 * c2 + x * 3.0 * c3) / h)
+    }
+
+    /// Least and greatest T in the table.
+    pub fn tangent_range(&self) -> [f64; 2] {
+        self.nodes.iter().fold([f64::INFINITY, 0.0], |[low, high], [t, _]| [t.min(low), t.max(high)])
+    }
+
+    /// The look direction at (psi, chi).
+    pub fn direction(&self, psi: f64, chi: f64) -> DVec3 {
+        let (sin, cos) = psi.sin_cos();
+        self.k * cos + self.radial(chi) * sin
+    }
+
+    /// The same with psi by `t` = tan(psi / 2).
+    fn direction_by_tangent(&self, t: f64, chi: f64) -> DVec3 {
+        let inverse = 1.0 / (1.0 + t * t);
+        self.k * ((1.0 - t * t) * inverse) + self.radial(chi) * (2.0 * t * inverse)
+    }
+
+    /// Unit vector from the centre towards `chi`, at right angles to k.
+    fn radial(&self, chi: f64) -> DVec3 {
+        let (sin, cos) = chi.sin_cos();
+        self.e1 * sin + self.e2 * cos
+    }
+
+    /// Polar coordinates of the unit vector `n`; sin psi comes from components, not from cos psi.
+    pub fn polar(&self, n: DVec3) -> Polar {
+        let (x, y, cos) = (n.dot(self.e2), n.dot(self.e1), n.dot(self.k));
+        let sin = x.hypot(y);
+        let (s, c) = if sin > 0.0 { (y / sin, x / sin) } else { (0.0, 1.0) };
+        Polar {
+            cos,
+            sin,
+            chi: s.atan2(c),
+            outward: (self.e1 * s + self.e2 * c) * cos - self.k * sin,
+            along: self.e1 * c - self.e2 * s,
+        }
+    }
+}
+
+/// Derivative by chi of a function sampled at the nodes: central differences of sixth order.
+fn periodic_slope(f: &impl Fn(isize) -> f64, i: isize) -> f64 {
+    let pair = |d: isize| f(i + d) - f(i - d);
+    (45.0 * pair(1) - 9.0 * pair(2) + pair(3)) * (CRITICAL_NODES as f64 / (60.0 * TAU))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::metric::chart;
+    use crate::physics::trace::{Fate, Settings, trace};
+
+    fn frame(a: f64, r: f64, theta: f64) -> LocalFrame {
+        LocalFrame::new(a, chart(r, theta, 0.4)).unwrap()
+    }
+
+    const EYES: [(f64, f64, f64); 9] = [
+        (0.998, 4.2, 1.5),
+        (0.998, 1000.0, std::f64::consts::FRAC_PI_2),
+        (-0.9, 10.0, 1.2),
+        (0.999, 30.0, 0.0),
+        (0.1, 6.0, 2.9),
+        (-0.998, 4.5, 1.6),
+        (0.7, 1e5, 0.8),
+        (-0.5, 25.0, std::f64::consts::PI),
+        (0.95, 8.0, 0.3),
+    ];
+
+    /// The tabulated curve against the root of the margin between nodes.
+    #[test]
+    fn interpolation_meets_the_root() {
+        for (a, r, theta) in EYES {
+            let frame = frame(a, r, theta);
+            let curve = CriticalCurve::new(&frame).unwrap();
+            let mut worst = 0.0_f64;
+            let mut worst_slope = 0.0_f64;
+            for i in 0..777 {
+                let chi = TAU * (f64::from(i) + 0.37) / 777.0;
+                let (t, slope) = curve.at(chi);
+                let truth = curve.critical_tangent(&frame, chi, t);
+                worst = worst.max((t / truth - 1.0).abs());
+                let d = 1e-5;
+                let rise = curve.critical_tangent(&frame, chi + d, t) - curve.critical_tangent(&frame, chi - d, t);
+                worst_slope = worst_slope.max((slope - rise / (2.0 * d)).abs() / truth);
+            }
+            assert!(worst < 1e-8 && worst_slope < 1e-5, "a {a} r {r}: {worst:.1e} {worst_slope:.1e}");
+        }
+    }
+
+    /// Just inside rays fall in, just outside they escape, by integration.
+    #[test]
+    fn rays_beside_the_curve_have_the_fates_it_says() {
+        for (a, r, theta) in EYES {
+            let frame = frame(a, r, theta);
+            let curve = CriticalCurve::new(&frame).unwrap();
+            for i in 0..24 {
+                let chi = TAU * (f64::from(i) + 0.5) / 24.0;
+                let psi = 2.0 * curve.at(chi).0.atan();
+                for (factor, fate) in [(1.0 - 3e-5, Fate::Captured), (1.0 + 3e-5, Fate::Escaped)] {
+                    let (c, start) = frame.start(curve.direction(psi * factor, chi)).unwrap();
+                    let traced = trace(&c, &start, &Settings { delay: false, ..Settings::exact(a) });
+                    assert_eq!(traced.fate, fate, "a {a} r {r} theta {theta} chi {chi} factor {factor}");
+                }
+            }
+        }
+    }
+
+    /// Spin 0: Synge's circle about -e_r.
+    #[test]
+    fn without_spin_the_curve_is_synges_circle() {
+        for r in [3.2, 6.0, 50.0, 1e4] {
+            let frame = frame(0.0, r, 1.0);
+            let curve = CriticalCurve::new(&frame).unwrap();
+            let shadow = crate::physics::shadow::shadow(&crate::physics::observer::Observer::at_rest(frame));
+            assert!((curve.k - shadow.center).length() < 1e-9);
+            for chi in [0.0, 1.0, 4.0] {
+                let radius = 2.0 * curve.at(chi).0.atan();
+                assert!((radius / shadow.radius - 1.0).abs() < 1e-10, "r {r}: {radius} {}", shadow.radius);
+            }
+        }
+    }
+
+    #[test]
+    fn polar_undoes_direction() {
+        let curve = CriticalCurve::new(&frame(0.9, 12.0, 1.1)).unwrap();
+        for (psi, chi) in [(0.3, 0.2), (1e-6, -3.0), (3.1, 1.5)] {
+            let p = curve.polar(curve.direction(psi, chi));
+            assert!((p.sin.atan2(p.cos) - psi).abs() < 1e-12 && (p.chi - chi).abs() < 1e-9, "{p:?}");
+            let d = (curve.direction(psi + 1e-6, chi) - curve.direction(psi - 1e-6, chi)) / 2e-6;
+            assert!((p.outward - d).length() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn eyes_in_the_photon_region_have_no_curve() {
+        for (a, r) in [(0.998, 4.0), (0.5, 2.5), (-0.5, 3.5), (0.5, 2e5)] {
+            assert!(CriticalCurve::new(&frame(a, r, 1.0)).is_none());
+        }
+    }
+
+    /// Cost per observer.
+    #[test]
+    #[ignore = "a measurement"]
+    fn cost() {
+        for (a, r, theta) in EYES {
+            let frame = frame(a, r, theta);
+            let begin = std::time::Instant::now();
+            for _ in 0..50 {
+                std::hint::black_box(CriticalCurve::new(std::hint::black_box(&frame)));
+            }
+            println!("a {a} r {r}: {:.3} ms", begin.elapsed().as_secs_f64() * 20.0);
+        }
+    }
+}
