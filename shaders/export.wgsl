@@ -1,4 +1,4 @@
-// Kernel: the ray records of a tile into a buffer, for tests: src/gpu/records.rs reads them.
+// Puts the ray records of a tile into a buffer, for tests: src/gpu/records.rs reads them.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
@@ -12,12 +12,7 @@ fn export_place(p: Place, w: f32) -> vec4<f32> {
     return vec4<f32>(p.ln_r, p.azimuth, p.delay, w);
 }
 
-@compute @workgroup_size(16, 8)
-fn export_records(@builtin(global_invocation_id) id: vec3<u32>) {
-    if outside_tile(id.xy) {
-        return;
-    }
-    let r = ray_record(id.xy);
+fn take_record(id: vec2<u32>, r: Record) {
     let at = (id.y * (pass_.size.x - 2u) + id.x) * EXPORT_SIZE;
     var count = 0u;
     for (var k = 0u; k < EXPORT_CROSSINGS; k += 1u) {

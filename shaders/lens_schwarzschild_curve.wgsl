@@ -115,7 +115,7 @@ fn curve_slope(curve: Curve, at: CurvePoint) -> f32 {
 
 // t and t_hat of node id.x of branch id.y.
 fn node_t(id: vec2<u32>) -> vec2<f32> {
-    let t_hat = lens_node_t_hat(id.x);
+    let t_hat = lens_node_t_hat(i32(id.x), LENS_OCTAVES, LENS_PER_OCTAVE);
     return vec2<f32>(select(t_hat, -t_hat, id.y == 1u) * lens.critical.w, t_hat);
 }
 

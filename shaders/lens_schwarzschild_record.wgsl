@@ -37,23 +37,21 @@ fn ray_record(id: vec2<u32>) -> Record {
     let dx = local_change(seen, changes[0]);
     let dy = local_change(seen, changes[1]);
 
-    // cos psi = -n_r; 1 + cos psi without cancellation.
+    // cos psi = -n_r.
     let s2 = dot(n.yz, n.yz);
     let s = sqrt(s2);
-    let one_plus = select(1.0 - n.x, s2 / (1.0 + n.x), n.x > 0.0);
-    let half_c = lens.critical.x;
-    let t = (s - half_c * one_plus) / (one_plus + half_c * s);
+    let t = lens_tangent(-n.x, s2, lens.critical.x);
     let escaped = t > 0.0;
     let t_hat = max(abs(t) / lens.critical.w, exp2(-LENS_OCTAVES));
     let branch = select(1u, 0u, escaped);
     let nodes = select(lens.inner_nodes, lens.outer_nodes, escaped);
     let has_column = nodes > 2u && energy > 0.0;
-    let place = lens_place(t_hat, max(nodes, 3u) - 3u);
+    let place = lens_place(t_hat, LENS_OCTAVES, f32(LENS_PER_OCTAVE), max(nodes, 3u) - 3u);
     let ends = textureLoad(lens_swept, vec2<u32>(place.node, branch), 0);
     let swept = select(0.0, dot(lagrange(place.share), ends), has_column);
     let swept_slope = dot(lagrange_slope(place.share), ends);
     // d(place) / d(psi); 1 / ln 2 = 1.4427.
-    let slope = LENS_PER_OCTAVE * 0.7213475204444817 * (1.0 + t * t) / (select(-t_hat, t_hat, escaped) * lens.critical.w);
+    let slope = f32(LENS_PER_OCTAVE) * 0.7213475204444817 * (1.0 + t * t) / (select(-t_hat, t_hat, escaped) * lens.critical.w);
 
     // Tangential unit vector, (e_theta, e_phi).
     let tangent = select(vec2<f32>(1.0, 0.0), n.yz / s, s > 0.0);
@@ -190,4 +188,8 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
     }
     (*crossing).dx = Place(-u_change.x / u, azimuth_change.x, delay_change.x);
     (*crossing).dy = Place(-u_change.y / u, azimuth_change.y, delay_change.y);
+}
+
+// No record is pending here.
+fn defer_pixel(id: vec2<u32>) {
 }

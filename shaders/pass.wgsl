@@ -10,6 +10,9 @@ struct Pass {
     weight: f32,
     // 1: begins a new sum.
     first: u32,
+    // Of this sample among those of the submission.
+    slot: u32,
+    reserved: u32,
 }
 
 fn outside_tile(id: vec2<u32>) -> bool {

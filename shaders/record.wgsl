@@ -3,6 +3,11 @@
 //
 //     fn ray_record(id: vec2<u32>) -> Record      of the tile's pixel `id`
 //     fn next_crossing() -> Crossing              of that record, front to back, within the disk's radii
+//     fn defer_pixel(id: vec2<u32>)               leaves a pixel whose record is FATE_PENDING to a later kernel
+//
+// and whoever uses them
+//
+//     fn take_record(id: vec2<u32>, record: Record)
 
 // Where and when the light of a crossing left, or the change of it from pixel to pixel.
 struct Place {

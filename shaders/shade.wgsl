@@ -21,8 +21,7 @@ fn star_cell(i: u32) -> u32 {
 }
 
 // Of the tile's pixel `id`: light and alpha, or the view's value first.
-fn shade_pixel(id: vec2<u32>) -> vec4<f32> {
-    let record = ray_record(id);
+fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
     if SHOWS_LIGHT {
         return pixel_light(record);
     }

@@ -124,16 +124,21 @@ fn tau_at_horizon(c: Constants, traced: RayTrace) -> f32 {
     return traced.tau + t;
 }
 
-fn find_crossing(c: Constants, eye: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {
+// The state where N_z is 0 within the step from `start` to `to`.
+fn crossing_state(c: Constants, start: State, to: State, h: f32) -> State {
     let partial = h * quintic_root(quintic_of_n_z(c, start, to, h));
-    let there = step_ray(c, start, partial).state;
+    var there = step_ray(c, start, partial).state;
     // What rounding left of N_z, to first order.
     let rest = clamp(-there.n.z / there.dn.z, -0.1 * h, 0.1 * h);
-    var crossing: PlaneCrossing;
-    crossing.u = there.u + there.du * rest;
-    crossing.n = there.n + there.dn * rest;
-    crossing.drag = there.drag + drag_rate(c, there.u) * rest;
-    crossing.order = order;
+    there.drag += drag_rate(c, there.u) * rest;
+    there.u += there.du * rest;
+    there.n += there.dn * rest;
+    return there;
+}
+
+fn find_crossing(c: Constants, eye: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {
+    let there = crossing_state(c, start, to, h);
+    var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order);
     if DELAY {
         crossing.delay = delay_between(c, eye, there);
     }

@@ -2,20 +2,21 @@
 //! the next tile's work. Knows no host memory: finished tiles go to the sink.
 
 use super::export::{EXPORT_BYTES, imported};
-use super::kernels::{FilmLook, Look, Source, Stage, TextureKind, check_groups, pixel_groups};
-use super::lens::{LensStages, SchwarzschildTables};
-use super::records::{STEP_SUM, Shared, TraceStages, TracedRecords, step_sum};
+use super::kernels::{FilmLook, Kernels, Look, Source, Stage, TextureKind, check_groups, pixel_groups};
+use super::lens_kerr::Wanted;
+use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
 use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
-use crate::physics::observer::LocalFrame;
+use crate::physics::trace::Settings;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
+use crate::scene::observer::Lens;
 use crate::scene::record::Record;
-use crate::scene::{Lensing, Scene, View};
+use crate::scene::{Lensing, Region, Scene, View};
 use glam::DVec3;
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages as Usage;
@@ -28,8 +29,7 @@ const RADIANCE_BYTES: u64 = 16;
 pub struct FrameBuffers {
     fixed: Option<FixedBuffers>,
     sized: Option<SizedBuffers>,
-    traced: TracedRecords,
-    schwarzschild: SchwarzschildTables,
+    makers: RecordMakers,
     pixels: Readback,
     steps: Readback,
     timer: Option<GpuTimer>,
@@ -58,38 +58,42 @@ struct Size {
     several_samples: bool,
 }
 
+/// A kernel that takes records: over all pixels, and over those that it deferred.
+struct Taking {
+    all: Stage,
+    rest: Option<Stage>,
+    /// Workgroups over the deferred pixels, however many they are.
+    rest_groups: u32,
+}
+
 /// What turns ray records into packed pixels.
 enum Shading {
     /// Of the only sample.
-    Only(Stage),
+    Only(Taking),
     Samples {
         /// Of even and of odd samples.
-        shade: [Stage; 2],
+        shade: [Taking; 2],
         /// After an even and after an odd last sample.
         develop: [Stage; 2],
     },
 }
 
-/// What makes records, or what they are looked up in.
-enum Records {
-    Traced(TraceStages),
-    /// Before the frame's first tile, if the tables are stale.
-    Lens(Option<LensStages>),
-}
-
 struct Stages {
-    records: Records,
+    records: RecordStages,
     shading: Shading,
 }
 
-/// How a frame's kernels are compiled.
+/// How a frame's shading is compiled.
 struct Looks {
-    variant: kernels::Variant,
-    source: Source,
     look: Look,
     film: FilmLook,
     several_samples: bool,
 }
+
+/// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where each costs its
+/// share of a loop's body however little there is to do, few.
+const REST_GROUPS: u32 = 512;
+const REST_GROUPS_SOFTWARE: u32 = 16;
 
 /// A submission that has not been read yet.
 struct Pending {
@@ -100,12 +104,10 @@ struct Pending {
 }
 
 /// What a frame is set up with before its tiles run.
-pub(super) struct Setup {
+struct Setup {
+    making: Making,
     looks: Looks,
     samples: u32,
-    /// Of the disk, that a record holds at most.
-    crossings: u32,
-    eye: LocalFrame,
     uniform: FrameUniform,
     film: FilmParams,
 }
@@ -124,14 +126,10 @@ impl GpuTracer {
         let pixel_bytes = request.format.bytes_per_pixel() as u64;
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         let max_side = self.device.limits().max_texture_dimension_2d;
-        let plan = match setup.looks.source {
-            Source::Traced => {
-                let bytes = TracedRecords::bytes_per_pixel(setup.crossings) + sums + pixel_bytes;
-                Plan::new(request, bytes, max_side, scene.expected_steps(), samples)
-            }
-            // As long as one step, at most.
-            Source::Schwarzschild { .. } => Plan::new(request, sums + pixel_bytes, max_side, 1, samples),
-        };
+        // A pixel looked up takes as long as a step or two.
+        let steps = if setup.making.source == Source::Traced { scene.expected_steps() } else { 2 };
+        let bytes = setup.making.bytes_per_pixel() + sums + pixel_bytes;
+        let plan = Plan::new(request, bytes, max_side, steps, samples);
 
         if self.tables.is_none() {
             self.tables = Some(Tables::new(&self.device)?);
@@ -140,7 +138,7 @@ impl GpuTracer {
         tables.update(&self.device, scene)?;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.software)?;
-        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup)?;
+        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, self.adapter.software)?;
 
         let mut frame = Frame {
             device: &self.device,
@@ -154,6 +152,7 @@ impl GpuTracer {
                 rays: u64::from(request.width) * u64::from(request.height) * u64::from(samples),
                 ..FrameStats::default()
             },
+            source: setup.making.source,
             pending: None,
             read_time: Duration::ZERO,
         };
@@ -161,47 +160,62 @@ impl GpuTracer {
         let mut stats = frame.stats;
         stats.readback_ns = frame.read_time.as_nanos() as u64;
         if outcome.is_err() {
-            self.buffers.schwarzschild.forget();
+            self.buffers.makers.forget();
         }
         outcome?;
         stats.device_bytes = self.device.bytes();
         Ok(stats)
     }
 
-    pub(super) fn set_up(&self, scene: &Scene, request: &FrameRequest) -> Result<Setup> {
+    fn set_up(&self, scene: &Scene, request: &FrameRequest) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
-        let inside = lens.observer.frame.r <= 2.0;
-        let turbulent = scene.turbulence().is_some();
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
-        let region = &request.region;
-        let pixels = u64::from(region.full_width) * u64::from(region.full_height);
-        let source = match scene.lensing(&lens.observer.frame, pixels) {
-            Lensing::Traced => Source::Traced,
-            Lensing::Schwarzschild => {
-                Source::Schwarzschild { delay: settings.delay, moving: lens.observer.beta != DVec3::ZERO }
-            }
-        };
         let looks = Looks {
-            variant: kernels::Variant { azimuth: turbulent, ..variant(scene, &settings, inside) },
-            source,
             look: Look {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
                 all_effects: scene.effects.all_light(),
                 disk: scene.disk_u().is_some(),
-                footprints: turbulent,
+                footprints: scene.turbulence().is_some(),
             },
             film: FilmLook::from(&film),
             several_samples: samples > 1,
         };
+        let making = self.making(scene, &lens, &settings, &request.region);
+        let uniform = FrameUniform::new(scene, &lens, &settings)?;
+        Ok(Setup { making, looks, samples, uniform, film })
+    }
+
+    /// How the records of a frame are made.
+    fn making(&self, scene: &Scene, lens: &Lens, settings: &Settings, region: &Region) -> Making {
+        let eye = lens.observer.frame;
+        let pattern = scene.turbulence().is_some();
+        let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
+        let pixels = u64::from(region.full_width) * u64::from(region.full_height);
+        let source = match scene.lensing(&eye, pixels) {
+            Lensing::Traced => Source::Traced,
+            Lensing::Schwarzschild => Source::Schwarzschild { delay, moving },
+            Lensing::Kerr => Source::Kerr { delay, pattern, moving, rest: false },
+        };
         // An opaque disk hides all but its first crossing.
         let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
-        // wgpu makes no array texture of one layer on GL.
-        let crossings = if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings };
-        let uniform = FrameUniform::new(scene, &lens, &settings)?;
-        Ok(Setup { looks, samples, crossings, eye: lens.observer.frame, uniform, film })
+        let inside = eye.r <= 2.0;
+        let disk_u = scene.disk_u();
+        Making {
+            source,
+            variant: kernels::Variant { azimuth: pattern, ..variant(scene, settings, inside) },
+            // wgpu makes no array texture of one layer on GL.
+            crossings: if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings },
+            eye,
+            wanted: Wanted {
+                orders: if disk_u.is_some() { settings.max_crossings as u32 } else { 0 },
+                disk_u: disk_u.unwrap_or([1.0, 0.0]),
+                pattern,
+                delay,
+            },
+        }
     }
 
     /// The records of a frame, row by row; for tests. Errors: as `render`; INTERNAL for more than one tile holds.
@@ -221,17 +235,21 @@ impl GpuTracer {
         let footprints = setup.looks.look.footprints;
         let exported: &[_] = &[frame.clone(), pass.clone(), sized.packed.as_entire_binding()];
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
-        let records = records(&buffers.traced, &mut buffers.schwarzschild, device, &mut self.kernels, &setup, &shared)?;
-        let group = records_group(&buffers.traced, &buffers.schwarzschild, setup.looks.source)?;
-        let export = self.kernels.export(device, setup.looks.source, footprints)?.stage(device, &[exported, &group])?;
+        let records = buffers.makers.stages(device, &mut self.kernels, &setup.making, &shared)?;
+        let group = buffers.makers.group(setup.making.source)?;
+        let take = |kernels: &mut Kernels, source| {
+            kernels.export(device, source, footprints)?.stage(device, &[exported, &group])
+        };
+        let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
-        device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1)))?;
+        device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;
         let mut encoder = device.encoder("records")?;
+        buffers.makers.reset(&mut encoder);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             records.encode(&mut pass, true, 0, tile);
-            export.dispatch(&mut pass, 0, tile);
+            taking.dispatch(&mut pass, 0, tile);
         }
         let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
         let mut readback = Readback::new();
@@ -243,52 +261,35 @@ impl GpuTracer {
     }
 }
 
+impl Taking {
+    /// `take` makes the stage that takes the records of a source.
+    fn new(
+        kernels: &mut Kernels,
+        making: &Making,
+        software: bool,
+        take: impl Fn(&mut Kernels, Source) -> Result<Stage>,
+    ) -> Result<Self> {
+        Ok(Self {
+            all: take(kernels, making.source)?,
+            rest: making.rest().map(|source| take(kernels, source)).transpose()?,
+            rest_groups: if software { REST_GROUPS_SOFTWARE } else { REST_GROUPS },
+        })
+    }
+
+    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, tile: [u32; 2]) {
+        self.all.dispatch(pass, offset, tile);
+        if let Some(rest) = &self.rest {
+            rest.run(pass, Some(offset), [self.rest_groups, 1]);
+        }
+    }
+}
+
 impl Size {
     /// Whether buffers of this size hold what the other asks for.
     fn serves(&self, other: &Self) -> bool {
         (0..2).all(|i| self.tile[i] >= other.tile[i])
             && self.pixel_bytes >= other.pixel_bytes
             && (self.several_samples || !other.several_samples)
-    }
-}
-
-impl Records {
-    /// `begins`: these are the frame's first.
-    fn encode(&self, pass: &mut wgpu::ComputePass<'_>, begins: bool, offset: u32, tile: [u32; 2]) {
-        match self {
-            Self::Traced(stages) => stages.encode(pass, offset, tile),
-            Self::Lens(Some(stages)) if begins => stages.encode(pass),
-            Self::Lens(_) => {}
-        }
-    }
-}
-
-/// The stages that `setup` asks for; tables are brought up to its eye.
-fn records(
-    traced: &TracedRecords,
-    schwarzschild: &mut SchwarzschildTables,
-    device: &Device,
-    kernels: &mut kernels::Kernels,
-    setup: &Setup,
-    shared: &Shared<'_>,
-) -> Result<Records> {
-    Ok(match setup.looks.source {
-        Source::Traced => Records::Traced(traced.stages(device, kernels, setup.looks.variant, shared)?),
-        Source::Schwarzschild { delay, .. } => {
-            Records::Lens(schwarzschild.update(device, kernels, &setup.eye, delay, shared.frame.clone())?)
-        }
-    })
-}
-
-/// Group 1 of a kernel that reads records.
-fn records_group<'a>(
-    traced: &'a TracedRecords,
-    schwarzschild: &'a SchwarzschildTables,
-    source: Source,
-) -> Result<Vec<wgpu::BindingResource<'a>>> {
-    match source {
-        Source::Traced => traced.group(),
-        Source::Schwarzschild { .. } => schwarzschild.group(),
     }
 }
 
@@ -330,9 +331,7 @@ impl FrameBuffers {
                 packed: device.buffer("packed pixels", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
             });
         }
-        if setup.looks.source == Source::Traced {
-            self.traced.prepare(device, size.tile, setup.crossings)?;
-        }
+        self.makers.prepare(device, &setup.making, size.tile)?;
         let (fixed, _) = self.parts()?;
         device.write(&fixed.frame, 0, bytemuck::bytes_of(&setup.uniform))?;
         device.write(&fixed.film, 0, bytemuck::bytes_of(&setup.film))
@@ -345,9 +344,10 @@ impl FrameBuffers {
     fn stages(
         &mut self,
         device: &Device,
-        kernels: &mut kernels::Kernels,
+        kernels: &mut Kernels,
         tables: &Tables,
         setup: &Setup,
+        software: bool,
     ) -> Result<Stages> {
         let looks = &setup.looks;
         let (fixed, sized) =
@@ -357,25 +357,32 @@ impl FrameBuffers {
         let step_sum = fixed.step_sum.as_entire_binding();
         let packed = sized.packed.as_entire_binding();
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
-        let made = records(&self.traced, &mut self.schwarzschild, device, kernels, setup, &shared)?;
-        let records = records_group(&self.traced, &self.schwarzschild, looks.source)?;
+        let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
+        let records = self.makers.group(setup.making.source)?;
         let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let shade = |compiled: &kernels::Compiled, a: &wgpu::BindingResource<'_>, b: &wgpu::BindingResource<'_>| {
-            let shared = [frame.clone(), pass.clone(), light.clone(), cells.clone(), a.clone(), b.clone()];
-            compiled.stage(device, &[&shared, &records])
+        // `between`: what the kernel reads and writes beside.
+        let shade = |kernels: &mut Kernels, between: [&wgpu::BindingResource<'_>; 2]| {
+            let [a, b] = between.map(Clone::clone);
+            let shared = [frame.clone(), pass.clone(), light.clone(), cells.clone(), a, b];
+            let take = |kernels: &mut Kernels, source| {
+                let compiled = match looks.several_samples {
+                    true => kernels.shade_sample(device, source, looks.look)?,
+                    false => kernels.shade_only(device, source, looks.look, looks.film)?,
+                };
+                compiled.stage(device, &[&shared, &records])
+            };
+            Taking::new(kernels, &setup.making, software, take)
         };
         let shading = if looks.several_samples {
-            let compiled = kernels.shade_sample(device, looks.source, looks.look)?;
-            let shade = [shade(&compiled, &odd, &even)?, shade(&compiled, &even, &odd)?];
+            let shade = [shade(kernels, [&odd, &even])?, shade(kernels, [&even, &odd])?];
             let compiled = kernels.develop(device, looks.film)?;
             let develop = |from: &wgpu::BindingResource<'_>| {
                 compiled.stage(device, &[&[film.clone(), pass.clone(), from.clone(), packed.clone()]])
             };
             Shading::Samples { shade, develop: [develop(&even)?, develop(&odd)?] }
         } else {
-            let compiled = kernels.shade_only(device, looks.source, looks.look, looks.film)?;
-            Shading::Only(shade(&compiled, &film, &packed)?)
+            Shading::Only(shade(kernels, [&film, &packed])?)
         };
         Ok(Stages { records: made, shading })
     }
@@ -397,6 +404,7 @@ struct Frame<'a, 'sink> {
     batch: u32,
     sink: &'a mut TileSink<'sink>,
     stats: FrameStats,
+    source: Source,
     pending: Option<Pending>,
     read_time: Duration,
 }
@@ -433,7 +441,8 @@ impl Frame<'_, '_> {
     fn submit(&mut self, tile: Tile, range: std::ops::Range<u32>, begins: bool) -> Result<Pending> {
         let device = self.device;
         let stride = pass_stride(device);
-        let passes = range.clone().map(|sample| pass_of(self.request, tile, sample, self.samples));
+        let slots = range.clone().zip(0..);
+        let passes = slots.map(|(sample, slot)| pass_of(self.request, tile, sample, self.samples, slot));
         let mut bytes = vec![0; range.len() * stride as usize];
         for (slot, pass) in bytes.chunks_exact_mut(stride as usize).zip(passes) {
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
@@ -446,6 +455,7 @@ impl Frame<'_, '_> {
             let fixed = self.buffers.fixed.as_ref().ok_or_else(|| Error::internal("a frame without buffers"))?;
             device.write(&fixed.passes, 0, &bytes)?;
             encoder.clear_buffer(&fixed.step_sum, 0, None);
+            self.buffers.makers.reset(&mut encoder);
         }
         {
             let timestamps = self.buffers.timer.as_mut().and_then(GpuTimer::next_pass);
@@ -469,6 +479,7 @@ impl Frame<'_, '_> {
         };
         let step_sum =
             self.buffers.fixed.as_ref().map(|f| &f.step_sum).ok_or_else(|| Error::internal("no step sum"))?;
+        let step_sum = self.buffers.makers.steps(self.source, step_sum);
         let steps = self.buffers.steps.copy(device, &mut encoder, step_sum, STEP_SUM)?;
         let pixels = match (&self.buffers.sized, last) {
             (Some(sized), true) => {
@@ -503,7 +514,8 @@ impl Frame<'_, '_> {
     }
 }
 
-fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32) -> PassUniform {
+/// `slot`: of the sample in its submission.
+fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32, slot: u32) -> PassUniform {
     let region = request.region;
     let [dx, dy] = sample_offset(sample, samples);
     PassUniform {
@@ -512,5 +524,7 @@ fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32) -> Pas
         offset: [dx as f32, dy as f32],
         weight: 1.0 / samples as f32,
         first: u32::from(sample == 0),
+        slot,
+        reserved: 0,
     }
 }

@@ -52,6 +52,8 @@ pub enum Source {
     Traced,
     /// lens_schwarzschild_record.wgsl
     Schwarzschild { delay: bool, moving: bool },
+    /// lens_kerr_pixel.wgsl, and of the pixels it defers lens_kerr_rest.wgsl
+    Kerr { delay: bool, pattern: bool, moving: bool, rest: bool },
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -79,6 +81,8 @@ enum Name {
     Export(Source, bool),
     SchwarzschildEnds,
     SchwarzschildColumns { delay: bool },
+    KerrNodes { delay: bool, pattern: bool },
+    KerrFlags { pattern: bool },
 }
 
 /// The pipelines of one device.
@@ -108,15 +112,11 @@ const FATE: &str = include_str!("../../shaders/fate.wgsl");
 const GEODESIC: &str = include_str!("../../shaders/geodesic.wgsl");
 const NYSTROM: &str = include_str!("../../shaders/nystrom.wgsl");
 const CAMERA: &str = include_str!("../../shaders/camera.wgsl");
+const LENS_AXIS: &str = include_str!("../../shaders/lens_axis.wgsl");
+const KERR: &str = include_str!("../../shaders/lens_kerr.wgsl");
 const SCHWARZSCHILD: &str = include_str!("../../shaders/lens_schwarzschild.wgsl");
-const TRACE_PARTS: [&str; 6] = [
-    MATH,
-    FATE,
-    GEODESIC,
-    NYSTROM,
-    include_str!("../../shaders/integrator.wgsl"),
-    include_str!("../../shaders/trace.wgsl"),
-];
+const INTEGRATION: [&str; 3] =
+    [NYSTROM, include_str!("../../shaders/integrator.wgsl"), include_str!("../../shaders/trace.wgsl")];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
@@ -128,11 +128,12 @@ fn join(parts: &[&[&str]]) -> String {
 }
 
 fn rays_source() -> String {
-    join(&[&TRACE_PARTS, &[include_str!("../../shaders/rays.wgsl")]])
+    join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &[include_str!("../../shaders/rays.wgsl")]])
 }
 
 fn pixels_source() -> String {
-    join(&[&TRACE_PARTS, &[PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")]])
+    let pixels = [PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")];
+    join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &pixels])
 }
 
 fn count_source() -> String {
@@ -145,8 +146,28 @@ impl Source {
         match self {
             Self::Traced => vec![TRACED_LAYOUT, include_str!("../../shaders/traced.wgsl")],
             Self::Schwarzschild { .. } => {
-                vec![GEODESIC, CAMERA, SCHWARZSCHILD, include_str!("../../shaders/lens_schwarzschild_record.wgsl")]
+                let record = include_str!("../../shaders/lens_schwarzschild_record.wgsl");
+                vec![GEODESIC, CAMERA, LENS_AXIS, SCHWARZSCHILD, record]
             }
+            Self::Kerr { rest, .. } => {
+                let record = include_str!("../../shaders/lens_kerr_record.wgsl");
+                let mut parts = vec![GEODESIC, CAMERA, LENS_AXIS, KERR, record];
+                if rest {
+                    parts.extend(INTEGRATION);
+                    parts.push(include_str!("../../shaders/lens_kerr_rest.wgsl"));
+                } else {
+                    parts.push(include_str!("../../shaders/lens_kerr_pixel.wgsl"));
+                }
+                parts
+            }
+        }
+    }
+
+    /// What goes over the pixels: the entry point, and its WGSL.
+    fn driver(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Kerr { rest: true, .. } => ("each_deferred", include_str!("../../shaders/each_deferred.wgsl")),
+            _ => ("each_pixel", include_str!("../../shaders/each_pixel.wgsl")),
         }
     }
 
@@ -157,6 +178,14 @@ impl Source {
             Self::Schwarzschild { delay, moving } => {
                 vec![("SPINNING", 0.0), ("DELAY", flag(delay)), ("MOVING", flag(moving))]
             }
+            Self::Kerr { delay, pattern, moving, rest } => {
+                let mut list = vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern)), ("MOVING", flag(moving))];
+                if rest {
+                    // The rest of the constants' defaults are what AUTO takes.
+                    list.push(("STEP_LIMIT", 1.0));
+                }
+                list
+            }
         }
     }
 }
@@ -164,7 +193,18 @@ impl Source {
 /// The kernels that fill a spin-0 lens: `kernel` on top of the rays of the nodes.
 fn schwarzschild_build_source(kernel: &str) -> String {
     let curve = include_str!("../../shaders/lens_schwarzschild_curve.wgsl");
-    join(&[&[MATH, GEODESIC, NYSTROM, FRAME, CAMERA, SCHWARZSCHILD, curve, kernel]])
+    join(&[&[MATH, GEODESIC, NYSTROM, FRAME, CAMERA, LENS_AXIS, SCHWARZSCHILD, curve, kernel]])
+}
+
+fn kerr_nodes_source() -> String {
+    // Nodes keep their crossings by themselves.
+    const ON_CROSSING: &str = "fn on_crossing(c: Constants, crossing: PlaneCrossing) {}";
+    let parts = [FRAME, CAMERA, LENS_AXIS, KERR, ON_CROSSING, include_str!("../../shaders/lens_kerr_nodes.wgsl")];
+    join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &parts])
+}
+
+fn kerr_flags_source() -> String {
+    join(&[&[MATH, FRAME, LENS_AXIS, KERR, include_str!("../../shaders/lens_kerr_flags.wgsl")]])
 }
 
 fn schwarzschild_ends_source() -> String {
@@ -184,7 +224,8 @@ fn shade_source(source: Source, rest: &[&str]) -> String {
         include_str!("../../shaders/shade.wgsl"),
     ];
     let constants = sky::StarIndex::shared().wgsl_constants();
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME], &source.parts(), &shade, rest])
+    let (_, driver) = source.driver();
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
@@ -197,7 +238,9 @@ fn shade_only_source(source: Source) -> String {
 }
 
 fn export_source(source: Source) -> String {
-    join(&[&[MATH, FATE, PASS, RECORD, FRAME], &source.parts(), &[include_str!("../../shaders/export.wgsl")]])
+    let (_, driver) = source.driver();
+    let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
+    join(&[&parts, &source.parts()])
 }
 
 fn develop_source() -> String {
@@ -206,21 +249,29 @@ fn develop_source() -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    let schwarzschild = Source::Schwarzschild { delay: true, moving: true };
-    vec![
+    let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
+    let sources = [
+        ["shade sample, traced", "shade only, traced", "export, traced"],
+        ["shade sample, spin-0 lens", "shade only, spin-0 lens", "export, spin-0 lens"],
+        ["shade sample, Kerr lens", "shade only, Kerr lens", "export, Kerr lens"],
+        ["shade sample, Kerr rest", "shade only, Kerr rest", "export, Kerr rest"],
+    ]
+    .into_iter()
+    .zip([Source::Traced, Source::Schwarzschild { delay: true, moving: true }, kerr(false), kerr(true)]);
+    let of_sources = sources.flat_map(|([sample, only, export], source)| {
+        [(sample, shade_sample_source(source)), (only, shade_only_source(source)), (export, export_source(source))]
+    });
+    let others = [
         ("rays", rays_source()),
         ("pixels", pixels_source()),
         ("count", count_source()),
-        ("shade sample, traced", shade_sample_source(Source::Traced)),
-        ("shade only, traced", shade_only_source(Source::Traced)),
-        ("export, traced", export_source(Source::Traced)),
         ("develop", develop_source()),
-        ("shade sample, spin-0 lens", shade_sample_source(schwarzschild)),
-        ("shade only, spin-0 lens", shade_only_source(schwarzschild)),
-        ("export, spin-0 lens", export_source(schwarzschild)),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
         ("spin-0 lens, columns", schwarzschild_columns_source()),
-    ]
+        ("Kerr lens, nodes", kerr_nodes_source()),
+        ("Kerr lens, flags", kerr_flags_source()),
+    ];
+    others.into_iter().chain(of_sources).collect()
 }
 
 /// What a binding is.
@@ -258,7 +309,10 @@ pub const LENS_ROWS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
 pub const LENS_COLUMNS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array };
-/// Threads of a workgroup of the kernels that build lenses.
+/// Flags of a lens's cells.
+pub const LENS_FLAGS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 };
+/// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
 /// `light_tables` and `star_cells` of shade.wgsl.
@@ -302,6 +356,11 @@ impl Source {
                 let [swept, u, delay] = [LENS_ROWS, LENS_COLUMNS, LENS_COLUMNS].map(Slot::Texture);
                 vec![Slot::Uniform, swept, u, delay]
             }
+            Self::Kerr { .. } => {
+                let [curve, sky, crossings, flags] =
+                    [LENS_ROWS, LENS_ROWS, LENS_COLUMNS, LENS_FLAGS].map(Slot::Texture);
+                vec![Slot::Uniform, curve, sky, crossings, flags, Slot::Write]
+            }
         }
     }
 }
@@ -331,12 +390,12 @@ impl Kernels {
 
     pub fn shade_sample(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let groups = [shade_slots([Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]), source.slots()];
-        self.get(device, Name::ShadeSample(source, look), &groups, "shade_sample", || shade_sample_source(source))
+        self.get(device, Name::ShadeSample(source, look), &groups, source.driver().0, || shade_sample_source(source))
     }
 
     pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
         let groups = [shade_slots([Slot::Uniform, Slot::Write]), source.slots()];
-        self.get(device, Name::ShadeOnly(source, look, film), &groups, "shade_only", || shade_only_source(source))
+        self.get(device, Name::ShadeOnly(source, look, film), &groups, source.driver().0, || shade_only_source(source))
     }
 
     pub fn develop(&mut self, device: &Device, film: FilmLook) -> Result<Compiled> {
@@ -346,7 +405,7 @@ impl Kernels {
 
     pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart, Slot::Write], source.slots()];
-        self.get(device, Name::Export(source, footprints), &groups, "export_records", || export_source(source))
+        self.get(device, Name::Export(source, footprints), &groups, source.driver().0, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -359,6 +418,19 @@ impl Kernels {
         let slots = vec![Slot::Uniform, Slot::Uniform, Slot::Texture(LENS_ROWS), swept, u, delays];
         let name = Name::SchwarzschildColumns { delay };
         self.get(device, name, &[slots], "fill_columns", schwarzschild_columns_source)
+    }
+
+    pub fn trace_kerr_nodes(&mut self, device: &Device, delay: bool, pattern: bool) -> Result<Compiled> {
+        let [sky, crossings] = [LENS_ROWS, LENS_COLUMNS].map(Slot::TextureWrite);
+        let slots = vec![Slot::Uniform, Slot::Uniform, Slot::Texture(LENS_ROWS), sky, crossings];
+        self.get(device, Name::KerrNodes { delay, pattern }, &[slots], "trace_nodes", kerr_nodes_source)
+    }
+
+    pub fn flag_kerr_cells(&mut self, device: &Device, pattern: bool) -> Result<Compiled> {
+        let [curve, sky, crossings] = [LENS_ROWS, LENS_ROWS, LENS_COLUMNS].map(Slot::Texture);
+        let flags = Slot::TextureWrite(LENS_FLAGS);
+        let slots = vec![Slot::Uniform, Slot::Uniform, curve, sky, crossings, flags];
+        self.get(device, Name::KerrFlags { pattern }, &[slots], "flag_cells", kerr_flags_source)
     }
 
     fn get(
@@ -392,8 +464,9 @@ impl Kernels {
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants or over the pixels of a tile; one over the bits of a word, which loses a bit in every turn; and the search of `star_light`, of which
-/// every turn uses up a star of the cell's list, as long as the host's own table says, or a part of the mean sky.
+/// loops counted over constants, over the pixels of a tile, over the crossings of a record or over deferred pixels, of which
+/// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the search of `star_light`, of
+/// which every turn uses up a star of the cell's list, as long as the host's own table says, or a part of the mean sky.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
 fn flag(on: bool) -> f64 {
@@ -436,6 +509,8 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
         Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
+        Name::KerrNodes { delay, pattern } => vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern))],
+        Name::KerrFlags { pattern } => vec![("PATTERN", flag(pattern))],
         Name::Count => Vec::new(),
     }
 }

@@ -1,17 +1,138 @@
-//! Where a frame's ray records come from: traced pixel by pixel into textures. Gives shading its group 1 and knows nothing else of it.
+//! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens. Gives shading
+//! its group 1 and knows nothing else of it.
 
-use super::kernels::{self, Kernels, Stage, TextureKind, Variant};
+use super::kernels::{self, Kernels, Source, Stage, TextureKind, Variant};
+use super::lens_kerr::{KerrStages, KerrTables, Wanted};
+use super::lens_schwarzschild::{LensStages, SchwarzschildTables};
 use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
+use crate::physics::observer::LocalFrame;
 
 /// Pixels of a row that a thread of count.wgsl sums.
 const COUNT_RUN: u32 = 8;
 /// Bytes of a texel of the record textures.
 const TEXEL: u64 = 16;
 
+/// How a frame's records are to be made.
+pub struct Making {
+    pub source: Source,
+    /// How rays are traced.
+    pub variant: Variant,
+    /// Of the disk, that a record holds at most.
+    pub crossings: u32,
+    pub eye: LocalFrame,
+    pub wanted: Wanted,
+}
+
+/// All that makes records, kept from frame to frame.
+#[derive(Default)]
+pub struct RecordMakers {
+    traced: TracedRecords,
+    schwarzschild: SchwarzschildTables,
+    kerr: KerrTables,
+}
+
+/// The passes that make the records of a tile, or the tables that they are looked up in.
+pub enum RecordStages {
+    Traced(TraceStages),
+    /// Before the frame's first tile, if the tables are stale.
+    Schwarzschild(Option<LensStages>),
+    Kerr(Option<KerrStages>),
+}
+
+impl Making {
+    /// Bytes of a tile's pixel on the device.
+    pub fn bytes_per_pixel(&self) -> u64 {
+        match self.source {
+            Source::Traced => TEXEL * (2 + u64::from(self.crossings)),
+            Source::Schwarzschild { .. } => 0,
+            Source::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
+        }
+    }
+
+    /// What makes the records of the pixels that the source leaves pending.
+    pub fn rest(&self) -> Option<Source> {
+        match self.source {
+            Source::Kerr { delay, pattern, moving, .. } => Some(Source::Kerr { delay, pattern, moving, rest: true }),
+            _ => None,
+        }
+    }
+}
+
+impl RecordMakers {
+    /// Makes room for a tile.
+    pub fn prepare(&mut self, device: &Device, making: &Making, tile: [u32; 2]) -> Result<()> {
+        match making.source {
+            Source::Traced => self.traced.prepare(device, tile, making.crossings),
+            Source::Schwarzschild { .. } => Ok(()),
+            Source::Kerr { .. } => self.kerr.prepare(device, tile),
+        }
+    }
+
+    /// The stages that `making` asks for; tables are brought up to its eye.
+    pub fn stages(
+        &mut self,
+        device: &Device,
+        kernels: &mut Kernels,
+        making: &Making,
+        shared: &Shared<'_>,
+    ) -> Result<RecordStages> {
+        let frame = shared.frame.clone();
+        Ok(match making.source {
+            Source::Traced => RecordStages::Traced(self.traced.stages(device, kernels, making.variant, shared)?),
+            Source::Schwarzschild { delay, .. } => {
+                RecordStages::Schwarzschild(self.schwarzschild.update(device, kernels, &making.eye, delay, frame)?)
+            }
+            Source::Kerr { .. } => {
+                RecordStages::Kerr(self.kerr.update(device, kernels, &making.eye, &making.wanted, frame)?)
+            }
+        })
+    }
+
+    /// Group 1 of a kernel that reads records.
+    pub fn group(&self, source: Source) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        match source {
+            Source::Traced => self.traced.group(),
+            Source::Schwarzschild { .. } => self.schwarzschild.group(),
+            Source::Kerr { .. } => self.kerr.group(),
+        }
+    }
+
+    /// Before a submission.
+    pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        self.kerr.reset(encoder);
+    }
+
+    /// What holds the steps of a submission's rays, `step_sum` or a buffer that begins with them.
+    pub fn steps<'a>(&'a self, source: Source, step_sum: &'a Buffer) -> &'a Buffer {
+        match source {
+            Source::Kerr { .. } => self.kerr.deferred().unwrap_or(step_sum),
+            _ => step_sum,
+        }
+    }
+
+    /// After a submission that failed, nobody knows what the tables hold.
+    pub fn forget(&mut self) {
+        self.schwarzschild.forget();
+        self.kerr.forget();
+    }
+}
+
+impl RecordStages {
+    /// `begins`: these are the frame's first.
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, begins: bool, offset: u32, tile: [u32; 2]) {
+        match self {
+            Self::Traced(stages) => stages.encode(pass, offset, tile),
+            Self::Schwarzschild(Some(stages)) if begins => stages.encode(pass),
+            Self::Kerr(Some(stages)) if begins => stages.encode(pass),
+            Self::Schwarzschild(_) | Self::Kerr(_) => {}
+        }
+    }
+}
+
 /// Records of traced pixels, of a tile and one pixel around it; they grow and stay.
 #[derive(Default)]
-pub struct TracedRecords {
+struct TracedRecords {
     made: Option<Made>,
 }
 
@@ -37,13 +158,8 @@ pub struct TraceStages {
 }
 
 impl TracedRecords {
-    /// Bytes of a pixel on the device.
-    pub fn bytes_per_pixel(crossings: u32) -> u64 {
-        TEXEL * (2 + u64::from(crossings))
-    }
-
     /// Makes room for tiles of `tile` pixels with at most `crossings` crossings of the disk.
-    pub fn prepare(&mut self, device: &Device, tile: [u32; 2], crossings: u32) -> Result<()> {
+    fn prepare(&mut self, device: &Device, tile: [u32; 2], crossings: u32) -> Result<()> {
         let size = tile.map(|side| side + 2);
         let serves = |m: &Made| (0..2).all(|i| m.size[i] >= size[i]) && m.crossings >= crossings;
         if self.made.as_ref().is_some_and(serves) {
@@ -70,11 +186,11 @@ impl TracedRecords {
     }
 
     /// Group 1 of a shading kernel.
-    pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
+    fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
         Ok(self.resources()?.into())
     }
 
-    pub fn stages(
+    fn stages(
         &self,
         device: &Device,
         kernels: &mut Kernels,

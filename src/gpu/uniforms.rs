@@ -49,6 +49,8 @@ pub struct PassUniform {
     pub offset: [f32; 2],
     pub weight: f32,
     pub first: u32,
+    pub slot: u32,
+    pub reserved: u32,
 }
 
 fn with(v: DVec3, w: f64) -> Vec4 {

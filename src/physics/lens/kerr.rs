@@ -129,6 +129,11 @@ impl Grid {
         &self.curve
     }
 
+    /// 1/r beyond which an inward ray of a node is captured.
+    pub fn capture_u(&self) -> f64 {
+        self.capture_u
+    }
+
     /// Nodes along chi.
     pub fn columns(&self) -> usize {
         self.resolution.chi_nodes

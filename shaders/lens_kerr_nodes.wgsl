@@ -1,0 +1,106 @@
+// Kernel: the nodes of the tables of lens_kerr.wgsl, one thread each: traces a ray to infinity and a little beyond, so that crossings
+// continue smoothly past it.
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> lens: KerrLens;
+// T = tan(R / 2) and dT/dchi at a node, and at the next. One row.
+@group(0) @binding(2) var curve: texture_2d<f32>;
+// Sky direction, chart; 0 if captured.
+@group(0) @binding(3) var sky_out: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(4) var crossings_out: texture_storage_2d_array<rgba32float, write>;
+
+const KERR_STEP: f32 = 0.2;
+// Of any ray of the table: 2^-10 from the curve a ray ends within sigma 20.
+const KERR_STEPS: u32 = 400u;
+const KERR_BEYOND: f32 = 1.0;
+
+var<private> node: vec2<u32>;
+var<private> found: u32;
+// The layer being filled.
+var<private> four: vec4<f32>;
+
+@compute @workgroup_size(16, 8)
+fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= KERR_COLUMNS || id.y >= lens.outer_rows + lens.inner_rows {
+        return;
+    }
+    node = id.xy;
+    found = 0u;
+    four = vec4<f32>(0.0);
+    let half_tangent = textureLoad(curve, vec2<u32>(id.x * (KERR_CURVE / KERR_COLUMNS), 0u), 0).x;
+    let begin = begin_local(normalize(kerr_node_direction(id.x, id.y, false, half_tangent)));
+    let c = begin.c;
+    var state = begin.state;
+    var side = first_side(state);
+    var escaped = false;
+    var sky = vec3<f32>(0.0);
+    var beyond = 0.0;
+    for (var i = 0u; i < KERR_STEPS; i += 1u) {
+        let h = min(KERR_STEP / c.scale, step_limit(c, state, KERR_STEP));
+        let next = nystrom_step(c, state, h);
+        if side * next.n.z < 0.0 {
+            side = next.n.z;
+            if found < lens.orders {
+                put_crossing(c, begin.state, crossing_state(c, state, next, h));
+            }
+        }
+        if next.u <= 0.0 {
+            if !escaped {
+                let end = escape(c, RayTrace(FATE_ESCAPED, 0u, state, next, h, 0.0));
+                sky = chart_direction(end.n, end.drag);
+                escaped = true;
+            }
+            beyond += h * c.scale;
+        }
+        let captured = next.du > 0.0 && next.u >= lens.capture_u;
+        if captured || beyond > KERR_BEYOND || (escaped && found >= lens.orders) {
+            break;
+        }
+        state = next;
+    }
+    if id.y < lens.outer_rows {
+        textureStore(sky_out, id.xy, vec4<f32>(sky, 0.0));
+    }
+    let none = select(KERR_NO_CROSSING, -KERR_NO_CROSSING, escaped);
+    while found < lens.orders {
+        put(vec4<f32>(none, 0.0, 0.0, 0.0));
+    }
+    if !PATTERN && found % 4u != 0u {
+        textureStore(crossings_out, node, found / 4u, four);
+    }
+}
+
+fn put_crossing(c: Constants, eye: State, there: State) {
+    var at = vec4<f32>(there.u, 0.0, 0.0, 0.0);
+    if PATTERN {
+        let direction = chart_direction(there.n, there.drag);
+        at = vec4<f32>(there.u, direction.xy, regular_delay(c, eye, there));
+    }
+    put(at);
+}
+
+// The next order's crossing.
+fn put(at: vec4<f32>) {
+    if PATTERN {
+        textureStore(crossings_out, node, found, at);
+    } else {
+        four[found % 4u] = at.x;
+        if found % 4u == 3u {
+            textureStore(crossings_out, node, found / 4u, four);
+            four = vec4<f32>(0.0);
+        }
+    }
+    found += 1u;
+}
+
+// The delay less what it diverges like at infinity, 1 / u - 2 ln(|u| / u_eye); (E + u') / u without cancellation, as
+// u'^2 = E^2 + u^2 (...).
+fn regular_delay(c: Constants, eye: State, there: State) -> f32 {
+    if !DELAY {
+        return 0.0;
+    }
+    let below = there.u * (c.a2e2 - c.k + there.u * (2.0 * c.b - there.u * c.a2q));
+    let ratio = select((c.energy + there.du) / there.u, -below / (c.energy - there.du), there.du < 0.0);
+    let logarithm = log(max(abs(there.u / c.u_eye), 1e-30));
+    return (2.0 * ratio * there.u * logarithm - ratio + eye.du / eye.u) / c.energy + there.delay - eye.delay;
+}

@@ -1,0 +1,14 @@
+// Ray records with spin, as the tables of lens_kerr.wgsl have them; rays that they do not hold are left to lens_kerr_rest.wgsl.
+
+fn ray_record(id: vec2<u32>) -> Record {
+    return look_up(id);
+}
+
+fn next_crossing() -> Crossing {
+    return next_looked_up();
+}
+
+fn defer_pixel(id: vec2<u32>) {
+    let i = atomicAdd(&deferred.counts[pass_.slot], 1u);
+    deferred.pixels[i] = id.x | (id.y << 16u);
+}
