@@ -98,12 +98,12 @@ fn limited(v: vec3<f32>, most: f32) -> vec3<f32> {
 
 fn srgb_encode(linear: vec3<f32>) -> vec3<f32> {
     let t = 1.0 - sqrt(sqrt(linear));
-    var p = t * -0.052865972 + 0.093450894;
-    p = p * t - 0.083289232;
+    var p = t * -0.05286597 + 0.0934509;
+    p = p * t - 0.08328923;
     p = p * t + 0.021440784;
     p = p * t - 0.028352347;
     p = p * t - 0.064457804;
-    p = p * t - 0.58613593;
+    p = p * t - 0.5861359;
     p = p * t + 1.7583335;
     return select(1.0 - t * p, 12.92 * linear, linear <= vec3<f32>(0.0031308));
 }

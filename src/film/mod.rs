@@ -181,7 +181,7 @@ pub fn srgb_encode(linear: f32) -> f32 {
 
 /// Coefficients of t^0 .. t^7.
 const SRGB_POWER: [f32; 8] =
-    [1.7583335, -0.58613593, -0.064457804, -0.028352347, 0.021440784, -0.083289232, 0.093450894, -0.052865972];
+    [1.7583335, -0.5861359, -0.064457804, -0.028352347, 0.021440784, -0.08328923, 0.0934509, -0.05286597];
 
 /// Interleaved gradient noise (J. Jimenez, SIGGRAPH 2014): fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), here in
 /// fixed point with 32 bits of fraction, so that it is the same number on every machine: 52.9829189 = 53 - 1119.4 / 2^16. In [0, 1),
