@@ -1,9 +1,8 @@
 // Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs. Reads `frame`
 // and light_table(i), defined where the bindings are.
 
-// A row of its own after the tables that never change.
-const PROFILE_OFFSET: u32 = (MEAN_SKY_OFFSET + (STAR_LEVELS + 1u) * MEAN_SKY_PARTS + TABLE_WIDTH - 1u) / TABLE_WIDTH * TABLE_WIDTH;
-// Entries, four to a vector.
+// A row of its own after the tables that never change; of each entry its value and the step to the next.
+const PROFILE_OFFSET: u32 = (FIXED_TABLES + TABLE_WIDTH - 1u) / TABLE_WIDTH * TABLE_WIDTH;
 const PROFILE_SIZE: u32 = 2048u;
 
 // False: an effect that colours light or changes its brightness is switched off.
@@ -45,21 +44,14 @@ fn nu_zamo_in_plane(u: f32, energy: f32, angular_momentum: f32) -> f32 {
     return (energy - omega * angular_momentum) * sqrt(big_a / d);
 }
 
-fn profile_entry(i: u32) -> f32 {
-    return light_table(PROFILE_OFFSET + i / 4u)[i % 4u];
-}
-
 // T(r) / T_max (TemperatureProfile::at).
 fn temperature_profile(u: f32) -> f32 {
-    let closeness = abs(frame.hole.w) * u;
-    if closeness >= 1.0 {
-        return 0.0;
-    }
-    let root = sqrt(closeness);
-    let x = arctan2(sqrt(1.0 - closeness), root) / (0.5 * PI) * f32(PROFILE_SIZE - 1u);
+    let root = sqrt(min(abs(frame.hole.w) * u, 1.0));
+    let x = sqrt(1.0 - root) * f32(PROFILE_SIZE - 1u);
     let i = min(u32(x), PROFILE_SIZE - 2u);
-    let low = profile_entry(i);
-    return (low + (profile_entry(i + 1u) - low) * (x - f32(i))) * root * sqrt(root);
+    let entry = light_table(PROFILE_OFFSET + i);
+    // The first entry, of the ISCO, is 0.
+    return (entry.x + entry.y * (x - f32(i))) * root * sqrt(root);
 }
 
 // Linear radiance of the opaque disk at 1/r = u, seen with g.

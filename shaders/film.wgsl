@@ -61,8 +61,7 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
     }
     let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
     let display = tone_map(scene);
-    let codes = vec3<f32>(srgb_encode(display.x), srgb_encode(display.y), srgb_encode(display.z)) * 255.0;
-    return vec4<u32>(vec3<u32>(codes + dither(x, y)), u32(alpha_of(radiance.w) * 255.0 + 0.5));
+    return vec4<u32>(vec3<u32>(srgb_encode(display) * 255.0 + dither(x, y)), u32(alpha_of(radiance.w) * 255.0 + 0.5));
 }
 
 fn develop_rgba16f(radiance: vec4<f32>) -> vec2<u32> {
@@ -97,8 +96,16 @@ fn limited(v: vec3<f32>, most: f32) -> vec3<f32> {
     return select(clamp(v, vec3<f32>(0.0), vec3<f32>(most)), vec3<f32>(0.0), is_nan(v));
 }
 
-fn srgb_encode(linear: f32) -> f32 {
-    return select(1.0 - 1.055 * (1.0 - pow(linear, 1.0 / 2.4)), 12.92 * linear, linear <= 0.0031308);
+fn srgb_encode(linear: vec3<f32>) -> vec3<f32> {
+    let t = 1.0 - sqrt(sqrt(linear));
+    var p = t * -0.05286597 + 0.0934509;
+    p = p * t - 0.08328923;
+    p = p * t + 0.021440784;
+    p = p * t - 0.028352347;
+    p = p * t - 0.064457804;
+    p = p * t - 0.5861359;
+    p = p * t + 1.7583335;
+    return select(1.0 - t * p, 12.92 * linear, linear <= vec3<f32>(0.0031308));
 }
 
 fn dither(x: u32, y: u32) -> f32 {

@@ -14,13 +14,10 @@ fn star_margin(level: u32) -> f32 {
     return STAR_MARGIN / f32(star_side(level));
 }
 
-// STAR_LEVELS: none.
+// The level by the exponent of radius / margin(0), rounded up; STAR_LEVELS, none, beyond the coarsest one and for NaN and infinity.
 fn star_level_for(radius: f32) -> u32 {
-    var level = 0u;
-    while level < STAR_LEVELS && !(star_margin(level) >= radius) {
-        level += 1u;
-    }
-    return level;
+    let bits = bitcast<u32>(radius / star_margin(0u)) & 0x7fffffffu;
+    return min(max((bits + 0x7fffffu) >> 23u, 127u) - 127u, STAR_LEVELS);
 }
 
 fn star_fade(level: u32, radius: f32) -> f32 {
@@ -63,57 +60,62 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
     let xx = dot(dx, dx);
     let yy = dot(dy, dy);
     let xy = dot(dx, dy);
-    let stretch2 = 0.5 * (xx + yy) + sqrt(0.25 * (xx - yy) * (xx - yy) + xy * xy);
-    let radius = 2.1213203 * sqrt(stretch2);
-    // By its bits: not NaN, not infinite.
-    let finite = (bitcast<u32>(radius) & 0x7fffffffu) < 0x7f800000u;
-    let found = select(STAR_LEVELS, star_level_for(radius), finite);
+    let stretch2 = xx + yy;
+    let radius = 1.5 * sqrt(stretch2 + 2.0 * abs(xy));
+    let found = star_level_for(radius);
     let indexed = found < STAR_LEVELS;
     // Beyond the coarsest level nothing is left of its stars.
     let level = min(found, STAR_LEVELS - 1u);
     let fade = select(0.0, star_fade(level, radius), indexed);
-    let mean = MEAN_SKY_OFFSET + level * MEAN_SKY_PARTS;
-    let next_limit = light_table(mean + MEAN_SKY_PARTS).w;
+    let mean = light_table(MEAN_SKY_OFFSET + level);
 
     let across = cross(dy, d);
     let down = cross(d, dx);
     let area = abs(dot(cross(dx, dy), d));
     let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
-    let cell = cell_of(d, level);
-    var i = star_cell(cell);
-    let end = select(i, star_cell(cell + 1u), indexed);
-    // Parts of this level's mean sky, then of the next one's: the first two levels leave nothing out.
-    var part = select(0u, MEAN_SKY_PARTS, fade == 0.0 || level < 2u);
-    let parts = select(2u * MEAN_SKY_PARTS, MEAN_SKY_PARTS, fade == 1.0 || level == 0u);
+    let list = star_cell(cell_of(d, level));
+    var i = STAR_LISTS_OFFSET + (list >> 8u);
+    let end = i + select(0u, list & 255u, indexed);
+    // Bit 0: this level's mean sky is to be shaded; bit 1: the next one's.
+    var means = select(0u, 1u, mean.x > 0.0 && fade > 0.0) | select(0u, 2u, mean.y > 0.0 && fade < 1.0);
     var light = vec3<f32>(0.0);
-    // The inner loop only looks; a star that is hit, and after the stars each part of the mean sky, is shaded outside it:
-    // lavapipe runs whatever stands in a loop in every turn.
+    // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe runs whatever
+    // stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break; }` finds no star there, Mesa 22.3.)
     loop {
-        var at = 0u;
+        var star = vec4<f32>(0.0);
         var p = vec2<f32>(0.0);
-        var flux = 0.0;
         var hit = false;
         while i < end {
-            at = STARS_OFFSET + 2u * star_cell(i);
+            star = light_table(i);
             i += 1u;
-            let star = light_table(at);
             let e = star.xyz - d;
             p = vec2<f32>(dot(e, across), dot(e, down));
-            flux = star.w;
             hit = max(abs(p.x), abs(p.y)) < 1.5 * area;
             if hit {
                 break;
             }
         }
-        if !hit && part >= parts {
+        if hit || means != 0u {
+            let own = (means & 1u) != 0u;
+            var table = MEAN_SKY_TABLES + select(level + 1u, level, own) * BLACKBODY_SIZE;
+            var temperature = select(mean.y, mean.x, own);
+            var log_reference = 0.0;
+            var share = select(1.0 - fade, fade, own);
+            if hit {
+                let kind = light_table(STARS_OFFSET + u32(star.w));
+                table = BLACKBODY_OFFSET;
+                temperature = kind.y;
+                log_reference = kind.z;
+                let spread = star_footprint(p.x / area) * star_footprint(p.y / area) * magnification;
+                share = select(fade, 1.0, kind.x >= mean.z) * spread * kind.x;
+            } else {
+                means &= means - 1u;
+            }
+            light += share * shifted_light(table, temperature, log_reference, g_colour, g_beaming);
+        }
+        if i >= end && means == 0u {
             break;
         }
-        let kind = light_table(select(mean + part, at + 1u, hit));
-        let shown = select(fade, 1.0, flux >= next_limit);
-        let share = shown * star_footprint(p.x / area) * star_footprint(p.y / area) * magnification * flux;
-        let mean_share = select(1.0 - fade, fade, part < MEAN_SKY_PARTS) * kind.z;
-        part += select(1u, 0u, hit);
-        light += select(mean_share, share, hit) * shifted_blackbody(kind.x, kind.y, g_colour, g_beaming);
     }
     return min(light, vec3<f32>(MAX_STAR_LIGHT));
 }

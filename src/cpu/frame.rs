@@ -5,7 +5,7 @@ use super::CpuTracer;
 use super::record::{Neighbours, Recorder};
 use super::shade::Shader;
 use crate::error::{Error, ErrorKind, Result};
-use crate::film::{FilmParams, develop};
+use crate::film::{FilmParams, develop_row};
 use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
@@ -156,14 +156,7 @@ impl<'a> Frame<'a> {
         let row_bytes = width * self.request.format.bytes_per_pixel();
         let mut pixels = vec![0; row_bytes * tile.height as usize];
         pixels.par_chunks_mut(row_bytes).zip(sum.par_chunks(width)).enumerate().for_each(|(row, (out, sum))| {
-            let y = region.y + tile.y + row as u32;
-            let out = out.chunks_exact_mut(self.request.format.bytes_per_pixel());
-            for ((out, value), x) in out.zip(sum).zip(region.x + tile.x..) {
-                let packed = develop(&self.film, value.map(|v| v as f32), x, y);
-                if packed.len() == out.len() {
-                    out.copy_from_slice(&packed);
-                }
-            }
+            develop_row(&self.film, sum, region.x + tile.x, region.y + tile.y + row as u32, out);
         });
         pixels
     }

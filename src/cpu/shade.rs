@@ -24,6 +24,8 @@ pub struct Shader<'a> {
     scene: &'a Scene,
     lens: &'a Lens,
     colours: &'static BlackbodyTable,
+    /// ln Y of the disk's hottest place.
+    log_reference: f64,
     profile: TemperatureProfile,
     turbulence: Option<Turbulence>,
     /// `None`: no stars.
@@ -38,6 +40,7 @@ impl<'a> Shader<'a> {
             scene,
             lens,
             colours: BlackbodyTable::shared(),
+            log_reference: scene.disk.map_or(0.0, |d| BlackbodyTable::shared().ln_luminance(d.temperature)),
             profile: TemperatureProfile::new(scene.matter_spin()),
             turbulence: scene.turbulence(),
             stars: scene.shows_stars().then(StarIndex::shared),
@@ -55,7 +58,7 @@ impl<'a> Shader<'a> {
                 if open <= 0.0 {
                     break;
                 }
-                let gravity = nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
+                let gravity = || nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
                 let rgb = self.disk_light(disk, crossing.u, self.visible_shift(crossing.g, gravity));
                 let structure = self.turbulence.map_or(1.0, |t| t.brightness(crossing.place, crossing.footprint));
                 (0..3).for_each(|c| light[c] += open * disk.opacity * structure * rgb[c]);
@@ -72,12 +75,13 @@ impl<'a> Shader<'a> {
         [light[0], light[1], light[2], 1.0 - open]
     }
 
-    /// g = g_gravity g_doppler, split at the local static observers (ZAMOs); `gravity` is the former.
-    fn visible_shift(&self, g: f64, gravity: f64) -> Shift {
+    /// g = g_gravity g_doppler, split at the local static observers (ZAMOs); `gravity` gives the former.
+    fn visible_shift(&self, g: f64, gravity: impl Fn() -> f64) -> Shift {
         let effects = self.scene.effects;
         if effects.all_light() {
             return Shift { colour: g, beaming: g };
         }
+        let gravity = gravity();
         let mut colour = if effects.has(Effects::DOPPLER_SHIFT) { g } else { gravity };
         if !effects.has(Effects::GRAVITY_SHIFT) {
             colour /= gravity;
@@ -96,14 +100,13 @@ impl<'a> Shader<'a> {
 
     fn disk_light(&self, disk: &Disk, u: f64, shift: Shift) -> [f64; 3] {
         let temperature = disk.temperature * self.profile.at(1.0 / u);
-        let log_reference = self.colours.ln_luminance(disk.temperature);
         self.colours
-            .shifted_blackbody(temperature, log_reference, shift.colour, shift.beaming)
+            .shifted_blackbody(temperature, self.log_reference, shift.colour, shift.beaming)
             .map(|v| v * disk.brightness)
     }
 
     fn sky_light(&self, stars: &StarIndex, here: &Record) -> [f64; 3] {
-        let shift = self.visible_shift(here.sky_redshift, nu_static_eye(self.lens, here.energy) / here.energy);
+        let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
         let [dx, dy] = here.footprint.map(|change| self.chart_to_sky * change);
         stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * self.scene.sky.stars_brightness)

@@ -54,49 +54,87 @@ impl FilmParams {
             _ => ToneMap::None,
         }
     }
+
+    /// The word of red, green, blue, alpha codes: the first in the lowest byte, or blue for BGRA8.
+    #[inline(always)]
+    fn packed_8bit(&self, [r, g, b, a]: [u32; 4]) -> u32 {
+        let (low, high) = if self.format == 2 { (b, r) } else { (r, b) };
+        low | g << 8 | high << 16 | a << 24
+    }
 }
 
 /// The bytes of one pixel, in memory order.
 pub type PackedPixel = ArrayVec<u8, 16>;
 
-/// One pixel of the frame. `radiance`: linear Rec. 709, premultiplied, and alpha; for a view, its value first. (`x`, `y`): the pixel's
-/// place in the whole frame, which the dither goes by, so that tiles join without a seam.
+/// One pixel of the frame: a row of one, as `develop_row`.
 pub fn develop(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> PackedPixel {
-    let words: ArrayVec<u32, 4> = match params.format {
-        3 => develop_rgba16f(params, radiance).into_iter().collect(),
-        4 => develop_rgba32f(params, radiance).into_iter().collect(),
-        5 => [radiance[0].to_bits()].into_iter().collect(),
-        2 => [develop_bgra8(params, radiance, x, y)].into_iter().collect(),
-        _ => [develop_rgba8(params, radiance, x, y)].into_iter().collect(),
+    let mut bytes = [0; 16];
+    let length = match params.format {
+        3 => 8,
+        4 => 16,
+        _ => 4,
     };
-    words.into_iter().flat_map(u32::to_le_bytes).collect()
+    develop_row(params, &[radiance.map(f64::from)], x, y, &mut bytes[..length]);
+    bytes[..length].iter().copied().collect()
 }
 
-/// Red in the lowest byte.
-fn develop_rgba8(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> u32 {
-    let [r, g, b, a] = develop_8bit(params, radiance, x, y);
-    r | g << 8 | b << 16 | a << 24
-}
-
-/// Blue in the lowest byte.
-fn develop_bgra8(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> u32 {
-    let [r, g, b, a] = develop_8bit(params, radiance, x, y);
-    b | g << 8 | r << 16 | a << 24
-}
-
-/// Codes 0 .. 255 of red, green, blue, alpha. Premultiplied light is developed as it is: over black, a transparent picture looks
-/// like the opaque one. Codes are what the sum of value and dither, in [0, 1), is rounded down to: right on average, and
-/// black and white stay exact. Alpha and false colour are rounded without dither.
-fn develop_8bit(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> [u32; 4] {
-    if params.false_colour != 0 {
-        let share = (radiance[0] - params.view_low) * params.view_scale;
-        let [r, g, b] = false_colour::false_colour(share).map(|v| (v * 255.0 + 0.5) as u32);
-        return [r, g, b, 255];
+/// Pixels of the frame, side by side, into their bytes. `radiance`: linear Rec. 709, premultiplied, and alpha; for a view, its value
+/// first. (`x`, `y`): the first pixel's place in the whole frame, which the dither goes by, so that tiles join without a seam.
+pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, out: &mut [u8]) {
+    match (params.format, params.false_colour != 0, params.tone_map_kind()) {
+        (3, ..) => write_row(radiance, x, out, |v, _| develop_rgba16f(params, v)),
+        (4, ..) => write_row(radiance, x, out, |v, _| develop_rgba32f(params, v)),
+        (5, ..) => write_row(radiance, x, out, |v, _| [v[0].to_bits()]),
+        (_, true, _) => write_row(radiance, x, out, |v, _| [params.packed_8bit(false_colour_codes(params, v[0]))]),
+        (_, _, ToneMap::None) => write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::clip)]),
+        (_, _, ToneMap::Aces) => write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::aces)]),
+        (_, _, ToneMap::Agx) => write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::agx)]),
     }
+}
+
+/// Writes what `pixel` makes of every value and its x.
+fn write_row<const WORDS: usize>(
+    radiance: &[[f64; 4]],
+    x: u32,
+    out: &mut [u8],
+    pixel: impl Fn([f32; 4], u32) -> [u32; WORDS],
+) {
+    for ((out, value), x) in out.chunks_exact_mut(4 * WORDS).zip(radiance).zip(x..) {
+        for (bytes, word) in out.chunks_exact_mut(4).zip(pixel(value.map(|v| v as f32), x)) {
+            bytes.copy_from_slice(&word.to_le_bytes());
+        }
+    }
+}
+
+/// A pixel of light in 8 bits. Premultiplied light is developed as it is: over black, a transparent picture looks
+/// like the opaque one. Codes are what the sum of value and dither, in [0, 1), is rounded down to: right on average, and
+/// black and white stay exact. Alpha is rounded without dither. No branches and all in one piece, so that the compiler can develop
+/// several pixels at once.
+#[inline(always)]
+fn develop_8bit(
+    params: &FilmParams,
+    radiance: [f32; 4],
+    x: u32,
+    y: u32,
+    tone_map: impl Fn([f32; 3]) -> [f32; 3],
+) -> u32 {
     let scene = [radiance[0], radiance[1], radiance[2]].map(|v| limited(v * params.exposure, MAX_SCENE_LIGHT));
     let noise = dither(x, y);
-    let [r, g, b] = tone_map::tone_map(params.tone_map_kind(), scene).map(|v| (srgb_encode(v) * 255.0 + noise) as u32);
-    [r, g, b, (alpha(params, radiance[3]) * 255.0 + 0.5) as u32]
+    let [r, g, b] = tone_map(scene).map(|v| code(srgb_encode(v) * 255.0 + noise));
+    params.packed_8bit([r, g, b, code(alpha(params, radiance[3]) * 255.0 + 0.5)])
+}
+
+/// Codes of a view's value, rounded without dither.
+fn false_colour_codes(params: &FilmParams, value: f32) -> [u32; 4] {
+    let share = (value - params.view_low) * params.view_scale;
+    let [r, g, b] = false_colour::false_colour(share).map(|v| code(v * 255.0 + 0.5));
+    [r, g, b, 255]
+}
+
+/// `v` in [0, 256) rounded down. Through i32, which vector instructions convert to.
+#[inline(always)]
+fn code(v: f32) -> u32 {
+    v as i32 as u32
 }
 
 /// Largest finite f16.
@@ -119,23 +157,36 @@ fn develop_rgba32f(params: &FilmParams, radiance: [f32; 4]) -> [u32; 4] {
     [light(r), light(g), light(b), alpha(params, a).to_bits()]
 }
 
+#[inline(always)]
 fn alpha(params: &FilmParams, alpha: f32) -> f32 {
-    if params.transparent != 0 { limited(alpha, 1.0) } else { 1.0 }
+    let kept = limited(alpha, 1.0);
+    if params.transparent != 0 { kept } else { 1.0 }
 }
 
 /// `v` within [0, `most`]; NaN, which no tracer should give, becomes 0: no pixel spreads it.
+#[inline(always)]
 fn limited(v: f32, most: f32) -> f32 {
     if v.is_nan() { 0.0 } else { v.max(0.0).min(most) }
 }
 
-/// Linear light 0 .. 1 to the sRGB code value 0 .. 1 (IEC 61966-2-1). The power is written so that 1 gives 1 exactly.
+/// Linear light 0 .. 1 to the sRGB code value 0 .. 1 (IEC 61966-2-1), to 1e-4 of an 8-bit step: of the power,
+/// 1.055 v^(1 / 2.4) - 0.055 = 1 - t p(t) with t = 1 - v^(1/4), p its polynomial of degree 7 in the Chebyshev points of
+/// the t there are. So no logarithm is needed, and 1 gives 1 exactly.
+#[inline(always)]
 pub fn srgb_encode(linear: f32) -> f32 {
-    if linear <= 0.0031308 { 12.92 * linear } else { 1.0 - 1.055 * (1.0 - linear.powf(1.0 / 2.4)) }
+    let t = 1.0 - linear.sqrt().sqrt();
+    let p = SRGB_POWER.iter().rev().fold(0.0, |sum, c| sum * t + c);
+    if linear <= 0.0031308 { 12.92 * linear } else { 1.0 - t * p }
 }
+
+/// Coefficients of t^0 .. t^7.
+const SRGB_POWER: [f32; 8] =
+    [1.7583335, -0.5861359, -0.064457804, -0.028352347, 0.021440784, -0.08328923, 0.0934509, -0.05286597];
 
 /// Interleaved gradient noise (J. Jimenez, SIGGRAPH 2014): fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), here in
 /// fixed point with 32 bits of fraction, so that it is the same number on every machine: 52.9829189 = 53 - 1119.4 / 2^16. In [0, 1),
 /// multiples of 2^-16, so that 255 plus it is exact.
+#[inline(always)]
 pub fn dither(x: u32, y: u32) -> f32 {
     let ramp = x.wrapping_mul(288_237_660).wrapping_add(y.wrapping_mul(25_070_369));
     let noise = ramp.wrapping_mul(53).wrapping_sub((ramp >> 16).wrapping_mul(1119));
@@ -160,6 +211,11 @@ mod tests {
         for code in 0..=255_u32 {
             let linear = srgb_decode(f64::from(code) / 255.0) as f32;
             assert!((srgb_encode(linear) * 255.0 - code as f32).abs() < 1e-3, "{code}");
+        }
+        for i in 1..=20_000 {
+            let linear = 1.0 - 0.9968692 * f64::from(i) / 20_001.0;
+            let exact = 1.055 * linear.powf(1.0 / 2.4) - 0.055;
+            assert!((f64::from(srgb_encode(linear as f32)) - exact).abs() * 255.0 < 2e-4, "{linear}");
         }
         assert_eq!(srgb_encode(0.0), 0.0);
         assert_eq!(srgb_encode(1.0), 1.0);

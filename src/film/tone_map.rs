@@ -1,24 +1,21 @@
 //! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1].
 //! In f32, as `shaders/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
 
-use crate::scene::ToneMap;
-
 /// Brighter light is taken as this: far above every curve's white, and its square is finite.
 pub const MAX_SCENE_LIGHT: f32 = 65504.0;
 
-/// `rgb` with every component in [0, MAX_SCENE_LIGHT], to [0, 1]; 0 stays 0 (AgX: below 1e-9).
-pub fn tone_map(kind: ToneMap, rgb: [f32; 3]) -> [f32; 3] {
-    match kind {
-        ToneMap::None => rgb.map(|v| v.clamp(0.0, 1.0)),
-        ToneMap::Aces => aces(rgb),
-        ToneMap::Agx => agx(rgb),
-    }
+/// No tone map: what is brighter than white becomes white. As the other two, of `rgb` with every component in
+/// [0, MAX_SCENE_LIGHT], to [0, 1]; 0 stays 0 (AgX: below 1e-9).
+#[inline(always)]
+pub fn clip(rgb: [f32; 3]) -> [f32; 3] {
+    rgb.map(|v| v.clamp(0.0, 1.0))
 }
 
 /// A 3 x 3 matrix whose rows sum to 1, so that grey stays grey to the last bit: given by what each component takes from the
 /// other two, in their order.
 type Balanced = [[f32; 2]; 3];
 
+#[inline(always)]
 fn balanced(m: Balanced, [r, g, b]: [f32; 3]) -> [f32; 3] {
     [
         r + m[0][0] * (g - r) + m[0][1] * (b - r),
@@ -33,7 +30,8 @@ const ACES_OUT: Balanced = [[-0.53108, -0.07367], [-0.10208, -0.00605], [-0.0032
 
 /// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab, and kept by many engines): a rational curve
 /// between two matrices. Unlike a curve per channel alone it lets bright saturated light go to white.
-fn aces(rgb: [f32; 3]) -> [f32; 3] {
+#[inline(always)]
+pub fn aces(rgb: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
     balanced(ACES_OUT, balanced(ACES_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0))
 }
@@ -55,7 +53,7 @@ const AGX_SHOULDER: f32 = 0.5414642;
 /// The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the pivot, p = 3
 /// below it and 3.25 above; s, negative below, makes it end in 0 and 1:
 /// s = ((2 w)^-p ((4 w)^p - 1))^(-1/p), w = the pivot's distance to that end.
-fn agx(rgb: [f32; 3]) -> [f32; 3] {
+pub fn agx(rgb: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| agx_sigmoid(((v.max(1e-10).log2() - AGX_LOW) / AGX_SPAN).clamp(0.0, 1.0));
     balanced(AGX_OUT, balanced(AGX_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0).powf(2.2))
 }
@@ -69,6 +67,15 @@ fn agx_sigmoid(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::ToneMap;
+
+    fn tone_map(kind: ToneMap, rgb: [f32; 3]) -> [f32; 3] {
+        match kind {
+            ToneMap::None => clip(rgb),
+            ToneMap::Aces => aces(rgb),
+            ToneMap::Agx => agx(rgb),
+        }
+    }
 
     const ALL: [ToneMap; 3] = [ToneMap::None, ToneMap::Aces, ToneMap::Agx];
 

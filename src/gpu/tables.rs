@@ -50,10 +50,9 @@ impl Tables {
             return Ok(());
         }
         let profile = TemperatureProfile::new(spin);
-        // Four entries a texel.
-        let mut row = vec![0.0_f32; 4 * TABLE_WIDTH];
-        for (out, entry) in row.iter_mut().zip(profile.entries()) {
-            *out = *entry as f32;
+        let mut row = vec![[0.0_f32; 4]; TABLE_WIDTH];
+        for (out, pair) in row.iter_mut().zip(profile.entries().windows(2)) {
+            *out = [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0];
         }
         device.write_rows(&self.light, self.profile_row, bytemuck::cast_slice(&row))?;
         self.profile_spin = Some(spin);

@@ -73,8 +73,11 @@ const COORDINATE_TEMPERATURE: f64 = 1000.0;
 /// Metres. The wavelength of Wien's exponent that is taken out of ln Y; deep red, so that little remains when cold.
 const WIEN_WAVELENGTH: f64 = 650e-9;
 const WIEN_TEMPERATURE: f64 = SECOND_RADIATION_CONSTANT / WIEN_WAVELENGTH;
-/// Largest ln of a luminance ratio: e^80 = 6e34 leaves f32 room for colour, brightness and sums.
+/// Largest luminance ratio, about e^80: leaves f32 room for colour, brightness and sums.
+const MAX_RATIO: f64 = 5e34;
 const MAX_LN_RATIO: f64 = 80.0;
+/// Largest g_beaming / g_colour: its fourth power is finite in f32.
+const MAX_BEAMING: f64 = 1e9;
 
 /// Colour and luminance of blackbodies, linearly interpolated. From 500 K up to any temperature: luminance within 1e-4
 /// relative, rgb per luminance within 5e-5; down to 100 K luminance within 6e-3.
@@ -90,10 +93,29 @@ impl BlackbodyTable {
         SHARED.get_or_init(|| Self { nodes: std::array::from_fn(Self::node) })
     }
 
-    fn node(index: usize) -> [f64; 4] {
+    /// The table of light that is no blackbody's but dims and reddens like one: `light(g)`, linear Rec. 709, is it under the shift g, and
+    /// `temperature` (K) is to be at most that of its coolest part. Looked up at g `temperature` with the `log_reference` 0, the table gives `light`.
+    pub fn of_light(temperature: f64, light: impl Fn(f64) -> [f64; 3]) -> Self {
+        let node = |index: usize| {
+            // Far beyond the last finite node; there luminance is proportional to temperature.
+            let inverse_temperature = Self::inverse_temperature(index).max(1e-15);
+            let rgb = light(1.0 / (inverse_temperature * temperature));
+            let luminance: f64 = (0..3).map(|i| LUMINANCE[i] * rgb[i]).sum();
+            let [r, g, b] = rgb.map(|v| v / luminance);
+            [r, g, b, (luminance * inverse_temperature).ln() + WIEN_TEMPERATURE * inverse_temperature]
+        };
+        Self { nodes: std::array::from_fn(node) }
+    }
+
+    /// 1 / T of a node.
+    fn inverse_temperature(index: usize) -> f64 {
         let last = COORDINATE_TEMPERATURE / (MIN_TEMPERATURE + COORDINATE_TEMPERATURE);
         let coordinate = last * index as f64 / (BLACKBODY_SIZE - 1) as f64;
-        let inverse_temperature = coordinate / (COORDINATE_TEMPERATURE * (1.0 - coordinate));
+        coordinate / (COORDINATE_TEMPERATURE * (1.0 - coordinate))
+    }
+
+    fn node(index: usize) -> [f64; 4] {
+        let inverse_temperature = Self::inverse_temperature(index);
         let xyz = reduced_xyz(inverse_temperature);
         let [r, g, b] = xyz_to_rgb(xyz).map(|v| v / xyz[1]);
         [r, g, b, xyz[1].ln() + WIEN_TEMPERATURE * inverse_temperature]
@@ -104,7 +126,7 @@ impl BlackbodyTable {
         self.nodes.iter().map(|node| node.map(|v| v as f32)).collect()
     }
 
-    /// rgb / Y of a blackbody, not clamped, and ln Y. MIN_TEMPERATURE <= `temperature` <= MAX_TEMPERATURE.
+    /// rgb / Y of a blackbody, not clamped, and ln(Y / T). MIN_TEMPERATURE <= `temperature` <= MAX_TEMPERATURE.
     fn blackbody_lookup(&self, temperature: f64) -> [f64; 4] {
         let scale = (BLACKBODY_SIZE - 1) as f64 * (MIN_TEMPERATURE + COORDINATE_TEMPERATURE);
         let position = scale / (temperature + COORDINATE_TEMPERATURE);
@@ -112,7 +134,7 @@ impl BlackbodyTable {
         let share = position - index as f64;
         let (low, high) = (self.nodes[index], self.nodes[index + 1]);
         let mut value: [f64; 4] = std::array::from_fn(|i| low[i] + (high[i] - low[i]) * share);
-        value[3] += temperature.ln() - WIEN_TEMPERATURE / temperature;
+        value[3] -= WIEN_TEMPERATURE / temperature;
         value
     }
 
@@ -121,7 +143,7 @@ impl BlackbodyTable {
     pub fn ln_luminance(&self, temperature: f64) -> f64 {
         // NaN goes to the lower end too.
         let taken = if temperature > MIN_TEMPERATURE { temperature.min(MAX_TEMPERATURE) } else { MIN_TEMPERATURE };
-        self.blackbody_lookup(taken)[3]
+        self.blackbody_lookup(taken)[3] + taken.ln()
     }
 
     /// Linear Rec. 709 light of a blackbody at `temperature` (K), where a luminance of e^`log_reference` counts as 1. Inside the gamut,
@@ -143,10 +165,13 @@ impl BlackbodyTable {
         let observed = temperature * g_colour;
         // As a positive condition: false for NaN.
         if observed >= MIN_TEMPERATURE && g_beaming > 0.0 {
-            let [r, g, b, ln_luminance] = self.blackbody_lookup(observed.min(MAX_TEMPERATURE));
-            let ln_ratio = ln_luminance - log_reference + 4.0 * (g_beaming.ln() - g_colour.ln());
-            let luminance = ln_ratio.min(MAX_LN_RATIO).exp();
-            into_gamut([r, g, b]).map(|v| v * luminance)
+            let taken = observed.min(MAX_TEMPERATURE);
+            let [r, g, b, ln_slope] = self.blackbody_lookup(taken);
+            let beaming = (g_beaming / g_colour).min(MAX_BEAMING);
+            let gain = (beaming * beaming) * (beaming * beaming);
+            // In this order no product is 0 times infinity, in f32 either.
+            let luminance = (ln_slope - log_reference).min(MAX_LN_RATIO).exp() * gain * taken;
+            into_gamut([r, g, b]).map(|v| v * luminance.min(MAX_RATIO))
         } else {
             [0.0; 3]
         }

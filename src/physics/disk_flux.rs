@@ -41,7 +41,7 @@ pub fn page_thorne_maximum(a: f64) -> (f64, f64) {
 
 /// T(r) / T_max = (f / f_max)^(1/4), tabulated in f64: near the ISCO f32 could not evaluate f.
 ///
-/// Entry i holds T / T_max (r / r_isco)^(3/4) at x = i / (N - 1), cos(x pi / 2) = sqrt(r_isco / r): smooth from the ISCO, where T
+/// Entry i holds T / T_max (r / r_isco)^(3/4) at x = i / (N - 1), x^2 = 1 - sqrt(r_isco / r): smooth from the ISCO, where T
 /// starts linearly in x, to infinity, where T falls as r^(-3/4) times a series in 1 / sqrt(r).
 #[derive(Clone, Debug)]
 pub struct TemperatureProfile {
@@ -58,7 +58,8 @@ impl TemperatureProfile {
         let f_max = page_thorne_maximum(a).1;
         let last = (Self::SIZE - 1) as f64;
         let entry = |i: usize| {
-            let root = (i as f64 / last * std::f64::consts::FRAC_PI_2).cos();
+            let x = i as f64 / last;
+            let root = 1.0 - x * x;
             // A large radius stands for infinity, where x^4 would overflow nothing yet.
             let r = (isco / (root * root)).min(1e30);
             (page_thorne(a, r) / f_max).max(0.0).powf(0.25) * (r / isco).powf(0.75)
@@ -76,7 +77,7 @@ impl TemperatureProfile {
             return 0.0;
         }
         let root = (self.isco / r).sqrt();
-        let x = root.acos() / std::f64::consts::FRAC_PI_2 * (Self::SIZE - 1) as f64;
+        let x = (1.0 - root).sqrt() * (Self::SIZE - 1) as f64;
         let i = (x as usize).min(Self::SIZE - 2);
         let (y0, y1) = (self.entries[i], self.entries[i + 1]);
         (y0 + (y1 - y0) * (x - i as f64)) * root * root.sqrt()

@@ -8,9 +8,9 @@ use std::f64::consts::PI;
 use std::sync::OnceLock;
 
 /// Levels of the pyramid, finest first; each halves the cells of a cube side.
-pub const STAR_LEVELS: u32 = 5;
+pub const STAR_LEVELS: u32 = 6;
 /// Cells along a cube side at level 0.
-pub const STAR_FINEST: u32 = 128;
+pub const STAR_FINEST: u32 = 256;
 /// Bend of the map from the plane of a cube side, u in [-1, 1], to cells, w = u (1 + k - k |u|): with (sqrt 3 - 1) / (sqrt 3 + 1) the smallest
 /// search radius inside a side is as large as that in its corner.
 pub const STAR_WARP: f64 = 0.268;
@@ -25,10 +25,11 @@ const REFERENCE_SOLID_ANGLE: f64 = (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.
 
 /// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many faint stars
 /// that their mean light stands for them, and no list is long (on average below 10).
-const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, f64::INFINITY, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
+const FAINTEST: [f64; STAR_LEVELS as usize + 1] =
+    [f64::INFINITY, f64::INFINITY, f64::INFINITY, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
 
-/// Blackbodies that stand for the stars that a level leaves out.
-pub const MEAN_SKY_PARTS: usize = 6;
+/// Blackbodies that stand for the stars that a level leaves out, before their light is put into one table.
+const MEAN_SKY_PARTS: usize = 6;
 /// K. Upper ends of the temperatures that all but the last gather.
 const MEAN_SKY_BOUNDS: [f64; MEAN_SKY_PARTS - 1] = [3900.0, 4800.0, 6500.0, 9000.0, 12500.0];
 
@@ -82,21 +83,23 @@ pub fn cell_of(direction: DVec3, level: u32) -> u32 {
 
 /// A blackbody of the mean sky.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct MeanSkyPart {
+struct MeanSkyPart {
     /// K.
-    pub temperature: f64,
+    temperature: f64,
     /// ln Y of it (`BlackbodyTable::ln_luminance`).
-    pub log_reference: f64,
+    log_reference: f64,
     /// Luminance at rest, spread over the whole sky.
-    pub radiance: f64,
+    radiance: f64,
 }
 
 /// The mean light of faint stars.
-#[derive(Clone, Copy, Debug)]
 pub struct MeanSky {
-    pub parts: [MeanSkyPart; MEAN_SKY_PARTS],
+    /// Luminance at rest.
+    pub radiance: f64,
     /// Flux, as in `StarIndex::stars`, of the faintest star that is not part of it; infinite if all are.
     pub flux_limit: f32,
+    /// The light under any shift, and the temperature that it is looked up at; `None` for no light.
+    light: Option<(f64, BlackbodyTable)>,
 }
 
 /// Stars, cells and mean light, ready to draw.
@@ -104,8 +107,10 @@ pub struct StarIndex {
     /// Two per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. In f32, what the GPU has,
     /// so that both tracers see the same sky.
     pub stars: Vec<[f32; 4]>,
-    /// For every cell, and one beyond, where its list begins in this same array; then the lists: star numbers.
+    /// For every cell, where its list begins in `star_lists`, times 256, plus its length.
     pub star_cells: Vec<u32>,
+    /// Direction and number of the stars in the lists: a search reads one place after the other.
+    pub star_lists: Vec<[f32; 4]>,
     /// For each level, and one beyond, the mean light of the stars that its lists leave out.
     pub mean_sky: Vec<MeanSky>,
 }
@@ -128,33 +133,46 @@ impl StarIndex {
             let (flux, log_reference) = (scaled_flux(star), table.ln_luminance(temperature));
             [[d.x, d.y, d.z, flux], [temperature, log_reference, 0.0, 0.0]]
         });
+        let (star_cells, star_lists) = list_cells(&stars);
         Self {
             stars: packed.map(|v| v.map(|x| x as f32)).collect(),
-            star_cells: list_cells(&stars),
+            star_cells,
+            star_lists,
             mean_sky: FAINTEST.iter().map(|&faintest| mean_sky(&stars, faintest)).collect(),
         }
     }
 
-    /// `light_tables` of the GPU: blackbodies, stars, mean sky, at the offsets of `wgsl_constants`.
+    /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean sky's tables; of each level the temperatures
+    /// that its table and the next one are looked up at (0: no light), and the next one's flux limit; of every star flux, temperature, its ln Y, 0; the lists.
     pub fn light_tables(&self) -> Vec<[f32; 4]> {
         let mut tables = BlackbodyTable::shared().gpu_table();
-        tables.extend_from_slice(&self.stars);
         for mean in &self.mean_sky {
-            tables.extend(mean.parts.iter().map(|part| {
-                [part.temperature as f32, part.log_reference as f32, part.radiance as f32, mean.flux_limit]
-            }));
+            match &mean.light {
+                Some((_, table)) => tables.extend(table.gpu_table()),
+                None => tables.extend([[0.0; 4]; BLACKBODY_SIZE]),
+            }
         }
+        let temperature = |mean: &MeanSky| mean.light.as_ref().map_or(0.0, |(temperature, _)| *temperature as f32);
+        let pairs = self.mean_sky.windows(2);
+        tables.extend(pairs.map(|pair| [temperature(&pair[0]), temperature(&pair[1]), pair[1].flux_limit, 0.0]));
+        tables.extend(self.stars.as_chunks().0.iter().map(|[star, kind]| [star[3], kind[0], kind[1], 0.0]));
+        tables.extend_from_slice(&self.star_lists);
         tables
     }
 
     /// The constants of `shaders/stars.wgsl` that this index decides, as WGSL.
     pub fn wgsl_constants(&self) -> String {
-        let stars = BLACKBODY_SIZE;
-        let mean = stars + self.stars.len();
+        let mean_tables = BLACKBODY_SIZE;
+        let mean = mean_tables + self.mean_sky.len() * BLACKBODY_SIZE;
+        let stars = mean + STAR_LEVELS as usize;
+        let lists = stars + self.stars.len() / 2;
+        let end = lists + self.star_lists.len();
         format!(
-            "const STARS_OFFSET: u32 = {stars}u;\n\
+            "const MEAN_SKY_TABLES: u32 = {mean_tables}u;\n\
              const MEAN_SKY_OFFSET: u32 = {mean}u;\n\
-             const MEAN_SKY_PARTS: u32 = {MEAN_SKY_PARTS}u;\n\
+             const STARS_OFFSET: u32 = {stars}u;\n\
+             const STAR_LISTS_OFFSET: u32 = {lists}u;\n\
+             const FIXED_TABLES: u32 = {end}u;\n\
              const STAR_LEVELS: u32 = {STAR_LEVELS}u;\n\
              const STAR_FINEST: u32 = {STAR_FINEST}u;\n\
              const STAR_WARP: f32 = {STAR_WARP};\n\
@@ -162,15 +180,33 @@ impl StarIndex {
         )
     }
 
-    /// The stars listed in a cell: number, then what `stars` has of it.
-    pub fn cell_stars(&self, cell: u32) -> impl Iterator<Item = ([f32; 4], [f32; 4])> {
-        let bound = |cell: usize| self.star_cells.get(cell).map_or(0, |&b| b as usize);
-        let (begin, end) = (bound(cell as usize), bound(cell as usize + 1));
-        let members = self.star_cells.get(begin..end).unwrap_or(&[]);
-        members.iter().filter_map(|&star| {
-            let star = 2 * star as usize;
-            Some((*self.stars.get(star)?, *self.stars.get(star + 1)?))
-        })
+    /// The list of a cell: direction and number of each of its stars.
+    pub fn cell_stars(&self, cell: u32) -> &[[f32; 4]] {
+        let list = self.star_cells.get(cell as usize).copied().unwrap_or(0);
+        let (begin, length) = ((list >> 8) as usize, (list & 255) as usize);
+        self.star_lists.get(begin..begin + length).unwrap_or(&[])
+    }
+
+    /// Of a star in a list: flux, temperature (K), its ln Y.
+    pub fn kind_of(&self, listed: [f32; 4]) -> [f64; 3] {
+        match self.stars.as_chunks().0.get(listed[3] as usize) {
+            Some([star, kind]) => [star[3], kind[0], kind[1]].map(f64::from),
+            None => [0.0; 3],
+        }
+    }
+}
+
+impl MeanSky {
+    /// Linear Rec. 709 radiance; shifts as for `BlackbodyTable::shifted_blackbody`.
+    pub fn light(&self, g_colour: f64, g_beaming: f64) -> [f64; 3] {
+        match &self.light {
+            Some((temperature, table)) => table.shifted_blackbody(*temperature, 0.0, g_colour, g_beaming),
+            None => [0.0; 3],
+        }
+    }
+
+    pub fn is_dark(&self) -> bool {
+        self.light.is_none()
     }
 }
 
@@ -194,8 +230,8 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
         let (u, v) = (warp(u / along), warp(v / along));
         for level in (0..STAR_LEVELS).filter(|&level| star.magnitude <= FAINTEST[level as usize]) {
             let n = side(level) as i32;
-            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 24 moves every level's cells above 0.
-            let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 23.5) as i32 - 24;
+            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 64 moves every level's cells above 0.
+            let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 63.5) as i32 - 64;
             let (column, row) = (first(u), first(v));
             for row in (row..=row + 1).filter(|row| (0..n).contains(row)) {
                 for column in (column..=column + 1).filter(|column| (0..n).contains(column)) {
@@ -206,27 +242,30 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
     }
 }
 
-/// `StarIndex::star_cells`: a counting sort of the stars by cell.
-fn list_cells(stars: &[Star]) -> Vec<u32> {
-    let mut cells = vec![0_u32; CELL_COUNT + 1];
+/// `StarIndex::star_cells` and `star_lists`: a counting sort of the stars by cell.
+fn list_cells(stars: &[Star]) -> (Vec<u32>, Vec<[f32; 4]>) {
+    let mut counts = vec![0_u32; CELL_COUNT];
     for star in stars {
-        visit_cells(star, &mut |cell| cells[cell] += 1);
+        visit_cells(star, &mut |cell| counts[cell] += 1);
     }
-    let mut end = CELL_COUNT as u32 + 1;
-    for cell in &mut cells {
-        end += *cell;
-        *cell = end;
-    }
-    // Each cell now holds its list's end; filling from the back turns it into the begin, and leaves each list in order.
-    cells.resize(end as usize, 0);
-    for (number, star) in stars.iter().enumerate().rev() {
+    let mut end = 0;
+    // Where the next star of each list goes.
+    let begin_and_skip = |count: &u32| {
+        end += count;
+        end - count
+    };
+    let mut places = counts.iter().map(begin_and_skip).collect::<Vec<_>>();
+    // A length has 8 bits; no catalogue's lists are that long.
+    let cells = places.iter().zip(&counts).map(|(begin, &count)| begin << 8 | count.min(255)).collect();
+    let mut lists = vec![[0.0; 4]; end as usize];
+    for (number, star) in stars.iter().enumerate() {
+        let d = star.direction.as_vec3();
         visit_cells(star, &mut |cell| {
-            cells[cell] -= 1;
-            let place = cells[cell] as usize;
-            cells[place] = number as u32;
+            lists[places[cell] as usize] = [d.x, d.y, d.z, number as f32];
+            places[cell] += 1;
         });
     }
-    cells
+    (cells, lists)
 }
 
 /// The stars fainter than V = `faintest`, spread evenly, by temperature. A part's 1 / T is the mean of its stars', weighted by light: to
@@ -252,7 +291,20 @@ fn mean_sky(stars: &[Star], faintest: f64) -> MeanSky {
         let log_reference = BlackbodyTable::shared().ln_luminance(temperature);
         MeanSkyPart { temperature, log_reference, radiance: flux / (4.0 * PI) }
     });
-    MeanSky { parts, flux_limit }
+    let parts = parts.iter().filter(|part| part.radiance > 0.0);
+    let coolest = parts.clone().map(|part| part.temperature).reduce(f64::min);
+    let light = coolest.map(|coolest| (coolest, BlackbodyTable::of_light(coolest, |g| mixed(parts.clone(), g))));
+    MeanSky { radiance: parts.map(|part| part.radiance).sum(), flux_limit, light }
+}
+
+/// Light of all `parts` under the shift g.
+fn mixed<'a>(parts: impl Iterator<Item = &'a MeanSkyPart>, g: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for part in parts {
+        let rgb = BlackbodyTable::shared().shifted_blackbody(part.temperature, part.log_reference, g, g);
+        (0..3).for_each(|c| sum[c] += part.radiance * rgb[c]);
+    }
+    sum
 }
 
 #[cfg(test)]
@@ -276,12 +328,14 @@ mod tests {
         let edge = DVec3::new(1.0, 1.0 - 1e-12, 0.01).normalize();
         for direction in directions(300).chain([corner, -corner, edge, DVec3::X, DVec3::NEG_Z]) {
             for level in 0..STAR_LEVELS {
-                let listed: Vec<_> = index.cell_stars(cell_of(direction, level)).map(|(star, _)| star).collect();
+                let listed = index.cell_stars(cell_of(direction, level));
                 let limit = index.mean_sky[level as usize].flux_limit;
                 for star in index.stars.iter().step_by(2).filter(|star| star[3] >= limit) {
                     let place = DVec3::new(star[0].into(), star[1].into(), star[2].into());
                     if place.dot(direction) > 0.0 && place.cross(direction).length() <= margin(level) {
-                        assert!(listed.contains(star), "{star:?} near {direction} at level {level}");
+                        let found =
+                            listed.iter().any(|s| s[..3] == star[..3] && index.kind_of(*s)[0] as f32 == star[3]);
+                        assert!(found, "{star:?} near {direction} at level {level}");
                     }
                 }
             }
@@ -312,9 +366,9 @@ mod tests {
     fn cells_number_the_whole_sphere_and_anything_else() {
         let mut seen = vec![false; CELL_COUNT];
         for direction in directions(400_000) {
-            seen[cell_of(direction, 2) as usize] = true;
+            seen[cell_of(direction, 3) as usize] = true;
         }
-        let (begin, end) = (cells_before(2) as usize, cells_before(3) as usize);
+        let (begin, end) = (cells_before(3) as usize, cells_before(4) as usize);
         assert_eq!(end - begin, 6 * 32 * 32);
         assert!(seen[begin..end].iter().all(|&s| s));
         assert!(seen[..begin].iter().chain(&seen[end..]).all(|&s| !s));
@@ -338,27 +392,31 @@ mod tests {
     #[test]
     fn memory_stays_small_and_lists_are_in_order() {
         let index = StarIndex::shared();
-        assert!(index.stars.len() * 16 + index.star_cells.len() * 4 < 6_000_000);
-        assert_eq!(index.star_cells[CELL_COUNT] as usize, index.star_cells.len());
-        assert!(index.star_cells[..=CELL_COUNT].windows(2).all(|w| w[0] <= w[1]));
-        for cell in 0..CELL_COUNT {
-            let list = &index.star_cells[index.star_cells[cell] as usize..index.star_cells[cell + 1] as usize];
-            assert!(list.windows(2).all(|w| w[0] < w[1]));
+        let entries = index.stars.len() + index.star_lists.len();
+        assert!(entries * 16 + index.star_cells.len() * 4 < 14_000_000);
+        assert_eq!(index.star_cells.len(), CELL_COUNT);
+        let mut end = 0;
+        for (cell, packed) in (0..).zip(&index.star_cells) {
+            let list = index.cell_stars(cell);
+            assert_eq!(packed >> 8, end, "lists without gaps");
+            end += list.len() as u32;
+            assert!(list.windows(2).all(|w| w[0][3] < w[1][3]));
         }
+        assert_eq!(end as usize, index.star_lists.len());
     }
 
     /// What a level lists and what its mean sky holds is all there is.
     #[test]
     fn every_level_has_the_light_of_all_stars() {
         let index = StarIndex::shared();
-        let sum = |mean: &MeanSky| mean.parts.iter().map(|p| p.radiance * 4.0 * PI).sum::<f64>();
+        let sum = |mean: &MeanSky| mean.radiance * 4.0 * PI;
         let all = index.stars.iter().step_by(2).map(|star| f64::from(star[3])).sum::<f64>();
         for mean in &index.mean_sky {
             let bright = index.stars.iter().step_by(2).filter(|star| star[3] >= mean.flux_limit);
             let listed = bright.map(|star| f64::from(star[3])).sum::<f64>();
             assert!(((listed + sum(mean)) / all - 1.0).abs() < 1e-6, "{listed} + {} of {all}", sum(mean));
         }
-        let longest = (0..CELL_COUNT as u32).map(|cell| index.cell_stars(cell).count()).max();
+        let longest = (0..CELL_COUNT as u32).map(|cell| index.cell_stars(cell).len()).max();
         assert!(longest.is_some_and(|n| n < 64), "longest list {longest:?}");
     }
 
@@ -372,11 +430,7 @@ mod tests {
                 let light = table.shifted_blackbody(star[1][0].into(), star[1][1].into(), g, g);
                 (0..3).for_each(|c| exact[c] += f64::from(star[0][3]) * light[c] / (4.0 * PI));
             }
-            let mut mean = [0.0; 3];
-            for part in index.mean_sky[STAR_LEVELS as usize].parts {
-                let light = table.shifted_blackbody(part.temperature, part.log_reference, g, g);
-                (0..3).for_each(|c| mean[c] += part.radiance * light[c]);
-            }
+            let mean = index.mean_sky[STAR_LEVELS as usize].light(g, g);
             for c in 0..3 {
                 assert!((mean[c] / exact[c] - 1.0).abs() < tolerance, "g {g}: {mean:?} for {exact:?}");
             }

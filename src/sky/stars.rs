@@ -40,9 +40,10 @@ struct Patch {
 }
 
 impl Patch {
-    /// `stretch2`: the square of the longest derivative.
-    fn new(d: DVec3, dx: DVec3, dy: DVec3, stretch2: f64) -> Self {
+    fn new(d: DVec3, dx: DVec3, dy: DVec3) -> Self {
         let area = dx.cross(dy).dot(d);
+        // The sum of the squares of both singular values: that of the larger one wherever MIN_AREA matters.
+        let stretch2 = dx.length_squared() + dy.length_squared();
         let magnification = 1.0 / area.abs().max(MIN_AREA * stretch2).max(TINY_AREA);
         Self { d, across: dy.cross(d), down: d.cross(dx), area, magnification }
     }
@@ -61,10 +62,9 @@ impl Patch {
     }
 }
 
-/// Square of the largest singular value of [dx dy].
-fn stretch_squared(dx: DVec3, dy: DVec3) -> f64 {
-    let (a, b, c) = (dx.length_squared(), dx.dot(dy), dy.length_squared());
-    0.5 * (a + c) + (0.25 * (a - c) * (a - c) + b * b).sqrt()
+/// Distance of the footprint's farther corners, (1.5, +-1.5) pixels away.
+fn footprint_radius(dx: DVec3, dy: DVec3) -> f64 {
+    1.5 * (dx.length_squared() + dy.length_squared() + 2.0 * dx.dot(dy).abs()).sqrt()
 }
 
 impl StarIndex {
@@ -72,30 +72,29 @@ impl StarIndex {
     /// pixel; `g_colour`, `g_beaming` as for `BlackbodyTable::shifted_blackbody`. Where the pixel is wider than the index reaches, or
     /// its derivatives are not finite (at the edge of the shadow), the mean light of all stars. Finite for any input.
     pub fn star_light(&self, d: DVec3, dx: DVec3, dy: DVec3, g_colour: f64, g_beaming: f64) -> [f64; 3] {
-        let stretch2 = stretch_squared(dx, dy);
-        // The footprint's corner, (1.5, 1.5) pixels away.
-        let radius = 1.5 * std::f64::consts::SQRT_2 * stretch2.sqrt();
+        let radius = footprint_radius(dx, dy);
         let mut light = [0.0; 3];
         let mut add = |share: f64, rgb: [f64; 3]| (0..3).for_each(|c| light[c] += share * rgb[c]);
-        let table = BlackbodyTable::shared();
         // Beyond the coarsest level, and for NaN, nothing is left of its stars.
         let found = level_for(radius);
         let level = found.unwrap_or(STAR_LEVELS - 1);
+        let listed = found.map_or(&[][..], |level| self.cell_stars(cell_of(d, level)));
         let fade = if found.is_some() { fade(level, radius) } else { 0.0 };
         let [mean, next] = [0, 1].map(|step| &self.mean_sky[(level + step) as usize]);
-        let patch = Patch::new(d, dx, dy, stretch2);
-        for (star, kind) in self.cell_stars(cell_of(d, level)).take_while(|_| found.is_some()) {
+        let patch = Patch::new(d, dx, dy);
+        for &star in listed {
             let spread = patch.spread(DVec3::new(star[0].into(), star[1].into(), star[2].into()));
             if spread > 0.0 {
-                let share = if star[3] >= next.flux_limit { 1.0 } else { fade };
-                let rgb = table.shifted_blackbody(kind[0].into(), kind[1].into(), g_colour, g_beaming);
-                add(share * spread * f64::from(star[3]), rgb);
+                let [flux, temperature, log_reference] = self.kind_of(star);
+                let share = if flux >= f64::from(next.flux_limit) { 1.0 } else { fade };
+                let table = BlackbodyTable::shared();
+                let rgb = table.shifted_blackbody(temperature, log_reference, g_colour, g_beaming);
+                add(share * spread * flux, rgb);
             }
         }
         for (share, mean) in [(fade, mean), (1.0 - fade, next)] {
-            for part in mean.parts.iter().filter(|part| share * part.radiance > 0.0) {
-                let rgb = table.shifted_blackbody(part.temperature, part.log_reference, g_colour, g_beaming);
-                add(share * part.radiance, rgb);
+            if share > 0.0 && !mean.is_dark() {
+                add(share, mean.light(g_colour, g_beaming));
             }
         }
         light.map(|v| v.min(MAX_STAR_LIGHT))
@@ -188,7 +187,7 @@ mod tests {
             for star in index.stars.iter().step_by(2 * (997 + i)) {
                 let forward = DVec3::new(star[0].into(), star[1].into(), star[2].into()).normalize();
                 let (d, dx, dy) = pixel(forward, scale, 0.3, -0.6);
-                let patch = Patch::new(d, dx, dy, stretch_squared(dx, dy));
+                let patch = Patch::new(d, dx, dy);
                 let mut wanted = [0.0; 3];
                 for pair in index.stars.chunks(2) {
                     let s = DVec3::new(pair[0][0].into(), pair[0][1].into(), pair[0][2].into());
@@ -210,7 +209,7 @@ mod tests {
     #[test]
     fn wide_pixels_blend_into_the_mean() {
         let index = StarIndex::shared();
-        let mean = index.mean_sky[STAR_LEVELS as usize].parts.iter().map(|p| p.radiance).sum::<f64>();
+        let mean = index.mean_sky[STAR_LEVELS as usize].radiance;
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
         assert!((luminance(index.star_light(d, dx, dy, 1.0, 1.0)) / mean - 1.0).abs() < 1e-3);
         let mut before: Option<f64> = None;
