@@ -18,7 +18,7 @@ struct KerrLens {
     capture_u: f32,
 }
 
-const KERR_COLUMNS: u32 = 256u;
+const KERR_COLUMNS: u32 = 512u;
 const KERR_PER_OCTAVE: u32 = 16u;
 const KERR_OCTAVES: f32 = 10.0;
 const KERR_ROWS_BELOW: u32 = 2u;

@@ -11,7 +11,8 @@
 // Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings; and of azimuths, rad,
 // and delays, relative to the orbital time.
 const KERR_TOLERANCE: f32 = 2e-6;
-const KERR_PATTERN_TOLERANCE: f32 = 1e-5;
+const KERR_RADIUS_TOLERANCE: f32 = 4e-6;
+const KERR_PATTERN_TOLERANCE: f32 = 1e-4;
 
 // Lower corner of the cell.
 var<private> cell: vec2<u32>;
@@ -126,7 +127,7 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let size = clamp(p.middle[k], far, near);
     let stretch = stretch_of(abs(vec2<f32>(p.by_row[0][k], p.by_row[1][k])), abs(vec2<f32>(p.by_column[0][k], p.by_column[1][k])));
     let conditioning = 1.0 + critical * stretch / size;
-    let good = p.error[k] <= KERR_TOLERANCE * conditioning * size;
+    let good = p.error[k] <= KERR_RADIUS_TOLERANCE * conditioning * size;
     return bit | select(KERR_DIRECT, 0u, good);
 }
 

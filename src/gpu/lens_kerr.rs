@@ -12,7 +12,7 @@ use glam::{DVec3, Vec4};
 use wgpu::BufferUsages as Usage;
 
 /// As in lens_kerr.wgsl.
-const COLUMNS: u32 = 256;
+const COLUMNS: u32 = 512;
 const PER_OCTAVE: usize = 16;
 /// Orders in a layer without pattern.
 const ORDERS_A_LAYER: u32 = 4;
