@@ -2,7 +2,7 @@
 //! about the critical curve (`critical`), interpolated instead of integrated. Physics alone: knows neither pixels nor threads;
 //! callers may spread `Grid::node` and `Grid::flags`, which are one independent task per node and per cell.
 //!
-//! Coordinates: chi along the curve, periodic, and x = n log2 |t^| with t^ = tan((psi - R(chi)) / 2) / T(chi), T = tan(R / 2) and
+//! Coordinates: w(chi) along the curve (`Columns`), periodic, and x = n log2 |t^| with t^ = tan((psi - R(chi)) / 2) / T(chi), T = tan(R / 2) and
 //! n nodes per octave: deflections and crossings diverge with ln |psi - R| at the curve. Two branches: outer (t^ > 0, the ray
 //! escapes) and inner (captured). Both are continued a few nodes past the point where psi reaches pi or 0, on to the other side
 //! of the axis, where everything stays smooth. Interpolation: cubic Lagrange, 4 x 4 nodes.
@@ -32,6 +32,10 @@ const STEP: f64 = 0.1;
 const BEYOND_INFINITY: f64 = 1.0;
 /// More than any ray of the grid needs.
 const MAX_STEPS: usize = 2000;
+/// Least epsilon of `Columns`: what lies within this angle of the plane of an eye yet nearer to it is to be integrated.
+const NARROWEST_LAYER: f64 = 1e-3;
+/// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without one.
+const INWARD: f64 = 1.5;
 /// u of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
 pub const NO_CROSSING: f64 = 1e3;
 /// Most numbers in one node.
@@ -80,13 +84,52 @@ pub struct Crossings {
     pub pattern: bool,
 }
 
+/// The coordinate along the critical curve: w = (chi + v) / 2 with tan v = tan chi / epsilon, epsilon = |cot th| of the eye.
+///
+/// A ray that starts at the angle chi to the plane first meets it after the orbit angle atan2(|cot th|, sin chi) (spin 0): for an
+/// eye near the plane that changes from 0 to pi within epsilon about chi = 0 and pi. Half of the nodes go there, in even steps of v.
+#[derive(Clone, Debug)]
+struct Columns {
+    epsilon: f64,
+    /// chi at the nodes, in [0, 2 pi).
+    chi: Vec<f64>,
+}
+
+impl Columns {
+    fn new(frame: &LocalFrame, count: usize) -> Self {
+        let mut columns = Self { epsilon: (frame.cos / frame.sin).abs().clamp(NARROWEST_LAYER, 1.0), chi: Vec::new() };
+        columns.chi = (0..count).map(|i| columns.angle(TAU * i as f64 / count as f64)).collect();
+        columns
+    }
+
+    /// w in [0, 2 pi) and dw/dchi.
+    fn coordinate(&self, sin: f64, cos: f64) -> (f64, f64) {
+        let w = 0.5 * (sin.atan2(cos) + sin.atan2(self.epsilon * cos));
+        let slope = 0.5 + 0.5 * self.epsilon / ((self.epsilon * cos).powi(2) + sin * sin);
+        (if w < 0.0 { w + TAU } else { w }, slope)
+    }
+
+    /// chi at `w`, both in [0, 2 pi), by halving: w is steep.
+    fn angle(&self, w: f64) -> f64 {
+        let (mut low, mut high) = (0.0, TAU);
+        for _ in 0..60 {
+            let middle: f64 = 0.5 * (low + high);
+            let (sin, cos) = middle.sin_cos();
+            if self.coordinate(sin, cos).0 <= w { low = middle } else { high = middle }
+        }
+        low
+    }
+}
+
 /// Coordinates, size and contents of a table: all that nodes and cells are computed from.
 #[derive(Clone, Debug)]
 pub struct Grid {
     frame: LocalFrame,
     curve: CriticalCurve,
-    resolution: Resolution,
+    columns: Columns,
+    nodes_per_octave: f64,
     wanted: Crossings,
+    /// Where drag and delay end.
     capture_u: f64,
     /// Outer, inner.
     rows: [usize; 2],
@@ -109,20 +152,20 @@ impl Grid {
     /// `None` when the eye is too near the photon region or too far (`CriticalCurve::new`).
     pub fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
         let curve = CriticalCurve::new(frame)?;
-        let resolution =
-            Resolution { chi_nodes: resolution.chi_nodes.max(8), nodes_per_octave: resolution.nodes_per_octave.max(1) };
-        let per_octave = resolution.nodes_per_octave as f64;
+        let columns = Columns::new(frame, resolution.chi_nodes.max(8));
+        let nodes_per_octave = resolution.nodes_per_octave.max(1) as f64;
         // t^ of the axis is 1 / T^2 outside and -1 inside.
         let octaves = -2.0 * curve.tangent_range()[0].log2();
         let rows = |octaves: f64| {
-            let to_axis = ((CORE_OCTAVES as f64 + octaves) * per_octave).ceil().max(1.0);
+            let to_axis = ((CORE_OCTAVES as f64 + octaves) * nodes_per_octave).ceil().max(1.0);
             to_axis as usize + ROWS_BELOW + ROWS_ABOVE + 1
         };
         let wanted = Crossings { orders: wanted.orders.min(CROSSINGS_KEPT), ..wanted };
         // Circular orbits end at the photon orbit; beside the horizon the drag diverges.
         let spin = frame.a.abs();
-        let capture_u = (1.0 / (0.99 * photon_orbit(spin))).min((1.0 - 1e-4) / horizon_outer(spin));
-        Some(Self { frame: *frame, curve, resolution, wanted, capture_u, rows: [rows(octaves), rows(0.0)] })
+        let capture_u = (1.0 / (0.99 * photon_orbit(spin))).min(0.99 / horizon_outer(spin));
+        let rows = [rows(octaves), rows(0.0)];
+        Some(Self { frame: *frame, curve, columns, nodes_per_octave, wanted, capture_u, rows })
     }
 
     pub fn curve(&self) -> &CriticalCurve {
@@ -131,7 +174,7 @@ impl Grid {
 
     /// Nodes along chi.
     pub fn columns(&self) -> usize {
-        self.resolution.chi_nodes
+        self.columns.chi.len()
     }
 
     /// Nodes along x.
@@ -150,13 +193,13 @@ impl Grid {
 
     /// |t^| at a row.
     fn reduced_tangent(&self, row: f64) -> f64 {
-        let octaves = (row - ROWS_BELOW as f64) / self.resolution.nodes_per_octave as f64;
+        let octaves = (row - ROWS_BELOW as f64) / self.nodes_per_octave;
         (octaves - CORE_OCTAVES as f64).exp2()
     }
 
-    /// The look direction at grid coordinates; fractions lie between the nodes.
-    pub fn direction(&self, branch: Branch, column: f64, row: f64) -> DVec3 {
-        let chi = TAU * column / self.resolution.chi_nodes as f64;
+    /// The look direction at a column and a row, which may lie between nodes.
+    pub fn direction(&self, branch: Branch, column: usize, row: f64) -> DVec3 {
+        let chi = self.columns.chi[column % self.columns()];
         let (t_critical, _) = self.curve.at(chi);
         let t = self.reduced_tangent(row) * t_critical;
         let away = if branch == Branch::Outer { t.atan() } else { -t.atan() };
@@ -178,13 +221,12 @@ impl Grid {
         if octaves.is_nan() || octaves < 0.0 {
             return None;
         }
-        let per_octave = self.resolution.nodes_per_octave as f64;
-        let row = octaves * per_octave + ROWS_BELOW as f64;
+        let row = octaves * self.nodes_per_octave + ROWS_BELOW as f64;
         let row_floor = (row.floor() as usize).min(self.rows(branch) - ROWS_ABOVE - 1);
-        let columns = self.columns() as f64;
-        let column = (p.chi * columns / TAU).rem_euclid(columns);
+        let (w, w_slope) = self.columns.coordinate(p.sin_chi, p.cos_chi);
+        let column = w * self.columns() as f64 / TAU;
         let column_floor = (column as usize).min(self.columns() - 1);
-        let (column_gradient, row_gradient) = self.gradients(&p, t, t_critical, slope);
+        let (column_gradient, row_gradient) = self.gradients(&p, w_slope, t, (t_critical, slope));
         Some(Place {
             branch,
             column: column_floor,
@@ -197,19 +239,18 @@ impl Grid {
     }
 
     /// d chi = along . dn / sin psi; dt = (1 + t^2) / 2 (d psi - d R), d R = 2 d T / (1 + T^2), dx = n / ln 2 (dt / t - dT / T).
-    fn gradients(&self, p: &Polar, t: f64, t_critical: f64, slope: f64) -> (DVec3, DVec3) {
+    fn gradients(&self, p: &Polar, w_slope: f64, t: f64, (t_critical, slope): (f64, f64)) -> (DVec3, DVec3) {
         let chi = p.along / p.sin.max(1e-9);
         let t_critical_gradient = chi * slope;
         let radius = t_critical_gradient * (2.0 / (1.0 + t_critical * t_critical));
         let t_gradient = (p.outward - radius) * (0.5 * (1.0 + t * t));
         let x = t_gradient / t - t_critical_gradient / t_critical;
-        let (columns, rows) = (self.columns() as f64, self.resolution.nodes_per_octave as f64);
-        (chi * (columns / TAU), x * (rows / LN_2))
+        (chi * (w_slope * self.columns() as f64 / TAU), x * (self.nodes_per_octave / LN_2))
     }
 
     /// The content of a node, by integration of its ray.
     pub fn node(&self, branch: Branch, column: usize, row: usize) -> Node {
-        let n = self.direction(branch, column as f64, row as f64);
+        let n = self.direction(branch, column, row as f64);
         let mut ray = NodeRay::new(&self.wanted, self.capture_u);
         if let Some((c, start)) = self.frame.start(n) {
             ray.follow(&c, &start);
@@ -246,12 +287,12 @@ impl Grid {
 
     /// Angles on the eye's sky, rad: a cell's extent along chi and along x, and sin R.
     fn cell_angles(&self, branch: Branch, column: usize, row: usize) -> CellAngles {
-        let (i, j) = (column as f64, row as f64);
+        let (i, j) = (column, row as f64);
         let here = self.direction(branch, i, j + 0.5);
-        let t = self.curve.at(TAU * i / self.columns() as f64).0;
+        let t = self.curve.at(self.columns.chi[i]).0;
         CellAngles {
             // At the axis chi means nothing; the row's own extent bounds the cell there.
-            column: here.distance(self.direction(branch, i + 1.0, j + 0.5)),
+            column: here.distance(self.direction(branch, i + 1, j + 0.5)),
             row: self.direction(branch, i, j).distance(self.direction(branch, i, j + 1.0)),
             critical: 2.0 * t / (1.0 + t * t),
         }
@@ -279,13 +320,12 @@ struct NodeRay<'a> {
     wanted: &'a Crossings,
     capture_u: f64,
     sky: Option<DVec3>,
-    captured: bool,
     crossings: ArrayVec<[f64; PER_CROSSING], CROSSINGS_KEPT>,
 }
 
 impl<'a> NodeRay<'a> {
     fn new(wanted: &'a Crossings, capture_u: f64) -> Self {
-        Self { wanted, capture_u, sky: None, captured: false, crossings: ArrayVec::new() }
+        Self { wanted, capture_u, sky: None, crossings: ArrayVec::new() }
     }
 
     fn follow(&mut self, c: &Constants, start: &State) {
@@ -295,8 +335,13 @@ impl<'a> NodeRay<'a> {
         let mut side = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
         let mut beyond = 0.0;
         for _ in 0..MAX_STEPS {
-            let h = (STEP / c.scale).min(step_limit(c, &state, STEP));
-            let (next, _) = step(Method::Nystrom, c, &state, h, settings.delay);
+            let inside = state.u >= self.capture_u;
+            // Beyond `capture_u` only u and N go on, which pass the horizon evenly.
+            let h = if inside { STEP / c.scale } else { (STEP / c.scale).min(step_limit(c, &state, STEP)) };
+            let (mut next, _) = step(Method::Nystrom, c, &state, h, settings.delay);
+            if inside {
+                (next.drag, next.delay) = (state.drag, state.delay);
+            }
             if side * next.n.z < 0.0 {
                 side = next.n.z;
                 self.cross(c, start, &settings, (&state, &next, h));
@@ -309,9 +354,10 @@ impl<'a> NodeRay<'a> {
             if next.u <= 0.0 {
                 beyond += h * c.scale;
             }
-            self.captured = next.du > 0.0 && next.u >= self.capture_u;
-            let complete = self.sky.is_some() && self.crossings.len() >= self.wanted.orders;
-            if complete || self.captured || beyond > BEYOND_INFINITY {
+            // Inside, the ray is captured however it goes on.
+            let captured = next.u >= INWARD * self.capture_u || (inside && next.du < 0.0);
+            let complete = (self.sky.is_some() || inside) && self.crossings.len() >= self.wanted.orders;
+            if complete || captured || beyond > BEYOND_INFINITY {
                 return;
             }
             state = next;
@@ -323,7 +369,10 @@ impl<'a> NodeRay<'a> {
             return;
         }
         let guess = h * Quintic::of_n_z(c, from, to, h).root();
-        let (state, _) = land(c, settings, from, guess, |s| (s.n.z, s.dn.z));
+        let (mut state, _) = land(c, settings, from, guess, |s| (s.n.z, s.dn.z));
+        if from.u >= self.capture_u {
+            (state.drag, state.delay) = (from.drag, from.delay);
+        }
         let delay = if self.wanted.pattern { regular_delay(c, eye, &state) } else { 0.0 };
         let direction = state.chart_direction();
         self.crossings.push([state.u, direction.x, direction.y, delay]);
@@ -823,7 +872,7 @@ mod tests {
             m.sky.push(error);
         }
         let [far, near] = grid.wanted.disk_u;
-        let p = grid.curve.at(TAU * place.column as f64 / grid.columns() as f64).0;
+        let p = grid.curve.at(grid.columns.chi[place.column]).0;
         let critical = 2.0 * p / (1.0 + p * p);
         for crossing in truth.crossings.iter().filter(|x| (x.order as usize) < grid.wanted.orders) {
             let found = seen.crossings.iter().find(|x| x.order == crossing.order);
@@ -892,7 +941,7 @@ mod tests {
     #[test]
     #[ignore = "a measurement"]
     fn direct_causes() {
-        for a in [0.1, 0.5, 0.9, 0.998, -0.998] {
+        for a in [0.1, 0.9, 0.998, -0.998] {
             for r in [4.5, 10.0, 30.0, 1000.0] {
                 for theta in [FRAC_PI_2, FRAC_PI_2 + 1e-3, 1.45, 0.7, 0.0] {
                     let mut place = chart(r, theta, 0.3);
@@ -901,7 +950,7 @@ mod tests {
                     }
                     let frame = LocalFrame::new(a, place).unwrap();
                     let mut shares = Vec::new();
-                    for orders in 0..5 {
+                    for orders in [0, 1, 4] {
                         let resolution = Resolution::default();
                         let wanted = Crossings { orders, ..wanted(a, false) };
                         let mut lazy = Lazy::new(&frame, resolution, wanted).unwrap();
@@ -920,7 +969,7 @@ mod tests {
                         }
                         shares.push(format!("{:.3} ({}+{})", f64::from(direct) / f64::from(all), rows[0], rows[1]));
                     }
-                    println!("a {a} r {r} theta {theta:.3}: orders 0..4 {}", shares.join(" "));
+                    println!("a {a} r {r} theta {theta:.3}: orders 0, 1, 4 {}", shares.join(" "));
                 }
             }
         }
