@@ -7,8 +7,9 @@
 //! escapes) and inner (captured). Both are continued a few nodes past the point where psi reaches pi or 0, on to the other side
 //! of the axis, where everything stays smooth. Interpolation: cubic Lagrange, 4 x 4 nodes.
 //!
-//! A node holds `channels` numbers: the sky direction (chart; 0 when captured), then for every order of crossing u = 1 / r there,
-//! continued through infinity to u < 0, and if wanted the unit vector of its azimuth and its delay in a form regular at
+//! A node holds `channels` numbers: the sky direction (chart; 0 when captured), then for every order of crossing U = u S, with
+//! u = 1 / r there, continued through infinity to u < 0, and S = (1 - n_r^2)^(1/2) (a straight ray has u S = u_eye sin(angle):
+//! u itself diverges like 1 / S for rays that leave radially), and if wanted the unit vector of its azimuth and its delay in a form regular at
 //! infinity (`regular_delay`).
 
 use super::critical::{CriticalCurve, Polar};
@@ -33,10 +34,10 @@ const BEYOND_INFINITY: f64 = 1.0;
 /// More than any ray of the grid needs.
 const MAX_STEPS: usize = 2000;
 /// Least epsilon of `Columns`: what lies within this angle of the plane of an eye yet nearer to it is to be integrated.
-const NARROWEST_LAYER: f64 = 1e-3;
+const NARROWEST_LAYER: f64 = 0.03;
 /// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without one.
 const INWARD: f64 = 1.5;
-/// u of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
+/// U of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
 pub const NO_CROSSING: f64 = 1e3;
 /// Most numbers in one node.
 pub const CHANNELS_MOST: usize = SKY + PER_CROSSING * CROSSINGS_KEPT;
@@ -97,7 +98,9 @@ struct Columns {
 
 impl Columns {
     fn new(frame: &LocalFrame, count: usize) -> Self {
-        let mut columns = Self { epsilon: (frame.cos / frame.sin).abs().clamp(NARROWEST_LAYER, 1.0), chi: Vec::new() };
+        // In the plane every ray meets it again after the same angle.
+        let cot = if frame.cos == 0.0 { 1.0 } else { (frame.cos / frame.sin).abs() };
+        let mut columns = Self { epsilon: cot.clamp(NARROWEST_LAYER, 1.0), chi: Vec::new() };
         columns.chi = (0..count).map(|i| columns.angle(TAU * i as f64 / count as f64)).collect();
         columns
     }
@@ -143,6 +146,9 @@ pub struct Place {
     pub row: usize,
     pub column_fraction: f64,
     pub row_fraction: f64,
+    /// S and its gradient.
+    pub side: f64,
+    pub side_gradient: DVec3,
     /// Gradients, by the look direction (components), of the grid coordinates column and row.
     pub column_gradient: DVec3,
     pub row_gradient: DVec3,
@@ -233,6 +239,8 @@ impl Grid {
             row: row_floor,
             column_fraction: column - column_floor as f64,
             row_fraction: row - row_floor as f64,
+            side: side(n),
+            side_gradient: n.with_x(0.0) / side(n),
             column_gradient,
             row_gradient,
         })
@@ -251,7 +259,7 @@ impl Grid {
     /// The content of a node, by integration of its ray.
     pub fn node(&self, branch: Branch, column: usize, row: usize) -> Node {
         let n = self.direction(branch, column, row as f64);
-        let mut ray = NodeRay::new(&self.wanted, self.capture_u);
+        let mut ray = NodeRay::new(&self.wanted, self.capture_u, side(n));
         if let Some((c, start)) = self.frame.start(n) {
             ray.follow(&c, &start);
         }
@@ -269,7 +277,9 @@ impl Grid {
     ) -> u32 {
         let columns = self.columns();
         let at = |i: usize, j: usize| node((column + columns + i - 2) % columns, row + j - 2);
-        let patch = Patch { at: &at, angles: self.cell_angles(branch, column, row) };
+        let node_side = |i, j| side(self.direction(branch, column + columns + i - 2, (row + j - 2) as f64));
+        let sides = std::array::from_fn(|i| std::array::from_fn(|j| node_side(i + 1, j + 1)));
+        let patch = Patch { at: &at, sides, angles: self.cell_angles(branch, column, row) };
         let mut flags = 0;
         if branch == Branch::Outer && !patch.sky_is_good() {
             flags |= DIRECT;
@@ -299,6 +309,11 @@ impl Grid {
     }
 }
 
+/// S of a look direction: the sine of its angle to the radius; not 0.
+fn side(n: DVec3) -> f64 {
+    n.y.hypot(n.z).max(1e-12)
+}
+
 /// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity smoothly (but
 /// for terms of u^2 ln |u|).
 pub fn divergent_delay(u: f64, u_eye: f64) -> f64 {
@@ -319,13 +334,14 @@ fn regular_delay(c: &Constants, eye: &State, there: &State) -> f64 {
 struct NodeRay<'a> {
     wanted: &'a Crossings,
     capture_u: f64,
+    side: f64,
     sky: Option<DVec3>,
     crossings: ArrayVec<[f64; PER_CROSSING], CROSSINGS_KEPT>,
 }
 
 impl<'a> NodeRay<'a> {
-    fn new(wanted: &'a Crossings, capture_u: f64) -> Self {
-        Self { wanted, capture_u, sky: None, crossings: ArrayVec::new() }
+    fn new(wanted: &'a Crossings, capture_u: f64, side: f64) -> Self {
+        Self { wanted, capture_u, side, sky: None, crossings: ArrayVec::new() }
     }
 
     fn follow(&mut self, c: &Constants, start: &State) {
@@ -375,7 +391,7 @@ impl<'a> NodeRay<'a> {
         }
         let delay = if self.wanted.pattern { regular_delay(c, eye, &state) } else { 0.0 };
         let direction = state.chart_direction();
-        self.crossings.push([state.u, direction.x, direction.y, delay]);
+        self.crossings.push([state.u * self.side, direction.x, direction.y, delay]);
     }
 
     /// The node's numbers; crossings that did not come are marked by u.
@@ -408,6 +424,8 @@ enum Hit {
 /// The 6 x 6 nodes about a cell; the cell lies between indices 2 and 3.
 struct Patch<'a, 'b> {
     at: &'a dyn Fn(usize, usize) -> &'b [f64],
+    /// S at the inner 4 x 4 nodes.
+    sides: [[f64; 4]; 4],
     angles: CellAngles,
 }
 
@@ -428,21 +446,30 @@ impl Patch<'_, '_> {
         3.0 / 128.0 * (column(2).max(column(3)) + row(2).max(row(3)))
     }
 
-    /// Change of a channel per rad of look direction: the smaller one over the cell of the greater one of both directions.
-    fn stretch(&self, channels: std::ops::Range<usize>) -> f64 {
-        let change = |a: (usize, usize), b: (usize, usize)| {
-            channels.clone().map(|k| (self.value(k, a.0, a.1) - self.value(k, b.0, b.1)).powi(2)).sum::<f64>().sqrt()
-        };
+    /// u at one of the inner 4 x 4 nodes.
+    fn u(&self, channel: usize, i: usize, j: usize) -> f64 {
+        self.value(channel, i, j) / self.sides[i - 1][j - 1]
+    }
+
+    /// Change per rad of look direction, from changes between nodes: the smaller one over the cell of the greater one of both
+    /// directions.
+    fn stretch(&self, change: impl Fn((usize, usize), (usize, usize)) -> f64) -> f64 {
         let row = change((2, 2), (2, 3)).min(change((3, 2), (3, 3))) / self.angles.row;
         let column = change((2, 2), (3, 2)).min(change((2, 3), (3, 3))) / self.angles.column.max(1e-12);
         row.max(column)
+    }
+
+    /// The same of the vector of some channels.
+    fn vector_stretch(&self, channels: std::ops::Range<usize>) -> f64 {
+        let change = |k, a: (usize, usize), b: (usize, usize)| self.value(k, a.0, a.1) - self.value(k, b.0, b.1);
+        self.stretch(|a, b| channels.clone().map(|k| change(k, a, b).powi(2)).sum::<f64>().sqrt())
     }
 
     fn sky_is_good(&self) -> bool {
         let escaped = (0..6).all(|i| (0..6).all(|j| (0..SKY).any(|k| self.value(k, i, j) != 0.0)));
         let error = (0..SKY).map(|k| self.error(k).powi(2)).sum::<f64>().sqrt();
         // Written so that NaN is not good.
-        escaped && error <= TOLERANCE * self.stretch(0..SKY).max(1.0)
+        escaped && error <= TOLERANCE * self.vector_stretch(0..SKY).max(1.0)
     }
 
     fn crossing(&self, channel: usize, wanted: &Crossings) -> Hit {
@@ -455,21 +482,23 @@ impl Patch<'_, '_> {
         if !(1..5).all(|i| (1..5).all(|j| inside(i, j))) {
             return Hit::Poor;
         }
-        let middle = 0.5 * (self.value(channel, 2, 2) + self.value(channel, 3, 3));
+        let middle = 0.5 * (self.u(channel, 2, 2) + self.u(channel, 3, 3));
         let size = middle.clamp(far, near).max(f64::MIN_POSITIVE);
         // Relative change for a relative change of the impact parameter.
-        let conditioning = 1.0 + self.angles.critical * self.stretch(channel..channel + 1) / size;
-        let radius_good = self.error(channel) <= TOLERANCE * conditioning * size;
+        let stretch = self.stretch(|a, b| (self.u(channel, a.0, a.1) - self.u(channel, b.0, b.1)).abs());
+        let conditioning = 1.0 + self.angles.critical * stretch / size;
+        let least_side = self.sides[1][1].min(self.sides[1][2]).min(self.sides[2][1]).min(self.sides[2][2]);
+        let radius_good = self.error(channel) <= TOLERANCE * conditioning * size * least_side;
         let pattern_good = !wanted.pattern || self.pattern_is_good(channel, size);
         if radius_good && pattern_good { Hit::Possible } else { Hit::Poor }
     }
 
     fn pattern_is_good(&self, channel: usize, u: f64) -> bool {
         let azimuth = self.error(channel + 1).hypot(self.error(channel + 2));
-        let azimuth_conditioning = 1.0 + self.angles.critical * self.stretch(channel + 1..channel + 3);
+        let azimuth_conditioning = 1.0 + self.angles.critical * self.vector_stretch(channel + 1..channel + 3);
         // d ph = Omega dt, Omega = r^(-3/2) (Kepler).
         let turn = u * u.sqrt();
-        let delay_conditioning = 1.0 + self.angles.critical * turn * self.stretch(channel + 3..channel + 4);
+        let delay_conditioning = 1.0 + self.angles.critical * turn * self.vector_stretch(channel + 3..channel + 4);
         azimuth <= PATTERN_TOLERANCE * azimuth_conditioning
             && turn * self.error(channel + 3) <= PATTERN_TOLERANCE * delay_conditioning
     }
@@ -479,9 +508,9 @@ impl Patch<'_, '_> {
     fn range(&self, channel: usize) -> [f64; 2] {
         let (mut all, mut finite) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
         for (i, j) in (1..5).flat_map(|i| (1..5).map(move |j| (i, j))) {
-            let u = self.value(channel, i, j);
+            let u = self.u(channel, i, j);
             all = [all[0].min(u), all[1].max(u)];
-            if u.abs() < NO_CROSSING {
+            if self.value(channel, i, j).abs() < NO_CROSSING {
                 finite = [finite[0].min(u), finite[1].max(u)];
             }
         }
@@ -592,7 +621,7 @@ impl Grid {
 
     fn crossing_of(&self, at: &Interpolated, place: &Place, order: usize) -> Option<Crossing> {
         let channel = SKY + order * self.per_crossing();
-        let u = at.value[channel];
+        let u = at.value[channel] / place.side;
         if !(u >= self.wanted.disk_u[0] && u <= self.wanted.disk_u[1]) {
             return None;
         }
@@ -602,7 +631,8 @@ impl Grid {
         } else {
             (0.0, 0.0)
         };
-        let u_gradient = place.column_gradient * at.by_column[channel] + place.row_gradient * at.by_row[channel];
+        let gradient = place.column_gradient * at.by_column[channel] + place.row_gradient * at.by_row[channel];
+        let u_gradient = (gradient - place.side_gradient * u) / place.side;
         Some(Crossing { order: order as u32, u, azimuth, delay, u_gradient })
     }
 }
@@ -940,7 +970,7 @@ mod tests {
     /// Which conditions make cells direct, by spin and place of the eye.
     #[test]
     #[ignore = "a measurement"]
-    fn direct_causes() {
+    fn share_of_direct_rays() {
         for a in [0.1, 0.9, 0.998, -0.998] {
             for r in [4.5, 10.0, 30.0, 1000.0] {
                 for theta in [FRAC_PI_2, FRAC_PI_2 + 1e-3, 1.45, 0.7, 0.0] {
