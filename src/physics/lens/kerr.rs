@@ -35,6 +35,8 @@ const BEYOND_INFINITY: f64 = 1.0;
 const MAX_STEPS: usize = 2000;
 /// Least epsilon of `Columns`: what lies within this angle of the plane of an eye yet nearer to it is to be integrated.
 const NARROWEST_LAYER: f64 = 0.03;
+/// Share of the nodes that gather in the layers of `Columns`.
+const LAYER_SHARE: f64 = 0.5;
 /// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without one.
 const INWARD: f64 = 1.5;
 /// U of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
@@ -92,23 +94,27 @@ pub struct Crossings {
 #[derive(Clone, Debug)]
 struct Columns {
     epsilon: f64,
+    /// Share of the nodes that v spaces.
+    share: f64,
     /// chi at the nodes, in [0, 2 pi).
     chi: Vec<f64>,
 }
 
 impl Columns {
     fn new(frame: &LocalFrame, count: usize) -> Self {
-        // In the plane every ray meets it again after the same angle.
-        let cot = if frame.cos == 0.0 { 1.0 } else { (frame.cos / frame.sin).abs() };
-        let mut columns = Self { epsilon: cot.clamp(NARROWEST_LAYER, 1.0), chi: Vec::new() };
+        Self::spaced((frame.cos / frame.sin).abs().clamp(NARROWEST_LAYER, 1.0), LAYER_SHARE, count)
+    }
+
+    fn spaced(epsilon: f64, share: f64, count: usize) -> Self {
+        let mut columns = Self { epsilon, share, chi: Vec::new() };
         columns.chi = (0..count).map(|i| columns.angle(TAU * i as f64 / count as f64)).collect();
         columns
     }
 
     /// w in [0, 2 pi) and dw/dchi.
     fn coordinate(&self, sin: f64, cos: f64) -> (f64, f64) {
-        let w = 0.5 * (sin.atan2(cos) + sin.atan2(self.epsilon * cos));
-        let slope = 0.5 + 0.5 * self.epsilon / ((self.epsilon * cos).powi(2) + sin * sin);
+        let w = (1.0 - self.share) * sin.atan2(cos) + self.share * sin.atan2(self.epsilon * cos);
+        let slope = 1.0 - self.share + self.share * self.epsilon / ((self.epsilon * cos).powi(2) + sin * sin);
         (if w < 0.0 { w + TAU } else { w }, slope)
     }
 
@@ -967,39 +973,45 @@ mod tests {
         Crossings { orders: 4, disk_u: [1.0 / 30.0, 1.0 / isco(a)], pattern }
     }
 
-    /// Which conditions make cells direct, by spin and place of the eye.
+    /// Share of rays within three radii of the shadow, beyond the core, that are direct.
+    fn direct_share(lazy: &mut Lazy, count: usize) -> f64 {
+        let mut random = Random(5);
+        let (mut all, mut direct) = (0, 0);
+        while all < count {
+            let (kind, n) = aim(&lazy.grid.curve, &mut random);
+            if kind == Aim::Shadow {
+                all += 1;
+                let (place, _, look) = lazy.look(n);
+                direct += usize::from(place.is_some() && matches!(look, Look::Direct));
+            }
+        }
+        direct as f64 / all as f64
+    }
+
+    /// Share of direct rays, by the eye, without and with crossings.
     #[test]
     #[ignore = "a measurement"]
     fn share_of_direct_rays() {
-        for a in [0.1, 0.9, 0.998, -0.998] {
-            for r in [4.5, 10.0, 30.0, 1000.0] {
-                for theta in [FRAC_PI_2, FRAC_PI_2 + 1e-3, 1.45, 0.7, 0.0] {
-                    let mut place = chart(r, theta, 0.3);
-                    if theta == FRAC_PI_2 {
-                        place.z = 0.0;
-                    }
-                    let frame = LocalFrame::new(a, place).unwrap();
-                    let mut shares = Vec::new();
-                    for orders in [0, 1, 4] {
-                        let resolution = Resolution::default();
-                        let wanted = Crossings { orders, ..wanted(a, false) };
-                        let mut lazy = Lazy::new(&frame, resolution, wanted).unwrap();
-                        let mut random = Random(5);
-                        let (mut all, mut direct, mut rows) = (0, 0, [0; 2]);
-                        for _ in 0..4000 {
-                            let (kind, n) = aim(&lazy.grid.curve, &mut random);
-                            if kind == Aim::Shadow && all < 1000 {
-                                all += 1;
-                                let (place, _, look) = lazy.look(n);
-                                if let (Some(place), Look::Direct) = (place, look) {
-                                    direct += 1;
-                                    rows[place.branch as usize] += 1;
-                                }
-                            }
+        let resolution = Resolution { chi_nodes: 512, nodes_per_octave: 16 };
+        for a in [0.9, 0.998] {
+            for theta in [FRAC_PI_2, FRAC_PI_2 + 1e-3, 1.55, 1.5, 1.4, 1.2] {
+                for (narrowest, share) in [(0.03, 0.5), (0.06, 0.5), (0.1, 0.5), (0.15, 0.5), (0.06, 0.3), (0.1, 0.3)] {
+                    let mut shares = String::new();
+                    for r in [4.5, 12.0, 100.0] {
+                        let mut place = chart(r, theta, 0.3);
+                        if theta == FRAC_PI_2 {
+                            place.z = 0.0;
                         }
-                        shares.push(format!("{:.3} ({}+{})", f64::from(direct) / f64::from(all), rows[0], rows[1]));
+                        let frame = LocalFrame::new(a, place).unwrap();
+                        for orders in [0, 3] {
+                            let mut lazy =
+                                Lazy::new(&frame, resolution, Crossings { orders, ..wanted(a, false) }).unwrap();
+                            let epsilon = (frame.cos / frame.sin).abs().clamp(narrowest, 1.0);
+                            lazy.grid.columns = Columns::spaced(epsilon, share, 512);
+                            shares += &format!("{:.3} ", direct_share(&mut lazy, 600));
+                        }
                     }
-                    println!("a {a} r {r} theta {theta:.3}: orders 0, 1, 4 {}", shares.join(" "));
+                    println!("a {a} theta {theta:.4} narrowest {narrowest} share {share}: {shares}");
                 }
             }
         }
