@@ -33,6 +33,8 @@ const STEP: f64 = 0.1;
 const BEYOND_INFINITY: f64 = 1.0;
 /// More than any ray of the grid needs.
 const MAX_STEPS: usize = 2000;
+/// Eyes nearer than this, in M, have the finer outer branch; it has few octaves then.
+const NEAR_EYE: f64 = 15.0;
 /// Least epsilon of `Columns`: what lies within this angle of the plane of an eye yet nearer to it is to be integrated.
 const NARROWEST_LAYER: f64 = 0.03;
 /// Share of the nodes that gather in the layers of `Columns`.
@@ -67,12 +69,15 @@ pub enum Branch {
 pub struct Resolution {
     /// Over chi in [0, 2 pi); at least 8.
     pub chi_nodes: usize,
-    pub nodes_per_octave: usize,
+    /// Of |t^|, in the outer and the inner branch.
+    pub nodes_per_octave: [usize; 2],
 }
 
-impl Default for Resolution {
-    fn default() -> Self {
-        Self { chi_nodes: 256, nodes_per_octave: 16 }
+impl Resolution {
+    /// What keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1, which matters inside the
+    /// shadow, and behind an eye near the disk.
+    pub fn for_eye(frame: &LocalFrame) -> Self {
+        Self { chi_nodes: 512, nodes_per_octave: [if frame.r < NEAR_EYE { 32 } else { 16 }, 32] }
     }
 }
 
@@ -136,11 +141,11 @@ pub struct Grid {
     frame: LocalFrame,
     curve: CriticalCurve,
     columns: Columns,
-    nodes_per_octave: f64,
+    /// Outer, inner; so `rows`.
+    nodes_per_octave: [f64; 2],
     wanted: Crossings,
     /// Where drag and delay end.
     capture_u: f64,
-    /// Outer, inner.
     rows: [usize; 2],
 }
 
@@ -165,18 +170,18 @@ impl Grid {
     pub fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
         let curve = CriticalCurve::new(frame)?;
         let columns = Columns::new(frame, resolution.chi_nodes.max(8));
-        let nodes_per_octave = resolution.nodes_per_octave.max(1) as f64;
+        let nodes_per_octave = resolution.nodes_per_octave.map(|n| n.max(1) as f64);
         // t^ of the axis is 1 / T^2 outside and -1 inside.
         let octaves = -2.0 * curve.tangent_range()[0].log2();
-        let rows = |octaves: f64| {
-            let to_axis = ((CORE_OCTAVES as f64 + octaves) * nodes_per_octave).ceil().max(1.0);
+        let rows = |octaves: f64, per_octave: f64| {
+            let to_axis = ((CORE_OCTAVES as f64 + octaves) * per_octave).ceil().max(1.0);
             to_axis as usize + ROWS_BELOW + ROWS_ABOVE + 1
         };
         let wanted = Crossings { orders: wanted.orders.min(CROSSINGS_KEPT), ..wanted };
         // Circular orbits end at the photon orbit; beside the horizon the drag diverges.
         let spin = frame.a.abs();
         let capture_u = (1.0 / (0.99 * photon_orbit(spin))).min(0.99 / horizon_outer(spin));
-        let rows = [rows(octaves), rows(0.0)];
+        let rows = [rows(octaves, nodes_per_octave[0]), rows(0.0, nodes_per_octave[1])];
         Some(Self { frame: *frame, curve, columns, nodes_per_octave, wanted, capture_u, rows })
     }
 
@@ -204,8 +209,8 @@ impl Grid {
     }
 
     /// |t^| at a row.
-    fn reduced_tangent(&self, row: f64) -> f64 {
-        let octaves = (row - ROWS_BELOW as f64) / self.nodes_per_octave;
+    fn reduced_tangent(&self, branch: Branch, row: f64) -> f64 {
+        let octaves = (row - ROWS_BELOW as f64) / self.nodes_per_octave[branch as usize];
         (octaves - CORE_OCTAVES as f64).exp2()
     }
 
@@ -213,7 +218,7 @@ impl Grid {
     pub fn direction(&self, branch: Branch, column: usize, row: f64) -> DVec3 {
         let chi = self.columns.chi[column % self.columns()];
         let (t_critical, _) = self.curve.at(chi);
-        let t = self.reduced_tangent(row) * t_critical;
+        let t = self.reduced_tangent(branch, row) * t_critical;
         let away = if branch == Branch::Outer { t.atan() } else { -t.atan() };
         self.curve.direction(2.0 * (t_critical.atan() + away), chi)
     }
@@ -233,12 +238,12 @@ impl Grid {
         if octaves.is_nan() || octaves < 0.0 {
             return None;
         }
-        let row = octaves * self.nodes_per_octave + ROWS_BELOW as f64;
+        let row = octaves * self.nodes_per_octave[branch as usize] + ROWS_BELOW as f64;
         let row_floor = (row.floor() as usize).min(self.rows(branch) - ROWS_ABOVE - 1);
         let (w, w_slope) = self.columns.coordinate(p.sin_chi, p.cos_chi);
         let column = w * self.columns() as f64 / TAU;
         let column_floor = (column as usize).min(self.columns() - 1);
-        let (column_gradient, row_gradient) = self.gradients(&p, w_slope, t, (t_critical, slope));
+        let (column_gradient, x_gradient) = self.gradients(&p, w_slope, t, (t_critical, slope));
         Some(Place {
             branch,
             column: column_floor,
@@ -248,18 +253,18 @@ impl Grid {
             side: side(n),
             side_gradient: n.with_x(0.0) / side(n),
             column_gradient,
-            row_gradient,
+            row_gradient: x_gradient * (self.nodes_per_octave[branch as usize] / LN_2),
         })
     }
 
-    /// d chi = along . dn / sin psi; dt = (1 + t^2) / 2 (d psi - d R), d R = 2 d T / (1 + T^2), dx = n / ln 2 (dt / t - dT / T).
+    /// d chi = along . dn / sin psi; dt = (1 + t^2) / 2 (d psi - d R), d R = 2 d T / (1 + T^2), d ln |t^| = dt / t - dT / T.
     fn gradients(&self, p: &Polar, w_slope: f64, t: f64, (t_critical, slope): (f64, f64)) -> (DVec3, DVec3) {
         let chi = p.along / p.sin.max(1e-9);
         let t_critical_gradient = chi * slope;
         let radius = t_critical_gradient * (2.0 / (1.0 + t_critical * t_critical));
         let t_gradient = (p.outward - radius) * (0.5 * (1.0 + t * t));
         let x = t_gradient / t - t_critical_gradient / t_critical;
-        (chi * (w_slope * self.columns() as f64 / TAU), x * (self.nodes_per_octave / LN_2))
+        (chi * (w_slope * self.columns() as f64 / TAU), x)
     }
 
     /// The content of a node, by integration of its ray.
@@ -992,36 +997,61 @@ mod tests {
     #[test]
     #[ignore = "a measurement"]
     fn share_of_direct_rays() {
-        let resolution = Resolution { chi_nodes: 512, nodes_per_octave: 16 };
-        for a in [0.9, 0.998] {
-            for theta in [FRAC_PI_2, FRAC_PI_2 + 1e-3, 1.55, 1.5, 1.4, 1.2] {
-                for (narrowest, share) in [(0.03, 0.5), (0.06, 0.5), (0.1, 0.5), (0.15, 0.5), (0.06, 0.3), (0.1, 0.3)] {
-                    let mut shares = String::new();
-                    for r in [4.5, 12.0, 100.0] {
-                        let mut place = chart(r, theta, 0.3);
-                        if theta == FRAC_PI_2 {
-                            place.z = 0.0;
-                        }
-                        let frame = LocalFrame::new(a, place).unwrap();
-                        for orders in [0, 3] {
-                            let mut lazy =
-                                Lazy::new(&frame, resolution, Crossings { orders, ..wanted(a, false) }).unwrap();
-                            let epsilon = (frame.cos / frame.sin).abs().clamp(narrowest, 1.0);
-                            lazy.grid.columns = Columns::spaced(epsilon, share, 512);
-                            shares += &format!("{:.3} ", direct_share(&mut lazy, 600));
-                        }
+        for a in SPINS {
+            for theta in [FRAC_PI_2, FRAC_PI_2 + 1e-3, 1.45, 1.2, 0.6, 0.0] {
+                let mut shares = String::new();
+                for r in [4.5, 12.0, 100.0] {
+                    let mut place = chart(r, theta, 0.3);
+                    if theta == FRAC_PI_2 {
+                        place.z = 0.0;
                     }
-                    println!("a {a} theta {theta:.4} narrowest {narrowest} share {share}: {shares}");
+                    let frame = LocalFrame::new(a, place).unwrap();
+                    for orders in [0, 4] {
+                        let wanted = Crossings { orders, ..wanted(a, true) };
+                        let mut lazy = Lazy::new(&frame, Resolution::for_eye(&frame), wanted).unwrap();
+                        shares += &format!("{:.4} ", direct_share(&mut lazy, 2000));
+                    }
                 }
+                println!("a {a} theta {theta:.4}, r 4.5, 12, 100, without and with crossings: {shares}");
             }
         }
     }
 
-    fn measure(eyes: std::ops::Range<usize>, rays: usize, resolution: Resolution, pattern: bool) -> Measured {
+    /// Size of the tables and cost of a node.
+    #[test]
+    #[ignore = "a measurement"]
+    fn size() {
+        for a in [0.5, 0.998] {
+            for r in [4.5, 10.0, 30.0, 1000.0, 1e5] {
+                let frame = LocalFrame::new(a, chart(r, 1.3, 0.0)).unwrap();
+                let grid = Grid::new(&frame, Resolution::for_eye(&frame), wanted(a, true)).unwrap();
+                let begin = std::time::Instant::now();
+                let mut count = 0.0;
+                for branch in [Branch::Outer, Branch::Inner] {
+                    for row in 0..grid.rows(branch) {
+                        for column in (0..grid.columns()).step_by(64) {
+                            std::hint::black_box(grid.node(branch, column, row));
+                            count += 1.0;
+                        }
+                    }
+                }
+                println!(
+                    "a {a} r {r}: {} x ({} + {}) nodes, {:.1} us each",
+                    grid.columns(),
+                    grid.rows(Branch::Outer),
+                    grid.rows(Branch::Inner),
+                    begin.elapsed().as_secs_f64() * 1e6 / count
+                );
+            }
+        }
+    }
+
+    fn measure(eyes: std::ops::Range<usize>, rays: usize, resolution: Option<Resolution>, pattern: bool) -> Measured {
         let mut all = Measured::default();
         for i in eyes {
             let mut random = Random(1 + i as u64);
             let frame = eye(i, &mut random);
+            let resolution = resolution.unwrap_or(Resolution::for_eye(&frame));
             let mut lazy = Lazy::new(&frame, resolution, wanted(frame.a, pattern)).unwrap();
             all.add(compare(&mut lazy, rays, &mut random));
         }
@@ -1031,7 +1061,7 @@ mod tests {
     /// The table against integration with steps five times finer, for random eyes and rays.
     #[test]
     fn table_agrees_with_integration() {
-        let mut m = measure(0..40, 250, Resolution::default(), true);
+        let mut m = measure(0..40, 250, None, true);
         m.report("default");
         println!("{}", m.worst);
         assert_eq!((m.wrong_fate, m.wrong_crossings), (0, 0));
@@ -1045,8 +1075,8 @@ mod tests {
         for chi_nodes in [128, 256, 512] {
             for nodes_per_octave in [8, 16, 32] {
                 for pattern in [false, true] {
-                    let resolution = Resolution { chi_nodes, nodes_per_octave };
-                    let mut m = measure(0..40, 500, resolution, pattern);
+                    let resolution = Resolution { chi_nodes, nodes_per_octave: [nodes_per_octave; 2] };
+                    let mut m = measure(0..40, 300, Some(resolution), pattern);
                     m.report(&format!("chi {chi_nodes} per octave {nodes_per_octave} pattern {pattern}"));
                 }
             }
