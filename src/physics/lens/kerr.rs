@@ -1062,11 +1062,80 @@ mod tests {
     #[test]
     fn table_agrees_with_integration() {
         let mut m = measure(0..40, 250, None, true);
-        m.report("default");
+        m.report("for_eye");
         println!("{}", m.worst);
+        assert!(m.about_direct * 100 < m.about, "{} of {} direct", m.about_direct, m.about);
+        assert!(m.radius.len() > 4000 && m.sky.len() > 5000);
         assert_eq!((m.wrong_fate, m.wrong_crossings), (0, 0));
         assert!(quantile(&mut m.sky, 0.9999) < 0.01 && quantile(&mut m.sky, 1.0) < 0.1);
         assert!(quantile(&mut m.radius, 0.999) < 1e-5 && quantile(&mut m.redshift, 0.999) < 1e-5);
+    }
+
+    /// A whole table, coarse so that it is quickly built, says what its cells say one by one.
+    #[test]
+    fn whole_table_is_its_nodes() {
+        let frame = LocalFrame::new(0.9, chart(12.0, 1.2, 0.3)).unwrap();
+        let resolution = Resolution { chi_nodes: 128, nodes_per_octave: [16; 2] };
+        let lens = KerrLens::new(&frame, resolution, wanted(0.9, true)).unwrap();
+        let mut lazy = Lazy::new(&frame, resolution, wanted(0.9, true)).unwrap();
+        let mut random = Random(3);
+        let (mut seen, mut crossings) = (0, 0);
+        for _ in 0..2000 {
+            let (_, n) = aim(lens.grid().curve(), &mut random);
+            match (lens.look(n), lazy.look(n).2) {
+                (Look::Direct, Look::Direct) => {}
+                (Look::Seen(a), Look::Seen(b)) => {
+                    assert_eq!(a.sky.map(|s| s.direction), b.sky.map(|s| s.direction));
+                    assert_eq!(a.crossings.len(), b.crossings.len());
+                    seen += 1;
+                    crossings += a.crossings.len();
+                }
+                (a, b) => panic!("{a:?} {b:?}"),
+            }
+        }
+        assert!(seen > 100 && crossings > 0, "{seen} {crossings}");
+    }
+
+    /// The gradients against differences of what the table says.
+    #[test]
+    fn gradients_are_derivatives() {
+        let frame = LocalFrame::new(0.95, chart(14.0, 1.3, 0.3)).unwrap();
+        let mut lazy = Lazy::new(&frame, Resolution::for_eye(&frame), wanted(0.95, false)).unwrap();
+        let mut random = Random(8);
+        let (mut skies, mut radii) = (0, 0);
+        for _ in 0..300 {
+            let (kind, n) = aim(&lazy.grid.curve, &mut random);
+            if kind != Aim::Shadow {
+                continue;
+            }
+            let dn = n.any_orthonormal_vector();
+            let mut at = |d: f64| match lazy.look((n + dn * d).normalize()) {
+                (Some(place), _, Look::Seen(seen)) => Some(((place.column, place.row), seen)),
+                _ => None,
+            };
+            let d = 1e-6;
+            let (Some((c0, seen)), Some((c1, before)), Some((c2, after))) = (at(0.0), at(-d), at(d)) else { continue };
+            if c0 != c1 || c0 != c2 {
+                continue;
+            }
+            if let (Some(sky), Some(s1), Some(s2)) = (seen.sky, before.sky, after.sky) {
+                let difference = (s2.direction - s1.direction) / (2.0 * d);
+                let error = (sky.change(dn) - difference).length() / difference.length().max(1.0);
+                assert!(error < 1e-4, "sky {error:.1e}");
+                skies += 1;
+            }
+            for crossing in &seen.crossings {
+                let u = |seen: &Seen| seen.crossings.iter().find(|x| x.order == crossing.order).map(|x| x.u);
+                if let (Some(u1), Some(u2)) = (u(&before), u(&after)) {
+                    let difference = (u2 - u1) / (2.0 * d);
+                    let error =
+                        (crossing.u_gradient.dot(dn) - difference).abs() / crossing.u_gradient.length().max(0.1);
+                    assert!(error < 1e-4, "u {error:.1e}");
+                    radii += 1;
+                }
+            }
+        }
+        assert!(skies > 50 && radii > 50, "{skies} {radii}");
     }
 
     #[test]
