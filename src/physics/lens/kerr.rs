@@ -530,14 +530,6 @@ impl Patch<'_, '_> {
     }
 }
 
-/// What the table says of a look direction.
-#[derive(Clone, Debug)]
-pub enum Look {
-    /// Not to be interpolated: integrate.
-    Direct,
-    Seen(Seen),
-}
-
 /// An interpolated ray.
 #[derive(Clone, Debug)]
 pub struct Seen {
@@ -618,16 +610,16 @@ impl Grid {
         sum
     }
 
-    /// What the ray at `place` sees, from the cell's flags and nodes.
-    pub fn see<'a>(&self, place: &Place, flags: u32, node: impl Fn(usize, usize) -> &'a [f64]) -> Look {
+    /// What the ray at `place` sees, from the cell's flags and nodes; `None`: not to be interpolated, integrate.
+    pub fn see<'a>(&self, place: &Place, flags: u32, node: impl Fn(usize, usize) -> &'a [f64]) -> Option<Seen> {
         if flags & DIRECT != 0 {
-            return Look::Direct;
+            return None;
         }
         let at = self.interpolate(place, node);
         let sky = (place.branch == Branch::Outer).then(|| sky_of(&at, place));
         let orders = (0..self.wanted.orders).filter(|order| flags >> order & 1 != 0);
         let crossings = orders.filter_map(|order| self.crossing_of(&at, place, order)).collect();
-        Look::Seen(Seen { sky, crossings })
+        Some(Seen { sky, crossings })
     }
 
     fn crossing_of(&self, at: &Interpolated, place: &Place, order: usize) -> Option<Crossing> {
@@ -711,9 +703,9 @@ impl KerrLens {
         index.and_then(|index| self.flags[branch as usize].get(index).copied()).unwrap_or(DIRECT)
     }
 
-    /// What is seen along the unit look direction `n` (components of the local frame).
-    pub fn look(&self, n: DVec3) -> Look {
-        let Some(place) = self.grid.locate(n) else { return Look::Direct };
+    /// What is seen along the unit look direction `n` (components of the local frame); `None`: not to be interpolated, integrate.
+    pub fn look(&self, n: DVec3) -> Option<Seen> {
+        let place = self.grid.locate(n)?;
         let flags = self.flags(place.branch, place.column, place.row);
         self.grid.see(&place, flags, |i, j| self.node(place.branch, i, j))
     }
@@ -762,8 +754,8 @@ mod tests {
             Some(Self { grid: Grid::new(frame, resolution, wanted)?, nodes: HashMap::new() })
         }
 
-        fn look(&mut self, n: DVec3) -> (Option<Place>, u32, Look) {
-            let Some(place) = self.grid.locate(n) else { return (None, DIRECT, Look::Direct) };
+        fn look(&mut self, n: DVec3) -> (Option<Place>, u32, Option<Seen>) {
+            let Some(place) = self.grid.locate(n) else { return (None, DIRECT, None) };
             let (branch, columns) = (place.branch, self.grid.columns());
             for i in 0..6 {
                 let column = (place.column + columns + i - 2) % columns;
@@ -873,12 +865,12 @@ mod tests {
             let (place, _, look) = lazy.look(n);
             m.rays += 1;
             m.core += usize::from(place.is_none());
-            let direct = matches!(look, Look::Direct);
+            let direct = look.is_none();
             if kind == Aim::Shadow {
                 m.about += 1;
                 m.about_direct += usize::from(direct && place.is_some());
             }
-            let (Look::Seen(seen), Some(place)) = (look, place) else { continue };
+            let (Some(seen), Some(place)) = (look, place) else { continue };
             compare_ray(&frame, &lazy.grid, n, &place, &seen, &mut m);
         }
         m
@@ -987,7 +979,7 @@ mod tests {
             if kind == Aim::Shadow {
                 all += 1;
                 let (place, _, look) = lazy.look(n);
-                direct += usize::from(place.is_some() && matches!(look, Look::Direct));
+                direct += usize::from(place.is_some() && look.is_none());
             }
         }
         direct as f64 / all as f64
@@ -1083,8 +1075,8 @@ mod tests {
         for _ in 0..2000 {
             let (_, n) = aim(lens.grid().curve(), &mut random);
             match (lens.look(n), lazy.look(n).2) {
-                (Look::Direct, Look::Direct) => {}
-                (Look::Seen(a), Look::Seen(b)) => {
+                (None, None) => {}
+                (Some(a), Some(b)) => {
                     assert_eq!(a.sky.map(|s| s.direction), b.sky.map(|s| s.direction));
                     assert_eq!(a.crossings.len(), b.crossings.len());
                     seen += 1;
@@ -1110,7 +1102,7 @@ mod tests {
             }
             let dn = n.any_orthonormal_vector();
             let mut at = |d: f64| match lazy.look((n + dn * d).normalize()) {
-                (Some(place), _, Look::Seen(seen)) => Some(((place.column, place.row), seen)),
+                (Some(place), _, Some(seen)) => Some(((place.column, place.row), seen)),
                 _ => None,
             };
             let d = 1e-6;
