@@ -78,6 +78,8 @@ pub struct Polar {
     pub sin: f64,
     /// In (-pi, pi].
     pub chi: f64,
+    pub sin_chi: f64,
+    pub cos_chi: f64,
     /// Unit tangent d n / d psi.
     pub outward: DVec3,
     /// Unit tangent along growing chi.
@@ -203,6 +205,8 @@ impl CriticalCurve {
             cos,
             sin,
             chi: s.atan2(c),
+            sin_chi: s,
+            cos_chi: c,
             outward: (self.e1 * s + self.e2 * c) * cos - self.k * sin,
             along: self.e1 * c - self.e2 * s,
         }
