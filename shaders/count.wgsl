@@ -10,7 +10,7 @@ const COUNT_RUN: u32 = 8u;
 
 var<workgroup> group_sum: atomic<u32>;
 
-@compute @workgroup_size(16, 8)
+@compute @workgroup_size(8, 16)
 fn count_steps(@builtin(global_invocation_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     if local == 0u {
         atomicStore(&group_sum, 0u);

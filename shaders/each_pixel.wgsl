@@ -1,6 +1,6 @@
 // Kernel: makes the record of each pixel of a tile and has it taken.
 
-@compute @workgroup_size(16, 8)
+@compute @workgroup_size(8, 16)
 fn each_pixel(@builtin(global_invocation_id) id: vec3<u32>) {
     if outside_tile(id.xy) {
         return;

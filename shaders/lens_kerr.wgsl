@@ -2,11 +2,11 @@
 // about the centre of the critical curve psi = R(chi). Shared by the kernels that build the tables and those that read them; mirrors
 // src/physics/lens/kerr.rs, where the reasons are.
 //
-// Columns: chi, KERR_COLUMNS around. Rows: log2 of t_hat = |tan((psi - R) / 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row
+// Columns: w = (chi + v) / 2, tan v = tan chi / epsilon, KERR_COLUMNS around. Rows: log2 of t_hat = |tan((psi - R) / 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row
 // KERR_ROWS_BELOW standing for 2^-KERR_OCTAVES; those of the inner branch (captured) follow those of the outer (escaping).
 
 struct KerrLens {
-    // The centre, and the directions of chi = 90 degrees and 0; local components.
+    // The centre, and the directions of chi = 90 degrees and 0; local components. w of the first: epsilon.
     k: vec4<f32>,
     e1: vec4<f32>,
     e2: vec4<f32>,
@@ -50,11 +50,11 @@ fn kerr_direction(chi: vec2<f32>, a: f32, b: f32) -> vec3<f32> {
     return lens.k.xyz * ((b - a) * (b + a) * norm) + kerr_radial(chi.x, chi.y) * (2.0 * a * b * norm);
 }
 
-// Of row `row` among all rows, fractions allowed by `half` (a row and a half), in column `column`.
-fn kerr_node_direction(column: u32, row: u32, half_row: bool, half_tangent: f32) -> vec3<f32> {
+// Of row `row` among all rows, or half a row on; `column`: sin chi, cos chi and tan(R / 2) there.
+fn kerr_node_direction(column: vec4<f32>, row: u32, half_row: bool) -> vec3<f32> {
     let inner = row >= lens.outer_rows;
     let node = i32(row - kerr_first_row(inner)) - i32(KERR_ROWS_BELOW);
     let t_hat = lens_node_t_hat(2 * node + select(0, 1, half_row), KERR_OCTAVES, 2 * i32(KERR_PER_OCTAVE));
-    let t = select(t_hat, -t_hat, inner) * half_tangent;
-    return kerr_direction(sincos(TAU * f32(column) / f32(KERR_COLUMNS)), half_tangent + t, 1.0 - half_tangent * t);
+    let t = select(t_hat, -t_hat, inner) * column.z;
+    return kerr_direction(column.xy, column.z + t, 1.0 - column.z * t);
 }

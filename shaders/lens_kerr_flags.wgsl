@@ -143,7 +143,7 @@ fn pattern_is_good(p: Patch) -> bool {
         && turn * p.error.w <= KERR_PATTERN_TOLERANCE * (1.0 + critical * turn * delay_stretch);
 }
 
-@compute @workgroup_size(16, 8)
+@compute @workgroup_size(8, 16)
 fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
     let inner = id.y >= lens.outer_rows;
     let row = id.y - kerr_first_row(inner);
@@ -152,13 +152,11 @@ fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     cell = id.xy;
-    let nodes = KERR_CURVE / KERR_COLUMNS;
-    let half_tangent = textureLoad(curve, vec2<u32>(id.x * nodes, 0u), 0).x;
-    let next_half_tangent = textureLoad(curve, vec2<u32>((id.x + 1u) % KERR_COLUMNS * nodes, 0u), 0).x;
-    let middle = kerr_node_direction(id.x, id.y, true, half_tangent);
-    column_angle = distance(middle, kerr_node_direction(id.x + 1u, id.y, true, next_half_tangent));
-    row_angle = distance(kerr_node_direction(id.x, id.y, false, half_tangent), kerr_node_direction(id.x, id.y + 1u, false, half_tangent));
-    critical = 2.0 * half_tangent / (1.0 + half_tangent * half_tangent);
+    let column = textureLoad(curve, vec2<u32>(id.x, 1u), 0);
+    let next_column = textureLoad(curve, vec2<u32>((id.x + 1u) % KERR_COLUMNS, 1u), 0);
+    column_angle = distance(kerr_node_direction(column, id.y, true), kerr_node_direction(next_column, id.y, true));
+    row_angle = distance(kerr_node_direction(column, id.y, false), kerr_node_direction(column, id.y + 1u, false));
+    critical = 2.0 * column.z / (1.0 + column.z * column.z);
     var flags = 0u;
     if !inner && !sky_is_good() {
         flags = KERR_DIRECT;

@@ -3,7 +3,7 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lens: KerrLens;
-// T = tan(R / 2) and dT/dchi at a node, and at the next. One row.
+// Second row: of each column sin chi, cos chi, tan(R / 2).
 @group(0) @binding(2) var curve: texture_2d<f32>;
 // Sky direction, chart; 0 if captured.
 @group(0) @binding(3) var sky_out: texture_storage_2d<rgba32float, write>;
@@ -13,13 +13,15 @@ const KERR_STEP: f32 = 0.2;
 // Of any ray of the table: 2^-10 from the curve a ray ends within sigma 20.
 const KERR_STEPS: u32 = 400u;
 const KERR_BEYOND: f32 = 1.0;
+// Rays are followed to this multiple of capture_u, so that no crossing of the disk has a neighbour without one.
+const KERR_INWARD: f32 = 1.5;
 
 var<private> node: vec2<u32>;
 var<private> found: u32;
 // The layer being filled.
 var<private> four: vec4<f32>;
 
-@compute @workgroup_size(16, 8)
+@compute @workgroup_size(8, 16)
 fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= KERR_COLUMNS || id.y >= lens.outer_rows + lens.inner_rows {
         return;
@@ -27,8 +29,8 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
     node = id.xy;
     found = 0u;
     four = vec4<f32>(0.0);
-    let half_tangent = textureLoad(curve, vec2<u32>(id.x * (KERR_CURVE / KERR_COLUMNS), 0u), 0).x;
-    let begin = begin_local(normalize(kerr_node_direction(id.x, id.y, false, half_tangent)));
+    let column = textureLoad(curve, vec2<u32>(id.x, 1u), 0);
+    let begin = begin_local(normalize(kerr_node_direction(column, id.y, false)));
     let c = begin.c;
     var state = begin.state;
     var side = first_side(state);
@@ -36,12 +38,23 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
     var sky = vec3<f32>(0.0);
     var beyond = 0.0;
     for (var i = 0u; i < KERR_STEPS; i += 1u) {
-        let h = min(KERR_STEP / c.scale, step_limit(c, state, KERR_STEP));
-        let next = nystrom_step(c, state, h);
+        // Beyond capture_u only u and N go on, which pass the horizon evenly.
+        let inside = state.u >= lens.capture_u;
+        let h = min(KERR_STEP / c.scale, select(step_limit(c, state, KERR_STEP), 1e30, inside));
+        var next = nystrom_step(c, state, h);
+        if inside {
+            next.drag = state.drag;
+            next.delay = state.delay;
+        }
         if side * next.n.z < 0.0 {
             side = next.n.z;
             if found < lens.orders {
-                put_crossing(c, begin.state, crossing_state(c, state, next, h));
+                var there = crossing_state(c, state, next, h);
+                if inside {
+                    there.drag = state.drag;
+                    there.delay = state.delay;
+                }
+                put_crossing(c, begin.state, there);
             }
         }
         if next.u <= 0.0 {
@@ -52,8 +65,9 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
             }
             beyond += h * c.scale;
         }
-        let captured = next.du > 0.0 && next.u >= lens.capture_u;
-        if captured || beyond > KERR_BEYOND || (escaped && found >= lens.orders) {
+        // Inside, the ray is captured however it goes on.
+        let captured = next.u >= KERR_INWARD * lens.capture_u || (inside && next.du < 0.0);
+        if captured || beyond > KERR_BEYOND || ((escaped || inside) && found >= lens.orders) {
             break;
         }
         state = next;

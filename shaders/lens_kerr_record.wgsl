@@ -1,7 +1,7 @@
 // Looks rays up in the tables of lens_kerr.wgsl. Mirrors src/physics/lens/kerr.rs and src/cpu/lens.rs.
 
 @group(1) @binding(0) var<uniform> lens: KerrLens;
-// T = tan(R / 2) and dT/dchi at a node, and at the next. One row.
+// First row: T = tan(R / 2) and dT/dchi at a node, and at the next, evenly in chi.
 @group(1) @binding(1) var kerr_curve: texture_2d<f32>;
 @group(1) @binding(2) var kerr_sky: texture_2d<f32>;
 @group(1) @binding(3) var kerr_crossings: texture_2d_array<f32>;
@@ -50,10 +50,13 @@ fn look_up(id: vec2<u32>) -> Record {
     let sine2 = dot(across, across);
     let sine = sqrt(sine2);
     let chi = select(vec2<f32>(0.0, 1.0), across / sine, sine > 0.0);
-    let turn = arctan2(chi.x, chi.y) * (f32(KERR_COLUMNS) / TAU);
-    let around = select(turn, turn + f32(KERR_COLUMNS), turn < 0.0);
+    let epsilon = lens.k.w;
+    let angle = arctan2(chi.x, chi.y);
+    let half_tangent = critical_tangent(select(angle, angle + TAU, angle < 0.0) * (f32(KERR_CURVE) / TAU));
+    let w = 0.5 * (angle + arctan2(chi.x, epsilon * chi.y));
+    let w_slope = 0.5 + 0.5 * epsilon / (epsilon * epsilon * chi.y * chi.y + chi.x * chi.x);
+    let around = select(w, w + TAU, w < 0.0) * (f32(KERR_COLUMNS) / TAU);
     let column = min(u32(around), KERR_COLUMNS - 1u);
-    let half_tangent = critical_tangent(around * f32(KERR_CURVE / KERR_COLUMNS));
     let t = lens_tangent(cosine, sine2, half_tangent.x);
     let inner = t <= 0.0;
     let t_hat = abs(t) / half_tangent.x;
@@ -79,7 +82,7 @@ fn look_up(id: vec2<u32>) -> Record {
     let grid_y = local_change(seen, changes[1]);
     let chi_change = vec2<f32>(dot(along, grid_x), dot(along, grid_y));
     let row_change = ROWS * (slope_t * vec2<f32>(dot(outward, grid_x), dot(outward, grid_y)) - slope_r * chi_change);
-    let column_change = chi_change * (f32(KERR_COLUMNS) / TAU);
+    let column_change = chi_change * (w_slope * f32(KERR_COLUMNS) / TAU);
     looked.dx = vec2<f32>(column_change.x, row_change.x);
     looked.dy = vec2<f32>(column_change.y, row_change.y);
 

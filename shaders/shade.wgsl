@@ -9,6 +9,7 @@
 // What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every `if`.
 override SHOWS_LIGHT: bool = true;
 override SHOWS_STARS: bool = true;
+override OPAQUE: bool = false;
 
 const TABLE_WIDTH: u32 = 2048u;
 
@@ -35,8 +36,8 @@ fn to_sky(d: vec3<f32>) -> vec3<f32> {
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
-    // max_crossings bounds what next_crossing gives.
-    for (var k = 0u; k < frame.max_crossings && open > 0.0; k += 1u) {
+    // max_crossings bounds what next_crossing gives; behind the first crossing of an opaque disk nothing is seen.
+    for (var k = 0u; k < select(frame.max_crossings, 1u, OPAQUE); k += 1u) {
         let crossing = next_crossing();
         if crossing.u <= 0.0 {
             break;

@@ -67,18 +67,20 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
     // Beyond the coarsest level nothing is left of its stars.
     let level = min(found, STAR_LEVELS - 1u);
     let fade = select(0.0, star_fade(level, radius), indexed);
-    let mean = light_table(MEAN_SKY_OFFSET + level);
-
-    let across = cross(dy, d);
-    let down = cross(d, dx);
-    let area = abs(dot(cross(dx, dy), d));
-    let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
     let list = star_cell(cell_of(d, level));
+    let mean = light_table(MEAN_SKY_OFFSET + level);
     var i = STAR_LISTS_OFFSET + (list >> 8u);
     let end = i + select(0u, list & 255u, indexed);
     // Bit 0: this level's mean sky is to be shaded; bit 1: the next one's.
     var means = select(0u, 1u, mean.x > 0.0 && fade > 0.0) | select(0u, 2u, mean.y > 0.0 && fade < 1.0);
     var light = vec3<f32>(0.0);
+    if i >= end && means == 0u {
+        return light;
+    }
+    let across = cross(dy, d);
+    let down = cross(d, dx);
+    let area = abs(dot(cross(dx, dy), d));
+    let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
     // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe runs whatever
     // stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break; }` finds no star there, Mesa 22.3.)
     loop {

@@ -178,6 +178,7 @@ impl GpuTracer {
                 stars: scene.shows_stars() && !request.transparent,
                 all_effects: scene.effects.all_light(),
                 disk: scene.disk_u().is_some(),
+                opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
             },
             film: FilmLook::from(&film),

@@ -27,6 +27,8 @@ pub struct Look {
     /// No effect on light is switched off.
     pub all_effects: bool,
     pub disk: bool,
+    /// The disk hides what is behind it.
+    pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
 }
@@ -105,7 +107,7 @@ pub struct Stage {
 }
 
 /// Threads of a workgroup of the kernels that go over pixels.
-const GROUP: [u32; 2] = [16, 8];
+const GROUP: [u32; 2] = [8, 16];
 
 const MATH: &str = include_str!("../../shaders/math.wgsl");
 const FATE: &str = include_str!("../../shaders/fate.wgsl");
@@ -488,6 +490,7 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
         ("SHOWS_STARS", flag(look.stars)),
         ("ALL_EFFECTS", flag(look.all_effects)),
         ("DISK", flag(look.disk)),
+        ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
     ]
 }

@@ -11,8 +11,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 use wgpu::BufferUsages as Usage;
 
-/// As in lens_kerr.wgsl.
-const COLUMNS: u32 = 512;
+/// As in lens_kerr.wgsl; as many as nodes of the critical curve, which shares their texture.
+const COLUMNS: u32 = CRITICAL_NODES as u32;
 const PER_OCTAVE: usize = 16;
 /// Orders in a layer without pattern.
 const ORDERS_A_LAYER: u32 = 4;
@@ -161,7 +161,7 @@ impl KerrTables {
 
     /// Makes room for the eye's tables and writes what the host knows of them.
     fn remake(&mut self, device: &Device, frame: &LocalFrame, wanted: &Wanted) -> Result<KerrUniform> {
-        let resolution = Resolution { chi_nodes: COLUMNS as usize, nodes_per_octave: PER_OCTAVE };
+        let resolution = Resolution { chi_nodes: COLUMNS as usize, nodes_per_octave: [PER_OCTAVE; 2] };
         let crossings = Crossings { orders: wanted.orders as usize, disk_u: wanted.disk_u, pattern: wanted.pattern };
         let grid = Grid::new(frame, resolution, crossings)
             .ok_or_else(|| Error::internal(format!("no lens tables for an eye at r = {} M", frame.r)))?;
@@ -177,7 +177,7 @@ impl KerrTables {
         let curve = grid.curve();
         let local = |v: DVec3| v.as_vec3().extend(0.0);
         let uniform = KerrUniform {
-            k: local(curve.k),
+            k: curve.k.as_vec3().extend(grid.epsilon() as f32),
             e1: local(curve.e1),
             e2: local(curve.e2),
             rows,
@@ -187,9 +187,12 @@ impl KerrTables {
         let node = |i: usize| curve.at(std::f64::consts::TAU * i as f64 / CRITICAL_NODES as f64);
         let nodes = (0..=CRITICAL_NODES).map(node).collect::<Vec<_>>();
         let table = nodes.windows(2).flat_map(|pair| pair.iter().flat_map(|(t, slope)| [*t as f32, *slope as f32]));
+        let column = |chi: f64| [chi.sin(), chi.cos(), curve.at(chi).0, 0.0].map(|v| v as f32);
+        let columns = grid.column_angles().iter().flat_map(|chi| column(*chi)).collect::<Vec<f32>>();
         made.traced = None;
         device.write(&made.uniform, 0, bytemuck::bytes_of(&uniform))?;
         device.write_rows(&made.curve, 0, bytemuck::cast_slice(&table.collect::<Vec<f32>>()))?;
+        device.write_rows(&made.curve, 1, bytemuck::cast_slice(&columns))?;
         Ok(uniform)
     }
 
@@ -222,7 +225,7 @@ impl Made {
             rows,
             layers,
             uniform: device.buffer("lens", size_of::<KerrUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST)?,
-            curve: device.table("critical curve", kernels::LENS_ROWS.format, [CRITICAL_NODES as u32, 1])?,
+            curve: device.table("critical curve", kernels::LENS_ROWS.format, [COLUMNS, 2])?,
             sky: texture(kernels::LENS_ROWS, "lens sky", rows[0], 1)?,
             crossings: texture(kernels::LENS_COLUMNS, "lens crossings", rows[1], layers)?,
             flags: texture(kernels::LENS_FLAGS, "lens flags", rows[1], 1)?,

@@ -194,6 +194,16 @@ impl Grid {
         self.capture_u
     }
 
+    /// Epsilon of the coordinate along the critical curve.
+    pub fn epsilon(&self) -> f64 {
+        self.columns.epsilon
+    }
+
+    /// chi of each column, in [0, 2 pi).
+    pub fn column_angles(&self) -> &[f64] {
+        &self.columns.chi
+    }
+
     /// Nodes along chi.
     pub fn columns(&self) -> usize {
         self.columns.chi.len()
