@@ -13,6 +13,8 @@ struct RayBegin {
 // The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and nu(camera) /
 // nu(observer of the local frame).
 struct LocalLook {
+    // In the camera's own frame, and in the local one.
+    look: vec3<f32>,
     n: vec3<f32>,
     frequency_ratio: f32,
 }
@@ -22,24 +24,25 @@ override MOVING: bool = true;
 
 fn local_look(look: vec3<f32>) -> LocalLook {
     if !MOVING {
-        return LocalLook(look, 1.0);
+        return LocalLook(look, look, 1.0);
     }
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
     let along = dot(beta, look);
     let ratio = 1.0 / (gamma * (1.0 - along));
-    return LocalLook(normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
+    return LocalLook(look, normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
 }
 
-// Change of `seen.n` when the look direction in the camera's own frame changes by `change`.
+// Change of `seen.n` when the look direction in the camera's own frame changes by `change`; at rest with what that holds along it.
 fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
     if !MOVING {
         return change;
     }
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
-    let along = dot(beta, change);
-    return seen.frequency_ratio * (change + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
+    let turn = change - seen.look * dot(seen.look, change);
+    let along = dot(beta, turn);
+    return seen.frequency_ratio * (turn + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
 }
 
 fn begin_ray(look: vec3<f32>) -> RayBegin {

@@ -28,6 +28,7 @@ fn take_record(id: vec2<u32>, r: Record) {
     }
     exported[at] = vec4<f32>(f32(r.fate), f32(r.steps), f32(count), r.plane_u);
     exported[at + 1u] = vec4<f32>(r.sky, r.sky_redshift);
-    exported[at + 2u] = vec4<f32>(r.sky_dx, r.energy);
-    exported[at + 3u] = vec4<f32>(r.sky_dy, r.angular_momentum);
+    let f = r.footprint;
+    exported[at + 2u] = vec4<f32>(f.p * f.dx.x + f.q * f.dx.y, r.energy);
+    exported[at + 3u] = vec4<f32>(f.p * f.dy.x + f.q * f.dy.y, r.angular_momentum);
 }

@@ -59,12 +59,17 @@ fn camera_look(x: f32, y: f32) -> vec3<f32> {
     return normalize(frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz);
 }
 
-// Changes of the unit look direction `look` to the next pixel right and down.
-fn camera_change(x: f32, y: f32, look: vec3<f32>) -> array<vec3<f32>, 2> {
+// A look direction, and its changes to the next pixel right and down but for what they hold along it.
+struct CameraView {
+    look: vec3<f32>,
+    dx: vec3<f32>,
+    dy: vec3<f32>,
+}
+
+fn camera_view(x: f32, y: f32) -> CameraView {
     let right = 2.0 * x / frame.size.x - 1.0;
     let up = 1.0 - 2.0 * y / frame.size.y;
-    let distance = length(frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz);
-    let dx = frame.right.xyz * (2.0 / (frame.size.x * distance));
-    let dy = frame.up.xyz * (-2.0 / (frame.size.y * distance));
-    return array<vec3<f32>, 2>(dx - look * dot(look, dx), dy - look * dot(look, dy));
+    let ray = frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz;
+    let inverse = inverseSqrt(dot(ray, ray));
+    return CameraView(ray * inverse, frame.right.xyz * (2.0 / frame.size.x * inverse), frame.up.xyz * (-2.0 / frame.size.y * inverse));
 }

@@ -38,9 +38,8 @@ var<private> looked: Looked;
 // FATE_PENDING: not in the tables; footprint and fate are nearly right all the same.
 fn look_up(id: vec2<u32>) -> Record {
     let at = pixel_place(id);
-    let look = camera_look(at.x, at.y);
-    let changes = camera_change(at.x, at.y, look);
-    let seen = local_look(look);
+    let view = camera_view(at.x, at.y);
+    let seen = local_look(view.look);
     let n = seen.n;
     let begin = begin_local(n);
     let energy = begin.c.energy / begin.c.nu_local;
@@ -78,8 +77,9 @@ fn look_up(id: vec2<u32>) -> Record {
     let slope_t = 0.5 * (1.0 + t * t) / select(-max(-t, 1e-12), max(t, 1e-12), t > 0.0);
     let slope_r = half_tangent.y * (slope_t * 2.0 / (1.0 + half_tangent.x * half_tangent.x) + 1.0 / half_tangent.x);
     const ROWS: f32 = f32(KERR_PER_OCTAVE) * 1.4426950408889634;
-    let grid_x = local_change(seen, changes[0]);
-    let grid_y = local_change(seen, changes[1]);
+    // What they hold along n turns nothing.
+    let grid_x = local_change(seen, view.dx);
+    let grid_y = local_change(seen, view.dy);
     let chi_change = vec2<f32>(dot(along, grid_x), dot(along, grid_y));
     let row_change = ROWS * (slope_t * vec2<f32>(dot(outward, grid_x), dot(outward, grid_y)) - slope_r * chi_change);
     let column_change = chi_change * (w_slope * f32(KERR_COLUMNS) / TAU);
@@ -87,7 +87,7 @@ fn look_up(id: vec2<u32>) -> Record {
     looked.dy = vec2<f32>(column_change.y, row_change.y);
 
     var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0),
-        vec3<f32>(1e30), vec3<f32>(1e30));
+        UNKNOWN_FOOTPRINT);
     if !inner {
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
@@ -96,8 +96,7 @@ fn look_up(id: vec2<u32>) -> Record {
         record.sky = sky.value.xyz * inverse;
         let dx = (sky.by_column.xyz * looked.dx.x + sky.by_row.xyz * looked.dx.y) * inverse;
         let dy = (sky.by_column.xyz * looked.dy.x + sky.by_row.xyz * looked.dy.y) * inverse;
-        record.sky_dx = dx - record.sky * dot(record.sky, dx);
-        record.sky_dy = dy - record.sky * dot(record.sky, dy);
+        record.footprint = footprint_of(record.sky, dx, dy);
     }
     if t_hat < exp2(-KERR_OCTAVES) || (looked.flags & KERR_DIRECT) != 0u {
         record.fate = FATE_PENDING;

@@ -29,13 +29,13 @@ var<private> looked: Looked;
 
 fn ray_record(id: vec2<u32>) -> Record {
     let at = pixel_place(id);
-    let look = camera_look(at.x, at.y);
-    let changes = camera_change(at.x, at.y, look);
-    let seen = local_look(look);
+    let view = camera_view(at.x, at.y);
+    let seen = local_look(view.look);
     let n = seen.n;
     let energy = local_energy(n);
-    let dx = local_change(seen, changes[0]);
-    let dy = local_change(seen, changes[1]);
+    // What they hold along n turns nothing below.
+    let dx = local_change(seen, view.dx);
+    let dy = local_change(seen, view.dy);
 
     // cos psi = -n_r.
     let s2 = dot(n.yz, n.yz);
@@ -71,7 +71,7 @@ fn ray_record(id: vec2<u32>) -> Record {
 
     // L = r sin(theta) p_phi, p = -n.
     let momentum = -frame.place.y * n.z / frame.place.x;
-    var record = Record(FATE_CAPTURED, 0u, energy, momentum, 0.0, 0.0, vec3<f32>(0.0), vec3<f32>(1e30), vec3<f32>(1e30));
+    var record = Record(FATE_CAPTURED, 0u, energy, momentum, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if escaped {
         let turn = sincos(swept);
         let e_r = frame.e_r.xyz;
@@ -80,10 +80,9 @@ fn ray_record(id: vec2<u32>) -> Record {
         record.sky = e_r * turn.y + looked.along * turn.x;
         // By psi in the ray's plane, and sin(swept) / sin(psi) across it; outward, where both sines vanish, their slopes' ratio.
         let swept_psi = swept_slope * slope;
-        let in_plane = (looked.along * turn.y - e_r * turn.x) * swept_psi;
-        let out_of_plane = looked.across * select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
-        record.sky_dx = in_plane * d_psi.x + out_of_plane * d_across.x;
-        record.sky_dy = in_plane * d_psi.y + out_of_plane * d_across.y;
+        let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
+        record.footprint = Footprint(looked.along * turn.y - e_r * turn.x, looked.across,
+            vec2<f32>(swept_psi * d_psi.x, across * d_across.x), vec2<f32>(swept_psi * d_psi.y, across * d_across.y));
     }
     return record;
 }

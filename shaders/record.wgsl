@@ -27,10 +27,30 @@ struct Record {
     plane_u: f32,
     // nu(camera) / nu(at infinity); 0 unless escaped.
     sky_redshift: f32,
-    // Sky direction, chart, and its change to the next pixel right and down; 1e30 where it has none.
+    // Sky direction, chart, and its footprint.
     sky: vec3<f32>,
-    sky_dx: vec3<f32>,
-    sky_dy: vec3<f32>,
+    footprint: Footprint,
+}
+
+// Changes of a unit vector to the next pixel right and down, in two unit vectors at right angles to it and to each other; 1e30
+// where nothing is known.
+struct Footprint {
+    p: vec3<f32>,
+    q: vec3<f32>,
+    dx: vec2<f32>,
+    dy: vec2<f32>,
+}
+
+const UNKNOWN_FOOTPRINT: Footprint = Footprint(vec3<f32>(0.0), vec3<f32>(0.0), vec2<f32>(1e30), vec2<f32>(1e30));
+
+// Of changes at right angles to the unit vector `d`. (The basis is that of Duff et al. 2017.)
+fn footprint_of(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> Footprint {
+    let sense = select(-1.0, 1.0, d.z >= 0.0);
+    let a = -1.0 / (sense + d.z);
+    let b = d.x * d.y * a;
+    let p = vec3<f32>(1.0 + sense * d.x * d.x * a, sense * b, -sense * d.x);
+    let q = vec3<f32>(b, sense + d.y * d.y * a, -d.y);
+    return Footprint(p, q, vec2<f32>(dot(dx, p), dot(dx, q)), vec2<f32>(dot(dy, p), dot(dy, q)));
 }
 
 // A crossing within the disk's radii; u is 0 when there is no further one.

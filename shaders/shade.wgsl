@@ -65,7 +65,7 @@ fn sky_light(here: Record) -> vec3<f32> {
     if !ALL_EFFECTS {
         shift = visible_shift(here.sky_redshift, nu_static_eye(here.energy) / here.energy);
     }
-    return star_light(to_sky(here.sky), to_sky(here.sky_dx), to_sky(here.sky_dy), shift.colour, shift.beaming) * frame.sky_x.w;
+    return star_light(here.sky, here.footprint, shift.colour, shift.beaming) * frame.sky_x.w;
 }
 
 // What BHR_VIEW_* shows; NaN where there is nothing.

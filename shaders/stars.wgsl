@@ -1,5 +1,5 @@
 // The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule), where the reasons are.
-// Reads light_table(i) and star_cell(i), defined where the bindings are; the constants in capitals that are not here come from
+// Reads light_table(i), star_cell(i) and to_sky(d), defined where the bindings are; the constants in capitals that are not here come from
 // StarIndex::wgsl_constants.
 
 const STAR_MIN_AREA: f32 = 1e-3;
@@ -54,14 +54,13 @@ fn star_footprint(t: f32) -> f32 {
     return select(0.5 * skirt * skirt, 0.75 - a * a, a < 0.5);
 }
 
-// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1: d unit direction in sky axes, dx and dy its derivatives by
-// pixel.
-fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beaming: f32) -> vec3<f32> {
-    let xx = dot(dx, dx);
-    let yy = dot(dy, dy);
-    let xy = dot(dx, dy);
-    let stretch2 = xx + yy;
-    let radius = 1.5 * sqrt(stretch2 + 2.0 * abs(xy));
+// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1: of the chart direction `seen` and its footprint.
+fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    let d = to_sky(seen);
+    let dx = footprint.dx;
+    let dy = footprint.dy;
+    let stretch2 = dot(dx, dx) + dot(dy, dy);
+    let radius = 1.5 * sqrt(stretch2 + 2.0 * abs(dot(dx, dy)));
     let found = star_level_for(radius);
     let indexed = found < STAR_LEVELS;
     // Beyond the coarsest level nothing is left of its stars.
@@ -77,9 +76,12 @@ fn star_light(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>, g_colour: f32, g_beami
     if i >= end && means == 0u {
         return light;
     }
-    let across = cross(dy, d);
-    let down = cross(d, dx);
-    let area = abs(dot(cross(dx, dy), d));
+    // What takes a distance from the direction to pixels across and down, times the pixel's area on the sky.
+    let p_axis = to_sky(footprint.p);
+    let q_axis = to_sky(footprint.q);
+    let across = p_axis * dy.y - q_axis * dy.x;
+    let down = q_axis * dx.x - p_axis * dx.y;
+    let area = abs(dx.x * dy.y - dx.y * dy.x);
     let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
     // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe runs whatever
     // stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break; }` finds no star there, Mesa 22.3.)

@@ -15,21 +15,23 @@ fn ray_record(id: vec2<u32>) -> Record {
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
-    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.energy, 0.0, vec3<f32>(0.0), vec3<f32>(1e30),
-        vec3<f32>(1e30));
+    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.energy, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if m.fate == FATE_ESCAPED {
         let sky = textureLoad(record_sky, traced_pixel, 0);
         record.sky = sky.xyz;
         record.sky_redshift = sky.w;
-        record.sky_dx = derivative_of_direction(sky.xyz, vec2<u32>(1u, 0u));
-        record.sky_dy = derivative_of_direction(sky.xyz, vec2<u32>(0u, 1u));
+        let dx = derivative_of_direction(sky.xyz, vec2<u32>(1u, 0u));
+        let dy = derivative_of_direction(sky.xyz, vec2<u32>(0u, 1u));
+        record.footprint = footprint_of(sky.xyz, dx.xyz, dy.xyz);
+        record.footprint.dx = select(vec2<f32>(1e30), record.footprint.dx, dx.w != 0.0);
+        record.footprint.dy = select(vec2<f32>(1e30), record.footprint.dy, dy.w != 0.0);
     }
     return record;
 }
 
-// d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; infinite where
-// neither did, which only the mean sky can stand for.
-fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec3<f32> {
+// d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; w is 0 where neither
+// did, which only the mean sky can stand for.
+fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
     let before = textureLoad(record_sky, traced_pixel - step, 0);
     let after = textureLoad(record_sky, traced_pixel + step, 0);
     let has_before = before.w != 0.0;
@@ -37,7 +39,7 @@ fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec3<f32> {
     let first = select(here, before.xyz, has_before);
     let last = select(here, after.xyz, has_after);
     let difference = (last - first) * select(1.0, 0.5, has_before && has_after);
-    return select(vec3<f32>(1e30), difference, has_before || has_after);
+    return vec4<f32>(difference, select(0.0, 1.0, has_before || has_after));
 }
 
 fn next_crossing() -> Crossing {

@@ -9,10 +9,11 @@ use bhr::sky::StarIndex;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
-const SNIPPETS: [&str; 3] = [
+const SNIPPETS: [&str; 4] = [
     include_str!("../shaders/blackbody.wgsl"),
     include_str!("../shaders/stars.wgsl"),
     include_str!("../shaders/film.wgsl"),
+    include_str!("../shaders/record.wgsl"),
 ];
 
 const BINDINGS: &str = "
@@ -23,6 +24,7 @@ const BINDINGS: &str = "
 @group(0) @binding(4) var<uniform> film: FilmParams;
 fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 fn star_cell(i: u32) -> u32 { return star_cells[i]; }
+fn to_sky(d: vec3<f32>) -> vec3<f32> { return d; }
 ";
 
 /// Every item is four vectors; its result is one.
@@ -35,8 +37,9 @@ const ENTRIES: &str = "
 @compute @workgroup_size(64) fn run_stars(@builtin(global_invocation_id) id: vec3<u32>) {
     if 4u * id.x >= arrayLength(&inputs) { return; }
     let i = 4u * id.x;
+    let d = inputs[i].xyz;
     let g = inputs[i + 3u];
-    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(star_light(inputs[i].xyz, inputs[i + 1u].xyz, inputs[i + 2u].xyz, g.x, g.y), 0.0));
+    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(star_light(d, footprint_of(d, inputs[i + 1u].xyz, inputs[i + 2u].xyz), g.x, g.y), 0.0));
 }
 @compute @workgroup_size(64) fn run_film(@builtin(global_invocation_id) id: vec3<u32>) {
     if 4u * id.x >= arrayLength(&inputs) { return; }
@@ -48,7 +51,8 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    [BINDINGS, ENTRIES, &StarIndex::shared().wgsl_constants(), SNIPPETS[0], SNIPPETS[1], SNIPPETS[2]].concat()
+    [BINDINGS, ENTRIES, &StarIndex::shared().wgsl_constants(), SNIPPETS[0], SNIPPETS[1], SNIPPETS[2], SNIPPETS[3]]
+        .concat()
 }
 
 #[test]
