@@ -180,5 +180,6 @@ fn is_sound(record: &Record) -> bool {
         let places = [x.place, x.footprint[0], x.footprint[1]];
         x.u > 0.0 && x.u.is_finite() && x.g >= 0.0 && !places.iter().any(|p| (p.ln_r + p.azimuth + p.delay).is_nan())
     });
-    sky && crossings && record.energy.is_finite() && record.angular_momentum.is_finite()
+    let constants = record.energy.is_finite() && record.angular_momentum.is_finite();
+    sky && crossings && (constants || record.fate == trace::Fate::Unresolved)
 }
