@@ -304,6 +304,22 @@ fn shadow_edge(scene: &Scene, random: &mut Random) -> Option<DVec3> {
     Some(observer.frame.vector(light))
 }
 
+/// Points the camera: in half of the frames at the shadow's edge, closely; else at the hole and its surroundings, or anywhere, with fields of
+/// 1 to 170 degrees.
+fn aim(scene: &mut Scene, random: &mut Random) {
+    let edge = shadow_edge(scene, random);
+    let (wide, narrow) = (random.range(1.0, 170.0).to_radians(), random.log_range(1e-4, 0.1));
+    // The disk is 50 M wide.
+    let disk = (100.0 / scene.camera.position.length() * random.log_range(0.1, 1.0)).clamp(1.0_f64.to_radians(), 2.9);
+    let anywhere = random.direction();
+    let (forward, fov_y) = match (random.pick(&[0, 0, 1, 2]), edge) {
+        (0, Some(edge)) => (edge, narrow),
+        (1, Some(edge)) => (edge, disk),
+        _ => (anywhere, wide),
+    };
+    turn(scene, forward, random, fov_y);
+}
+
 /// Comparisons of one tracer with and without spin.
 #[derive(Default)]
 struct Comparison {
@@ -442,10 +458,7 @@ fn records_agree_with_integration() {
     let mut found: [[Comparison; 2]; 2] = Default::default();
     for index in 0..count_from("BHR_LENS_OBSERVERS", 120) {
         let mut scene = random_eye(&mut random, index);
-        let edge = shadow_edge(&scene, &mut random).filter(|_| random.next() < 0.5);
-        let (wide, narrow) = (random.range(1.0, 170.0).to_radians(), random.log_range(1e-4, 0.1));
-        let forward = edge.unwrap_or_else(|| random.direction());
-        turn(&mut scene, forward, &mut random, if edge.is_some() { narrow } else { wide });
+        aim(&mut scene, &mut random);
         let truth = Truth::new(&scene, width, height);
         let rays = truth.rays();
         for (tracer, renderer) in renderers.iter_mut().enumerate() {
