@@ -192,6 +192,9 @@ impl Conditioning {
     }
 }
 
+/// A share of the errors, and what they stay below.
+type Bar = (f64, f64);
+
 /// Errors of one quantity, each with its scene and ray.
 #[derive(Default)]
 struct Errors(Vec<(f64, usize, usize)>);
@@ -211,7 +214,7 @@ impl Errors {
     }
 
     /// Prints the quantiles; complaints where the errors at the given shares exceed their bars.
-    fn judge(mut self, what: &str, bars: &[(f64, f64)]) -> Vec<String> {
+    fn judge(mut self, what: &str, bars: &[Bar]) -> Vec<String> {
         if self.0.is_empty() {
             return vec![format!("{what}: nothing was compared")];
         }
@@ -352,7 +355,7 @@ impl Comparison {
         println!("{what}: {rays} rays, {integrated} integrated, {excluded} at the critical curve");
         let mut failures = self.wrong;
         failures.truncate(20);
-        let bars: [(&str, Errors, &[(f64, f64)]); 5] = [
+        let bars: [(&str, Errors, &[Bar]); 5] = [
             ("sky direction, 4K pixels", self.sky, &[(0.9999, 0.01), (1.0, 0.1)]),
             ("sky redshift", self.sky_redshift, &[(1.0, 1e-5)]),
             ("crossing radius", self.radius, &[(0.999, 1e-5)]),
