@@ -1,30 +1,14 @@
 //! Random scenes at the ends of every range: no NaN where a number is promised, no endless loop, no lost device, on both tracers.
 
+mod random;
+
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::physics::trace;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Fate, Hit, Method, Motion, Ray};
+use bhr::scene::record::Record;
+use bhr::scene::{Camera, Fate, Hit, LensTables, Method, Motion, Ray};
 use glam::DVec3;
-
-/// Numerical Recipes' 64-bit linear congruential generator: repeatable.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[((self.next() * from.len() as f64) as usize).min(from.len() - 1)]
-    }
-
-    fn direction(&mut self) -> DVec3 {
-        let z = 2.0 * self.next() - 1.0;
-        let (s, c) = (std::f64::consts::TAU * self.next()).sin_cos();
-        let rho = (1.0 - z * z).sqrt();
-        DVec3::new(rho * c, rho * s, z)
-    }
-}
+use random::{Random, count_from};
 
 fn both() -> [Renderer; 2] {
     let cpu = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();
@@ -100,6 +84,9 @@ fn rays_at_the_extremes() {
     }
 }
 
+/// Full vertical angles, rad.
+const FIELDS: [f64; 5] = [1e-6, 0.3, 1.0, 3.0, 3.1];
+
 #[test]
 fn frames_at_the_extremes() {
     let mut random = Random(11);
@@ -110,8 +97,9 @@ fn frames_at_the_extremes() {
         let inside = spin == 0.0 && motion == Motion::FreeFall && random.next() < 0.5;
         let position =
             if inside { random.direction() * random.pick(&[1e-3, 1.0, 2.0]) } else { place(&mut random, spin) };
-        let (forward, velocity) = (random.direction(), random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]));
-        let fov_y = random.pick(&[1e-6, 0.3, 1.0, 3.0, 3.1]);
+        let velocity = random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]);
+        let forward = random.direction();
+        let fov_y = random.pick(&FIELDS);
         let camera = Camera {
             position: position * mass,
             forward,
@@ -134,4 +122,64 @@ fn frames_at_the_extremes() {
             assert_eq!(bad, 0, "scene {scene} spin {spin} mass {mass} {camera:?}");
         }
     }
+}
+
+/// BHR_EXTREME_SCENES frames of 101 x 99 rays, most of them looked up: the middle one is exactly radial where the camera looks at the hole or
+/// away from it.
+#[test]
+fn table_frames_at_the_extremes() {
+    let mut random = Random(13);
+    let mut renderers = both();
+    for scene in 0..count_from("BHR_EXTREME_SCENES", 120) {
+        let (spin, mass) = (random.pick(&SPINS), random.pick(&MASSES));
+        let spin = if random.next() < 0.3 { 0.0 } else { spin };
+        let motion = random.pick(&[Motion::Static, Motion::FreeFall, Motion::Velocity]);
+        let inside = spin == 0.0 && motion == Motion::FreeFall && random.next() < 0.3;
+        let position =
+            if inside { random.direction() * random.pick(&[1e-3, 0.9, 1.0, 2.0]) } else { place(&mut random, spin) };
+        let (anywhere, outward) = (random.direction(), position.normalize());
+        let forward =
+            random.pick(&[anywhere, anywhere, outward, -outward, -outward, -outward + anywhere / position.length()]);
+        let camera = Camera {
+            position: position * mass,
+            forward,
+            up: forward.any_orthogonal_vector(),
+            fov_y: random.pick(&FIELDS),
+            motion,
+            velocity: random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]),
+            ..Camera::default()
+        };
+        let disk = [random.pick(&[20.0, 1e6]), random.pick(&[0.5, 1.0]), random.pick(&[0.0, 1.0])];
+        let tables = random.pick(&[LensTables::Always, LensTables::Always, LensTables::Auto]);
+        for renderer in &mut renderers {
+            let hole = &mut renderer.scene.hole;
+            (hole.spin, hole.mass, renderer.scene.camera) = (spin, mass, camera);
+            renderer.scene.quality.lens_tables = tables;
+            let matter = renderer.scene.disk.as_mut().unwrap();
+            [matter.outer_radius, matter.opacity, matter.turbulence] = disk;
+            let case = || format!("scene {scene} spin {spin} mass {mass} disk {disk:?} {tables:?} {camera:?}");
+            let records = renderer.ray_records(101, 99).unwrap_or_else(|e| panic!("{e}: {}", case()));
+            let bad = records.iter().enumerate().find(|(_, record)| !is_sound(record));
+            assert!(bad.is_none(), "{} {}: {bad:?}", renderer.adapter().name, case());
+        }
+    }
+}
+
+/// Whether a record holds numbers where shading reads them.
+fn is_sound(record: &Record) -> bool {
+    let sky = match record.fate {
+        trace::Fate::Escaped => {
+            (record.direction.length() - 1.0).abs() < 1e-5
+                && record.sky_redshift > 0.0
+                && record.sky_redshift.is_finite()
+                && !record.footprint.iter().any(|f| f.is_nan())
+        }
+        _ => true,
+    };
+    let crossings = record.crossings.iter().all(|x| {
+        let places = [x.place, x.footprint[0], x.footprint[1]];
+        x.u > 0.0 && x.u.is_finite() && x.g >= 0.0 && !places.iter().any(|p| (p.ln_r + p.azimuth + p.delay).is_nan())
+    });
+    let constants = record.energy.is_finite() && record.angular_momentum.is_finite();
+    sky && crossings && (constants || record.fate == trace::Fate::Unresolved)
 }

@@ -4,7 +4,7 @@
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, Motion, Region, Sky, View};
+use bhr::scene::{Camera, Effects, Lensing, Motion, Region, Sky, View};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -219,19 +219,8 @@ fn tiles_and_repetitions_give_the_same_bytes() {
         renderer.scene.quality.samples_per_pixel = 3;
         renderer.scene.disk.as_mut().unwrap().turbulence = 1.0;
         for format in [PixelFormat::Rgba8Srgb, PixelFormat::Rgba16F] {
-            let bytes = format.bytes_per_pixel();
             let whole = picture(&mut renderer, format, [width, height], None, false);
-            let mut joined = vec![0; whole.len()];
-            for (x, w) in [(0, 7), (7, 33), (40, 35)] {
-                for (y, h) in [(0, 1), (1, 29), (30, 20)] {
-                    let region = Region { full_width: width, full_height: height, x, y };
-                    let tile = picture(&mut renderer, format, [w, h], Some(region), false);
-                    for (row, line) in tile.chunks_exact(w as usize * bytes).enumerate() {
-                        let at = ((y as usize + row) * width as usize + x as usize) * bytes;
-                        joined[at..at + line.len()].copy_from_slice(line);
-                    }
-                }
-            }
+            let joined = tiled(&mut renderer, format, [width, height]);
             assert!(whole == joined, "{tracer}: {format:?} tiles");
             renderer.scene.hole.spin = 0.0;
             picture(&mut renderer, format, [20, 90], None, false);
@@ -239,6 +228,71 @@ fn tiles_and_repetitions_give_the_same_bytes() {
             assert!(whole == picture(&mut renderer, format, [width, height], None, false), "{tracer}: again");
         }
     }
+}
+
+/// Frames large enough for lens tables: their bytes are the same with tables made afresh, used again, and filled for other eyes in
+/// between; tile by tile; and in every frame of an eye that moves there and back.
+#[test]
+fn tables_give_the_same_bytes() {
+    let format = PixelFormat::Rgba8Srgb;
+    let eyes = [
+        (0.0, camera(12.0, 70.0, 60.0, Motion::Static)),
+        (0.9, camera(12.0, 70.0, 60.0, Motion::Static)),
+        (0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
+        (0.9, camera(6.0, 90.0, 90.0, Motion::Orbit)),
+    ];
+    for make in [cpu, gpu] {
+        let mut renderer = make();
+        let name = renderer.adapter().name.clone();
+        let show = |renderer: &mut Renderer, (spin, camera): (f64, Camera), size: [u32; 2], region: Option<Region>| {
+            (renderer.scene.hole.spin, renderer.scene.camera) = (spin, camera);
+            let disk = renderer.scene.disk.as_mut().unwrap();
+            (disk.turbulence, disk.opacity) = (1.0, 0.7);
+            picture(renderer, format, size, region, false)
+        };
+        let sizes = eyes.map(|eye| size_of_tables(&mut renderer, eye));
+        let there: [Vec<u8>; 4] = std::array::from_fn(|i| show(&mut renderer, eyes[i], sizes[i], None));
+        for ((eye, size), first) in eyes.iter().zip(sizes).zip(&there).rev() {
+            // The eye comes from elsewhere, first in a frame too small for tables.
+            let moved = (eye.0, Camera { position: eye.1.position * 1.01, ..eye.1 });
+            show(&mut renderer, moved, [40, 30], None);
+            show(&mut renderer, moved, size, None);
+            assert!(*first == show(&mut renderer, *eye, size, None), "{name}: back at {eye:?}");
+            assert!(*first == show(&mut renderer, *eye, size, None), "{name}: again at {eye:?}");
+            assert!(*first == show(&mut make(), *eye, size, None), "{name}: another renderer at {eye:?}");
+            assert!(*first == tiled(&mut renderer, format, size), "{name}: tiles at {eye:?}");
+        }
+    }
+}
+
+/// The smallest of some frames whose rays are looked up; the smallest of all where none is.
+fn size_of_tables(renderer: &mut Renderer, (spin, camera): (f64, Camera)) -> [u32; 2] {
+    (renderer.scene.hole.spin, renderer.scene.camera) = (spin, camera);
+    let frame = renderer.scene.observer().unwrap().frame;
+    let sizes = [1, 2, 4, 6].map(|k| [210 * k, 140 * k]);
+    let looked_up =
+        |size: &[u32; 2]| renderer.scene.lensing(&frame, u64::from(size[0]) * u64::from(size[1])) != Lensing::Traced;
+    let size = sizes.into_iter().find(looked_up);
+    assert!(size.is_some() || spin != 0.0, "no frame without spin is looked up");
+    size.unwrap_or(sizes[0])
+}
+
+/// A picture put together from odd tiles.
+fn tiled(renderer: &mut Renderer, format: PixelFormat, [width, height]: [u32; 2]) -> Vec<u8> {
+    let bytes = format.bytes_per_pixel();
+    let mut joined = vec![0; (width * height) as usize * bytes];
+    // 7 and 40 columns, 1 and 30 rows, and what is left: small and large.
+    for (x, w) in [(0, 7), (7, 33), (40, width - 40)] {
+        for (y, h) in [(0, 1), (1, 29), (30, height - 30)] {
+            let region = Region { full_width: width, full_height: height, x, y };
+            let tile = picture(renderer, format, [w, h], Some(region), false);
+            for (row, line) in tile.chunks_exact(w as usize * bytes).enumerate() {
+                let at = ((y as usize + row) * width as usize + x as usize) * bytes;
+                joined[at..at + line.len()].copy_from_slice(line);
+            }
+        }
+    }
+    joined
 }
 
 /// A frame cut into many submissions equals one that is not: 1400 x 1100 pixels exceed one tile.
