@@ -29,7 +29,8 @@ fn local_look(look: vec3<f32>) -> LocalLook {
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
     let along = dot(beta, look);
-    let ratio = 1.0 / (gamma * (1.0 - along));
+    // In f32 an eye that falls beside the horizon moves at 1: its ray straight ahead is as good as any.
+    let ratio = 1.0 / (gamma * max(1.0 - along, 6e-8));
     return LocalLook(look, normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
 }
 
