@@ -8,7 +8,7 @@ fn each_pixel(@builtin(global_invocation_id) id: vec3<u32>) {
     let record = ray_record(id.xy);
     if record.fate == FATE_PENDING {
         defer_pixel(id.xy);
-        return;
+    } else {
+        take_record(id.xy, record);
     }
-    take_record(id.xy, record);
 }

@@ -2,7 +2,7 @@
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
-@group(0) @binding(2) var<storage, read_write> exported: array<vec4<f32>>;
+@group(2) @binding(0) var<storage, read_write> exported: array<vec4<f32>>;
 
 // Crossings of a record, and vectors: four of the ray, three of each crossing.
 const EXPORT_CROSSINGS: u32 = 4u;

@@ -60,12 +60,13 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         return vec4<u32>(vec3<u32>(false_colour(share) * 255.0 + 0.5), 255u);
     }
     let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
-    // Most of the sky: black stays black, whatever the dither.
-    if TONE_MAP != TONE_MAP_AGX && all(scene == vec3<f32>(0.0)) {
-        return vec4<u32>(vec3<u32>(0u), u32(alpha_of(radiance.w) * 255.0 + 0.5));
+    // Most of the sky is black, and black stays black, whatever the dither. (A `return` here, called from a loop, crashes the shader
+    // compiler of Mesa 22.3.)
+    var codes = vec3<u32>(0u);
+    if TONE_MAP == TONE_MAP_AGX || any(scene != vec3<f32>(0.0)) {
+        codes = vec3<u32>(srgb_encode(tone_map(scene)) * 255.0 + dither(x, y));
     }
-    let display = tone_map(scene);
-    return vec4<u32>(vec3<u32>(srgb_encode(display) * 255.0 + dither(x, y)), u32(alpha_of(radiance.w) * 255.0 + 0.5));
+    return vec4<u32>(codes, u32(alpha_of(radiance.w) * 255.0 + 0.5));
 }
 
 fn develop_rgba16f(radiance: vec4<f32>) -> vec2<u32> {

@@ -1,8 +1,8 @@
 // Shades one of several samples of a tile's pixels and adds it to the sum of those before.
 
 // Of the tile: the sum of the samples before, and with this one.
-@group(0) @binding(4) var radiance_before: texture_2d<f32>;
-@group(0) @binding(5) var radiance: texture_storage_2d<rgba32float, write>;
+@group(2) @binding(0) var radiance_before: texture_2d<f32>;
+@group(2) @binding(1) var radiance: texture_storage_2d<rgba32float, write>;
 
 fn take_record(id: vec2<u32>, record: Record) {
     var sum = shade_record(id, record) * pass_.weight;

@@ -234,12 +234,12 @@ impl GpuTracer {
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.as_entire_binding(), fixed.pass());
         let footprints = setup.looks.look.footprints;
-        let exported: &[_] = &[frame.clone(), pass.clone(), sized.packed.as_entire_binding()];
+        let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
         let records = buffers.makers.stages(device, &mut self.kernels, &setup.making, &shared)?;
         let group = buffers.makers.group(setup.making.source)?;
         let take = |kernels: &mut Kernels, source| {
-            kernels.export(device, source, footprints)?.stage(device, &[exported, &group])
+            kernels.export(device, source, footprints)?.stage(device, &[&scene, &group, &exported])
         };
         let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.software, take)?;
 
@@ -362,16 +362,15 @@ impl FrameBuffers {
         let records = self.makers.group(setup.making.source)?;
         let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        // `between`: what the kernel reads and writes beside.
-        let shade = |kernels: &mut Kernels, between: [&wgpu::BindingResource<'_>; 2]| {
-            let [a, b] = between.map(Clone::clone);
-            let shared = [frame.clone(), pass.clone(), light.clone(), cells.clone(), a, b];
+        let shared = [frame, pass.clone(), light, cells];
+        let shade = |kernels: &mut Kernels, target: [&wgpu::BindingResource<'_>; 2]| {
+            let target = target.map(Clone::clone);
             let take = |kernels: &mut Kernels, source| {
                 let compiled = match looks.several_samples {
                     true => kernels.shade_sample(device, source, looks.look)?,
                     false => kernels.shade_only(device, source, looks.look, looks.film)?,
                 };
-                compiled.stage(device, &[&shared, &records])
+                compiled.stage(device, &[&shared, &records, &target])
             };
             Taking::new(kernels, &setup.making, software, take)
         };

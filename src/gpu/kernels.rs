@@ -367,10 +367,10 @@ impl Source {
     }
 }
 
-/// Bindings 0 .. 3 of shade.wgsl, then `rest`.
-fn shade_slots(rest: [Slot; 2]) -> Vec<Slot> {
+/// Group 0 of shade.wgsl.
+fn shade_slots() -> Vec<Slot> {
     let [light, cells] = TABLES.map(Slot::Texture);
-    [[Slot::Uniform, Slot::UniformPart, light, cells].as_slice(), &rest].concat()
+    vec![Slot::Uniform, Slot::UniformPart, light, cells]
 }
 
 impl Kernels {
@@ -391,12 +391,13 @@ impl Kernels {
     }
 
     pub fn shade_sample(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
-        let groups = [shade_slots([Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]), source.slots()];
+        let target = vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)];
+        let groups = [shade_slots(), source.slots(), target];
         self.get(device, Name::ShadeSample(source, look), &groups, source.driver().0, || shade_sample_source(source))
     }
 
     pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
-        let groups = [shade_slots([Slot::Uniform, Slot::Write]), source.slots()];
+        let groups = [shade_slots(), source.slots(), vec![Slot::Uniform, Slot::Write]];
         self.get(device, Name::ShadeOnly(source, look, film), &groups, source.driver().0, || shade_only_source(source))
     }
 
@@ -406,7 +407,7 @@ impl Kernels {
     }
 
     pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
-        let groups = [vec![Slot::Uniform, Slot::UniformPart, Slot::Write], source.slots()];
+        let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
         self.get(device, Name::Export(source, footprints), &groups, source.driver().0, || export_source(source))
     }
 
