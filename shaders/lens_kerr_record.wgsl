@@ -157,16 +157,13 @@ fn next_looked_up() -> Crossing {
     }
     let disk = frame.disk_u;
     var orders = looked.flags & 0xffffu;
-    var at: Interpolated;
-    while orders != 0u {
+    while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
         orders &= orders - 1u;
-        at = interpolate(select(order / 4u, order, PATTERN));
-        let u = at.value[select(order % 4u, 0u, PATTERN)];
+        let u = interpolate(select(order / 4u, order, PATTERN)).value[select(order % 4u, 0u, PATTERN)];
         if u >= disk.x && u <= disk.y {
             crossing.u = u;
             crossing.order = order;
-            break;
         }
     }
     looked.flags = orders;
@@ -175,7 +172,7 @@ fn next_looked_up() -> Crossing {
         crossing.g = looked.seen.frequency_ratio * redshift_of(c, crossing.u);
     }
     if PATTERN && crossing.u > 0.0 {
-        put_pattern(&crossing, at);
+        put_pattern(&crossing, interpolate(crossing.order));
     }
     return crossing;
 }

@@ -107,23 +107,25 @@ fn next_crossing() -> Crossing {
         return crossing;
     }
     let disk = frame.disk_u;
-    // u, and its derivatives by place and by y.
-    var at = vec3<f32>(0.0);
+    var phi = looked.first + PI * f32(looked.order);
+    // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found must be kept
+    // apart, too: lanes that have left go on writing.)
     loop {
-        let phi = looked.first + PI * f32(looked.order);
-        if phi >= looked.swept || looked.order >= frame.max_crossings {
-            break;
+        let u = column_at(lens_u, phi / max(looked.swept, 1e-6)).x;
+        let there = phi < looked.swept && looked.order < frame.max_crossings && u >= disk.x && u <= disk.y;
+        if there && crossing.u <= 0.0 {
+            crossing.u = u;
+            crossing.order = looked.order;
         }
         looked.order += 1u;
-        at = column_at(lens_u, phi / looked.swept);
-        if at.x >= disk.x && at.x <= disk.y {
-            crossing.u = at.x;
-            crossing.order = looked.order - 1u;
-            break;
+        phi += PI;
+
+        continuing {
+            break if crossing.u > 0.0 || phi >= looked.swept || looked.order >= frame.max_crossings;
         }
     }
     if crossing.u > 0.0 {
-        complete(&crossing, looked.first + PI * f32(crossing.order), at);
+        complete(&crossing, looked.first + PI * f32(crossing.order));
     }
     return crossing;
 }
@@ -151,14 +153,15 @@ fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
     return vec3<f32>(dot(value, base), dot(change, base), dot(value, base_slope));
 }
 
-fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
+fn complete(crossing: ptr<function, Crossing>, phi: f32) {
     let begin = begin_local(looked.seen.n);
     let c = begin.c;
-    let u = at.x;
+    let u = (*crossing).u;
     (*crossing).g = looked.seen.frequency_ratio * redshift_of(c, u);
     if !FOOTPRINTS {
         return;
     }
+    let at = column_at(lens_u, phi / looked.swept);
     let turn = sincos(phi);
     let n = frame.e_r.xyz * turn.y + looked.along * turn.x;
     let tangent = looked.along * turn.y - frame.e_r.xyz * turn.x;

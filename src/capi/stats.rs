@@ -18,7 +18,7 @@ pub struct BhrFrameStats {
     /// 1 for the first frame of a context.
     pub frame_index: u64,
     pub rays: u64,
-    /// Integration steps of all rays.
+    /// Integration steps of all rays; rays that were looked up take none.
     pub steps: u64,
     /// From the call's begin to its end.
     pub cpu_ns: u64,
