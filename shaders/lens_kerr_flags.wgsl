@@ -12,7 +12,7 @@
 // and delays, relative to the orbital time.
 const KERR_TOLERANCE: f32 = 2e-6;
 const KERR_RADIUS_TOLERANCE: f32 = 4e-6;
-const KERR_PATTERN_TOLERANCE: f32 = 1e-4;
+const KERR_PATTERN_TOLERANCE: f32 = 2e-5;
 
 // Lower corner of the cell.
 var<private> cell: vec2<u32>;
@@ -50,7 +50,6 @@ struct Patch {
     // Change along x and along chi.
     by_row: array<vec4<f32>, 2>,
     by_column: array<vec4<f32>, 2>,
-    middle: vec4<f32>,
     // Whether no node is 0 in x, y and z.
     filled: bool,
 }
@@ -76,7 +75,6 @@ fn patch_of(layer: u32) -> Patch {
             if m == 0u {
                 along_chi = worst;
                 p.by_column[k - 2u] = v[3] - v[2];
-                p.middle += 0.25 * (v[2] + v[3]);
             } else {
                 along_x = worst;
                 p.by_row[k - 2u] = v[3] - v[2];
@@ -124,7 +122,7 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     if max(abs(p.low[k]), abs(p.high[k])) >= KERR_NO_CROSSING {
         return bit | KERR_DIRECT;
     }
-    let size = clamp(p.middle[k], far, near);
+    let size = clamp(p.low[k], far, near);
     let stretch = stretch_of(abs(vec2<f32>(p.by_row[0][k], p.by_row[1][k])), abs(vec2<f32>(p.by_column[0][k], p.by_column[1][k])));
     let conditioning = 1.0 + critical * stretch / size;
     let good = p.error[k] <= KERR_RADIUS_TOLERANCE * conditioning * size;
@@ -137,7 +135,7 @@ fn pattern_is_good(p: Patch) -> bool {
     let delay_stretch =
         stretch_of(abs(vec2<f32>(p.by_row[0].w, p.by_row[1].w)), abs(vec2<f32>(p.by_column[0].w, p.by_column[1].w)));
     // d ph = Omega dt, Omega = r^(-3/2) (Kepler).
-    let u = clamp(p.middle.x, frame.disk_u.x, frame.disk_u.y);
+    let u = clamp(p.high.x, frame.disk_u.x, frame.disk_u.y);
     let turn = u * sqrt(u);
     return length(p.error.yz) <= KERR_PATTERN_TOLERANCE * (1.0 + critical * azimuth_stretch)
         && turn * p.error.w <= KERR_PATTERN_TOLERANCE * (1.0 + critical * turn * delay_stretch);

@@ -1,52 +1,71 @@
-// Ray records with spin of pixels that the tables of lens_kerr.wgsl do not hold: integrated. Footprints are the tables' all the same.
+// Ray records with spin of pixels that the tables of lens_kerr.wgsl do not hold: integrated. The sky's footprint is the tables'
+// all the same; those of crossings come from the next pixels' rays.
 
-// u, azimuth, delay, order.
-var<private> rest_crossings: array<vec4<f32>, 16>;
-var<private> rest_count: u32;
-var<private> rest_given: u32;
+// u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right, of the next below. u is 0 where
+// there is none.
+const REST_ORDERS: u32 = 16u;
+var<private> rest_crossings: array<vec3<f32>, 48>;
+var<private> rest_ray: u32;
+var<private> rest_order: u32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
-    if crossing.u >= frame.disk_u.x && crossing.u <= frame.disk_u.y {
-        var azimuth = 0.0;
-        if PATTERN {
-            azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
-        }
-        rest_crossings[min(rest_count, 15u)] = vec4<f32>(crossing.u, azimuth, crossing.delay, f32(crossing.order));
-        rest_count += 1u;
+    var azimuth = 0.0;
+    if PATTERN {
+        azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
+    rest_crossings[rest_ray * REST_ORDERS + min(crossing.order, REST_ORDERS - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
 fn ray_record(id: vec2<u32>) -> Record {
     var record = look_up(id);
-    let begin = begin_local(looked.seen.n);
-    rest_count = 0u;
-    rest_given = 0u;
     let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
-    let traced = trace(begin.c, begin.state, settings);
-    record.fate = traced.fate;
-    record.steps = traced.steps;
-    if traced.fate == FATE_ESCAPED {
-        let end = escape(begin.c, traced);
-        record.sky = chart_direction(end.n, end.drag);
-        record.sky_redshift = looked.seen.frequency_ratio / record.energy;
+    for (var i = 0u; i < 3u * REST_ORDERS; i += 1u) {
+        rest_crossings[i] = vec3<f32>(0.0);
     }
-    atomicAdd(&deferred.steps, traced.steps);
+    // The pixel itself comes last.
+    for (var k = select(1u, 3u, FOOTPRINTS); k > 0u; k -= 1u) {
+        rest_ray = k - 1u;
+        let place = pixel_place(id) + vec2<f32>(f32(rest_ray & 1u), f32(rest_ray >> 1u));
+        let begin = begin_local(local_look(camera_look(place.x, place.y)).n);
+        let traced = trace(begin.c, begin.state, settings);
+        record.fate = traced.fate;
+        record.steps = traced.steps;
+        if rest_ray == 0u && traced.fate == FATE_ESCAPED {
+            let end = escape(begin.c, traced);
+            record.sky = chart_direction(end.n, end.drag);
+            record.sky_redshift = looked.seen.frequency_ratio / record.energy;
+        }
+    }
+    rest_order = 0u;
+    atomicAdd(&deferred.steps, record.steps);
     return record;
 }
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
-    if rest_given >= rest_count {
-        return crossing;
+    while rest_order < min(frame.max_crossings, REST_ORDERS) && crossing.u <= 0.0 {
+        let u = rest_crossings[rest_order].x;
+        if u >= frame.disk_u.x && u <= frame.disk_u.y {
+            crossing.u = u;
+            crossing.order = rest_order;
+        }
+        rest_order += 1u;
     }
-    let at = rest_crossings[min(rest_given, 15u)];
-    rest_given += 1u;
-    crossing.u = at.x;
-    crossing.g = looked.seen.frequency_ratio * redshift_of(begin_local(looked.seen.n).c, at.x);
-    crossing.order = u32(at.w);
-    if PATTERN {
-        crossing.place = Place(-log(at.x), at.y, at.z);
-        put_footprint(&crossing, interpolate(crossing.order));
+    if crossing.u > 0.0 {
+        crossing.g = looked.seen.frequency_ratio * redshift_of(begin_local(looked.seen.n).c, crossing.u);
+        if PATTERN {
+            let at = rest_crossings[crossing.order];
+            crossing.place = Place(-log(at.x), at.y, at.z);
+            crossing.dx = rest_change(at, rest_crossings[REST_ORDERS + crossing.order]);
+            crossing.dy = rest_change(at, rest_crossings[2u * REST_ORDERS + crossing.order]);
+        }
     }
     return crossing;
+}
+
+fn rest_change(here: vec3<f32>, next: vec3<f32>) -> Place {
+    if next.x <= 0.0 {
+        return Place(1e30, 0.0, 0.0);
+    }
+    return Place(-log(next.x / here.x), wrap_angle(next.y - here.y), next.z - here.z);
 }
