@@ -178,7 +178,8 @@ impl GpuTracer {
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let source = match scene.lensing(&lens.observer.frame, pixels) {
-            Lensing::Traced => Source::Traced,
+            // The tables of spinning holes are the CPU tracer's alone.
+            Lensing::Traced | Lensing::Kerr => Source::Traced,
             Lensing::Schwarzschild => {
                 Source::Schwarzschild { delay: settings.delay, moving: lens.observer.beta != DVec3::ZERO }
             }

@@ -2,6 +2,7 @@
 //! a frame's bytes never depend on those before it.
 
 use super::{Method, Scene, View};
+use crate::physics::lens::critical;
 use crate::physics::observer::LocalFrame;
 
 /// Where tables are used; anything but `Auto` is for tests.
@@ -21,6 +22,9 @@ const SCHWARZSCHILD_WORTH: u64 = 4096;
 const SCHWARZSCHILD_STATIC: std::ops::RangeInclusive<f64> = 2.0005..=1e6;
 const SCHWARZSCHILD_RAIN: std::ops::RangeInclusive<f64> = 0.9..=1e6;
 
+/// Pixels times samples that pay for the tables of a spinning hole's lens, which take as long as so many rays or more.
+const KERR_WORTH: u64 = 500_000;
+
 /// How the rays of a frame are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lensing {
@@ -28,6 +32,8 @@ pub enum Lensing {
     Traced,
     /// In the tables of a spin-0 lens.
     Schwarzschild,
+    /// In the tables of a spinning hole's lens, but for those that these leave out.
+    Kerr,
 }
 
 impl Scene {
@@ -46,6 +52,9 @@ impl Scene {
         let range = if frame.rain { SCHWARZSCHILD_RAIN } else { SCHWARZSCHILD_STATIC };
         if frame.a == 0.0 && range.contains(&frame.r) && pays(SCHWARZSCHILD_WORTH) {
             return Lensing::Schwarzschild;
+        }
+        if frame.a != 0.0 && critical::serves(frame) && pays(KERR_WORTH) {
+            return Lensing::Kerr;
         }
         Lensing::Traced
     }

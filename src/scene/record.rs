@@ -56,6 +56,19 @@ impl Record {
             crossings: ArrayVec::new(),
         }
     }
+
+    /// Makes it `captured`, in place.
+    pub fn clear(&mut self) {
+        self.crossings.clear();
+        self.fate = Fate::Captured;
+        self.direction = DVec3::ZERO;
+        self.footprint = [UNKNOWN_DIRECTION; 2];
+        self.sky_redshift = f64::NAN;
+        self.energy = 1.0;
+        self.angular_momentum = 0.0;
+        self.steps = 0;
+        self.plane_u = 0.0;
+    }
 }
 
 /// A footprint that nothing is known of: only the mean sky can stand for it.

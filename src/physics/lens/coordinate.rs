@@ -9,6 +9,8 @@ use std::f64::consts::LN_2;
 
 /// log2 of the smallest |t_hat| that is told from 0.
 pub const LEAST_OCTAVE: f64 = -24.0;
+/// That |t_hat|.
+pub const LEAST_T_HAT: f64 = 1.0 / 16_777_216.0;
 
 /// The axis about one critical angle.
 #[derive(Clone, Copy, Debug)]

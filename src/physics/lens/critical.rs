@@ -30,6 +30,12 @@ pub const FARTHEST_EYE: f64 = 1e5;
 /// Most evaluations of the potential for one node; four to six are usual.
 const MAX_EVALUATIONS: usize = 40;
 
+/// Whether an eye has a curve here: outside the photon region, not too far, and not in the rain frame.
+pub fn serves(frame: &LocalFrame) -> bool {
+    let nearest = NEAREST_EYE * photon_orbit(-frame.a.abs());
+    !frame.rain && frame.r > nearest && frame.r <= FARTHEST_EYE
+}
+
 /// P(u) = u'^2.
 pub fn radial_potential(c: &Constants, u: f64) -> f64 {
     let quadratic = c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter));
@@ -79,10 +85,9 @@ pub struct Polar {
 }
 
 impl CriticalCurve {
-    /// `None` for an eye in or near the photon region, too far, or in the rain frame.
+    /// `None` for an eye that is not served (`serves`).
     pub fn new(frame: &LocalFrame) -> Option<Self> {
-        let nearest = NEAREST_EYE * photon_orbit(-frame.a.abs());
-        if frame.rain || !(frame.r > nearest && frame.r <= FARTHEST_EYE) {
+        if !serves(frame) {
             return None;
         }
         let mut curve = Self::centred(frame);
