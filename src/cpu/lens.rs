@@ -2,7 +2,8 @@
 //! and kept while what they depend on stays. Records and their footprints are as `record` makes them by tracing. Mirrored by
 //! `shaders/lens_schwarzschild_record.wgsl`. Knows no shading.
 
-use super::record::Recorder;
+use super::record::{Neighbours, Recorder};
+use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
 use crate::physics::lens::{OrbitPlane, PlaneImage, SchwarzschildLens};
 use crate::physics::observer::{LocalFrame, Momenta};
@@ -15,16 +16,31 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
+/// Relative difference of u of crossings up to which the footprint of one serves for the other.
+const LIKE: f64 = 1e-2;
+
 /// The tables of the last frame that looked rays up in some.
 #[derive(Default)]
 pub struct LensCache {
     schwarzschild: Option<SchwarzschildLens>,
+    kerr: Option<(KerrKey, KerrLens)>,
+}
+
+/// What tables of a spinning hole depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct KerrKey {
+    spin: f64,
+    r: f64,
+    /// Unit vector from the hole to the eye.
+    e_r: DVec3,
+    wanted: Crossings,
 }
 
 /// The tables of a frame.
 #[derive(Clone, Copy)]
 pub enum Tables<'a> {
     Schwarzschild(&'a SchwarzschildLens),
+    Kerr(&'a KerrLens),
 }
 
 impl LensCache {
@@ -32,7 +48,8 @@ impl LensCache {
     /// be traced.
     pub fn tables(&mut self, scene: &Scene, frame: &LocalFrame, lensing: Lensing) -> Option<Tables<'_>> {
         match lensing {
-            Lensing::Traced | Lensing::Kerr => None,
+            Lensing::Traced => None,
+            Lensing::Kerr => self.kerr(frame, wanted(scene)).map(Tables::Kerr),
             Lensing::Schwarzschild => self.schwarzschild(frame, scene.needs_delay()).map(Tables::Schwarzschild),
         }
     }
@@ -47,6 +64,39 @@ impl LensCache {
         }
         self.schwarzschild.as_ref()
     }
+
+    fn kerr(&mut self, frame: &LocalFrame, wanted: Crossings) -> Option<&KerrLens> {
+        let key = KerrKey { spin: frame.a, r: frame.r, e_r: frame.e_r, wanted };
+        if !self.kerr.as_ref().is_some_and(|(held, _)| *held == key) {
+            // The old ones go first: they are large.
+            self.kerr = None;
+            self.kerr = build_kerr(frame, wanted).map(|lens| (key, lens));
+        }
+        self.kerr.as_ref().map(|(_, lens)| lens)
+    }
+}
+
+/// What a frame of `scene` asks of tables.
+fn wanted(scene: &Scene) -> Crossings {
+    let orders = scene.pixel_settings().max_crossings;
+    match scene.disk_u() {
+        Some(disk_u) => Crossings { orders, disk_u, pattern: scene.turbulence().is_some() },
+        None => Crossings { orders: 0, disk_u: [1.0, 0.0], pattern: false },
+    }
+}
+
+fn build_kerr(frame: &LocalFrame, wanted: Crossings) -> Option<KerrLens> {
+    let grid = Grid::new(frame, kerr::Resolution::default(), wanted)?;
+    let branches = [kerr::Branch::Outer, kerr::Branch::Inner];
+    let tables = branches.map(|branch| {
+        let rows = (0..grid.rows(branch)).into_par_iter();
+        let nodes: Vec<f64> = rows.clone().flat_map_iter(|row| grid.node_row(branch, row)).collect();
+        let cells = grid.cell_rows(branch).into_par_iter();
+        let flags: Vec<u32> = cells.flat_map_iter(|row| grid.flag_row(branch, row, &nodes)).collect();
+        (rows.flat_map_iter(|row| grid.packed_row(row, &nodes)).collect(), flags)
+    });
+    let [(outer, outer_flags), (inner, inner_flags)] = tables;
+    Some(KerrLens::assemble(grid, [outer, inner], [outer_flags, inner_flags]))
 }
 
 fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Option<SchwarzschildLens> {
@@ -92,6 +142,59 @@ impl<'a> LookedUp<'a> {
         record.angular_momentum = self.momenta.angular_momentum(seen.n);
         match self.tables {
             Tables::Schwarzschild(lens) => self.look_in_plane(lens, &seen, record),
+            Tables::Kerr(lens) => match lens.look(seen.n) {
+                Some(found) if found.crossings_are_good() => self.look_in_grid(&found, &seen, record),
+                Some(found) => *record = self.traced_once(x, y, &found, &seen),
+                None => *record = self.traced(x, y),
+            },
+        }
+    }
+
+    /// By tracing the pixel and its neighbours.
+    fn traced(&self, x: f64, y: f64) -> Record {
+        let trace = |dx, dy| self.recorder.trace(x + dx, y + dy);
+        let [left, right, above, below] = [trace(-1.0, 0.0), trace(1.0, 0.0), trace(0.0, -1.0), trace(0.0, 1.0)];
+        let here = trace(0.0, 0.0);
+        let mut record = Neighbours { left: &left, right: &right, above: &above, below: &below }.complete(&here);
+        record.steps += [left, right, above, below].iter().map(|neighbour| neighbour.steps).sum::<u32>();
+        record
+    }
+
+    /// By tracing the pixel; footprints, which need not be as exact, from the table.
+    fn traced_once(&self, x: f64, y: f64, found: &kerr::Seen, seen: &Seen) -> Record {
+        let mut record = self.recorder.trace(x, y);
+        let steps = seen.changes.map(|change| found.place.step(change));
+        if let (Some(sky), Fate::Escaped) = (found.sky(), record.fate) {
+            record.footprint = steps.map(|step| sky.change(step));
+        }
+        if !self.pattern {
+            return record;
+        }
+        for crossing in &mut record.crossings {
+            let near = |other: &kerr::Crossing| (other.image.u / crossing.u - 1.0).abs() < LIKE;
+            let Some(alike) = found.crossing(crossing.order as usize).filter(near) else {
+                return self.traced(x, y);
+            };
+            crossing.footprint = steps.map(|step| change_of_place(crossing.u, &alike.change(step)));
+        }
+        record
+    }
+
+    /// With spin.
+    fn look_in_grid(&self, found: &kerr::Seen, seen: &Seen, record: &mut Record) {
+        let steps = seen.changes.map(|change| found.place.step(change));
+        for crossing in found.crossings() {
+            let u = crossing.image.u;
+            let place = self.pattern.then(|| {
+                let changes = steps.map(|step| change_of_place(u, &crossing.change(step)));
+                (place_of(&crossing.image), changes)
+            });
+            if self.cross(record, seen.ratio, u, crossing.order, place) {
+                return;
+            }
+        }
+        if let Some(sky) = found.sky() {
+            escape(record, seen.ratio, sky.direction, steps.map(|step| sky.change(step)));
         }
     }
 
@@ -184,7 +287,8 @@ mod tests {
     /// A turbulent, translucent disk seen from (r, inclination in degrees).
     fn scene(spin: f64, r: f64, inclination: f64, fov: f64, motion: Motion) -> Scene {
         let theta = f64::to_radians(inclination);
-        let position = DVec3::new(theta.sin() * 0.6, theta.sin() * 0.8, theta.cos()) * r;
+        let height = if inclination == 90.0 { 0.0 } else { theta.cos() };
+        let position = DVec3::new(theta.sin() * 0.6, theta.sin() * 0.8, height) * r;
         let mut scene = Scene::default();
         scene.hole.spin = spin;
         scene.camera = Camera {
@@ -348,6 +452,27 @@ mod tests {
         ]
     }
 
+    fn kerr_scenes() -> Vec<Scene> {
+        vec![
+            scene(0.9, 30.0, 80.0, 60.0, Motion::Static),
+            scene(0.9, 20.0, 90.0, 40.0, Motion::Orbit),
+            scene(-0.9, 12.0, 40.0, 100.0, Motion::Velocity),
+            scene(0.998, 300.0, 70.0, 5.0, Motion::FreeFall),
+        ]
+    }
+
+    #[test]
+    fn looking_up_with_spin_is_as_tracing() {
+        for scene in kerr_scenes() {
+            let errors = compare(&scene, 1500);
+            println!("r {} {:?}: {errors:?}", scene.camera.position.length(), scene.camera.motion);
+            assert!(errors.traced * 4 < errors.pixels, "{errors:?}");
+            assert!(errors.direction < 4e-6 && errors.u < 4e-6 && errors.g < 4e-6, "{errors:?}");
+            assert!(errors.azimuth < 2e-5 && errors.delay < 2e-5, "{errors:?}");
+            assert!(errors.sky_footprint < 1e-2 && errors.place_footprint < 1e-2, "{errors:?}");
+        }
+    }
+
     #[test]
     fn looking_up_without_spin_is_as_tracing() {
         for scene in schwarzschild_scenes() {
@@ -363,7 +488,7 @@ mod tests {
     #[test]
     #[ignore = "a measurement"]
     fn cost() {
-        for mut scene in schwarzschild_scenes() {
+        for mut scene in schwarzschild_scenes().into_iter().chain(kerr_scenes()) {
             for turbulence in [0.0, 1.0] {
                 scene.disk.as_mut().unwrap().turbulence = turbulence;
                 measure(&scene);
