@@ -19,6 +19,9 @@ use std::f64::consts::PI;
 /// Relative difference of u of crossings up to which the footprint of one serves for the other.
 const LIKE: f64 = 1e-2;
 
+/// Eyes near the equatorial plane want fine columns, crossings of order 0 changing fast along the shadow's edge; rows may be coarser.
+const KERR_RESOLUTION: kerr::Resolution = kerr::Resolution { chi_nodes: 384, nodes_per_octave: 12 };
+
 /// The tables of the last frame that looked rays up in some.
 #[derive(Default)]
 pub struct LensCache {
@@ -86,7 +89,7 @@ fn wanted(scene: &Scene) -> Crossings {
 }
 
 fn build_kerr(frame: &LocalFrame, wanted: Crossings) -> Option<KerrLens> {
-    let grid = Grid::new(frame, kerr::Resolution::default(), wanted)?;
+    let grid = Grid::new(frame, KERR_RESOLUTION, wanted)?;
     let branches = [kerr::Branch::Outer, kerr::Branch::Inner];
     let tables = branches.map(|branch| {
         let rows = (0..grid.rows(branch)).into_par_iter();

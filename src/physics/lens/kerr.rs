@@ -14,7 +14,7 @@
 use super::critical::{CriticalCurve, Polar};
 use super::plane::PlaneImage;
 use crate::physics::geodesic::{Constants, State};
-use crate::physics::integrator::{Method, Quintic, step, step_limit};
+use crate::physics::integrator::{Quintic, nystrom_step, step_limit};
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use crate::physics::trace::{CROSSINGS_KEPT, Settings, land};
@@ -27,8 +27,10 @@ pub const CORE_OCTAVES: usize = 10;
 /// Rows below the first row of cells in use, and above the row of the axis: what the error estimate's stencil reaches.
 const ROWS_BELOW: usize = 2;
 const ROWS_ABOVE: usize = 3;
-/// Step in sigma: 1e-8 or better for a whole ray, by the fifth order of the method.
-const STEP: f64 = 0.2;
+/// Step in sigma: some 1e-7 for a whole ray, typically much less: what f32 resolves.
+const STEP: f64 = 0.25;
+/// Of crossings and ends, in sigma.
+const SLACK: f64 = 1e-8;
 /// Sigma for which a ray is followed beyond infinity: longer than one step of the table takes a crossing.
 const BEYOND_INFINITY: f64 = 1.0;
 /// More than any ray of the grid needs.
@@ -307,7 +309,7 @@ impl<'a> NodeRay<'a> {
         let mut beyond = 0.0;
         for _ in 0..MAX_STEPS {
             let h = (STEP / c.scale).min(step_limit(c, &state, STEP));
-            let (next, _) = step(Method::Nystrom, c, &state, h, settings.delay);
+            let next = nystrom_step(c, &state, h, settings.delay);
             if side * next.n.z < 0.0 {
                 side = next.n.z;
                 self.cross(c, start, &settings, (&state, &next, h));
@@ -315,7 +317,7 @@ impl<'a> NodeRay<'a> {
             if next.u <= 0.0 && self.sky.is_none() {
                 let guess = h * Quintic::of_u(c, &state, &next, h).root();
                 let no_delay = Settings { delay: false, ..settings };
-                self.sky = Some(land(c, &no_delay, &state, guess, |s| (s.u, s.du)).0.chart_direction());
+                self.sky = Some(land(c, &no_delay, &state, guess, SLACK, |s| (s.u, s.du)).0.chart_direction());
             }
             if next.u <= 0.0 {
                 beyond += h * c.scale;
@@ -334,7 +336,7 @@ impl<'a> NodeRay<'a> {
             return;
         }
         let guess = h * Quintic::of_n_z(c, from, to, h).root();
-        let (state, _) = land(c, settings, from, guess, |s| (s.n.z, s.dn.z));
+        let (state, _) = land(c, settings, from, guess, SLACK, |s| (s.n.z, s.dn.z));
         let delay = if self.wanted.pattern { regular_delay(c, eye, &state) } else { 0.0 };
         let direction = state.chart_direction();
         self.crossings.push([state.u, direction.x, direction.y, delay]);
