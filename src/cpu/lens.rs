@@ -240,8 +240,8 @@ impl<'a> LookedUp<'a> {
     fn cross(&self, record: &mut Record, ratio: f64, u: f64, order: u32, place: Option<(Place, [Place; 2])>) -> bool {
         let spin = self.recorder.lens.observer.frame.a;
         let g = redshift(spin, u, self.recorder.retrograde, record.energy, record.angular_momentum, 1.0);
-        let unknown = (Place { ln_r: -u.ln(), azimuth: 0.0, delay: 0.0 }, [UNKNOWN_PLACE; 2]);
-        let (place, footprint) = place.unwrap_or(unknown);
+        let nowhere = Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
+        let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_PLACE; 2]));
         // Tables hold no more crossings than a record does.
         let _ = record.crossings.try_push(DiskCrossing { u, order, g: ratio * g, place, footprint });
         let hidden = self.recorder.settings.opaque_u.is_some();
@@ -485,6 +485,32 @@ mod tests {
             assert!(errors.azimuth < 1e-6 && errors.delay < 1e-5, "{errors:?}");
             assert!(errors.sky_footprint < 1e-3 && errors.place_footprint < 1e-3, "{errors:?}");
         }
+    }
+
+    /// Tables are always those of the frame at hand.
+    #[test]
+    fn tables_follow_what_they_depend_on() {
+        let mut scene = scene(0.9, 30.0, 80.0, 60.0, Motion::Static);
+        let mut cache = LensCache::default();
+        let mut place = |scene: &Scene| {
+            let frame = scene.lens(&REGION).unwrap().observer.frame;
+            match cache.tables(scene, &frame, scene.lensing(&frame, 1)).unwrap() {
+                Tables::Schwarzschild(lens) => lens.family().r,
+                Tables::Kerr(lens) => {
+                    lens.grid().direction(kerr::Branch::Outer, 0.0, 40.0).x + lens.grid().channels() as f64
+                }
+            }
+        };
+        let first = place(&scene);
+        scene.camera.forward += DVec3::new(1.0, 2.0, 3.0);
+        assert_eq!(place(&scene), first);
+        scene.camera.position *= 1.1;
+        let moved = place(&scene);
+        assert_ne!(moved, first);
+        scene.quality.max_disk_order = 1;
+        assert_ne!(place(&scene), moved);
+        scene.hole.spin = 0.0;
+        assert!((place(&scene) - 33.0).abs() < 1e-9);
     }
 
     /// Cost a pixel and of the tables.

@@ -59,3 +59,38 @@ impl Scene {
         Lensing::Traced
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Quality;
+    use glam::DVec3;
+
+    fn lensing(spin: f64, r: f64, pixels: u64, quality: Quality, view: View) -> Lensing {
+        let scene = Scene { quality, view, ..Scene::default() };
+        scene.lensing(&LocalFrame::new(spin, DVec3::new(r, 0.0, 0.1)).unwrap(), pixels)
+    }
+
+    #[test]
+    fn tables_serve_where_they_pay_and_can() {
+        let auto = Quality::default();
+        let light = View::Light;
+        assert_eq!(lensing(0.0, 20.0, 4095, auto, light), Lensing::Traced);
+        assert_eq!(lensing(0.0, 20.0, 4096, auto, light), Lensing::Schwarzschild);
+        assert_eq!(lensing(0.9, 20.0, KERR_WORTH - 1, auto, light), Lensing::Traced);
+        assert_eq!(lensing(0.9, 20.0, KERR_WORTH, auto, light), Lensing::Kerr);
+        let two = Quality { samples_per_pixel: 2, ..auto };
+        assert_eq!(lensing(0.9, 20.0, KERR_WORTH / 2, two, light), Lensing::Kerr);
+        let always = Quality { lens_tables: LensTables::Always, ..auto };
+        assert_eq!(lensing(0.9, 20.0, 1, always, light), Lensing::Kerr);
+        for r in [3.0, 2e5] {
+            assert_eq!(lensing(0.9, r, 1, always, light), Lensing::Traced);
+        }
+        assert_eq!(lensing(0.9, 20.0, 1, always, View::Metric), Lensing::Traced);
+        assert_eq!(lensing(0.9, 20.0, 1, Quality { method: Method::Rk4, ..always }, light), Lensing::Traced);
+        assert_eq!(
+            lensing(0.9, 20.0, u64::MAX, Quality { lens_tables: LensTables::Never, ..auto }, light),
+            Lensing::Traced
+        );
+    }
+}

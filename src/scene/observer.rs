@@ -125,6 +125,7 @@ impl Lens {
     }
 
     /// `look`, and its changes to the next pixel right and down, to first order.
+    #[inline]
     pub fn look_and_changes(&self, x: f64, y: f64) -> (DVec3, [DVec3; 2]) {
         let point = self.image_point(x, y);
         let inverse = 1.0 / point.length();

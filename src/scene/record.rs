@@ -15,7 +15,7 @@ pub struct DiskCrossing {
     pub order: u32,
     /// g, the camera's motion included.
     pub g: f64,
-    /// Azimuth and delay only where shading needs them, else 0.
+    /// Of use only where shading needs it: for a turbulent disk.
     pub place: Place,
     /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
     pub footprint: [Place; 2],

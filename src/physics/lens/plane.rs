@@ -53,6 +53,7 @@ pub struct PlaneImage {
 
 impl OrbitPlane {
     /// The plane of the look direction `n` (components, unit).
+    #[inline]
     pub fn new(frame: &LocalFrame, n: DVec3) -> Self {
         let across = frame.e_theta * n.y + frame.e_phi * n.z;
         let sin = n.yz().length();
@@ -110,6 +111,7 @@ impl OrbitPlane {
     }
 
     /// The change of the ray for a small change `dn` (components) of the look direction `n`, dn across n.
+    #[inline]
     pub fn turn(&self, frame: &LocalFrame, look: &Look, dn: DVec3) -> Turn {
         let across = frame.e_theta * dn.y + frame.e_phi * dn.z;
         let along = self.tangent.dot(across);
@@ -118,6 +120,7 @@ impl OrbitPlane {
     }
 
     /// Where on the sky an escaping ray ends: N(swept).
+    #[inline]
     pub fn sky(&self, look: &Look) -> PlaneSky {
         let (sin, cos) = look.swept.sin_cos();
         // sin(swept) / sin psi; -d swept / d psi straight outwards, where both vanish.

@@ -120,6 +120,7 @@ impl SchwarzschildLens {
     }
 
     /// Looks up the direction `n` (components, unit).
+    #[inline]
     pub fn look(&self, n: DVec3) -> Look<'_> {
         let (sin, cos) = (n.yz().length(), -n.x);
         let coordinate = &self.family.coordinate;
@@ -154,6 +155,7 @@ impl Look<'_> {
         self.family.coordinate.sin_critical
     }
 
+    #[inline]
     fn locate(&mut self) {
         let coordinate = &self.family.coordinate;
         let x = coordinate.x(self.t_hat);
@@ -167,7 +169,7 @@ impl Look<'_> {
         self.fraction = x - (self.column - shift) as f64;
         // At the least |t_hat| where there is less.
         let t = (self.t_hat.abs().max(LEAST_T_HAT) * coordinate.scale).copysign(self.t_hat);
-        self.x_slope = 1.0 / coordinate.psi_slope(t);
+        self.x_slope = coordinate.x_slope(t);
         let [[y0, d0], [y1, d1]] = [0, 1].map(|i| self.table.swept[self.column + i]);
         let (swept, slope) = hermite(y0, d0, y1, d1, self.fraction);
         self.swept = swept;
@@ -183,6 +185,7 @@ impl Look<'_> {
     }
 
     /// Where the ray is after the angle `phi` >= 0. `None`: it has ended before.
+    #[inline]
     pub fn crossing(&self, phi: f64) -> Option<Crossing> {
         if !(phi >= 0.0 && phi < self.swept) {
             return None;
