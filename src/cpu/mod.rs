@@ -20,7 +20,7 @@ pub const MAX_THREADS: u32 = 1024;
 pub struct CpuTracer {
     adapter: AdapterInfo,
     pool: rayon::ThreadPool,
-    lenses: LensCache,
+    lenses: Box<LensCache>,
 }
 
 /// What the CPU tracer is listed as.
@@ -52,7 +52,7 @@ impl CpuTracer {
             .thread_name(|i| format!("bhr-cpu-{i}"))
             .build()
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
-        Ok(Self { adapter: adapter_info(), pool, lenses: LensCache::default() })
+        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default() })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {
