@@ -2,6 +2,7 @@
 //! the sink.
 
 use super::CpuTracer;
+use super::lens::{LensCache, LookedUp};
 use super::record::{Neighbours, Recorder};
 use super::shade::Shader;
 use crate::error::{Error, ErrorKind, Result};
@@ -18,9 +19,15 @@ use rayon::prelude::*;
 const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
+/// What makes a frame's records.
+enum Source<'a> {
+    Traced(Recorder<'a>),
+    LookedUp(LookedUp<'a>),
+}
+
 /// A frame being rendered.
 struct Frame<'a> {
-    recorder: Recorder<'a>,
+    source: Source<'a>,
     shader: Shader<'a>,
     film: FilmParams,
     request: &'a FrameRequest,
@@ -38,8 +45,8 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
-        let frame = Frame::new(scene, &lens, request);
-        let tiles = tiles(request, scene.expected_steps());
+        let frame = self.pool.install(|| Frame::new(scene, &lens, &mut self.lenses, request));
+        let tiles = tiles(request, frame.expected_steps(scene));
         let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
         let mut stats = FrameStats {
             rays: u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples),
@@ -70,7 +77,7 @@ impl CpuTracer {
     /// The records of a frame, row by row. Errors: as `Scene::lens`.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let lens = scene.lens(&request.region)?;
-        let frame = Frame::new(scene, &lens, request);
+        let frame = self.pool.install(|| Frame::new(scene, &lens, &mut self.lenses, request));
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
         let mut records = vec![Record::captured(); request.width as usize * request.height as usize];
@@ -92,10 +99,18 @@ fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
 }
 
 impl<'a> Frame<'a> {
-    fn new(scene: &'a Scene, lens: &'a Lens, request: &'a FrameRequest) -> Self {
+    /// On the current pool.
+    fn new(scene: &'a Scene, lens: &'a Lens, cache: &'a mut LensCache, request: &'a FrameRequest) -> Self {
         let light = scene.view == View::Light;
+        let region = &request.region;
+        let pixels = u64::from(region.full_width) * u64::from(region.full_height);
+        let eye = &lens.observer.frame;
+        let recorder = Recorder::new(scene, lens);
         Self {
-            recorder: Recorder::new(scene, lens),
+            source: match cache.tables(scene, eye, scene.lensing(eye, pixels)) {
+                Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
+                None => Source::Traced(recorder),
+            },
             shader: Shader::new(scene, lens, request.transparent),
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
@@ -104,7 +119,15 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Traces and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
+    /// Of a ray, on average; looking one up takes as long as one.
+    fn expected_steps(&self, scene: &Scene) -> u64 {
+        match self.source {
+            Source::Traced(_) => scene.expected_steps(),
+            Source::LookedUp(_) => 1,
+        }
+    }
+
+    /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
     fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
         let region = self.request.region;
         let offset = sample_offset(sample, self.samples);
@@ -129,24 +152,10 @@ impl<'a> Frame<'a> {
         out: &mut [T],
         take: impl Fn(&Record, f64, f64, &mut T) + Sync,
     ) -> u64 {
-        let place = |column: u32, row: u32| (origin[0] - 1.0 + f64::from(column), origin[1] - 1.0 + f64::from(row));
-        // One pixel more on each side, for the derivatives.
-        let (width, height) = (tile.width + 2, tile.height + 2);
-        let trace_row =
-            |row| (0..width).map(|column| place(column, row)).map(|(x, y)| self.recorder.trace(x, y)).collect();
-        let records: Vec<Vec<Record>> = (0..height).into_par_iter().map(trace_row).collect();
-        out.par_chunks_mut(tile.width as usize).zip(records.par_windows(3)).zip(1..height).for_each(
-            |((out, rows), row)| {
-                let [above, middle, below] = rows else { return };
-                let columns = middle.windows(3).zip(above.iter().zip(below).skip(1));
-                for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
-                    let [left, here, right] = across else { continue };
-                    let (x, y) = place(column, row);
-                    take(&Neighbours { left, right, above, below }.complete(here), x, y, item);
-                }
-            },
-        );
-        records.iter().flatten().map(|record| u64::from(record.steps)).sum()
+        match &self.source {
+            Source::Traced(recorder) => trace_records(recorder, tile, origin, out, take),
+            Source::LookedUp(lookup) => look_records_up(lookup, tile, origin, out, take),
+        }
     }
 
     /// Packed pixels, rows without gaps.
@@ -160,4 +169,53 @@ impl<'a> Frame<'a> {
         });
         pixels
     }
+}
+
+/// `Frame::with_records`, of which see, by tracing.
+fn trace_records<T: Send>(
+    recorder: &Recorder<'_>,
+    tile: Tile,
+    origin: [f64; 2],
+    out: &mut [T],
+    take: impl Fn(&Record, f64, f64, &mut T) + Sync,
+) -> u64 {
+    let place = |column: u32, row: u32| (origin[0] - 1.0 + f64::from(column), origin[1] - 1.0 + f64::from(row));
+    // One pixel more on each side, for the derivatives.
+    let (width, height) = (tile.width + 2, tile.height + 2);
+    let trace_row = |row| (0..width).map(|column| place(column, row)).map(|(x, y)| recorder.trace(x, y)).collect();
+    let records: Vec<Vec<Record>> = (0..height).into_par_iter().map(trace_row).collect();
+    out.par_chunks_mut(tile.width as usize).zip(records.par_windows(3)).zip(1..height).for_each(
+        |((out, rows), row)| {
+            let [above, middle, below] = rows else { return };
+            let columns = middle.windows(3).zip(above.iter().zip(below).skip(1));
+            for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
+                let [left, here, right] = across else { continue };
+                let (x, y) = place(column, row);
+                take(&Neighbours { left, right, above, below }.complete(here), x, y, item);
+            }
+        },
+    );
+    records.iter().flatten().map(|record| u64::from(record.steps)).sum()
+}
+
+/// The same by looking up: each record is used as it is made.
+fn look_records_up<T: Send>(
+    lookup: &LookedUp<'_>,
+    tile: Tile,
+    origin: [f64; 2],
+    out: &mut [T],
+    take: impl Fn(&Record, f64, f64, &mut T) + Sync,
+) -> u64 {
+    let row = |(row, out): (usize, &mut [T])| {
+        let mut record = Record::captured();
+        let mut steps = 0;
+        for (column, item) in out.iter_mut().enumerate() {
+            let (x, y) = (origin[0] + column as f64, origin[1] + row as f64);
+            lookup.record(x, y, &mut record);
+            steps += u64::from(record.steps);
+            take(&record, x, y, item);
+        }
+        steps
+    };
+    out.par_chunks_mut(tile.width as usize).enumerate().map(row).sum()
 }

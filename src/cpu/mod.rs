@@ -2,6 +2,7 @@
 //! is held against. Calls `physics`; knows no pixel memory and nothing of C.
 
 mod frame;
+mod lens;
 mod rays;
 mod record;
 mod shade;
@@ -11,6 +12,7 @@ pub use rays::{trace_path, trace_ray};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Hit, Ray, Scene};
+use lens::LensCache;
 
 /// Most threads a pool may have, whatever the host asks for.
 pub const MAX_THREADS: u32 = 1024;
@@ -18,6 +20,7 @@ pub const MAX_THREADS: u32 = 1024;
 pub struct CpuTracer {
     adapter: AdapterInfo,
     pool: rayon::ThreadPool,
+    lenses: Box<LensCache>,
 }
 
 /// What the CPU tracer is listed as.
@@ -49,7 +52,7 @@ impl CpuTracer {
             .thread_name(|i| format!("bhr-cpu-{i}"))
             .build()
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
-        Ok(Self { adapter: adapter_info(), pool })
+        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default() })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {

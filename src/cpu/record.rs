@@ -12,9 +12,9 @@ use glam::DVec3;
 /// What traces the records of a frame.
 pub struct Recorder<'a> {
     pub lens: &'a Lens,
-    settings: Settings,
-    disk_u: Option<[f64; 2]>,
-    retrograde: bool,
+    pub(super) settings: Settings,
+    pub(super) disk_u: Option<[f64; 2]>,
+    pub(super) retrograde: bool,
 }
 
 /// The records one pixel to the left, right, above and below.

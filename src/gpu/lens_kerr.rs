@@ -102,7 +102,7 @@ impl KerrTables {
     /// Makes room for the deferred pixels of a tile.
     pub fn prepare(&mut self, device: &Device, tile: [u32; 2]) -> Result<()> {
         let size = DEFERRED_HEAD + u64::from(tile[0]) * u64::from(tile[1]) * DEFERRED_PIXEL;
-        if !self.deferred.as_ref().is_some_and(|d| d.size() >= size) {
+        if self.deferred.as_ref().is_none_or(|d| d.size() < size) {
             self.deferred = None;
             let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
             self.deferred = Some(device.buffer("deferred pixels", size, usage)?);

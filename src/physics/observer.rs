@@ -30,6 +30,26 @@ pub struct LocalFrame {
     pub lapse: f64,
 }
 
+/// E and L of light along look directions n (components) of one frame, at nu_local = 1: affine in n, as tetrads are linear.
+#[derive(Clone, Copy, Debug)]
+pub struct Momenta {
+    energy: f64,
+    energy_gradient: DVec3,
+    angular_momentum_gradient: DVec3,
+}
+
+impl Momenta {
+    /// E; <= 0 in the rain frame: no light comes from there.
+    pub fn energy(&self, n: DVec3) -> f64 {
+        self.energy + self.energy_gradient.dot(n)
+    }
+
+    /// L_z.
+    pub fn angular_momentum(&self, n: DVec3) -> f64 {
+        self.angular_momentum_gradient.dot(n)
+    }
+}
+
 /// Why no frame exists at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoFrame {
@@ -90,6 +110,32 @@ impl LocalFrame {
         self.e_r * n.x + self.e_theta * n.y + self.e_phi * n.z
     }
 
+    /// E and L of the frame's rays at nu_local = 1, as in `start`.
+    pub fn momenta(&self) -> Momenta {
+        if self.rain {
+            let beta = (2.0 / self.r).sqrt();
+            return Momenta {
+                energy: 1.0,
+                energy_gradient: DVec3::new(beta, 0.0, 0.0),
+                angular_momentum_gradient: DVec3::new(0.0, 0.0, -self.sin * self.r),
+            };
+        }
+        let q = self.circumference();
+        let omega = zamo_omega(self.a, self.r, self.sin);
+        let angular_momentum_gradient = DVec3::new(0.0, 0.0, -self.sin * q);
+        Momenta { energy: self.lapse, energy_gradient: angular_momentum_gradient * omega, angular_momentum_gradient }
+    }
+
+    /// sqrt(A / Sigma) = sqrt(g_phph) / sin(theta), Boyer-Lindquist (Bardeen, Press & Teukolsky 1972, eq. 2.3).
+    fn circumference(&self) -> f64 {
+        let u = 1.0 / self.r;
+        let au2 = (self.a * u).powi(2);
+        let sigma = 1.0 + au2 * self.cos * self.cos;
+        let d = (1.0 - horizon_outer(self.a) * u) * (1.0 - horizon_inner(self.a) * u);
+        let big_a = (1.0 + au2).powi(2) - d * au2 * self.sin * self.sin;
+        (big_a / sigma).sqrt() / u
+    }
+
     /// The backward ray along the unit look direction `n` (components). `None`: no light comes from there (E <= 0 in the rain
     /// frame: it would have to leave the past horizon); such a ray is captured and crosses nothing.
     pub fn start(&self, n: DVec3) -> Option<(Constants, State)> {
@@ -103,8 +149,7 @@ impl LocalFrame {
         let au2 = (a * u).powi(2);
         let sigma = 1.0 + au2 * c * c;
         let d = (1.0 - horizon_outer(a) * u) * (1.0 - horizon_inner(a) * u);
-        let big_a = (1.0 + au2).powi(2) - d * au2 * s * s;
-        let q = (big_a / sigma).sqrt() / u;
+        let q = self.circumference();
         let omega = zamo_omega(a, self.r, s);
         let e_local = self.lapse + omega * q * s * p.z;
         let scale = if e_local > SMALLEST_UNIT_ENERGY { 1.0 / e_local } else { 1.0 };
@@ -194,11 +239,25 @@ impl Observer {
     ///
     /// n_frame = (n + ((gamma - 1)(beta.n) / beta^2 - gamma) beta) / (gamma (1 - beta.n)), ratio 1 / (gamma (1 - beta.n)).
     pub fn look(&self, n: DVec3) -> (DVec3, f64) {
+        if self.beta == DVec3::ZERO {
+            return (n, 1.0);
+        }
         let along = self.beta.dot(n);
         // (gamma - 1) / beta^2 = gamma^2 / (gamma + 1): regular at rest.
         let factor = self.gamma * self.gamma / (self.gamma + 1.0) * along - self.gamma;
         let ratio = 1.0 / (self.gamma * (1.0 - along));
         (((n + self.beta * factor) * ratio).normalize(), ratio)
+    }
+
+    /// The change of the look direction in the frame, `seen` (with its frequency ratio), for a small change `dn` of the one seen
+    /// by the moving observer: the derivative of `look`.
+    pub fn look_change(&self, (seen, ratio): (DVec3, f64), dn: DVec3) -> DVec3 {
+        if self.beta == DVec3::ZERO {
+            return dn;
+        }
+        let along = self.beta.dot(dn);
+        let gamma = self.gamma;
+        (dn + self.beta * (gamma * gamma / (gamma + 1.0) * along) + seen * (gamma * along)) * ratio
     }
 
     /// d tau / d t: alpha / gamma, in the chart's t; NaN in the rain frame at or inside the horizon.

@@ -139,13 +139,18 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     (End::OutOfSteps, settings.max_steps)
 }
 
+/// What rounding leaves of a sigma of order 1.
+const ROUNDING: f64 = 1e-15;
+
 /// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method with
-/// the integrator itself, so that dense output only has to be good enough to begin with.
+/// the integrator itself, so that dense output only has to be good enough to begin with. Corrections of less than `slack` in sigma
+/// are left out.
 pub(super) fn land(
     c: &Constants,
     s: &Settings,
     from: &State,
     guess: f64,
+    slack: f64,
     value: impl Fn(&State) -> (f64, f64),
 ) -> (State, f64) {
     let mut h = guess;
@@ -153,7 +158,7 @@ pub(super) fn land(
     for _ in 0..3 {
         let (y, slope) = value(&state);
         let correction = y / slope;
-        if !(correction.abs() > 1e-15 / c.scale && correction.abs() < 0.1 / c.scale) {
+        if !(correction.abs() > slack / c.scale && correction.abs() < 0.1 / c.scale) {
             break;
         }
         h -= correction;
@@ -195,7 +200,7 @@ pub fn trace(constants: &Constants, start: &State, settings: &Settings) -> RayTr
             let guess = h * Quintic::of_u(c, &from, &to, h).root();
             // The delay is infinite at infinity and not needed there.
             let no_delay = Settings { delay: false, ..*settings };
-            let (state, h) = land(c, &no_delay, &from, guess, |s| (s.u, s.du));
+            let (state, h) = land(c, &no_delay, &from, guess, ROUNDING, |s| (s.u, s.du));
             result.fate = Fate::Escaped;
             result.direction = state.chart_direction();
             result.swept = swept(tau + h);
@@ -215,13 +220,13 @@ fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
     }
     let no_delay = Settings { delay: false, ..*settings };
     let u_plus = 1.0 / c.r_plus;
-    land(c, &no_delay, end, (u_plus - end.u) / end.du, |s| (s.u - u_plus, s.du)).1
+    land(c, &no_delay, end, (u_plus - end.u) / end.du, ROUNDING, |s| (s.u - u_plus, s.du)).1
 }
 
 fn find_crossing(c: &Constants, eye: &State, s: &Settings, segment: &Segment, order: u32) -> Option<PlaneCrossing> {
     let (from, to, h) = (segment.from, segment.to, segment.h);
     let guess = h * Quintic::of_n_z(c, from, to, h).root();
-    let (state, _) = land(c, s, from, guess, |s| (s.n.z, s.dn.z));
+    let (state, _) = land(c, s, from, guess, ROUNDING, |s| (s.n.z, s.dn.z));
     // Outside the horizon, by the contract's margin, and this side of infinity.
     let outermost = 1.0 / (c.r_plus * (1.0 + 1e-5));
     if !(state.u > 0.0 && state.u <= outermost) {
@@ -367,7 +372,7 @@ mod tests {
                 side = segment.to.n.z;
                 if order == crossing.order {
                     let guess = segment.h * Quintic::of_n_z(c, segment.from, segment.to, segment.h).root();
-                    tau = segment.tau + land(c, &settings, segment.from, guess, |s| (s.n.z, s.dn.z)).1;
+                    tau = segment.tau + land(c, &settings, segment.from, guess, ROUNDING, |s| (s.n.z, s.dn.z)).1;
                 }
                 order += 1;
             }

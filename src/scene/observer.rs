@@ -121,8 +121,22 @@ impl Lens {
     /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0) being
     /// its top-left corner. Positions outside the frame continue the image plane.
     pub fn look(&self, x: f64, y: f64) -> DVec3 {
-        let plane = DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0);
-        (self.axes * plane).normalize()
+        self.image_point(x, y).normalize()
+    }
+
+    /// `look`, and its changes to the next pixel right and down, to first order.
+    #[inline]
+    pub fn look_and_changes(&self, x: f64, y: f64) -> (DVec3, [DVec3; 2]) {
+        let point = self.image_point(x, y);
+        let inverse = 1.0 / point.length();
+        let look = point * inverse;
+        let steps = [self.axes.x_axis * (2.0 / self.width), self.axes.y_axis * (-2.0 / self.height)];
+        (look, steps.map(|step| (step - look * look.dot(step)) * inverse))
+    }
+
+    /// Where the ray through (x, y) meets the image plane.
+    fn image_point(&self, x: f64, y: f64) -> DVec3 {
+        self.axes * DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0)
     }
 }
 

@@ -15,7 +15,7 @@ pub struct DiskCrossing {
     pub order: u32,
     /// g, the camera's motion included.
     pub g: f64,
-    /// Azimuth and delay only where shading needs them, else 0.
+    /// Of use only where shading needs it: for a turbulent disk.
     pub place: Place,
     /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
     pub footprint: [Place; 2],
@@ -55,6 +55,19 @@ impl Record {
             plane_u: 0.0,
             crossings: ArrayVec::new(),
         }
+    }
+
+    /// Makes it `captured`, in place.
+    pub fn clear(&mut self) {
+        self.crossings.clear();
+        self.fate = Fate::Captured;
+        self.direction = DVec3::ZERO;
+        self.footprint = [UNKNOWN_DIRECTION; 2];
+        self.sky_redshift = f64::NAN;
+        self.energy = 1.0;
+        self.angular_momentum = 0.0;
+        self.steps = 0;
+        self.plane_u = 0.0;
     }
 }
 

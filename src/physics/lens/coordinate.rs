@@ -9,6 +9,8 @@ use std::f64::consts::LN_2;
 
 /// log2 of the smallest |t_hat| that is told from 0.
 pub const LEAST_OCTAVE: f64 = -24.0;
+/// That |t_hat|.
+pub const LEAST_T_HAT: f64 = 1.0 / 16_777_216.0;
 
 /// The axis about one critical angle.
 #[derive(Clone, Copy, Debug)]
@@ -91,6 +93,11 @@ impl Coordinate {
         2.0 * t / (1.0 + t * t) * (LN_2 / self.nodes_per_octave)
     }
 
+    /// dx / d psi at the same t.
+    pub fn x_slope(&self, t: f64) -> f64 {
+        (1.0 + t * t) / (2.0 * t) * (self.nodes_per_octave / LN_2)
+    }
+
     /// Nodes from x = 0 to the second one past the pole psi = pi (`outer`) or psi = 0, so that four nodes surround every x.
     pub fn nodes(&self, outer: bool) -> usize {
         let pole = if outer { 1.0 / self.tan_half } else { self.tan_half };
@@ -123,6 +130,7 @@ mod tests {
                 assert!((angle.sin - psi.sin()).abs() < 1e-15 && (angle.cos - psi.cos()).abs() < 1e-15);
                 assert!((angle.cos_mean - ((psi + critical) / 2.0).cos()).abs() < 1e-15);
                 assert!((axis.t_hat_at(axis.x(t_hat)) / t_hat.abs() - 1.0).abs() < 1e-13);
+                assert!((axis.x_slope(angle.tan_half) * axis.psi_slope(angle.tan_half) - 1.0).abs() < 1e-14);
                 let ahead = axis.angle(t_hat.signum() * axis.t_hat_at(axis.x(t_hat) + 1e-4));
                 let turned = (ahead.sin * angle.cos - ahead.cos * angle.sin) / 1e-4;
                 assert!((turned / axis.psi_slope(angle.tan_half) - 1.0).abs() < 1e-5, "{critical} {part}");

@@ -87,7 +87,7 @@ pub struct Polar {
 }
 
 impl CriticalCurve {
-    /// `None` for an eye in or near the photon region, too far, or in the rain frame.
+    /// `None` for an eye that has none here (`reaches`).
     pub fn new(frame: &LocalFrame) -> Option<Self> {
         if !reaches(frame) {
             return None;

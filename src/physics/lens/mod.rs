@@ -13,7 +13,7 @@ pub mod plane;
 pub mod schwarzschild;
 pub mod table;
 
-pub use plane::{OrbitPlane, PlaneImage, Turn};
+pub use plane::{OrbitPlane, PlaneImage, PlaneSky, Turn};
 pub use schwarzschild::{Branch, Column, Family, Resolution};
 pub use table::{Crossing, Look, SchwarzschildLens};
 

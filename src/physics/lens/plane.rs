@@ -5,7 +5,7 @@
 
 use super::table::{Crossing, Look};
 use crate::physics::observer::LocalFrame;
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::PI;
 
 /// Of sin psi_c: nearer than this to straight outwards the ratio sin(swept) / sin psi is taken for its limit.
@@ -31,6 +31,16 @@ pub struct Turn {
     pub dtangent: DVec3,
 }
 
+/// The end of an escaping ray.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneSky {
+    /// Chart, unit.
+    pub direction: DVec3,
+    by_psi: DVec3,
+    /// sin(swept) / sin psi.
+    sine_ratio: f64,
+}
+
 /// A crossing of the equatorial plane as seen along a ray, or its change.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneImage {
@@ -43,9 +53,10 @@ pub struct PlaneImage {
 
 impl OrbitPlane {
     /// The plane of the look direction `n` (components, unit).
+    #[inline]
     pub fn new(frame: &LocalFrame, n: DVec3) -> Self {
         let across = frame.e_theta * n.y + frame.e_phi * n.z;
-        let sin = n.y.hypot(n.z);
+        let sin = n.yz().length();
         let tangent = if sin > 0.0 { across / sin } else { frame.e_theta };
         Self { e_r: frame.e_r, tangent, across, cos_theta: frame.cos }
     }
@@ -100,6 +111,7 @@ impl OrbitPlane {
     }
 
     /// The change of the ray for a small change `dn` (components) of the look direction `n`, dn across n.
+    #[inline]
     pub fn turn(&self, frame: &LocalFrame, look: &Look, dn: DVec3) -> Turn {
         let across = frame.e_theta * dn.y + frame.e_phi * dn.z;
         let along = self.tangent.dot(across);
@@ -107,22 +119,24 @@ impl OrbitPlane {
         Turn { dpsi: look.sin * dn.x + look.cos * along, dtangent: across - self.tangent * along }
     }
 
-    /// Where on the sky an escaping ray ends, chart, unit: N(swept).
-    pub fn sky_direction(&self, look: &Look) -> DVec3 {
-        self.e_r * look.swept.cos() + self.across * sine_ratio(look)
-    }
-
-    /// The change of `sky_direction` with the look direction.
-    pub fn sky_change(&self, look: &Look, turn: &Turn) -> DVec3 {
-        self.heading(look.swept) * (look.swept_slope * turn.dpsi) + turn.dtangent * sine_ratio(look)
+    /// Where on the sky an escaping ray ends: N(swept).
+    #[inline]
+    pub fn sky(&self, look: &Look) -> PlaneSky {
+        let (sin, cos) = look.swept.sin_cos();
+        // sin(swept) / sin psi; -d swept / d psi straight outwards, where both vanish.
+        let radial = look.cos < 0.0 && look.sin < RADIAL * look.sin_critical();
+        let sine_ratio = if radial { -look.swept_slope } else { sin / look.sin };
+        PlaneSky {
+            direction: self.e_r * cos + self.across * sine_ratio,
+            by_psi: (self.tangent * cos - self.e_r * sin) * look.swept_slope,
+            sine_ratio,
+        }
     }
 }
 
-/// sin(swept) / sin psi; -d swept / d psi straight outwards, where both vanish.
-fn sine_ratio(look: &Look) -> f64 {
-    if look.cos < 0.0 && look.sin < RADIAL * look.sin_critical() {
-        -look.swept_slope
-    } else {
-        look.swept.sin() / look.sin
+impl PlaneSky {
+    /// The change of the direction with the look direction.
+    pub fn change(&self, turn: &Turn) -> DVec3 {
+        self.by_psi * turn.dpsi + turn.dtangent * self.sine_ratio
     }
 }

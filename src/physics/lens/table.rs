@@ -4,10 +4,11 @@
 //! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's integral part
 //! cubic Hermite in y and Lagrange with four nodes in x.
 
+use super::coordinate::LEAST_T_HAT;
 use super::schwarzschild::{Branch, Column, Family, Resolution};
 use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
-use glam::DVec3;
+use glam::{DVec3, Vec3Swizzles};
 
 /// The tables of one branch, rays one after the other.
 #[derive(Clone, Debug, Default)]
@@ -119,8 +120,9 @@ impl SchwarzschildLens {
     }
 
     /// Looks up the direction `n` (components, unit).
+    #[inline]
     pub fn look(&self, n: DVec3) -> Look<'_> {
-        let (sin, cos) = (n.y.hypot(n.z), -n.x);
+        let (sin, cos) = (n.yz().length(), -n.x);
         let coordinate = &self.family.coordinate;
         let t_hat = coordinate.t_hat(sin, cos);
         let escaped = t_hat > 0.0;
@@ -153,6 +155,7 @@ impl Look<'_> {
         self.family.coordinate.sin_critical
     }
 
+    #[inline]
     fn locate(&mut self) {
         let coordinate = &self.family.coordinate;
         let x = coordinate.x(self.t_hat);
@@ -165,34 +168,38 @@ impl Look<'_> {
         self.column = (x as usize + shift).min(last - 1);
         self.fraction = x - (self.column - shift) as f64;
         // At the least |t_hat| where there is less.
-        let t = (self.t_hat.abs().max(coordinate.t_hat_at(0.0)) * coordinate.scale).copysign(self.t_hat);
-        self.x_slope = 1.0 / coordinate.psi_slope(t);
+        let t = (self.t_hat.abs().max(LEAST_T_HAT) * coordinate.scale).copysign(self.t_hat);
+        self.x_slope = coordinate.x_slope(t);
         let [[y0, d0], [y1, d1]] = [0, 1].map(|i| self.table.swept[self.column + i]);
         let (swept, slope) = hermite(y0, d0, y1, d1, self.fraction);
         self.swept = swept;
         self.swept_slope = slope * self.x_slope;
     }
 
-    /// Interval of y = phi / swept, and the fraction in it.
-    fn interval(&self, phi: f64) -> (usize, f64) {
+    /// Interval of `y` = phi / swept, and the fraction in it.
+    fn interval(&self, y: f64) -> (usize, f64) {
         let intervals = self.family.resolution.intervals;
-        let y = phi / self.swept * f64::from(intervals);
+        let y = y * f64::from(intervals);
         let interval = (y as usize).min(intervals as usize - 1);
         (interval, y - interval as f64)
     }
 
     /// Where the ray is after the angle `phi` >= 0. `None`: it has ended before.
+    #[inline]
     pub fn crossing(&self, phi: f64) -> Option<Crossing> {
         if !(phi >= 0.0 && phi < self.swept) {
             return None;
         }
         let intervals = f64::from(self.family.resolution.intervals);
-        let (interval, y) = self.interval(phi);
+        let per_swept = 1.0 / self.swept;
+        let part = phi * per_swept;
+        let (interval, y) = self.interval(part);
         let length = self.family.resolution.intervals as usize + 1;
+        let h = 1.0 / intervals;
         // Along the rays on either side: v and v_x, and their slopes by y.
         let sides = [0, 1].map(|i| {
             let at = (self.column + i) * length + interval;
-            let ([p, q], h) = ([self.table.v[at], self.table.v[at + 1]], 1.0 / intervals);
+            let [p, q] = [self.table.v[at], self.table.v[at + 1]];
             let (v, v_y) = hermite(p[0], h * p[2], q[0], h * q[2], y);
             let (v_x, v_xy) = hermite(p[1], h * p[3], q[1], h * q[3], y);
             [v, v_x, v_y * intervals, v_xy * intervals]
@@ -200,11 +207,10 @@ impl Look<'_> {
         let [p, q] = sides;
         let (v, v_x) = hermite(p[0], p[1], q[0], q[1], self.fraction);
         let (v_y, _) = hermite(p[2], p[3], q[2], q[3], self.fraction);
-        let v_phi = v_y / self.swept;
-        let y = phi / self.swept;
+        let v_phi = v_y * per_swept;
         // The reference is the same for all rays: du/dpsi at fixed phi is dv/dpsi.
         let (u_s, slope_s) = if self.alike[0] > 0 { (0.0, 0.0) } else { self.family.reference(phi) };
-        let u_psi = v_x * self.x_slope - v_phi * y * self.swept_slope;
+        let u_psi = v_x * self.x_slope - v_phi * part * self.swept_slope;
         Some(Crossing { phi, u: v + u_s, u_psi, u_phi: v_phi + slope_s })
     }
 
@@ -219,7 +225,7 @@ impl Look<'_> {
     }
 
     fn delay_integral(&self, phi: f64) -> f64 {
-        let (interval, y) = self.interval(phi);
+        let (interval, y) = self.interval(phi / self.swept);
         let length = self.family.resolution.intervals as usize + 1;
         let h = 1.0 / f64::from(self.family.resolution.intervals);
         // The first of the four columns; the ends and the seam of the table have none before or behind.
@@ -236,7 +242,12 @@ impl Look<'_> {
     /// eye is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
     ///
     /// Rain time adds w / (u^2 D), w = sqrt(2 u). As u'^2 = 1 - b^2 u^2 D the sum is (b^2 - 1 / u^2) / (w - u'), with u' < 0.
+    ///
+    /// 0 if the table has no delays.
     pub fn delay_gradient(&self, crossing: &Crossing) -> (f64, f64) {
+        if !self.family.with_delay {
+            return (0.0, 0.0);
+        }
         let (b, u) = (self.b, crossing.u);
         let slope = b * crossing.u_phi;
         let by_u = match self.family.clock() {

@@ -159,10 +159,10 @@ fn sky_changes_as_differences_do() {
             let look = lens.look(n);
             let plane = OrbitPlane::new(&frame, n);
             let h = 1e-5 * (beyond - critical).min(axis.sin_critical);
-            let sky = |n: DVec3| OrbitPlane::new(&frame, n).sky_direction(&lens.look(n));
+            let sky = |n: DVec3| OrbitPlane::new(&frame, n).sky(&lens.look(n)).direction;
             let [ahead, behind] = differences(n, across, h, sky);
             let expected = (ahead - behind) / (2.0 * h);
-            let change = plane.sky_change(&look, &plane.turn(&frame, &look, across));
+            let change = plane.sky(&look).change(&plane.turn(&frame, &look, across));
             let error = (change - expected).length() / (1.0 + look.swept_slope.abs());
             assert!(error < 3e-5, "r {} ray {i} psi {beyond}: {change} {expected}", frame.r);
             assert!((sky(n).length() - 1.0).abs() < 1e-7, "r {} {beyond}", frame.r);
