@@ -125,7 +125,9 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let size = clamp(p.low[k], far, near);
     let stretch = stretch_of(abs(vec2<f32>(p.by_row[0][k], p.by_row[1][k])), abs(vec2<f32>(p.by_column[0][k], p.by_column[1][k])));
     let conditioning = 1.0 + critical * stretch / size;
-    let good = p.error[k] <= KERR_RADIUS_TOLERANCE * conditioning * size;
+    // What rounding leaves of nodes much larger than the least.
+    let noise = 6e-8 * max(abs(p.low[k]), abs(p.high[k]));
+    let good = p.error[k] + noise <= KERR_RADIUS_TOLERANCE * conditioning * size;
     return bit | select(KERR_DIRECT, 0u, good);
 }
 

@@ -601,7 +601,8 @@ impl Footprints {
     }
 
     fn judge(self, what: &str) -> Vec<String> {
-        let bars = [(0.99, 1e-2)];
+        // They decide how wide a filter is; a spline of the fourth order knows its slope to the third.
+        let bars = [(0.99, 3e-2)];
         let compared =
             [("sky direction", self.sky), ("crossing", self.place)].into_iter().filter(|(_, e)| !e.0.is_empty());
         compared.flat_map(|(name, errors)| errors.judge(&format!("{what}: change of a {name}"), &bars)).collect()

@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 /// Levels of the pyramid, finest first; each halves the cells of a cube side.
 pub const STAR_LEVELS: u32 = 6;
 /// Cells along a cube side at level 0.
-pub const STAR_FINEST: u32 = 320;
+pub const STAR_FINEST: u32 = 256;
 /// Bend of the map from the plane of a cube side, u in [-1, 1], to cells, w = u (1 + k - k |u|): with (sqrt 3 - 1) / (sqrt 3 + 1) the smallest
 /// search radius inside a side is as large as that in its corner.
 pub const STAR_WARP: f64 = 0.268;
