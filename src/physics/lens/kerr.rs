@@ -355,9 +355,9 @@ fn side(n: DVec3) -> f64 {
 }
 
 /// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity smoothly (but
-/// for terms of u^2 ln |u|).
+/// for terms of u^2 ln |u|). And 1 / u_eye is what it is from far, which leaves little to round in tables.
 pub fn divergent_delay(u: f64, u_eye: f64) -> f64 {
-    1.0 / u - 2.0 * (u / u_eye).abs().max(f64::MIN_POSITIVE).ln()
+    1.0 / u + 1.0 / u_eye - 2.0 * (u / u_eye).abs().max(f64::MIN_POSITIVE).ln()
 }
 
 /// The delay less `divergent_delay`, from the state at a crossing: with `Constants::delay`,
@@ -367,7 +367,7 @@ fn regular_delay(c: &Constants, eye: &State, there: &State) -> f64 {
     let below = u * (c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter)));
     let ratio = if du < 0.0 { -below / (1.0 - du) } else { (1.0 + du) / u };
     let logarithm = (u / c.u_eye).abs().max(f64::MIN_POSITIVE).ln();
-    2.0 * ratio * u * logarithm - ratio + eye.du / eye.u + there.delay - eye.delay
+    2.0 * ratio * u * logarithm - ratio + (eye.du - 1.0) / eye.u + there.delay - eye.delay
 }
 
 /// One node's ray on its way.
