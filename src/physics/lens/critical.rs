@@ -191,7 +191,7 @@ impl CriticalCurve {
     }
 
     /// Unit vector from the centre towards `chi`, at right angles to k.
-    fn radial(&self, chi: f64) -> DVec3 {
+    pub(super) fn radial(&self, chi: f64) -> DVec3 {
         let (sin, cos) = chi.sin_cos();
         self.e1 * sin + self.e2 * cos
     }

@@ -153,6 +153,8 @@ pub struct Grid {
     frame: LocalFrame,
     curve: CriticalCurve,
     columns: Columns,
+    /// Of every column: the unit vector from the centre towards chi, and T.
+    spokes: Vec<(DVec3, f64)>,
     /// Outer, inner; so `rows`.
     nodes_per_octave: [f64; 2],
     wanted: Crossings,
@@ -182,6 +184,7 @@ impl Grid {
     pub fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
         let curve = CriticalCurve::new(frame)?;
         let columns = Columns::new(frame, resolution.chi_nodes.max(8));
+        let spokes = columns.chi.iter().map(|chi| (curve.radial(*chi), curve.at(*chi).0)).collect();
         let nodes_per_octave = resolution.nodes_per_octave.map(|n| n.max(1) as f64);
         // t^ of the axis is 1 / T^2 outside and -1 inside.
         let octaves = -2.0 * curve.tangent_range()[0].log2();
@@ -194,7 +197,7 @@ impl Grid {
         let spin = frame.a.abs();
         let capture_u = (1.0 / (0.99 * photon_orbit(spin))).min(0.99 / horizon_outer(spin));
         let rows = [rows(octaves, nodes_per_octave[0]), rows(0.0, nodes_per_octave[1])];
-        Some(Self { frame: *frame, curve, columns, nodes_per_octave, wanted, capture_u, rows })
+        Some(Self { frame: *frame, curve, columns, spokes, nodes_per_octave, wanted, capture_u, rows })
     }
 
     pub fn curve(&self) -> &CriticalCurve {
@@ -241,13 +244,15 @@ impl Grid {
         (octaves - CORE_OCTAVES as f64).exp2()
     }
 
-    /// The look direction at a column and a row, which may lie between nodes.
+    /// The look direction at a column and a row, which may lie between nodes: tan(psi / 2) = (T + t) / (1 - T t).
     pub fn direction(&self, branch: Branch, column: usize, row: f64) -> DVec3 {
-        let chi = self.columns.chi[column % self.columns()];
-        let (t_critical, _) = self.curve.at(chi);
-        let t = self.reduced_tangent(branch, row) * t_critical;
-        let away = if branch == Branch::Outer { t.atan() } else { -t.atan() };
-        self.curve.direction(2.0 * (t_critical.atan() + away), chi)
+        let (radial, t_critical) = self.spokes[column % self.columns()];
+        let away = self.reduced_tangent(branch, row) * t_critical;
+        let t = if branch == Branch::Outer { away } else { -away };
+        // Sine and cosine of psi / 2 times their common length: psi may be pi.
+        let (sin, cos) = (t_critical + t, 1.0 - t_critical * t);
+        let inverse = 1.0 / (sin * sin + cos * cos);
+        self.curve.k * ((cos * cos - sin * sin) * inverse) + radial * (2.0 * sin * cos * inverse)
     }
 
     /// Where the unit look direction `n` lies; `None`: too close to the critical curve.
@@ -339,7 +344,7 @@ impl Grid {
     fn cell_angles(&self, branch: Branch, column: usize, row: usize) -> CellAngles {
         let (i, j) = (column, row as f64);
         let here = self.direction(branch, i, j + 0.5);
-        let t = self.curve.at(self.columns.chi[i]).0;
+        let t = self.spokes[i].1;
         CellAngles {
             // At the axis chi means nothing; the row's own extent bounds the cell there.
             column: here.distance(self.direction(branch, i + 1, j + 0.5)),
