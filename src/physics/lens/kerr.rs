@@ -20,7 +20,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use crate::physics::trace::{CROSSINGS_KEPT, Settings, land};
 use arrayvec::ArrayVec;
-use glam::{DVec3, Vec4};
+use glam::{DVec3, Vec3Swizzles, Vec4};
 use std::f64::consts::{LN_2, TAU};
 
 /// Rays with |t^| below 2^-`CORE_OCTAVES` are to be integrated: so close to the curve a direction in f32 says little.
@@ -128,9 +128,9 @@ impl Columns {
         columns
     }
 
-    /// w in [0, 2 pi) and dw/dchi.
-    fn coordinate(&self, sin: f64, cos: f64) -> (f64, f64) {
-        let w = (1.0 - self.share) * sin.atan2(cos) + self.share * sin.atan2(self.epsilon * cos);
+    /// w in [0, 2 pi) and dw/dchi at `chi` in (-pi, pi].
+    fn coordinate(&self, chi: f64, (sin, cos): (f64, f64)) -> (f64, f64) {
+        let w = (1.0 - self.share) * chi + self.share * sin.atan2(self.epsilon * cos);
         let slope = 1.0 - self.share + self.share * self.epsilon / ((self.epsilon * cos).powi(2) + sin * sin);
         (if w < 0.0 { w + TAU } else { w }, slope)
     }
@@ -141,7 +141,7 @@ impl Columns {
         for _ in 0..60 {
             let middle: f64 = 0.5 * (low + high);
             let (sin, cos) = middle.sin_cos();
-            if self.coordinate(sin, cos).0 <= w { low = middle } else { high = middle }
+            if self.coordinate(sin.atan2(cos), (sin, cos)).0 <= w { low = middle } else { high = middle }
         }
         low
     }
@@ -272,7 +272,7 @@ impl Grid {
         }
         let row = octaves * self.nodes_per_octave[branch as usize] + ROWS_BELOW as f64;
         let row_floor = (row.floor() as usize).min(self.rows(branch) - ROWS_ABOVE - 1);
-        let (w, w_slope) = self.columns.coordinate(p.sin_chi, p.cos_chi);
+        let (w, w_slope) = self.columns.coordinate(p.chi, (p.sin_chi, p.cos_chi));
         let column = w * self.columns() as f64 / TAU;
         let column_floor = (column as usize).min(self.columns() - 1);
         let side = side(n);
@@ -356,7 +356,7 @@ impl Grid {
 
 /// S of a look direction: the sine of its angle to the radius; not 0.
 fn side(n: DVec3) -> f64 {
-    n.y.hypot(n.z).max(1e-12)
+    n.yz().length().max(1e-12)
 }
 
 /// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity smoothly (but
