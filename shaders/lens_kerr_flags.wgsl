@@ -10,8 +10,8 @@
 
 // Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings; and of azimuths, rad,
 // and delays, relative to the orbital time.
-const KERR_TOLERANCE: f32 = 2e-6;
-const KERR_RADIUS_TOLERANCE: f32 = 4e-6;
+const KERR_TOLERANCE: f32 = 1e-6;
+const KERR_RADIUS_TOLERANCE: f32 = 2e-6;
 const KERR_PATTERN_TOLERANCE: f32 = 2e-5;
 
 // Lower corner of the cell.

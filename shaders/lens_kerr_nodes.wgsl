@@ -107,14 +107,20 @@ fn put(at: vec4<f32>) {
     found += 1u;
 }
 
-// The delay less what it diverges like at infinity, 1 / u - 2 ln(|u| / u_eye); (E + u') / u without cancellation, as
-// u'^2 = E^2 + u^2 (...).
+// The delay less the eye's r and what it diverges like at infinity, 1 / u - 2 ln(|u| / u_eye); (E + u') / u and
+// (E - u') / u without cancellation, as u'^2 = E^2 + u^2 (...).
 fn regular_delay(c: Constants, eye: State, there: State) -> f32 {
     if !DELAY {
         return 0.0;
     }
-    let below = there.u * (c.a2e2 - c.k + there.u * (2.0 * c.b - there.u * c.a2q));
+    let below = beyond_energy(c, there.u);
     let ratio = select((c.energy + there.du) / there.u, -below / (c.energy - there.du), there.du < 0.0);
+    let begin = select((eye.du - c.energy) / eye.u, beyond_energy(c, eye.u) / (c.energy + eye.du), eye.du > 0.0);
     let logarithm = log(max(abs(there.u / c.u_eye), 1e-30));
-    return (2.0 * ratio * there.u * logarithm - ratio + eye.du / eye.u) / c.energy + there.delay - eye.delay;
+    return (2.0 * ratio * there.u * logarithm - ratio + begin) / c.energy + there.delay - eye.delay;
+}
+
+// (u'^2 - E^2) / u.
+fn beyond_energy(c: Constants, u: f32) -> f32 {
+    return u * (c.a2e2 - c.k + u * (2.0 * c.b - u * c.a2q));
 }

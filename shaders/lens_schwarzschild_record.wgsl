@@ -107,6 +107,9 @@ fn next_crossing() -> Crossing {
         return crossing;
     }
     let disk = frame.disk_u;
+    if looked.first >= looked.swept {
+        return crossing;
+    }
     var phi = looked.first + PI * f32(looked.order);
     // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found must be kept
     // apart, too: lanes that have left go on writing.)

@@ -163,7 +163,8 @@ impl CriticalCurve {
     /// T = tan(R / 2) and dT/dchi, by cubic Hermite interpolation; `chi` any angle.
     pub fn at(&self, chi: f64) -> (f64, f64) {
         let h = TAU / CRITICAL_NODES as f64;
-        let position = (chi / h).rem_euclid(CRITICAL_NODES as f64);
+        let turns = chi / TAU;
+        let position = (turns - turns.floor()) * CRITICAL_NODES as f64;
         let index = (position as usize).min(CRITICAL_NODES - 1);
         let x = position - index as f64;
         let [y0, d0] = self.nodes[index];
@@ -191,7 +192,7 @@ impl CriticalCurve {
     }
 
     /// Unit vector from the centre towards `chi`, at right angles to k.
-    fn radial(&self, chi: f64) -> DVec3 {
+    pub(super) fn radial(&self, chi: f64) -> DVec3 {
         let (sin, cos) = chi.sin_cos();
         self.e1 * sin + self.e2 * cos
     }
@@ -199,7 +200,7 @@ impl CriticalCurve {
     /// Polar coordinates of the unit vector `n`; sin psi comes from components, not from cos psi.
     pub fn polar(&self, n: DVec3) -> Polar {
         let (x, y, cos) = (n.dot(self.e2), n.dot(self.e1), n.dot(self.k));
-        let sin = x.hypot(y);
+        let sin = (x * x + y * y).sqrt();
         let (s, c) = if sin > 0.0 { (y / sin, x / sin) } else { (0.0, 1.0) };
         Polar {
             cos,

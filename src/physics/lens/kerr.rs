@@ -20,7 +20,7 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use crate::physics::trace::{CROSSINGS_KEPT, Settings, land};
 use arrayvec::ArrayVec;
-use glam::{DVec3, Vec4};
+use glam::{DVec3, Vec3Swizzles, Vec4};
 use std::f64::consts::{LN_2, TAU};
 
 /// Rays with |t^| below 2^-`CORE_OCTAVES` are to be integrated: so close to the curve a direction in f32 says little.
@@ -128,9 +128,9 @@ impl Columns {
         columns
     }
 
-    /// w in [0, 2 pi) and dw/dchi.
-    fn coordinate(&self, sin: f64, cos: f64) -> (f64, f64) {
-        let w = (1.0 - self.share) * sin.atan2(cos) + self.share * sin.atan2(self.epsilon * cos);
+    /// w in [0, 2 pi) and dw/dchi at `chi` in (-pi, pi].
+    fn coordinate(&self, chi: f64, (sin, cos): (f64, f64)) -> (f64, f64) {
+        let w = (1.0 - self.share) * chi + self.share * sin.atan2(self.epsilon * cos);
         let slope = 1.0 - self.share + self.share * self.epsilon / ((self.epsilon * cos).powi(2) + sin * sin);
         (if w < 0.0 { w + TAU } else { w }, slope)
     }
@@ -141,7 +141,7 @@ impl Columns {
         for _ in 0..60 {
             let middle: f64 = 0.5 * (low + high);
             let (sin, cos) = middle.sin_cos();
-            if self.coordinate(sin, cos).0 <= w { low = middle } else { high = middle }
+            if self.coordinate(sin.atan2(cos), (sin, cos)).0 <= w { low = middle } else { high = middle }
         }
         low
     }
@@ -153,6 +153,8 @@ pub struct Grid {
     frame: LocalFrame,
     curve: CriticalCurve,
     columns: Columns,
+    /// Of every column: the unit vector from the centre towards chi, and T.
+    spokes: Vec<(DVec3, f64)>,
     /// Outer, inner; so `rows`.
     nodes_per_octave: [f64; 2],
     wanted: Crossings,
@@ -182,6 +184,7 @@ impl Grid {
     pub fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
         let curve = CriticalCurve::new(frame)?;
         let columns = Columns::new(frame, resolution.chi_nodes.max(8));
+        let spokes = columns.chi.iter().map(|chi| (curve.radial(*chi), curve.at(*chi).0)).collect();
         let nodes_per_octave = resolution.nodes_per_octave.map(|n| n.max(1) as f64);
         // t^ of the axis is 1 / T^2 outside and -1 inside.
         let octaves = -2.0 * curve.tangent_range()[0].log2();
@@ -194,7 +197,7 @@ impl Grid {
         let spin = frame.a.abs();
         let capture_u = (1.0 / (0.99 * photon_orbit(spin))).min(0.99 / horizon_outer(spin));
         let rows = [rows(octaves, nodes_per_octave[0]), rows(0.0, nodes_per_octave[1])];
-        Some(Self { frame: *frame, curve, columns, nodes_per_octave, wanted, capture_u, rows })
+        Some(Self { frame: *frame, curve, columns, spokes, nodes_per_octave, wanted, capture_u, rows })
     }
 
     pub fn curve(&self) -> &CriticalCurve {
@@ -241,13 +244,15 @@ impl Grid {
         (octaves - CORE_OCTAVES as f64).exp2()
     }
 
-    /// The look direction at a column and a row, which may lie between nodes.
+    /// The look direction at a column and a row, which may lie between nodes: tan(psi / 2) = (T + t) / (1 - T t).
     pub fn direction(&self, branch: Branch, column: usize, row: f64) -> DVec3 {
-        let chi = self.columns.chi[column % self.columns()];
-        let (t_critical, _) = self.curve.at(chi);
-        let t = self.reduced_tangent(branch, row) * t_critical;
-        let away = if branch == Branch::Outer { t.atan() } else { -t.atan() };
-        self.curve.direction(2.0 * (t_critical.atan() + away), chi)
+        let (radial, t_critical) = self.spokes[column % self.columns()];
+        let away = self.reduced_tangent(branch, row) * t_critical;
+        let t = if branch == Branch::Outer { away } else { -away };
+        // Sine and cosine of psi / 2 times their common length: psi may be pi.
+        let (sin, cos) = (t_critical + t, 1.0 - t_critical * t);
+        let inverse = 1.0 / (sin * sin + cos * cos);
+        self.curve.k * ((cos * cos - sin * sin) * inverse) + radial * (2.0 * sin * cos * inverse)
     }
 
     /// Where the unit look direction `n` lies; `None`: too close to the critical curve.
@@ -267,7 +272,7 @@ impl Grid {
         }
         let row = octaves * self.nodes_per_octave[branch as usize] + ROWS_BELOW as f64;
         let row_floor = (row.floor() as usize).min(self.rows(branch) - ROWS_ABOVE - 1);
-        let (w, w_slope) = self.columns.coordinate(p.sin_chi, p.cos_chi);
+        let (w, w_slope) = self.columns.coordinate(p.chi, (p.sin_chi, p.cos_chi));
         let column = w * self.columns() as f64 / TAU;
         let column_floor = (column as usize).min(self.columns() - 1);
         let side = side(n);
@@ -339,7 +344,7 @@ impl Grid {
     fn cell_angles(&self, branch: Branch, column: usize, row: usize) -> CellAngles {
         let (i, j) = (column, row as f64);
         let here = self.direction(branch, i, j + 0.5);
-        let t = self.curve.at(self.columns.chi[i]).0;
+        let t = self.spokes[i].1;
         CellAngles {
             // At the axis chi means nothing; the row's own extent bounds the cell there.
             column: here.distance(self.direction(branch, i + 1, j + 0.5)),
@@ -351,13 +356,13 @@ impl Grid {
 
 /// S of a look direction: the sine of its angle to the radius; not 0.
 fn side(n: DVec3) -> f64 {
-    n.y.hypot(n.z).max(1e-12)
+    n.yz().length().max(1e-12)
 }
 
 /// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity smoothly (but
-/// for terms of u^2 ln |u|).
+/// for terms of u^2 ln |u|). And 1 / u_eye is what it is from far, which leaves little to round in tables.
 pub fn divergent_delay(u: f64, u_eye: f64) -> f64 {
-    1.0 / u - 2.0 * (u / u_eye).abs().max(f64::MIN_POSITIVE).ln()
+    1.0 / u + 1.0 / u_eye - 2.0 * (u / u_eye).abs().max(f64::MIN_POSITIVE).ln()
 }
 
 /// The delay less `divergent_delay`, from the state at a crossing: with `Constants::delay`,
@@ -367,7 +372,7 @@ fn regular_delay(c: &Constants, eye: &State, there: &State) -> f64 {
     let below = u * (c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter)));
     let ratio = if du < 0.0 { -below / (1.0 - du) } else { (1.0 + du) / u };
     let logarithm = (u / c.u_eye).abs().max(f64::MIN_POSITIVE).ln();
-    2.0 * ratio * u * logarithm - ratio + eye.du / eye.u + there.delay - eye.delay
+    2.0 * ratio * u * logarithm - ratio + (eye.du - 1.0) / eye.u + there.delay - eye.delay
 }
 
 /// One node's ray on its way.
