@@ -56,7 +56,7 @@ pub const DIRECT: u32 = 1 << 31;
 /// Another: so they are for their crossings; the sky may be interpolated.
 pub const POOR_CROSSINGS: u32 = 1 << 30;
 /// Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings.
-pub const TOLERANCE: f64 = 2e-6;
+pub const TOLERANCE: f64 = 1e-6;
 /// The same for azimuths, rad, and delays, relative to the orbital time: they move a pattern along its orbit.
 pub const PATTERN_TOLERANCE: f64 = 1e-5;
 
