@@ -182,11 +182,19 @@ fn trace_records<T: Send>(
     let place = |column: u32, row: u32| (origin[0] - 1.0 + f64::from(column), origin[1] - 1.0 + f64::from(row));
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
-    let trace_row = |row| (0..width).map(|column| place(column, row)).map(|(x, y)| recorder.trace(x, y)).collect();
-    let records: Vec<Vec<Record>> = (0..height).into_par_iter().map(trace_row).collect();
-    out.par_chunks_mut(tile.width as usize).zip(records.par_windows(3)).zip(1..height).for_each(
-        |((out, rows), row)| {
-            let [above, middle, below] = rows else { return };
+    let stride = width as usize;
+    // In one piece: rows made and freed by many threads leave their allocators in shreds.
+    let mut records = vec![Record::captured(); stride * height as usize];
+    records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
+        for (record, column) in records.iter_mut().zip(0..) {
+            let (x, y) = place(column, row);
+            *record = recorder.trace(x, y);
+        }
+    });
+    let rows =
+        records.par_chunks(stride).zip(records.par_chunks(stride).skip(1)).zip(records.par_chunks(stride).skip(2));
+    out.par_chunks_mut(tile.width as usize).zip(rows).zip(1..height).for_each(
+        |((out, ((above, middle), below)), row)| {
             let columns = middle.windows(3).zip(above.iter().zip(below).skip(1));
             for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
                 let [left, here, right] = across else { continue };
@@ -195,7 +203,7 @@ fn trace_records<T: Send>(
             }
         },
     );
-    records.iter().flatten().map(|record| u64::from(record.steps)).sum()
+    records.iter().map(|record| u64::from(record.steps)).sum()
 }
 
 /// The same by looking up: each record is used as it is made.
