@@ -857,7 +857,8 @@ typedef struct BhrQuality {
 /**
  * The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye moves (not when
  * the view turns or zooms): with spin in frames of 500000 samples or more, for eyes between 1.03 retrograde photon orbits
- * (about 3.1 to 4.2 M) and 1e5 M; without spin in frames of 4096 or more, for eyes from 2.0005 M, falling from 0.9 M, to 1e6 M. Elsewhere, and
+ * (3.1 to 4.1 M) and 1e5 M,
+ * and max_disk_order to 15 (farther than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M, falling from 0.9 M, to 1e6 M. Elsewhere, and
  * for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is integrated.
  */
 #define BHR_METHOD_AUTO 0
@@ -901,7 +902,7 @@ typedef int32_t BhrView;
 /** Angle between look direction and sky direction, radians; NaN captured. */
 #define BHR_VIEW_DEFLECTION 3
 
-/** Integration steps spent on the pixel; 0 where its ray was looked up (BHR_METHOD_AUTO). */
+/** Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO). */
 #define BHR_VIEW_STEPS 4
 
 /** -g_tt at the first crossing of the equatorial plane; NaN without one. */

@@ -1,4 +1,4 @@
-// Puts the ray records of a tile into a buffer, for tests: src/gpu/records.rs reads them.
+// Puts the ray records of a tile into a buffer, for tests: src/gpu/export.rs reads them.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;

@@ -58,5 +58,7 @@ fn lagrange_slope(s: f32) -> vec4<f32> {
 fn lens_tangent(cosine: f32, sine2: f32, half_tangent: f32) -> f32 {
     let sine = sqrt(sine2);
     let one_plus = select(1.0 + cosine, sine2 / (1.0 - cosine), cosine < 0.0);
-    return (sine - half_tangent * one_plus) / (one_plus + half_tangent * sine);
+    // Straight away from the centre both vanish: the limit is cot(R / 2).
+    let below = one_plus + half_tangent * sine;
+    return select((sine - half_tangent * one_plus) / max(below, 1e-30), 1.0 / half_tangent, below <= 0.0);
 }

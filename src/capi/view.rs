@@ -18,7 +18,7 @@ pub const BHR_VIEW_REDSHIFT: BhrView = 1;
 pub const BHR_VIEW_ORDER: BhrView = 2;
 /// Angle between look direction and sky direction, radians; NaN captured.
 pub const BHR_VIEW_DEFLECTION: BhrView = 3;
-/// Integration steps spent on the pixel; 0 where its ray was looked up (BHR_METHOD_AUTO).
+/// Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO).
 pub const BHR_VIEW_STEPS: BhrView = 4;
 /// -g_tt at the first crossing of the equatorial plane; NaN without one.
 pub const BHR_VIEW_METRIC: BhrView = 5;

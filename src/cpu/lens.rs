@@ -158,9 +158,7 @@ impl<'a> LookedUp<'a> {
         let trace = |dx, dy| self.recorder.trace(x + dx, y + dy);
         let [left, right, above, below] = [trace(-1.0, 0.0), trace(1.0, 0.0), trace(0.0, -1.0), trace(0.0, 1.0)];
         let here = trace(0.0, 0.0);
-        let mut record = Neighbours { left: &left, right: &right, above: &above, below: &below }.complete(&here);
-        record.steps += [left, right, above, below].iter().map(|neighbour| neighbour.steps).sum::<u32>();
-        record
+        Neighbours { left: &left, right: &right, above: &above, below: &below }.complete(&here)
     }
 
     /// By tracing the pixel; footprints, which need not be as exact, from the table.

@@ -121,14 +121,34 @@ impl GpuTracer {
         sink: &mut TileSink<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
+        let rendered = self.try_render(scene, request, sink, progress);
+        if rendered.is_err() {
+            self.buffers.makers.forget();
+        }
+        rendered
+    }
+
+    fn try_render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
         let setup = self.set_up(scene, request)?;
         let samples = setup.samples;
         let pixel_bytes = request.format.bytes_per_pixel() as u64;
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         let max_side = self.device.limits().max_texture_dimension_2d;
-        // A pixel looked up takes as long as a step or two.
-        let steps = if setup.making.source == Source::Traced { scene.expected_steps() } else { 2 };
-        let bytes = setup.making.bytes_per_pixel() + sums + pixel_bytes;
+        // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them in a view
+        // of nothing but the shadow's edge.
+        let steps = match setup.making.source {
+            Source::Traced => scene.expected_steps(),
+            Source::Schwarzschild { .. } => 2,
+            Source::Kerr { .. } => 8,
+        };
+        // Packed pixels have two staging buffers.
+        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes;
         let plan = Plan::new(request, bytes, max_side, steps, samples);
 
         if self.tables.is_none() {
@@ -156,13 +176,9 @@ impl GpuTracer {
             pending: None,
             read_time: Duration::ZERO,
         };
-        let outcome = frame.run(plan, progress);
+        frame.run(plan, progress)?;
         let mut stats = frame.stats;
         stats.readback_ns = frame.read_time.as_nanos() as u64;
-        if outcome.is_err() {
-            self.buffers.makers.forget();
-        }
-        outcome?;
         stats.device_bytes = self.device.bytes();
         Ok(stats)
     }
@@ -221,6 +237,14 @@ impl GpuTracer {
 
     /// The records of a frame, row by row; for tests. Errors: as `render`; INTERNAL for more than one tile holds.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
+        let records = self.try_records(scene, request);
+        if records.is_err() {
+            self.buffers.makers.forget();
+        }
+        records
+    }
+
+    fn try_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let setup = self.set_up(scene, request)?;
         let tile = [request.width, request.height];
         let device = &self.device;

@@ -196,6 +196,11 @@ impl KerrTables {
         Ok(uniform)
     }
 
+    /// Frees the tables.
+    pub fn release(&mut self) {
+        self.made = None;
+    }
+
     /// After a submission that failed, nobody knows what the tables hold.
     pub fn forget(&mut self) {
         if let Some(made) = &mut self.made {

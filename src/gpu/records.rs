@@ -80,10 +80,13 @@ impl RecordMakers {
         let frame = shared.frame.clone();
         Ok(match making.source {
             Source::Traced => RecordStages::Traced(self.traced.stages(device, kernels, making.variant, shared)?),
+            // Only one lens is kept: both together could take 48 MB.
             Source::Schwarzschild { delay, .. } => {
+                self.kerr.release();
                 RecordStages::Schwarzschild(self.schwarzschild.update(device, kernels, &making.eye, delay, frame)?)
             }
             Source::Kerr { .. } => {
+                self.schwarzschild = SchwarzschildTables::default();
                 RecordStages::Kerr(self.kerr.update(device, kernels, &making.eye, &making.wanted, frame)?)
             }
         })

@@ -18,14 +18,17 @@ pub enum LensTables {
 
 /// Pixels times samples that pay for the tables of a spin-0 lens.
 const SCHWARZSCHILD_WORTH: u64 = 4096;
-/// 1/r .. of eyes whose spin-0 lens is tabulated: at rest, and falling.
+/// r, M, of eyes whose spin-0 lens is tabulated: at rest, and falling.
 const SCHWARZSCHILD_STATIC: std::ops::RangeInclusive<f64> = 2.0005..=1e6;
 const SCHWARZSCHILD_RAIN: std::ops::RangeInclusive<f64> = 0.9..=1e6;
 
 /// Pixels times samples that pay for the tables of a Kerr lens.
 const KERR_WORTH: u64 = 500_000;
-/// Orders of crossings with azimuth and delay that tables within 32 MB hold.
-const KERR_PATTERN_ORDERS: usize = 8;
+/// Orders of crossings that tables within 32 MB hold with azimuth and delay (without: four times as many): for all eyes, and for those
+/// no farther than KERR_NEAR, M.
+const KERR_ORDERS: usize = 3;
+const KERR_ORDERS_NEAR: usize = 4;
+const KERR_NEAR: f64 = 1e4;
 
 /// How the rays of a frame are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +59,8 @@ impl Scene {
             return Lensing::Schwarzschild;
         }
         let settings = self.pixel_settings();
-        let fits = self.turbulence().is_none() || settings.max_crossings <= KERR_PATTERN_ORDERS;
+        let layers = settings.max_crossings.div_ceil(if self.turbulence().is_some() { 1 } else { 4 });
+        let fits = layers <= if frame.r <= KERR_NEAR { KERR_ORDERS_NEAR } else { KERR_ORDERS };
         if frame.a != 0.0 && critical::reaches(frame) && fits && pays(KERR_WORTH) {
             return Lensing::Kerr;
         }

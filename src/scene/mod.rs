@@ -68,7 +68,7 @@ pub enum View {
     Order = 2,
     /// Angle between look direction and sky direction; NaN captured.
     Deflection = 3,
-    /// Integration steps spent on the pixel.
+    /// Integration steps of the pixel's ray; 0 where it was looked up.
     Steps = 4,
     /// -g_tt at the first crossing of the equatorial plane; NaN without one.
     Metric = 5,

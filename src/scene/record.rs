@@ -34,7 +34,7 @@ pub struct Record {
     /// E and L, scaled so that the local frame's observer measures 1.
     pub energy: f64,
     pub angular_momentum: f64,
-    /// Integration steps spent on the pixel.
+    /// Integration steps of the pixel's own ray; 0 where it was looked up.
     pub steps: u32,
     /// 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
     pub plane_u: f64,
