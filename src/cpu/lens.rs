@@ -510,47 +510,4 @@ mod tests {
         scene.hole.spin = 0.0;
         assert!((place(&scene) - 33.0).abs() < 1e-9);
     }
-
-    /// Cost a pixel and of the tables.
-    #[test]
-    #[ignore = "a measurement"]
-    fn cost() {
-        for mut scene in schwarzschild_scenes().into_iter().chain(kerr_scenes()) {
-            for turbulence in [0.0, 1.0] {
-                scene.disk.as_mut().unwrap().turbulence = turbulence;
-                measure(&scene);
-            }
-        }
-    }
-
-    fn measure(scene: &Scene) {
-        let lens = scene.lens(&REGION).unwrap();
-        let frame = &lens.observer.frame;
-        let lensing = scene.lensing(frame, 1);
-        let build = |_| {
-            let begin = std::time::Instant::now();
-            std::hint::black_box(LensCache::default().tables(scene, frame, lensing));
-            begin.elapsed().as_secs_f64() * 1e3
-        };
-        let built = (0..5).map(build).fold(f64::INFINITY, f64::min);
-        let mut cache = LensCache::default();
-        let tables = cache.tables(scene, frame, lensing).unwrap();
-        let lookup = LookedUp::new(scene, Recorder::new(scene, &lens), tables);
-        let mut record = Record::captured();
-        let look = |_| {
-            let begin = std::time::Instant::now();
-            let mut traced = 0;
-            for i in 0..1280 * 720 {
-                lookup.record(f64::from(i % 1280) + 0.5, f64::from(i / 1280) + 0.5, &mut record);
-                traced += u32::from(std::hint::black_box(&record).steps > 0);
-            }
-            (begin.elapsed().as_secs_f64() * 1e9 / (1280.0 * 720.0), traced)
-        };
-        let runs: Vec<_> = (0..3).map(look).collect();
-        let best = runs.iter().map(|run| run.0).fold(f64::INFINITY, f64::min);
-        println!(
-            "spin {} r {} {:?} pattern {}: tables {built:.2} ms, {best:.0} ns a pixel, {} pixels traced",
-            frame.a, frame.r, scene.camera.motion, lookup.pattern, runs[0].1
-        );
-    }
 }

@@ -313,18 +313,4 @@ mod tests {
             assert!(CriticalCurve::new(&frame(a, r, 1.0)).is_none());
         }
     }
-
-    /// Cost per observer.
-    #[test]
-    #[ignore = "a measurement"]
-    fn cost() {
-        for (a, r, theta) in EYES {
-            let frame = frame(a, r, theta);
-            let begin = std::time::Instant::now();
-            for _ in 0..50 {
-                std::hint::black_box(CriticalCurve::new(std::hint::black_box(&frame)));
-            }
-            println!("a {a} r {r}: {:.3} ms", begin.elapsed().as_secs_f64() * 20.0);
-        }
-    }
 }
