@@ -359,7 +359,7 @@ BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 BhrStatus bhr_context_recover(BhrContext *context);
 
 /**
- * Ends a context: waits for a call that is running on it and for its jobs, then frees it. NULL is a no-op, and any
+ * Ends a context: waits for a call that is running on it and until its jobs are done (bhr_job_cancel shortens that), then frees it. NULL is a no-op, and any
  * destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
  * From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.
  */
@@ -949,8 +949,10 @@ BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
  */
 typedef int32_t (*BhrProgressFn)(void *user, double fraction);
 
-/** Sets what bhr_render_image reports to; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context. */
-BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
+/** Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context. */
+BhrStatus bhr_set_progress(BhrContext *context,
+                           BhrProgressFn fn,
+                           void *user);
 
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
@@ -963,27 +965,39 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /* ---- rendering in the background ---- */
 
-/** A frame that is being rendered in the background. */
+/** A frame that is being rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after its context. */
 typedef struct BhrJob BhrJob;
 
 /**
- * Begins to render an image and returns at once. The scene is taken as it is now. target->pixels is written until
- * the job is done or destroyed. Errors: INVALID_ARGUMENT as bhr_render_image; UNSUPPORTED otherwise in this
- * version.
+ * Begins to render an image and returns at once: the scene and the region are taken as they are now, and the frame is
+ * rendered by a thread of the library's. Frames of a context are made in the order in which they were begun, several under
+ * way at a time, so that one is copied while the next is traced; setters never wait for them, other calls that render do for those under
+ * way. At most 64 jobs of a context may be unfinished. target->pixels is written until the job is done or destroyed, and must
+ * stay valid and be nobody else's so long. End *out_job with bhr_job_destroy. Errors: as bhr_render_image, which may also come from
+ * bhr_job_wait; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, BhrJob **out_job);
+BhrStatus bhr_render_image_async(BhrContext *context,
+                                 const BhrImage *target,
+                                 BhrJob **out_job);
 
 /**
- * Waits until the job is done, at most timeout_ns nanoseconds; 0 polls. *out_fraction, unless NULL, becomes the
- * part that is done, 0 .. 1. A job's failure is returned, with its message, here; NOT_READY while it runs. Errors:
- * INVALID_ARGUMENT for NULL; UNSUPPORTED otherwise in this version.
+ * Waits until the job is done, at most timeout_ns nanoseconds; 0 polls, UINT64_MAX waits for ever. *out_fraction, unless
+ * NULL, becomes the part that is done, 0 .. 1. Meanwhile the progress callback that the context had when the job was begun is called on
+ * this thread. NOT_READY: still running. A job's failure is returned, with its message, here, each time: CANCELLED after
+ * bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as bhr_render_image; once the first pixels are
+ * written the message says so. Errors otherwise: INVALID_ARGUMENT for NULL.
  */
-BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
+BhrStatus bhr_job_wait(BhrJob *job,
+                       uint64_t timeout_ns,
+                       double *out_fraction);
 
-/** Asks a job to stop. NULL is a no-op. */
+/** Asks a job to stop; bhr_job_wait then returns CANCELLED, or OK when it was done before. Does not wait. NULL is a no-op. Any thread, inside callbacks too. */
 void bhr_job_cancel(BhrJob *job);
 
-/** Cancels a job, waits for it and frees it: the target is the host's again. NULL is a no-op. */
+/**
+ * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it: the target is the host's again. NULL is a no-op. No
+ * other thread may use it any more. From inside a callback it does nothing: bhr_error_message then says so.
+ */
 void bhr_job_destroy(BhrJob *job);
 
 /* ---- rendering into windows ---- */
@@ -1179,10 +1193,11 @@ typedef struct BhrFrameStats {
 BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
 
 /**
- * Numbers about a finished job's frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED
- * otherwise in this version.
+ * Numbers about a finished job's frame: cpu_ns is from bhr_render_image_async to its end. Errors: INVALID_ARGUMENT for NULL or a wrong
+ * struct_size; INVALID_STATE for a job that is not done, or that failed.
  */
-BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
+BhrStatus bhr_job_stats(const BhrJob *job,
+                        BhrFrameStats *stats);
 
 #ifdef __cplusplus
 }

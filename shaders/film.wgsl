@@ -1,5 +1,5 @@
-// Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film`, declared where
-// the bindings are.
+// Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of packed.wgsl
+// or screen.wgsl.
 
 // What a pipeline is made for; the numbers of ToneMap and PixelFormat, and whether a view's value is shown.
 override TONE_MAP: u32 = 1u;

@@ -2,7 +2,7 @@
 //!
 //! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.
 //! - [`scene`]: what to draw, as plain validated data.
-//! - [`renderer`]: one scene and one tracer; the safe Rust face.
+//! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background.
 //! - `cpu`, `gpu`: the two tracers, with one behaviour: scene -> linear radiance.
 //! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
@@ -14,6 +14,7 @@ pub mod error;
 pub mod film;
 pub mod gpu;
 pub mod image;
+pub mod job;
 pub mod physics;
 pub mod renderer;
 pub mod scene;

@@ -1,12 +1,15 @@
-//! A renderer: one scene, one tracer, and the frames they make. The safe Rust face of the crate; `capi` wraps it in a lock.
-//! Chooses the adapter; knows no pixel layout beyond handing tiles to the target, and nothing of C.
+//! A renderer: one scene, one tracer, and the frames they make: into memory, in the background, into windows. The safe Rust face of
+//! the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles to the target, and nothing of C.
 
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{self, GpuTracer, Search};
+use crate::gpu::{self, Device, GpuTracer, Search};
 use crate::image::{ImageMut, PixelFormat};
+use crate::job::{Job, Order, ThreadScope, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
+use parking_lot::Mutex;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The interfaces a tracer may run on (`BHR_BACKEND_*`).
@@ -108,9 +111,58 @@ pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + 'a;
 /// Hears how much of the frame is done, 0 .. 1; false cancels.
 pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;
 
-enum Tracer {
+/// What traces: one frame at a time.
+pub enum Tracer {
     Cpu(CpuTracer),
     Gpu(Box<GpuTracer>),
+}
+
+/// A tracer that a renderer, its jobs and its windows take turns with.
+pub type SharedTracer = Arc<Mutex<Tracer>>;
+
+impl Tracer {
+    /// Renders a frame and waits for it. Errors: as `Renderer::render`.
+    pub fn render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        match self {
+            Self::Cpu(t) => t.render(scene, request, sink, progress),
+            Self::Gpu(t) => t.render(scene, request, sink, progress),
+        }
+    }
+
+    fn adapter(&self) -> &AdapterInfo {
+        match self {
+            Self::Cpu(t) => t.adapter(),
+            Self::Gpu(t) => t.adapter(),
+        }
+    }
+
+    fn device(&self) -> Option<Arc<Device>> {
+        match self {
+            Self::Cpu(_) => None,
+            Self::Gpu(t) => Some(t.device()),
+        }
+    }
+}
+
+/// Where the numbers about a renderer's last finished frame stand, whoever made it.
+#[derive(Clone, Default)]
+pub struct StatsBoard(Arc<Mutex<FrameStats>>);
+
+impl StatsBoard {
+    /// Numbers the frame, which was asked for at `begun` and is finished now.
+    pub fn publish(&self, mut stats: FrameStats, begun: Instant) -> FrameStats {
+        let mut last = self.0.lock();
+        stats.frame_index = last.frame_index + 1;
+        stats.cpu_ns = begun.elapsed().as_nanos() as u64;
+        *last = stats;
+        stats
+    }
 }
 
 /// One scene, one tracer.
@@ -118,15 +170,28 @@ pub struct Renderer {
     /// What the next frame shows. A frame works on the scene as it is when the frame is asked for.
     pub scene: Scene,
     options: RendererOptions,
-    tracer: Tracer,
-    stats: FrameStats,
+    adapter: AdapterInfo,
+    /// The GPU tracer's.
+    device: Option<Arc<Device>>,
+    tracer: SharedTracer,
+    stats: StatsBoard,
+    /// From the first job on.
+    worker: Option<Worker>,
 }
 
 impl Renderer {
     /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), whatever opening a device gives.
     pub fn new(options: RendererOptions) -> Result<Self> {
         let tracer = Self::open(&options)?;
-        Ok(Self { scene: Scene::default(), options, tracer, stats: FrameStats::default() })
+        Ok(Self {
+            scene: Scene::default(),
+            options,
+            adapter: tracer.adapter().clone(),
+            device: tracer.device(),
+            tracer: Arc::new(Mutex::new(tracer)),
+            stats: StatsBoard::default(),
+            worker: None,
+        })
     }
 
     fn open(options: &RendererOptions) -> Result<Tracer> {
@@ -186,23 +251,46 @@ impl Renderer {
         }
     }
 
-    /// Opens the device anew after it was lost; the scene stays.
+    /// Opens the device anew after it was lost; the scene stays. Jobs that were ordered before fail.
     pub fn recover(&mut self) -> Result<()> {
         gpu::forget_drivers();
-        self.tracer = Self::open(&self.options)?;
+        let tracer = Self::open(&self.options)?;
+        self.adapter = tracer.adapter().clone();
+        self.device = tracer.device();
+        self.tracer = Arc::new(Mutex::new(tracer));
         Ok(())
     }
 
+    /// Errors: DEVICE_LOST once the device is gone, until [`Self::recover`].
+    fn check_device(&self) -> Result<()> {
+        self.device.as_ref().map_or(Ok(()), |device| device.check())
+    }
+
     pub fn adapter(&self) -> &AdapterInfo {
-        match &self.tracer {
-            Tracer::Cpu(t) => t.adapter(),
-            Tracer::Gpu(t) => t.adapter(),
-        }
+        &self.adapter
     }
 
     /// Numbers about the last finished frame.
     pub fn stats(&self) -> FrameStats {
-        self.stats
+        *self.stats.0.lock()
+    }
+
+    /// What a tracer is asked for. Errors: a region that the image overruns, or a format that does not go with the view.
+    fn request(&self, target: &ImageMut<'_>, transparent: bool, region: Option<Region>) -> Result<FrameRequest> {
+        let (width, height) = (target.width(), target.height());
+        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
+        region.check_image(width, height)?;
+        let format = target.format();
+        match (self.scene.view, format) {
+            (View::Light, PixelFormat::R32F) => {
+                return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
+            }
+            (view, PixelFormat::Rgba16F | PixelFormat::Rgba32F) if view != View::Light => {
+                return Err(Error::argument(format!("view {view:?} goes into 8-bit formats or R32F, not {format}")));
+            }
+            _ => {}
+        }
+        Ok(FrameRequest { width, height, region, format, transparent })
     }
 
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
@@ -218,40 +306,45 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let start = Instant::now();
-        let (width, height) = (target.width(), target.height());
-        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
-        region.check_image(width, height)?;
-        let format = target.format();
-        match (self.scene.view, format) {
-            (View::Light, PixelFormat::R32F) => {
-                return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
-            }
-            (view, PixelFormat::Rgba16F | PixelFormat::Rgba32F) if view != View::Light => {
-                return Err(Error::argument(format!("view {view:?} goes into 8-bit formats or R32F, not {format}")));
-            }
-            _ => {}
-        }
-        let request = FrameRequest { width, height, region, format, transparent };
+        let request = self.request(target, transparent, region)?;
         let mut written = 0_u64;
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
             written += u64::from(tile.width) * u64::from(tile.height);
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
         };
-        let rendered = match &mut self.tracer {
-            Tracer::Cpu(t) => t.render(&self.scene, &request, &mut sink, progress),
-            Tracer::Gpu(t) => t.render(&self.scene, &request, &mut sink, progress),
-        };
-        let mut stats = rendered.map_err(|mut error| {
+        let rendered = self.tracer.lock().render(&self.scene, &request, &mut sink, progress);
+        let stats = rendered.map_err(|mut error| {
             if written > 0 {
-                let all = u64::from(width) * u64::from(height);
+                let all = u64::from(request.width) * u64::from(request.height);
                 error.message += &format!("; {written} of {all} pixels of the target had been written");
             }
             error
         })?;
-        stats.frame_index = self.stats.frame_index + 1;
-        stats.cpu_ns = start.elapsed().as_nanos() as u64;
-        self.stats = stats;
+        self.stats.publish(stats, start);
         Ok(())
+    }
+
+    /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is
+    /// written until the job has its outcome. `scope` is entered by the thread that makes the renderer's jobs, if this is the
+    /// first.
+    ///
+    /// Errors: INVALID_ARGUMENT and INVALID_STATE as `render`; INVALID_STATE when too many jobs are unfinished; OUT_OF_MEMORY without
+    /// a thread; DEVICE_LOST.
+    pub fn render_in_background(
+        &mut self,
+        target: ImageMut<'static>,
+        transparent: bool,
+        region: Option<Region>,
+        scope: impl FnOnce() -> ThreadScope,
+    ) -> Result<Job> {
+        let request = self.request(&target, transparent, region)?;
+        self.scene.lens(&request.region)?;
+        self.check_device()?;
+        let worker = match &self.worker {
+            Some(worker) => worker,
+            None => self.worker.insert(Worker::new(scope())?),
+        };
+        worker.order(Order::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
     }
 
     /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for tests. On the GPU
@@ -261,7 +354,7 @@ impl Renderer {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         region.check()?;
         let request = FrameRequest { width, height, region, format: PixelFormat::Rgba32F, transparent: false };
-        match &mut self.tracer {
+        match &mut *self.tracer.lock() {
             Tracer::Cpu(t) => t.ray_records(&self.scene, &request),
             Tracer::Gpu(t) => t.ray_records(&self.scene, &request),
         }
@@ -269,7 +362,7 @@ impl Renderer {
 
     /// Traces `rays`; `hits` is as long. A ray that is not valid becomes `Fate::Invalid`.
     pub fn trace_rays(&mut self, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
-        match &mut self.tracer {
+        match &mut *self.tracer.lock() {
             Tracer::Cpu(t) => t.trace_rays(&self.scene, rays, hits),
             Tracer::Gpu(t) => t.trace_rays(&self.scene, rays, hits),
         }

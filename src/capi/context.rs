@@ -3,6 +3,7 @@
 
 use super::adapter::{self, BHR_BACKEND_AUTO, BhrAdapterInfo, BhrBackend};
 use super::entry::{anywhere, finish, guarded, in_callback, on_context, outside_callbacks};
+use super::gate::Gate;
 use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
 use super::pointer::{Out, check_flags};
 use super::render::Callback;
@@ -23,8 +24,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// wait for each other.
 pub struct BhrContext {
     pub(super) state: Mutex<State>,
-    /// A call failed internally.
-    pub(super) broken: AtomicBool,
+    /// A call, or a job, failed internally.
+    pub(super) broken: Arc<AtomicBool>,
+    /// What progress callbacks of jobs pass, which may outlive the context.
+    pub(super) progress_gate: Arc<Gate>,
     /// After `state`, so that a renderer's last words are still heard.
     log: Option<Registered>,
 }
@@ -187,7 +190,7 @@ fn create(options: RendererOptions, log: Option<Registered>) -> Result<Box<BhrCo
     ::log::info!(target: "bhr", "context on {} ({:?})", adapter.name, adapter.backend);
     drop(scope);
     let state = Mutex::new(State { renderer, region: None, progress: None });
-    Ok(Box::new(BhrContext { state, broken: AtomicBool::new(false), log }))
+    Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), log }))
 }
 
 /// What the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
@@ -208,7 +211,7 @@ pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrSta
     unsafe { on_context("bhr_context_recover", context, |state| state.renderer.recover()) }
 }
 
-/// Ends a context: waits for a call that is running on it and for its jobs, then frees it. NULL is a no-op, and any
+/// Ends a context: waits for a call that is running on it and until its jobs are done (bhr_job_cancel shortens that), then frees it. NULL is a no-op, and any
 /// destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
 /// From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.
 #[unsafe(no_mangle)]
@@ -218,7 +221,7 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
         return;
     }
     if in_callback() {
-        finish(
+        finish::<()>(
             NAME,
             Err(Error::state("ignored inside a log or progress callback; call it after the callback returned")),
         );
@@ -229,12 +232,13 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     let scope = log::Scope::enter(context.sink());
     // A running call holds the lock.
     drop(context.state.lock().unwrap_or_else(PoisonError::into_inner));
-    let BhrContext { state, log, .. } = *context;
+    let BhrContext { state, log, progress_gate, .. } = *context;
     let result = guarded(|| {
         drop(state);
         Ok(())
     });
     finish(NAME, result);
+    progress_gate.close();
     drop(scope);
     drop(log);
 }

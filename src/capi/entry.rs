@@ -10,7 +10,7 @@ use crate::error::{Error, ErrorKind, Result};
 use std::cell::{Cell, RefCell};
 use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, Once, PoisonError};
 use std::thread::LocalKey;
 
@@ -26,13 +26,33 @@ thread_local! {
     static LOG_CALLBACKS: Cell<u32> = const { Cell::new(0) };
 }
 
+/// What a body that succeeds says.
+pub(super) trait Success {
+    fn status(self) -> BhrStatus;
+}
+
+impl Success for () {
+    fn status(self) -> BhrStatus {
+        BHR_OK
+    }
+}
+
+/// A success with news, or without: a status >= 0.
+pub(super) struct News(pub BhrStatus);
+
+impl Success for News {
+    fn status(self) -> BhrStatus {
+        self.0
+    }
+}
+
 /// A call that touches nothing shared: allowed inside callbacks.
 pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> BhrStatus {
     finish(function, guarded(body))
 }
 
 /// A call without a context that reaches drivers or shared state: refused inside callbacks.
-pub(super) fn outside_callbacks(function: &str, body: impl FnOnce() -> Result<()>) -> BhrStatus {
+pub(super) fn outside_callbacks<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
     finish(function, refuse_in_callback().and_then(|()| guarded(body)))
 }
 
@@ -42,17 +62,17 @@ pub(super) fn outside_callbacks(function: &str, body: impl FnOnce() -> Result<()
 ///
 /// # Safety
 /// `context` is NULL or came from `bhr_context_create` and is not destroyed.
-pub(super) unsafe fn on_context(
+pub(super) unsafe fn on_context<T: Success>(
     function: &str,
     context: *const BhrContext,
-    body: impl FnOnce(&mut State) -> Result<()>,
+    body: impl FnOnce(&mut State) -> Result<T>,
 ) -> BhrStatus {
     if let Err(error) = refuse_in_callback() {
-        return finish(function, Err(error));
+        return finish::<()>(function, Err(error));
     }
     // SAFETY: NULL or alive, by this function's contract.
     let Some(context) = (unsafe { context.as_ref() }) else {
-        return finish(function, Err(is_null("context")));
+        return finish::<()>(function, Err(is_null("context")));
     };
     let _scope = log::Scope::enter(context.sink());
     let mut state = context.state.lock().unwrap_or_else(PoisonError::into_inner);
@@ -61,15 +81,20 @@ pub(super) unsafe fn on_context(
     } else {
         guarded(|| body(&mut state))
     };
-    if result.as_ref().is_err_and(|error| error.kind == ErrorKind::Internal) {
-        context.broken.store(true, Ordering::Relaxed);
-    }
+    break_if_internal(&result, &context.broken);
     drop(state);
     finish(function, result)
 }
 
+/// After a failure of kind `Internal` its context is not to be trusted.
+pub(super) fn break_if_internal<T>(result: &Result<T>, broken: &AtomicBool) {
+    if result.as_ref().is_err_and(|error| error.kind == ErrorKind::Internal) {
+        broken.store(true, Ordering::Relaxed);
+    }
+}
+
 /// Runs `body`; a panic becomes an `Internal` error that says where.
-pub(super) fn guarded(body: impl FnOnce() -> Result<()>) -> Result<()> {
+pub(super) fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
     static HOOK: Once = Once::new();
     if !std::thread::panicking() {
         HOOK.call_once(silence_panics);
@@ -85,9 +110,10 @@ pub(super) fn guarded(body: impl FnOnce() -> Result<()>) -> Result<()> {
 }
 
 /// Keeps the message and logs it. The status of `result`.
-pub(super) fn finish(function: &str, result: Result<()>) -> BhrStatus {
-    let Err(error) = result else {
-        return BHR_OK;
+pub(super) fn finish<T: Success>(function: &str, result: Result<T>) -> BhrStatus {
+    let error = match result {
+        Ok(success) => return success.status(),
+        Err(error) => error,
     };
     let message = format!("{function}: {}", error.message);
     ::log::error!(target: "bhr", "{message}");

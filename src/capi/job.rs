@@ -1,69 +1,146 @@
-//! BhrJob: rendering in the background. This version has none: arguments are checked, then the answer is UNSUPPORTED.
+//! BhrJob: frames in the background. One `Job` with what its waits need of the context, which may be gone by then.
 
 use super::context::BhrContext;
-use super::entry::{on_context, outside_callbacks};
+use super::entry::{self, News, break_if_internal, finish, in_callback, on_context, outside_callbacks};
+use super::gate::Gate;
 use super::image::{self, BhrImage};
+use super::log::{self, Sink};
 use super::pointer::{Out, is_null};
-use super::status::BhrStatus;
+use super::render::{Callback, Report};
+use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
+use crate::job::Job;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
-/// A frame that is being rendered in the background.
+/// A frame that is being rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after its context.
 pub struct BhrJob {
-    _none: (),
+    pub(super) job: Job,
+    progress: Option<Callback>,
+    /// Closed when the context ends.
+    progress_gate: Arc<Gate>,
+    sink: Option<Arc<Sink>>,
+    /// The context's.
+    broken: Arc<AtomicBool>,
 }
 
-const NO_JOBS: &str = "this version has no jobs; bhr_render_image renders on the calling thread";
+impl BhrJob {
+    /// Tells the progress callback, unless the context is gone; false: cancel.
+    fn tell(&self, report: &mut Report, fraction: f64) -> bool {
+        self.progress_gate.enter().is_none_or(|_open| report.tell(fraction))
+    }
 
-/// A call on a job. None exists, so past the argument checks there is one answer.
-pub(super) fn on_job(function: &str, job: *const BhrJob, check: impl FnOnce() -> Result<()>) -> BhrStatus {
-    outside_callbacks(function, || {
-        if job.is_null() {
-            return Err(is_null("job"));
+    fn wait(&self, timeout_ns: u64, out: &Out<f64>) -> Result<News> {
+        let timeout = (timeout_ns != u64::MAX).then(|| Duration::from_nanos(timeout_ns));
+        let mut report = Report::new(self.progress);
+        let outcome = self.job.wait(timeout, &mut |fraction| self.tell(&mut report, fraction));
+        match outcome {
+            None => {
+                out.set(self.job.fraction());
+                Ok(News(BHR_NOT_READY))
+            }
+            Some(Ok(_)) => {
+                self.tell(&mut report, 1.0);
+                out.set(1.0);
+                Ok(News(BHR_OK))
+            }
+            Some(Err(error)) => Err(error),
         }
-        check()?;
-        Err(Error::unsupported(NO_JOBS))
+    }
+}
+
+/// A call on a job: refused inside callbacks, with its context's log callback listening.
+///
+/// # Safety
+/// `job` is NULL or came from `bhr_render_image_async` and is not destroyed.
+pub(super) unsafe fn on_job<T: entry::Success>(
+    function: &str,
+    job: *const BhrJob,
+    body: impl FnOnce(&BhrJob) -> Result<T>,
+) -> BhrStatus {
+    // SAFETY: this function's contract.
+    let Some(job) = (unsafe { job.as_ref() }) else {
+        return outside_callbacks::<()>(function, || Err(is_null("job")));
+    };
+    let _scope = log::Scope::enter(job.sink.clone());
+    outside_callbacks(function, || {
+        let result = body(job);
+        break_if_internal(&result, &job.broken);
+        result
     })
 }
 
-/// Begins to render an image and returns at once. The scene is taken as it is now. target->pixels is written until
-/// the job is done or destroyed. Errors: INVALID_ARGUMENT as bhr_render_image; UNSUPPORTED otherwise in this
-/// version.
+/// Begins to render an image and returns at once: the scene and the region are taken as they are now, and the frame is
+/// rendered by a thread of the library's. Frames of a context are made in the order in which they were begun, several under
+/// way at a time, so that one is copied while the next is traced; setters never wait for them, other calls that render do for those under
+/// way. At most 64 jobs of a context may be unfinished. target->pixels is written until the job is done or destroyed, and must
+/// stay valid and be nobody else's so long. End *out_job with bhr_job_destroy. Errors: as bhr_render_image, which may also come from
+/// bhr_job_wait; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_image_async(
     context: *mut BhrContext,
     target: *const BhrImage,
     out_job: *mut *mut BhrJob,
 ) -> BhrStatus {
-    // SAFETY: NULL or valid, by the header's conventions.
+    // SAFETY: NULL or valid, by the header's conventions; the target's block is the host's until the job is done.
     unsafe {
         let out = Out::cleared(out_job);
-        on_context("bhr_render_image_async", context, |_state| {
+        // Not NULL in the closure: `on_context` has refused that.
+        let shared = || context.as_ref().map(|c| (c.progress_gate.clone(), c.sink(), c.broken.clone()));
+        on_context("bhr_render_image_async", context, |state| {
             out.required("out_job")?;
-            image::read(target, "target")?;
-            Err(Error::unsupported(NO_JOBS))
+            let target = image::read(target, "target")?;
+            let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
+            let of_thread = sink.clone();
+            let scope = || -> crate::job::ThreadScope { Box::new(|| Box::new(log::Scope::enter(of_thread))) };
+            let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region, scope)?;
+            let job = BhrJob { job, progress: state.progress, progress_gate, sink, broken };
+            out.set(Box::into_raw(Box::new(job)));
+            Ok(())
         })
     }
 }
 
-/// Waits until the job is done, at most timeout_ns nanoseconds; 0 polls. *out_fraction, unless NULL, becomes the
-/// part that is done, 0 .. 1. A job's failure is returned, with its message, here; NOT_READY while it runs. Errors:
-/// INVALID_ARGUMENT for NULL; UNSUPPORTED otherwise in this version.
+/// Waits until the job is done, at most timeout_ns nanoseconds; 0 polls, UINT64_MAX waits for ever. *out_fraction, unless
+/// NULL, becomes the part that is done, 0 .. 1. Meanwhile the progress callback that the context had when the job was begun is called on
+/// this thread. NOT_READY: still running. A job's failure is returned, with its message, here, each time: CANCELLED after
+/// bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as bhr_render_image; once the first pixels are
+/// written the message says so. Errors otherwise: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fraction: *mut f64) -> BhrStatus {
-    let _ = timeout_ns;
     // SAFETY: NULL or valid, by the header's conventions.
-    let _out = unsafe { Out::cleared(out_fraction) };
-    on_job("bhr_job_wait", job, || Ok(()))
+    unsafe {
+        let out = Out::cleared(out_fraction);
+        on_job("bhr_job_wait", job, |job| job.wait(timeout_ns, &out))
+    }
 }
 
-/// Asks a job to stop. NULL is a no-op.
+/// Asks a job to stop; bhr_job_wait then returns CANCELLED, or OK when it was done before. Does not wait. NULL is a no-op. Any thread, inside callbacks too.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
-    let _ = job;
+    // SAFETY: NULL or alive, by the header's conventions.
+    if let Some(job) = unsafe { job.as_ref() } {
+        job.job.cancel();
+    }
 }
 
-/// Cancels a job, waits for it and frees it: the target is the host's again. NULL is a no-op.
+/// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it: the target is the host's again. NULL is a no-op. No
+/// other thread may use it any more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
-    let _ = job;
+    const NAME: &str = "bhr_job_destroy";
+    if job.is_null() {
+        return;
+    }
+    if in_callback() {
+        let ignored = Error::state("ignored inside a log or progress callback; call it after the callback returned");
+        finish::<()>(NAME, Err(ignored));
+        return;
+    }
+    // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
+    let job = unsafe { Box::from_raw(job) };
+    job.job.cancel();
+    // Its own failure is nobody's any more.
+    let _ = job.job.wait(None, &mut |_| true);
 }

@@ -3,11 +3,12 @@
 //! ever printed.
 
 use super::entry::{self, Callback};
+use super::gate::Gate;
 use crate::error::Result;
 use log::{Level, LevelFilter, Log, Metadata, Record};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_void};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// How much a log callback hears: messages of this level and those more severe.
 pub type BhrLogLevel = i32;
@@ -61,54 +62,23 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-#[derive(Default)]
-struct Gate {
-    closed: bool,
-    /// Callbacks that are running now.
-    running: u32,
-}
-
 /// One context's log callback.
 pub(super) struct Sink {
     level: LevelFilter,
     function: LogFn,
     user: User,
-    gate: Mutex<Gate>,
-    idle: Condvar,
+    gate: Gate,
 }
 
 impl Sink {
     fn deliver(&self, level: Level, message: &CStr) {
-        if level > self.level || !self.enter() {
+        if level > self.level {
             return;
         }
-        let inside = Callback::log();
+        let Some(_open) = self.gate.enter() else { return };
+        let _inside = Callback::log();
         // SAFETY: the host gave this function with this pointer, and the gate is open: the context still lives.
         unsafe { (self.function)(self.user.0, level as BhrLogLevel, message.as_ptr()) };
-        drop(inside);
-        self.leave();
-    }
-
-    fn enter(&self) -> bool {
-        let mut gate = lock(&self.gate);
-        if !gate.closed {
-            gate.running += 1;
-        }
-        !gate.closed
-    }
-
-    fn leave(&self) {
-        lock(&self.gate).running -= 1;
-        self.idle.notify_all();
-    }
-
-    /// After this no callback runs: new ones find the gate closed, and those that run are waited for.
-    fn close(&self) {
-        let mut gate = lock(&self.gate);
-        gate.closed = true;
-        while gate.running > 0 {
-            gate = self.idle.wait(gate).unwrap_or_else(PoisonError::into_inner);
-        }
     }
 }
 
@@ -117,7 +87,7 @@ pub(super) struct Registered(Arc<Sink>);
 
 impl Registered {
     pub(super) fn new(level: LevelFilter, function: LogFn, user: *mut c_void) -> Self {
-        let sink = Arc::new(Sink { level, function, user: User(user), gate: Mutex::default(), idle: Condvar::new() });
+        let sink = Arc::new(Sink { level, function, user: User(user), gate: Gate::default() });
         change_sinks(|sinks| sinks.push(sink.clone()));
         Self(sink)
     }
@@ -130,7 +100,7 @@ impl Registered {
 impl Drop for Registered {
     fn drop(&mut self) {
         change_sinks(|sinks| sinks.retain(|sink| !Arc::ptr_eq(sink, &self.0)));
-        self.0.close();
+        self.0.gate.close();
     }
 }
 
@@ -288,14 +258,14 @@ mod tests {
         let sink = registered.sink();
         std::thread::scope(|scope| {
             scope.spawn(|| sink.deliver(Level::Error, c"slow"));
-            while lock(&sink.gate).running == 0 {
+            while sink.gate.running() == 0 {
                 std::thread::yield_now();
             }
             drop(registered);
             assert!(*done.lock().unwrap());
         });
         sink.deliver(Level::Error, c"slow");
-        assert_eq!(lock(&sink.gate).running, 0);
+        assert_eq!(sink.gate.running(), 0);
     }
 
     #[test]

@@ -16,6 +16,7 @@
 #![allow(clippy::missing_safety_doc)]
 
 mod entry;
+mod gate;
 mod pointer;
 mod versioned;
 

@@ -22,14 +22,18 @@ pub(super) struct Callback {
 }
 
 /// What one frame tells the callback: never less than before, never outside 0 .. 1.
-struct Report {
+pub(super) struct Report {
     callback: Option<Callback>,
     told: f64,
 }
 
 impl Report {
+    pub(super) fn new(callback: Option<Callback>) -> Self {
+        Self { callback, told: 0.0 }
+    }
+
     /// False: cancel.
-    fn tell(&mut self, fraction: f64) -> bool {
+    pub(super) fn tell(&mut self, fraction: f64) -> bool {
         if fraction > self.told {
             self.told = fraction.min(1.0);
         }
@@ -49,7 +53,7 @@ impl Report {
     }
 }
 
-/// Sets what bhr_render_image reports to; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
+/// Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_progress(
     context: *mut BhrContext,
@@ -76,7 +80,7 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
     unsafe {
         on_context("bhr_render_image", context, |state| {
             let mut target = image::read(target, "target")?;
-            let mut report = Report { callback: state.progress, told: 0.0 };
+            let mut report = Report::new(state.progress);
             if !report.tell(0.0) {
                 return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame at its begin"));
             }

@@ -5,6 +5,7 @@ use super::entry::on_context;
 use super::job::{self, BhrJob};
 use super::status::BhrStatus;
 use super::versioned::{OutStruct, Versioned};
+use crate::error::Error;
 use crate::renderer::FrameStats;
 
 /// Numbers about the last finished frame; all 0 before the first. Times in nanoseconds.
@@ -64,11 +65,17 @@ pub unsafe extern "C" fn bhr_frame_stats(context: *const BhrContext, stats: *mut
     }
 }
 
-/// Numbers about a finished job's frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED
-/// otherwise in this version.
+/// Numbers about a finished job's frame: cpu_ns is from bhr_render_image_async to its end. Errors: INVALID_ARGUMENT for NULL or a wrong
+/// struct_size; INVALID_STATE for a job that is not done, or that failed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_stats(job: *const BhrJob, stats: *mut BhrFrameStats) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
-    let stats = unsafe { OutStruct::cleared(stats, "stats") };
-    job::on_job("bhr_job_stats", job, || stats.set(&BhrFrameStats::defaults()))
+    unsafe {
+        let stats = OutStruct::cleared(stats, "stats");
+        job::on_job("bhr_job_stats", job, |job| match job.job.outcome() {
+            Some(Ok(numbers)) => stats.set(&numbers.into()),
+            Some(Err(_)) => Err(Error::state("the job failed; bhr_job_wait says why")),
+            None => Err(Error::state("the job is not done; wait for it first")),
+        })
+    }
 }

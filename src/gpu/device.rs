@@ -19,8 +19,8 @@ const WAIT_SLICE: Duration = Duration::from_secs(1);
 /// Largest buffer and storage binding asked for: what a tile of the largest frames needs, not what the adapter could.
 const MAX_BUFFER_SIZE: u64 = 256 << 20;
 
-/// Largest side of a texture asked for: that of a tile.
-const MAX_TEXTURE_SIDE: u32 = 4096;
+/// Largest side of a texture asked for: that of a window.
+const MAX_TEXTURE_SIDE: u32 = 16384;
 
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
@@ -169,6 +169,14 @@ impl Device {
             }
             self.check()?;
         }
+    }
+
+    /// Whether `submission` has run. Errors: `DeviceLost`.
+    pub fn is_done(&self, submission: &wgpu::SubmissionIndex) -> Result<bool> {
+        let look = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(Duration::ZERO) };
+        let looked = self.poll(look)?;
+        self.check()?;
+        Ok(looked.is_ok())
     }
 
     /// [`Self::submit`], then [`Self::wait`].

@@ -1,5 +1,6 @@
-//! A frame on the GPU: tile by tile, sample by sample, records -> shade -> develop -> readback. Each tile's readback overlaps
-//! the next tile's work. Knows no host memory: finished tiles go to the sink.
+//! A frame on the GPU: tile by tile, sample by sample, records -> shade -> develop -> readback, or a window's texture. A frame is
+//! prepared ([`GpuTracer::begin`]), submitted step by step, and each step read when it has run, so that readback overlaps the work
+//! of the next steps and frames. Knows no host memory: finished tiles go to the sink.
 
 use super::export::{EXPORT_BYTES, imported};
 use super::kernels::{FilmLook, Kernels, Look, Source, Stage, TextureKind, check_groups, pixel_groups};
@@ -8,7 +9,7 @@ use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
-use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, variant};
+use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, read_time, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::physics::trace::Settings;
@@ -18,9 +19,14 @@ use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{Lensing, Region, Scene, View};
 use glam::DVec3;
-use std::time::{Duration, Instant};
+use std::collections::VecDeque;
+use std::ops::Range;
+use std::slice;
+use std::time::Instant;
 use wgpu::BufferUsages as Usage;
 
+/// Largest side of a tile, pixels.
+const MAX_TILE_SIDE: u32 = 4096;
 /// Bytes of a pixel's radiance.
 const RADIANCE_BYTES: u64 = 16;
 
@@ -95,10 +101,32 @@ struct Looks {
 const REST_GROUPS: u32 = 512;
 const REST_GROUPS_SOFTWARE: u32 = 16;
 
+/// Where a frame's pixels go.
+#[derive(Clone, Copy)]
+pub enum FrameTarget<'a> {
+    /// To the host, through staging buffers.
+    Host,
+    /// Into a texture as large as the frame: a window's.
+    Screen(&'a Texture),
+}
+
+/// A frame that is prepared and whose steps are being submitted, one after another and before those of any other frame.
+pub struct BegunFrame {
+    stages: Stages,
+    request: FrameRequest,
+    to_host: bool,
+    samples: u32,
+    source: Source,
+    plan: Plan,
+    /// Submitted so far.
+    submitted: u64,
+}
+
 /// A submission that has not been read yet.
-struct Pending {
+pub struct Submitted {
     submission: wgpu::SubmissionIndex,
     pixels: Option<(Tile, Copied)>,
+    row_bytes: usize,
     steps: Copied,
     time: Option<Copied>,
 }
@@ -112,6 +140,9 @@ struct Setup {
     film: FilmParams,
 }
 
+/// Steps under way at once while a frame is rendered for a caller who waits: one is read while the next runs.
+const AHEAD: usize = 2;
+
 impl GpuTracer {
     /// Errors: as `Renderer::render`.
     pub fn render(
@@ -123,7 +154,7 @@ impl GpuTracer {
     ) -> Result<FrameStats> {
         let rendered = self.try_render(scene, request, sink, progress);
         if rendered.is_err() {
-            self.buffers.makers.forget();
+            self.forget();
         }
         rendered
     }
@@ -135,11 +166,46 @@ impl GpuTracer {
         sink: &mut TileSink<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
-        let setup = self.set_up(scene, request)?;
+        let mut frame = self.begin(scene, request, FrameTarget::Host)?;
+        let mut stats = frame.stats();
+        let total = frame.count();
+        let mut under_way = VecDeque::new();
+        let mut done = 0;
+        while done < total {
+            if under_way.len() < AHEAD
+                && let Some(step) = self.submit(&mut frame)?
+            {
+                under_way.push_back(step);
+                continue;
+            }
+            let Some(step) = under_way.pop_front() else { break };
+            step.finish(&self.device, &mut stats, sink)?;
+            done += 1;
+            // At the last one the frame is complete: nothing is left to cancel.
+            if !progress(done as f64 / total as f64) && done < total {
+                return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
+            }
+        }
+        stats.device_bytes = self.device.bytes();
+        Ok(stats)
+    }
+
+    /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as `Renderer::render`;
+    /// the tables of lenses are then forgotten.
+    pub fn begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
+        let begun = self.try_begin(scene, request, target);
+        if begun.is_err() {
+            self.forget();
+        }
+        begun
+    }
+
+    fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
+        let to_host = matches!(target, FrameTarget::Host);
+        let setup = self.set_up(scene, request, to_host)?;
         let samples = setup.samples;
-        let pixel_bytes = request.format.bytes_per_pixel() as u64;
+        let pixel_bytes = if to_host { request.format.bytes_per_pixel() as u64 } else { 0 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
-        let max_side = self.device.limits().max_texture_dimension_2d;
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them in a view
         // of nothing but the shadow's edge.
         let steps = match setup.making.source {
@@ -149,6 +215,7 @@ impl GpuTracer {
         };
         // Packed pixels have two staging buffers.
         let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes;
+        let max_side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
         let plan = Plan::new(request, bytes, max_side, steps, samples);
 
         if self.tables.is_none() {
@@ -158,32 +225,27 @@ impl GpuTracer {
         tables.update(&self.device, scene)?;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.software)?;
-        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, self.adapter.software)?;
-
-        let mut frame = Frame {
-            device: &self.device,
-            buffers: &mut self.buffers,
-            stages,
-            request,
-            samples,
-            batch: plan.batch,
-            sink,
-            stats: FrameStats {
-                rays: u64::from(request.width) * u64::from(request.height) * u64::from(samples),
-                ..FrameStats::default()
-            },
-            source: setup.making.source,
-            pending: None,
-            read_time: Duration::ZERO,
-        };
-        frame.run(plan, progress)?;
-        let mut stats = frame.stats;
-        stats.readback_ns = frame.read_time.as_nanos() as u64;
-        stats.device_bytes = self.device.bytes();
-        Ok(stats)
+        let software = self.adapter.software;
+        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, target, software)?;
+        let source = setup.making.source;
+        Ok(BegunFrame { stages, request: *request, to_host, samples, source, plan, submitted: 0 })
     }
 
-    fn set_up(&self, scene: &Scene, request: &FrameRequest) -> Result<Setup> {
+    /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are then forgotten.
+    pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
+        let submitted = self.buffers.submit(&self.device, frame);
+        if submitted.is_err() {
+            self.forget();
+        }
+        submitted
+    }
+
+    /// After a frame that failed or was left before its first step, nobody knows what the tables of lenses hold.
+    pub fn forget(&mut self) {
+        self.buffers.makers.forget();
+    }
+
+    fn set_up(&self, scene: &Scene, request: &FrameRequest, to_host: bool) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
@@ -197,7 +259,7 @@ impl GpuTracer {
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
             },
-            film: FilmLook::from(&film),
+            film: FilmLook::new(&film, to_host),
             several_samples: samples > 1,
         };
         let making = self.making(scene, &lens, &settings, &request.region);
@@ -239,13 +301,13 @@ impl GpuTracer {
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let records = self.try_records(scene, request);
         if records.is_err() {
-            self.buffers.makers.forget();
+            self.forget();
         }
         records
     }
 
     fn try_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
-        let setup = self.set_up(scene, request)?;
+        let setup = self.set_up(scene, request, true)?;
         let tile = [request.width, request.height];
         let device = &self.device;
         let size = Size { tile, pixel_bytes: EXPORT_BYTES, several_samples: false };
@@ -277,12 +339,9 @@ impl GpuTracer {
             taking.dispatch(&mut pass, 0, tile);
         }
         let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
-        let mut readback = Readback::new();
-        let copied = readback.copy(device, &mut encoder, &sized.packed, bytes)?;
+        let copied = buffers.pixels.copy(device, &mut encoder, &sized.packed, bytes)?;
         let submission = device.submit(encoder)?;
-        readback.read(device, copied, &submission, |bytes| {
-            Ok(bytes.chunks_exact(EXPORT_BYTES as usize).map(imported).collect())
-        })
+        copied.read(device, &submission, |bytes| Ok(bytes.chunks_exact(EXPORT_BYTES as usize).map(imported).collect()))
     }
 }
 
@@ -349,7 +408,7 @@ impl FrameBuffers {
             let TextureKind { format, dimension } = kernels::RADIANCE;
             let summed = if size.several_samples { size.tile } else { [1, 1] };
             let radiance = || device.texture("radiance", format, dimension, summed, 1);
-            let bytes = u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes;
+            let bytes = u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes.max(4);
             self.sized = Some(SizedBuffers {
                 size,
                 radiance: [radiance()?, radiance()?],
@@ -372,6 +431,7 @@ impl FrameBuffers {
         kernels: &mut Kernels,
         tables: &Tables,
         setup: &Setup,
+        target: FrameTarget<'_>,
         software: bool,
     ) -> Result<Stages> {
         let looks = &setup.looks;
@@ -380,7 +440,11 @@ impl FrameBuffers {
         let pass = fixed.pass();
         let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
         let step_sum = fixed.step_sum.as_entire_binding();
-        let packed = sized.packed.as_entire_binding();
+        let pixels = match target {
+            FrameTarget::Host => sized.packed.as_entire_binding(),
+            FrameTarget::Screen(texture) => wgpu::BindingResource::TextureView(&texture.view),
+        };
+        let developed = [film, pixels];
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
         let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
         let records = self.makers.group(setup.making.source)?;
@@ -402,11 +466,11 @@ impl FrameBuffers {
             let shade = [shade(kernels, [&odd, &even])?, shade(kernels, [&even, &odd])?];
             let compiled = kernels.develop(device, looks.film)?;
             let develop = |from: &wgpu::BindingResource<'_>| {
-                compiled.stage(device, &[&[film.clone(), pass.clone(), from.clone(), packed.clone()]])
+                compiled.stage(device, &[slice::from_ref(&pass), slice::from_ref(from), &developed])
             };
             Shading::Samples { shade, develop: [develop(&even)?, develop(&odd)?] }
         } else {
-            Shading::Only(shade(kernels, [&film, &packed])?)
+            Shading::Only(shade(kernels, developed.each_ref())?)
         };
         Ok(Stages { records: made, shading })
     }
@@ -418,122 +482,116 @@ fn pass_stride(device: &Device) -> u64 {
     (size_of::<PassUniform>() as u64).next_multiple_of(alignment)
 }
 
-/// A frame being rendered.
-struct Frame<'a, 'sink> {
-    device: &'a Device,
-    buffers: &'a mut FrameBuffers,
-    stages: Stages,
-    request: &'a FrameRequest,
-    samples: u32,
-    batch: u32,
-    sink: &'a mut TileSink<'sink>,
-    stats: FrameStats,
-    source: Source,
-    pending: Option<Pending>,
-    read_time: Duration,
-}
-
-impl Frame<'_, '_> {
-    fn run(&mut self, plan: Plan, progress: &mut Progress<'_>) -> Result<()> {
-        let batches = u64::from(self.samples.div_ceil(self.batch));
-        let total = (plan.count() * batches) as f64;
-        let mut done = 0;
-        for tile in plan.tiles() {
-            for begin in (0..self.samples).step_by(self.batch as usize) {
-                let end = (begin + self.batch).min(self.samples);
-                let begins = self.pending.is_none();
-                let next = self.submit(tile, begin..end, begins)?;
-                let before = self.pending.replace(next);
-                if let Some(before) = before {
-                    self.finish(before)?;
-                    done += 1;
-                    if !progress(done as f64 / total) {
-                        return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
-                    }
-                }
-            }
-        }
-        if let Some(last) = self.pending.take() {
-            self.finish(last)?;
-        }
-        // The frame is complete: nothing is left to cancel.
-        progress(1.0);
-        Ok(())
+impl BegunFrame {
+    fn batches(&self) -> u64 {
+        u64::from(self.samples.div_ceil(self.plan.batch))
     }
 
-    /// Starts samples `range` of `tile`; the last ones are followed by development and the copy to the host.
-    fn submit(&mut self, tile: Tile, range: std::ops::Range<u32>, begins: bool) -> Result<Pending> {
-        let device = self.device;
+    /// Of steps.
+    pub fn count(&self) -> u64 {
+        self.plan.count() * self.batches()
+    }
+
+    /// Whether no step is left.
+    pub fn is_submitted(&self) -> bool {
+        self.submitted == self.count()
+    }
+
+    /// Of a frame of which nothing has run yet.
+    pub fn stats(&self) -> FrameStats {
+        let rays = u64::from(self.request.width) * u64::from(self.request.height) * u64::from(self.samples);
+        FrameStats { rays, ..FrameStats::default() }
+    }
+
+    /// The next step: a tile, and samples of it.
+    fn next(&self) -> Option<(Tile, Range<u32>)> {
+        if self.submitted == self.count() {
+            return None;
+        }
+        let tile = self.plan.tile(self.submitted / self.batches());
+        let begin = (self.submitted % self.batches()) as u32 * self.plan.batch;
+        Some((tile, begin..(begin + self.plan.batch).min(self.samples)))
+    }
+}
+
+impl FrameBuffers {
+    /// Starts the frame's next step; the last samples of a tile are followed by development and the copy to the host.
+    fn submit(&mut self, device: &Device, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
+        let Some((tile, range)) = frame.next() else { return Ok(None) };
+        let begins = frame.submitted == 0;
+        let stages = &frame.stages;
         let stride = pass_stride(device);
         let slots = range.clone().zip(0..);
-        let passes = slots.map(|(sample, slot)| pass_of(self.request, tile, sample, self.samples, slot));
+        let passes = slots.map(|(sample, slot)| pass_of(&frame.request, tile, sample, frame.samples, slot));
         let mut bytes = vec![0; range.len() * stride as usize];
         for (slot, pass) in bytes.chunks_exact_mut(stride as usize).zip(passes) {
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
         let size = [tile.width, tile.height];
         check_groups(device, pixel_groups(size.map(|side| side + 2)))?;
-        let last = range.end == self.samples;
+        let last = range.end == frame.samples;
         let mut encoder = device.encoder("frame")?;
+        let fixed = self.fixed.as_ref().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        device.write(&fixed.passes, 0, &bytes)?;
+        encoder.clear_buffer(&fixed.step_sum, 0, None);
+        self.makers.reset(&mut encoder);
         {
-            let fixed = self.buffers.fixed.as_ref().ok_or_else(|| Error::internal("a frame without buffers"))?;
-            device.write(&fixed.passes, 0, &bytes)?;
-            encoder.clear_buffer(&fixed.step_sum, 0, None);
-            self.buffers.makers.reset(&mut encoder);
-        }
-        {
-            let timestamps = self.buffers.timer.as_mut().and_then(GpuTimer::next_pass);
+            let timestamps = self.timer.as_mut().and_then(GpuTimer::next_pass);
             let descriptor = wgpu::ComputePassDescriptor { label: Some("frame"), timestamp_writes: timestamps };
             let mut pass = encoder.begin_compute_pass(&descriptor);
-            for (i, sample) in range.clone().enumerate() {
+            for (i, sample) in range.enumerate() {
                 let offset = i as u32 * stride as u32;
-                self.stages.records.encode(&mut pass, begins && i == 0, offset, size);
-                match &self.stages.shading {
+                stages.records.encode(&mut pass, begins && i == 0, offset, size);
+                match &stages.shading {
                     Shading::Only(stage) => stage.dispatch(&mut pass, offset, size),
                     Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(&mut pass, offset, size),
                 }
             }
-            if let (Shading::Samples { develop, .. }, true) = (&self.stages.shading, last) {
-                develop[(self.samples as usize - 1) % 2].dispatch(&mut pass, 0, size);
+            if let (Shading::Samples { develop, .. }, true) = (&stages.shading, last) {
+                develop[(frame.samples as usize - 1) % 2].dispatch(&mut pass, 0, size);
             }
         }
-        let time = match &mut self.buffers.timer {
+        let time = match &mut self.timer {
             Some(timer) => timer.finish(device, &mut encoder)?,
             None => None,
         };
-        let step_sum =
-            self.buffers.fixed.as_ref().map(|f| &f.step_sum).ok_or_else(|| Error::internal("no step sum"))?;
-        let step_sum = self.buffers.makers.steps(self.source, step_sum);
-        let steps = self.buffers.steps.copy(device, &mut encoder, step_sum, STEP_SUM)?;
-        let pixels = match (&self.buffers.sized, last) {
+        let steps =
+            self.steps.copy(device, &mut encoder, self.makers.steps(frame.source, &fixed.step_sum), STEP_SUM)?;
+        let row_bytes = tile.width as usize * frame.request.format.bytes_per_pixel();
+        let pixels = match (&self.sized, last && frame.to_host) {
             (Some(sized), true) => {
-                let size =
-                    u64::from(tile.width) * u64::from(tile.height) * self.request.format.bytes_per_pixel() as u64;
-                Some((tile, self.buffers.pixels.copy(device, &mut encoder, &sized.packed, size)?))
+                let bytes = row_bytes as u64 * u64::from(tile.height);
+                Some((tile, self.pixels.copy(device, &mut encoder, &sized.packed, bytes)?))
             }
             _ => None,
         };
         let submission = device.submit(encoder)?;
-        Ok(Pending { submission, pixels, steps, time })
+        frame.submitted += 1;
+        Ok(Some(Submitted { submission, pixels, row_bytes, steps, time }))
+    }
+}
+
+impl Submitted {
+    /// Whether it has run, so that [`Self::finish`] does not wait. Errors: as [`Device::wait`].
+    pub fn is_done(&self, device: &Device) -> Result<bool> {
+        device.is_done(&self.submission)
     }
 
-    /// Waits for a submission and takes what it made.
-    fn finish(&mut self, pending: Pending) -> Result<()> {
-        let device = self.device;
-        device.wait(&pending.submission)?;
+    /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as [`Device::wait`].
+    pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
+        device.wait(&self.submission)?;
         let started = Instant::now();
-        let steps = self.buffers.steps.read(device, pending.steps, &pending.submission, |bytes| {
+        let steps = self.steps.read(device, &self.submission, |bytes| {
             bytemuck::try_pod_read_unaligned::<u32>(bytes).map_err(|e| Error::internal(format!("step sum: {e}")))
         })?;
-        self.stats.steps += u64::from(steps);
-        if let (Some(timer), Some(time)) = (&mut self.buffers.timer, pending.time) {
-            self.stats.gpu_ns += timer.read(device, time, &pending.submission)?;
+        stats.steps += u64::from(steps);
+        if let Some(time) = self.time {
+            stats.gpu_ns += read_time(device, time, &self.submission)?;
         }
-        if let Some((tile, copied)) = pending.pixels {
-            let row = tile.width as usize * self.request.format.bytes_per_pixel();
-            self.buffers.pixels.read(device, copied, &pending.submission, |bytes| (self.sink)(tile, bytes, row))?;
+        if let Some((tile, copied)) = self.pixels {
+            copied.read(device, &self.submission, |bytes| sink(tile, bytes, self.row_bytes))?;
         }
-        self.read_time += started.elapsed();
+        stats.readback_ns += started.elapsed().as_nanos() as u64;
         Ok(())
     }
 }

@@ -39,11 +39,27 @@ pub struct FilmLook {
     format: u32,
     tone_map: u32,
     false_colour: bool,
+    /// Packed for the host, not into a window's texture.
+    to_host: bool,
 }
 
-impl From<&FilmParams> for FilmLook {
-    fn from(film: &FilmParams) -> Self {
-        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0 }
+impl FilmLook {
+    pub fn new(film: &FilmParams, to_host: bool) -> Self {
+        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, to_host }
+    }
+
+    /// The WGSL that takes radiance: film, and where its pixels go.
+    fn parts(self) -> [&'static str; 2] {
+        let target = match self.to_host {
+            true => include_str!("../../shaders/packed.wgsl"),
+            false => include_str!("../../shaders/screen.wgsl"),
+        };
+        [include_str!("../../shaders/film.wgsl"), target]
+    }
+
+    /// The group of `parts`.
+    fn slots(self) -> Vec<Slot> {
+        vec![Slot::Uniform, if self.to_host { Slot::Write } else { Slot::TextureWrite(SCREEN) }]
     }
 }
 
@@ -123,7 +139,6 @@ const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str = include_str!("../../shaders/frame.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
-const FILM_PARTS: [&str; 2] = [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/packed.wgsl")];
 
 fn join(parts: &[&[&str]]) -> String {
     parts.concat().join("\n")
@@ -234,9 +249,9 @@ fn shade_sample_source(source: Source) -> String {
     shade_source(source, &[include_str!("../../shaders/shade_sample.wgsl")])
 }
 
-fn shade_only_source(source: Source) -> String {
-    let [film, packed] = FILM_PARTS;
-    shade_source(source, &[film, packed, include_str!("../../shaders/shade_only.wgsl")])
+fn shade_only_source(source: Source, film: FilmLook) -> String {
+    let [film, target] = film.parts();
+    shade_source(source, &[film, target, include_str!("../../shaders/shade_only.wgsl")])
 }
 
 fn export_source(source: Source) -> String {
@@ -245,12 +260,13 @@ fn export_source(source: Source) -> String {
     join(&[&parts, &source.parts()])
 }
 
-fn develop_source() -> String {
-    join(&[&[PASS], &FILM_PARTS, &[include_str!("../../shaders/develop.wgsl")]])
+fn develop_source(film: FilmLook) -> String {
+    join(&[&[PASS], &film.parts(), &[include_str!("../../shaders/develop.wgsl")]])
 }
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
+    let film = |to_host| FilmLook { format: 1, tone_map: 1, false_colour: false, to_host };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
@@ -261,13 +277,19 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
     .into_iter()
     .zip([Source::Traced, Source::Schwarzschild { delay: true, moving: true }, kerr(false), kerr(true)]);
     let of_sources = sources.flat_map(|([sample, only, export], source)| {
-        [(sample, shade_sample_source(source)), (only, shade_only_source(source)), (export, export_source(source))]
+        [
+            (sample, shade_sample_source(source)),
+            (only, shade_only_source(source, film(true))),
+            (export, export_source(source)),
+        ]
     });
     let others = [
         ("rays", rays_source()),
         ("pixels", pixels_source()),
         ("count", count_source()),
-        ("develop", develop_source()),
+        ("develop", develop_source(film(true))),
+        ("develop for a window", develop_source(film(false))),
+        ("shade only for a window", shade_only_source(kerr(false), film(false))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
         ("spin-0 lens, columns", schwarzschild_columns_source()),
         ("Kerr lens, nodes", kerr_nodes_source()),
@@ -305,6 +327,10 @@ pub const TRACED: [TextureKind; 3] = [
 /// Radiance of shade_sample.wgsl and develop.wgsl.
 pub const RADIANCE: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// What a window is filled from: 8-bit codes, whatever curve they follow.
+pub const SCREEN: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
 
 /// Tables of a lens: a row for each branch; and columns, a layer for each branch.
 pub const LENS_ROWS: TextureKind =
@@ -397,13 +423,14 @@ impl Kernels {
     }
 
     pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
-        let groups = [shade_slots(), source.slots(), vec![Slot::Uniform, Slot::Write]];
-        self.get(device, Name::ShadeOnly(source, look, film), &groups, source.driver().0, || shade_only_source(source))
+        let groups = [shade_slots(), source.slots(), film.slots()];
+        let wgsl = || shade_only_source(source, film);
+        self.get(device, Name::ShadeOnly(source, look, film), &groups, source.driver().0, wgsl)
     }
 
     pub fn develop(&mut self, device: &Device, film: FilmLook) -> Result<Compiled> {
-        let slots = vec![Slot::Uniform, Slot::UniformPart, Slot::Texture(RADIANCE), Slot::Write];
-        self.get(device, Name::Develop(film), &[slots], "develop_tile", develop_source)
+        let groups = [vec![Slot::UniformPart], vec![Slot::Texture(RADIANCE)], film.slots()];
+        self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
     }
 
     pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {

@@ -22,18 +22,20 @@ mod uniforms;
 pub use adapter::{Adapter, Search, adapters, forget_drivers};
 pub use buffer::Buffer;
 pub use device::Device;
+pub use frame::{BegunFrame, FrameTarget, Submitted};
 #[doc(hidden)]
 pub use kernels::shader_sources;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 pub use readback::{Copied, Readback};
 pub use texture::Texture;
-pub use timer::GpuTimer;
+pub use timer::{GpuTimer, read_time};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;
 use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Method, Scene};
 use kernels::{Kernels, Variant};
+use std::sync::Arc;
 use tables::Tables;
 
 /// f32 rounds at 6e-8; a step's error estimate cannot be trusted below a few times that.
@@ -44,7 +46,7 @@ const RAY_STEP: f64 = 0.2;
 /// Traces on one device.
 pub struct GpuTracer {
     adapter: AdapterInfo,
-    device: Device,
+    device: Arc<Device>,
     kernels: Kernels,
     /// Made when light is first shaded.
     tables: Option<Tables>,
@@ -63,7 +65,7 @@ impl GpuTracer {
         }
         Ok(Self {
             adapter: adapter.info.clone(),
-            device,
+            device: Arc::new(device),
             kernels,
             tables: None,
             buffers: Default::default(),
@@ -73,6 +75,10 @@ impl GpuTracer {
 
     pub fn adapter(&self) -> &AdapterInfo {
         &self.adapter
+    }
+
+    pub fn device(&self) -> Arc<Device> {
+        self.device.clone()
     }
 }
 

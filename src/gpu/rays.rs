@@ -141,7 +141,7 @@ impl GpuTracer {
         let size = (starts.len() * ENDS * size_of::<RayEnd>()) as u64;
         let copied = self.ray_buffers.readback.copy(device, &mut encoder, output, size)?;
         let submission = device.submit(encoder)?;
-        self.ray_buffers.readback.read(device, copied, &submission, |bytes| {
+        copied.read(device, &submission, |bytes| {
             Ok(bytes.chunks_exact(size_of::<RayEnd>()).map(bytemuck::pod_read_unaligned).collect())
         })
     }

@@ -1,25 +1,26 @@
-//! Brings bytes from the device to the host through two staging buffers, so that one piece is copied out while the next is
-//! being made. Knows nothing of pixels.
+//! Brings bytes from the device to the host through staging buffers that are used again and again, so that one piece is copied out
+//! while the next are being made. Knows nothing of pixels.
 
 use super::buffer::Buffer;
 use super::device::Device;
 use crate::error::{Error, Result};
-use std::sync::mpsc;
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-/// Two staging buffers, used by turns, that grow to the largest piece they were asked for.
-#[derive(Default)]
+/// Staging buffers kept for the next copies: as many as there are pieces under way at most times.
+const KEPT: usize = 3;
+
+/// Staging buffers that grow to the largest piece they were asked for. Clones share them.
+#[derive(Clone, Default)]
 pub struct Readback {
-    slots: [Option<Buffer>; 2],
-    /// Copies recorded so far; the parity names the next slot.
-    copies: u64,
+    free: Arc<Mutex<Vec<Buffer>>>,
 }
 
-/// A recorded copy, to be read after its submission. Copies may be dropped unread.
+/// A recorded copy, to be read after its submission. Copies may be dropped unread, and outlive the [`Readback`].
 #[must_use]
-#[derive(Debug)]
 pub struct Copied {
-    number: u64,
+    staging: Option<Buffer>,
     size: u64,
+    home: Readback,
 }
 
 impl Readback {
@@ -27,60 +28,70 @@ impl Readback {
         Self::default()
     }
 
-    /// Records the copy of the first `size` bytes (a multiple of 4) of `source`, whose usage has `COPY_SRC`. It overwrites
-    /// the copy before the last one, which must have been read by now if ever.
+    /// Records the copy of the first `size` bytes (a multiple of 4) of `source`, whose usage has `COPY_SRC`.
     ///
     /// Errors: as [`Device::buffer`].
     pub fn copy(
-        &mut self,
+        &self,
         device: &Device,
         encoder: &mut wgpu::CommandEncoder,
         source: &wgpu::Buffer,
         size: u64,
     ) -> Result<Copied> {
-        let number = self.copies;
-        let slot = slot_of(&mut self.slots, number);
-        let staging = match slot {
-            Some(buffer) if buffer.size() >= size => buffer,
-            _ => {
-                *slot = None; // Frees the old one first.
-                slot.insert(device.buffer(
-                    "readback",
-                    size,
-                    wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-                )?)
-            }
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        let staging = match self.take(size) {
+            Some(buffer) => buffer,
+            None => device.buffer("readback", size, usage)?,
         };
-        encoder.copy_buffer_to_buffer(source, 0, staging, 0, size);
-        self.copies += 1;
-        Ok(Copied { number, size })
+        encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
+        Ok(Copied { staging: Some(staging), size, home: self.clone() })
     }
 
-    /// Waits for `submission`, which `copied` was recorded in, and hands its bytes to `take`.
+    /// A free buffer that holds `size` bytes. When all are smaller, one goes to make room for a larger one.
+    fn take(&self, size: u64) -> Option<Buffer> {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        match free.iter().position(|buffer| buffer.size() >= size) {
+            Some(found) => Some(free.swap_remove(found)),
+            None => {
+                free.pop();
+                None
+            }
+        }
+    }
+
+    fn give_back(&self, buffer: Buffer) {
+        let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
+        if free.len() < KEPT {
+            free.push(buffer);
+        }
+    }
+}
+
+impl Copied {
+    /// Waits for `submission`, which the copy was recorded in, and hands its bytes to `take`.
     ///
-    /// Errors: those of `take` and of [`Device::wait`]; `Internal` when `copied` was overwritten or not submitted.
+    /// Errors: those of `take` and of [`Device::wait`]; `Internal` when it was not submitted.
     pub fn read<T>(
-        &mut self,
+        self,
         device: &Device,
-        copied: Copied,
         submission: &wgpu::SubmissionIndex,
         take: impl FnOnce(&[u8]) -> Result<T>,
     ) -> Result<T> {
-        if self.copies > copied.number + 2 {
-            return Err(Error::internal("a readback was overwritten before it was read"));
-        }
-        let Some(staging) = slot_of(&mut self.slots, copied.number) else {
+        let Some(staging) = &self.staging else {
             return Err(Error::internal("a readback has no staging buffer"));
         };
-        let mapping = Mapping::request(device, staging, copied.size)?;
+        let mapping = Mapping::request(device, staging, self.size)?;
         device.wait(submission)?;
         mapping.read(take)
     }
 }
 
-fn slot_of(slots: &mut [Option<Buffer>; 2], number: u64) -> &mut Option<Buffer> {
-    let [even, odd] = slots;
-    if number.is_multiple_of(2) { even } else { odd }
+impl Drop for Copied {
+    fn drop(&mut self) {
+        if let Some(staging) = self.staging.take() {
+            self.home.give_back(staging);
+        }
+    }
 }
 
 /// A buffer on its way to be read; unmapped at the end, whatever happens.

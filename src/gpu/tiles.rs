@@ -43,18 +43,13 @@ impl Plan {
         self.tile
     }
 
-    /// Row by row from the top left.
-    pub fn tiles(self) -> impl Iterator<Item = Tile> {
+    /// The `index`th, row by row from the top left.
+    pub fn tile(&self, index: u64) -> Tile {
         let [width, height] = self.frame;
         let [w, h] = self.tile;
-        (0..height).step_by(h as usize).flat_map(move |y| {
-            (0..width).step_by(w as usize).map(move |x| Tile {
-                x,
-                y,
-                width: w.min(width - x),
-                height: h.min(height - y),
-            })
-        })
+        let across = u64::from(width.div_ceil(w));
+        let [x, y] = [(index % across) as u32 * w, (index / across) as u32 * h];
+        Tile { x, y, width: w.min(width - x), height: h.min(height - y) }
     }
 
     pub fn count(&self) -> u64 {
@@ -82,10 +77,12 @@ mod tests {
             let [w, h] = plan.largest().map(u64::from);
             assert!((w + 2) * (h + 2) * 100 <= MEMORY, "{width} x {height}: {plan:?}");
             assert!(w * h * steps <= STEPS_PER_SUBMISSION && w.max(h) + 2 <= 2048, "{plan:?}");
-            let pixels = plan.tiles().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>();
+            let tiles = (0..plan.count()).map(|i| plan.tile(i)).collect::<Vec<_>>();
+            let pixels = tiles.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>();
             assert_eq!(pixels, u64::from(width) * u64::from(height));
-            assert_eq!(plan.tiles().count() as u64, plan.count());
-            assert!(plan.tiles().all(|t| t.x + t.width <= width && t.y + t.height <= height));
+            let corners = tiles.iter().map(|t| (t.y, t.x)).collect::<Vec<_>>();
+            assert!(corners.is_sorted_by(|a, b| a < b), "each tile once, row by row");
+            assert!(tiles.iter().all(|t| t.x + t.width <= width && t.y + t.height <= height));
         }
     }
 

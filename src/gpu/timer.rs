@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 /// Each pass writes one tick count when it begins and one when it ends.
 const PASS_BYTES: u64 = 2 * wgpu::QUERY_SIZE as u64;
 
-/// Times the compute passes of one submission after another, of at most two that are not yet read.
+/// Times the compute passes of one submission after another.
 pub struct GpuTimer {
     queries: wgpu::QuerySet,
     resolved: Buffer,
@@ -56,12 +56,12 @@ impl GpuTimer {
         encoder.resolve_query_set(&self.queries, 0..2 * passes, &self.resolved, 0);
         self.readback.copy(device, encoder, &self.resolved, u64::from(passes) * PASS_BYTES).map(Some)
     }
+}
 
-    /// Nanoseconds that the passes of `submission` took together. Errors: as [`Readback::read`].
-    pub fn read(&mut self, device: &Device, copied: Copied, submission: &wgpu::SubmissionIndex) -> Result<u64> {
-        let ticks = self.readback.read(device, copied, submission, sum_of_spans)?;
-        Ok((ticks as f64 * device.timestamp_period()) as u64)
-    }
+/// Nanoseconds that the passes of `submission` took together. Errors: as [`Copied::read`].
+pub fn read_time(device: &Device, copied: Copied, submission: &wgpu::SubmissionIndex) -> Result<u64> {
+    let ticks = copied.read(device, submission, sum_of_spans)?;
+    Ok((ticks as f64 * device.timestamp_period()) as u64)
 }
 
 /// The bytes are pairs of begin and end. A driver's clock may jump back; such a span counts as 0.

@@ -1,0 +1,56 @@
+//! A gate that callbacks of the host pass: once it is closed none runs any more, and those that run are waited for.
+
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+#[derive(Default)]
+pub(super) struct Gate {
+    state: Mutex<State>,
+    idle: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    closed: bool,
+    /// Callbacks that are running now.
+    running: u32,
+}
+
+/// While it lives, a callback runs.
+pub(super) struct Inside<'a>(&'a Gate);
+
+impl Gate {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        // Nothing under this lock is left half done by a panic.
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// `None` when it is closed.
+    pub fn enter(&self) -> Option<Inside<'_>> {
+        let mut state = self.lock();
+        if state.closed {
+            return None;
+        }
+        state.running += 1;
+        Some(Inside(self))
+    }
+
+    pub fn close(&self) {
+        let mut state = self.lock();
+        state.closed = true;
+        while state.running > 0 {
+            state = self.idle.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    #[cfg(test)]
+    pub fn running(&self) -> u32 {
+        self.lock().running
+    }
+}
+
+impl Drop for Inside<'_> {
+    fn drop(&mut self) {
+        self.0.lock().running -= 1;
+        self.0.idle.notify_all();
+    }
+}
