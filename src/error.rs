@@ -20,6 +20,8 @@ pub enum ErrorKind {
     OutOfMemory,
     /// The progress callback asked to stop.
     Cancelled,
+    /// A surface's window is gone, or its context.
+    SurfaceLost,
     /// The GPU device was lost.
     DeviceLost,
     /// A file could not be read or written.

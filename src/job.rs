@@ -130,7 +130,7 @@ impl Order {
     /// The job's end. The target is its owner's again.
     fn finish(self, outcome: Result<FrameStats>) {
         let touched = self.target.is_touched();
-        let outcome = outcome.map(|stats| self.stats.publish(stats, self.ordered)).map_err(|mut error| {
+        let outcome = outcome.map(|stats| self.stats.publish(stats, self.ordered.elapsed())).map_err(|mut error| {
             if touched {
                 error.message += "; part of the target has been written";
             }

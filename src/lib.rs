@@ -5,6 +5,7 @@
 //! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background.
 //! - `cpu`, `gpu`: the two tracers, with one behaviour: scene -> linear radiance.
 //! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
+//! - [`window`]: the host's windows as targets of frames.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
 
 #[doc(hidden)]
@@ -19,3 +20,4 @@ pub mod physics;
 pub mod renderer;
 pub mod scene;
 pub mod sky;
+pub mod window;

@@ -3,14 +3,15 @@
 
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{self, Device, GpuTracer, Search};
+use crate::gpu::{self, Adapter, GpuTracer, Search};
 use crate::image::{ImageMut, PixelFormat};
 use crate::job::{Job, Order, ThreadScope, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
+use crate::window::{NativeWindow, PresentMode, Showing, Shown, Surface, Tracing, Window};
 use parking_lot::Mutex;
-use std::sync::Arc;
-use std::time::Instant;
+use std::sync::{Arc, Weak};
+use std::time::{Duration, Instant};
 
 /// The interfaces a tracer may run on (`BHR_BACKEND_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +38,7 @@ impl std::fmt::Display for Backend {
 }
 
 /// What a tracer runs on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterInfo {
     pub backend: Backend,
     /// A GPU with memory of its own.
@@ -61,6 +62,8 @@ pub struct RendererOptions {
     pub cpu_threads: u32,
     /// Ask the driver's validation layers to report.
     pub validation: bool,
+    /// Only adapters that can present to this window.
+    pub compatible_window: Option<NativeWindow>,
 }
 
 /// Numbers about the last finished frame. Times in nanoseconds.
@@ -135,17 +138,18 @@ impl Tracer {
         }
     }
 
-    fn adapter(&self) -> &AdapterInfo {
+    fn info(&self) -> &AdapterInfo {
         match self {
             Self::Cpu(t) => t.adapter(),
-            Self::Gpu(t) => t.adapter(),
+            Self::Gpu(t) => &t.adapter().info,
         }
     }
 
-    fn device(&self) -> Option<Arc<Device>> {
+    /// What the GPU tracer runs on.
+    fn gpu(&self) -> Option<(Arc<Adapter>, Arc<gpu::Device>)> {
         match self {
             Self::Cpu(_) => None,
-            Self::Gpu(t) => Some(t.device()),
+            Self::Gpu(t) => Some((t.adapter().clone(), t.device())),
         }
     }
 }
@@ -155,11 +159,11 @@ impl Tracer {
 pub struct StatsBoard(Arc<Mutex<FrameStats>>);
 
 impl StatsBoard {
-    /// Numbers the frame, which was asked for at `begun` and is finished now.
-    pub fn publish(&self, mut stats: FrameStats, begun: Instant) -> FrameStats {
+    /// Numbers the frame, which is finished and took this long.
+    pub fn publish(&self, mut stats: FrameStats, took: Duration) -> FrameStats {
         let mut last = self.0.lock();
         stats.frame_index = last.frame_index + 1;
-        stats.cpu_ns = begun.elapsed().as_nanos() as u64;
+        stats.cpu_ns = took.as_nanos() as u64;
         *last = stats;
         stats
     }
@@ -171,26 +175,38 @@ pub struct Renderer {
     pub scene: Scene,
     options: RendererOptions,
     adapter: AdapterInfo,
-    /// The GPU tracer's.
-    device: Option<Arc<Device>>,
+    /// What the GPU tracer runs on.
+    gpu: Option<(Arc<Adapter>, Arc<gpu::Device>)>,
     tracer: SharedTracer,
     stats: StatsBoard,
     /// From the first job on.
     worker: Option<Worker>,
+    /// Made for this renderer, and perhaps still there.
+    surfaces: Vec<Weak<Surface>>,
+}
+
+impl Drop for Renderer {
+    fn drop(&mut self) {
+        // Windows go before the device that presents to them.
+        self.end_surfaces("its context was destroyed");
+    }
 }
 
 impl Renderer {
     /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), whatever opening a device gives.
     pub fn new(options: RendererOptions) -> Result<Self> {
         let tracer = Self::open(&options)?;
+        // The window need not be there any more when the device is opened again.
+        let options = RendererOptions { compatible_window: None, ..options };
         Ok(Self {
             scene: Scene::default(),
             options,
-            adapter: tracer.adapter().clone(),
-            device: tracer.device(),
+            adapter: tracer.info().clone(),
+            gpu: tracer.gpu(),
             tracer: Arc::new(Mutex::new(tracer)),
             stats: StatsBoard::default(),
             worker: None,
+            surfaces: Vec::new(),
         })
     }
 
@@ -199,6 +215,8 @@ impl Renderer {
         if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {
             return cpu();
         }
+        let window = options.compatible_window.map(Window::open).transpose()?;
+        let check = |adapter: &Adapter| window.as_ref().map_or(Ok(()), |window| adapter.check_presents(window));
         let search = match (options.adapter_index, options.backend) {
             (Some(_), _) => Search::All,
             (None, Some(backend)) => Search::Only(backend),
@@ -221,14 +239,17 @@ impl Renderer {
                 ));
             }
             return match found.into_iter().nth(index as usize) {
-                Some(adapter) => GpuTracer::new(adapter).map(|t| Tracer::Gpu(Box::new(t))),
+                Some(adapter) => {
+                    check(&adapter).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
+                    GpuTracer::new(adapter).map(|t| Tracer::Gpu(Box::new(t)))
+                }
                 None => cpu(),
             };
         }
         let mut reasons = Vec::new();
         for adapter in found {
             let name = adapter.info.name.clone();
-            match GpuTracer::new(adapter) {
+            match check(&adapter).and_then(|()| GpuTracer::new(adapter)) {
                 Ok(tracer) => return Ok(Tracer::Gpu(Box::new(tracer))),
                 Err(error) => {
                     log::warn!("adapter {name} passed over: {error}");
@@ -251,19 +272,77 @@ impl Renderer {
         }
     }
 
-    /// Opens the device anew after it was lost; the scene stays. Jobs that were ordered before fail.
+    /// Opens the device anew after it was lost, on the adapter it was on if that is still there; the scene stays. Jobs that were
+    /// ordered before fail, surfaces are lost.
     pub fn recover(&mut self) -> Result<()> {
         gpu::forget_drivers();
-        let tracer = Self::open(&self.options)?;
-        self.adapter = tracer.adapter().clone();
-        self.device = tracer.device();
+        let tracer = self.reopen()?;
+        self.end_surfaces("its context was recovered; make it again");
+        self.adapter = tracer.info().clone();
+        self.gpu = tracer.gpu();
         self.tracer = Arc::new(Mutex::new(tracer));
         Ok(())
     }
 
+    fn reopen(&self) -> Result<Tracer> {
+        if let Tracer::Cpu(_) = &*self.tracer.lock() {
+            return Self::open(&self.options);
+        }
+        let same = gpu::adapters(Search::Only(self.adapter.backend), self.options.validation)
+            .into_iter()
+            .find(|found| found.info == self.adapter)
+            .map(GpuTracer::new);
+        match same {
+            Some(Ok(tracer)) => Ok(Tracer::Gpu(Box::new(tracer))),
+            Some(Err(error)) => {
+                log::warn!("adapter {} could not be opened again: {error}", self.adapter.name);
+                Self::open(&self.options)
+            }
+            None => Self::open(&self.options),
+        }
+    }
+
     /// Errors: DEVICE_LOST once the device is gone, until [`Self::recover`].
     fn check_device(&self) -> Result<()> {
-        self.device.as_ref().map_or(Ok(()), |device| device.check())
+        self.gpu.as_ref().map_or(Ok(()), |(_, device)| device.check())
+    }
+
+    /// Destroys the GPU device, as a driver may at any time: for tests.
+    #[doc(hidden)]
+    pub fn lose_device(&self) -> Result<()> {
+        self.gpu.as_ref().map_or(Ok(()), |(_, device)| device.scoped("destroying the device", |raw| raw.destroy()))
+    }
+
+    fn end_surfaces(&mut self, reason: &'static str) {
+        for surface in self.surfaces.drain(..).filter_map(|surface| surface.upgrade()) {
+            surface.end(reason);
+        }
+    }
+
+    /// A surface for a window of the host's, to show this renderer's frames in. Errors: as `Surface::new`; DEVICE_LOST.
+    pub fn create_surface(&mut self, window: NativeWindow, size: [u32; 2], mode: PresentMode) -> Result<Arc<Surface>> {
+        self.check_device()?;
+        let tracing = self.gpu.as_ref().map(|(adapter, device)| Tracing {
+            adapter,
+            device: device.clone(),
+            tracer: self.tracer.clone(),
+        });
+        let surface = Arc::new(Surface::new(window, size, mode, tracing, self.options.validation)?);
+        self.surfaces.retain(|surface| surface.strong_count() > 0);
+        self.surfaces.push(Arc::downgrade(&surface));
+        Ok(surface)
+    }
+
+    /// Renders the scene into the surface's window. Errors: as `render`; INVALID_ARGUMENT for another renderer's surface; SURFACE_LOST;
+    /// DEVICE_LOST.
+    pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<Shown> {
+        self.check_device()?;
+        let whole = Region { full_width: 1, full_height: 1, x: 0, y: 0 };
+        self.scene.lens(&whole)?;
+        if !surface.has_ended() && !self.surfaces.iter().any(|ours| std::ptr::eq(ours.as_ptr(), Arc::as_ptr(surface))) {
+            return Err(Error::argument("surface was made by another context"));
+        }
+        surface.show(&Showing { scene: &self.scene, tracer: &self.tracer, stats: &self.stats })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {
@@ -320,7 +399,7 @@ impl Renderer {
             }
             error
         })?;
-        self.stats.publish(stats, start);
+        self.stats.publish(stats, start.elapsed());
         Ok(())
     }
 

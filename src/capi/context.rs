@@ -76,7 +76,8 @@ pub struct BhrContextOptions {
     pub log_fn: BhrLogFn,
     /// Handed to log_fn.
     pub log_user: *mut c_void,
-    /// A window that the adapter must be able to present to. NULL (default): off-screen only.
+    /// A window that the adapter must be able to present to; it is looked at during the call only. The CPU tracer is taken to be able
+    /// to. NULL (default): any adapter; where it cannot present, surfaces work all the same, by way of the host's memory, slower.
     pub compatible_window: *const BhrWindow,
 }
 
@@ -120,15 +121,16 @@ impl BhrContextOptions {
                 self.cpu_threads
             )));
         }
-        if !self.compatible_window.is_null() {
-            // SAFETY: this function's contract.
-            unsafe { window::read(self.compatible_window, "options compatible_window") }?;
-        }
+        // SAFETY: this function's contract.
+        let compatible_window = (!self.compatible_window.is_null())
+            .then(|| unsafe { window::read(self.compatible_window, "options compatible_window") })
+            .transpose()?;
         let options = RendererOptions {
             backend,
             adapter_index,
             cpu_threads: self.cpu_threads,
             validation: flags & BHR_CONTEXT_VALIDATION != 0,
+            compatible_window,
         };
         Ok((options, log::level_filter(self.log_level)?))
     }
@@ -203,8 +205,9 @@ pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *
     }
 }
 
-/// Opens the device anew after BHR_ERROR_DEVICE_LOST; the scene stays. Errors: as bhr_context_create; the context
-/// then stays lost.
+/// Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there; the scene stays, the sky's map included. Jobs begun before fail with
+/// DEVICE_LOST; surfaces made before are lost: destroy them and make them again. Until this call every call that renders or
+/// traces returns DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

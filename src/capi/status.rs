@@ -47,6 +47,7 @@ pub(super) fn of(kind: ErrorKind) -> BhrStatus {
         ErrorKind::OutOfMemory => BHR_ERROR_OUT_OF_MEMORY,
         ErrorKind::Cancelled => BHR_ERROR_CANCELLED,
         ErrorKind::DeviceLost => BHR_ERROR_DEVICE_LOST,
+        ErrorKind::SurfaceLost => BHR_ERROR_SURFACE_LOST,
         ErrorKind::Io => BHR_ERROR_IO,
         ErrorKind::Internal => BHR_ERROR_INTERNAL,
     }

@@ -1,17 +1,20 @@
-//! BhrSurface: rendering into a window of the host's. This version has none: arguments are checked, then the answer
-//! is UNSUPPORTED.
+//! BhrSurface: rendering into a window of the host's. One `Surface`, shared with its context, which may go first.
 
 use super::context::BhrContext;
-use super::entry::{on_context, outside_callbacks};
+use super::entry::{News, finish, in_callback, on_context, outside_callbacks};
+use super::log::{self, Sink};
 use super::pointer::{Out, is_null, unknown};
-use super::status::BhrStatus;
+use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, Result};
 use crate::image::MAX_SIDE;
+use crate::window::{PresentMode, Shown, Surface};
+use std::sync::Arc;
 
 /// A window that a context renders into.
 pub struct BhrSurface {
-    _none: (),
+    surface: Arc<Surface>,
+    sink: Option<Arc<Sink>>,
 }
 
 /// How frames reach the screen.
@@ -23,38 +26,47 @@ pub const BHR_PRESENT_IMMEDIATE: BhrPresentMode = 1;
 /// The newest frame at the display's rate; older ones are dropped.
 pub const BHR_PRESENT_MAILBOX: BhrPresentMode = 2;
 
-fn check_mode(mode: BhrPresentMode) -> Result<()> {
-    match mode {
-        BHR_PRESENT_VSYNC | BHR_PRESENT_IMMEDIATE | BHR_PRESENT_MAILBOX => Ok(()),
-        _ => unknown(mode, "mode", "BHR_PRESENT_VSYNC (0), _IMMEDIATE (1), _MAILBOX (2)"),
-    }
+fn present_mode(mode: BhrPresentMode) -> Result<PresentMode> {
+    Ok(match mode {
+        BHR_PRESENT_VSYNC => PresentMode::Vsync,
+        BHR_PRESENT_IMMEDIATE => PresentMode::Immediate,
+        BHR_PRESENT_MAILBOX => PresentMode::Mailbox,
+        _ => return unknown(mode, "mode", "BHR_PRESENT_VSYNC (0), _IMMEDIATE (1), _MAILBOX (2)"),
+    })
 }
 
-fn check_size(width: u32, height: u32) -> Result<()> {
-    // 0 x 0 is a minimised window.
+/// 0 x 0 is a minimised window.
+fn check_size(width: u32, height: u32) -> Result<[u32; 2]> {
     if width <= MAX_SIDE && height <= MAX_SIDE {
-        return Ok(());
+        return Ok([width, height]);
     }
     Err(Error::argument(format!("surface size is {width} x {height}; each side must lie in [0, {MAX_SIDE}]")))
 }
 
-fn no_surfaces() -> Result<()> {
-    Err(Error::unsupported("this version has no windows; bhr_render_image renders into memory"))
+/// A call on a surface alone: refused inside callbacks, with its context's log callback listening.
+///
+/// # Safety
+/// `surface` is NULL or came from `bhr_surface_create` and is not destroyed.
+unsafe fn on_surface(
+    function: &str,
+    surface: *const BhrSurface,
+    body: impl FnOnce(&Surface) -> Result<()>,
+) -> BhrStatus {
+    // SAFETY: this function's contract.
+    let Some(surface) = (unsafe { surface.as_ref() }) else {
+        return outside_callbacks::<()>(function, || Err(is_null("surface")));
+    };
+    let _scope = log::Scope::enter(surface.sink.clone());
+    outside_callbacks(function, || body(&surface.surface))
 }
 
-/// A call on a surface. None exists, so past the argument checks there is one answer.
-fn on_surface(function: &str, surface: *const BhrSurface, check: impl FnOnce() -> Result<()>) -> BhrStatus {
-    outside_callbacks(function, || {
-        if surface.is_null() {
-            return Err(is_null("surface"));
-        }
-        check()?;
-        no_surfaces()
-    })
-}
-
-/// Makes a surface of width x height pixels from a window. macOS: on the main thread only. Errors: INVALID_ARGUMENT
-/// for NULL, a bad window, an unknown mode; UNSUPPORTED otherwise in this version.
+/// Makes a surface of width x height pixels from a window, to be rendered into by this context; 0 x 0: a minimised one. The window, which
+/// takes one surface at a time, must outlive it, and its display too. (X11: bhr presents through a connection of its own, so there the host may end its window and
+/// display first.) Where the context's adapter cannot present to the window, or traces on the CPU, another adapter presents, or frames are put
+/// into the window as memory; the log (info) says which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for NULL, a bad window or
+/// one that does not exist (X11), a side beyond 2^20, an unknown mode; INVALID_STATE for a window that has a surface; UNSUPPORTED, with the
+/// reasons, for a kind of window that this platform does not have, where nothing can present to it, or for a side that the device's images cannot have (mostly
+/// 16384); DEVICE_LOST, OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_create(
     context: *mut BhrContext,
@@ -67,47 +79,78 @@ pub unsafe extern "C" fn bhr_surface_create(
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         let out = Out::cleared(out_surface);
-        on_context("bhr_surface_create", context, |_state| {
+        // Not NULL in the closure: `on_context` has refused that.
+        let sink = || context.as_ref().and_then(BhrContext::sink);
+        on_context("bhr_surface_create", context, |state| {
             out.required("out_surface")?;
-            window::read(window, "window")?;
-            check_size(width, height)?;
-            check_mode(mode)?;
-            no_surfaces()
+            let window = window::read(window, "window")?;
+            let size = check_size(width, height)?;
+            let surface = state.renderer.create_surface(window, size, present_mode(mode)?)?;
+            out.set(Box::into_raw(Box::new(BhrSurface { surface, sink: sink() })));
+            Ok(())
         })
     }
 }
 
-/// Follows a window's new size in pixels; 0 x 0: minimised. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED
-/// otherwise in this version.
+/// Follows a window's new size in pixels; 0 x 0: minimised. Cheap: the next frame makes new images. (X11: the window's own size counts,
+/// and this call says that it has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's images
+/// cannot have; SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_resize(surface: *mut BhrSurface, width: u32, height: u32) -> BhrStatus {
-    on_surface("bhr_surface_resize", surface, || check_size(width, height))
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe { on_surface("bhr_surface_resize", surface, |surface| surface.resize(check_size(width, height)?)) }
 }
 
-/// Changes how frames reach the screen; a mode that the window does not have falls back to VSYNC. Errors:
-/// INVALID_ARGUMENT for NULL or an unknown mode; UNSUPPORTED otherwise in this version.
+/// Changes how frames reach the screen, from the next on; a mode that the window does not have falls back to VSYNC. Errors:
+/// INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, mode: BhrPresentMode) -> BhrStatus {
-    on_surface("bhr_surface_set_present_mode", surface, || check_mode(mode))
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_surface("bhr_surface_set_present_mode", surface, |surface| surface.set_present_mode(present_mode(mode)?))
+    }
 }
 
-/// Renders the scene into the surface's window and presents it. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED
-/// otherwise in this version.
+/// Renders the scene into the surface's window and presents it, in sRGB, with the film; the region is not obeyed. BhrQuality.render_scale
+/// says how large it is traced. Returns when the frame is on its way (with VSYNC it waits for the window to take another, at
+/// most a second; frames that go through the host's memory are finished); bhr_frame_stats then tells of the last frame that is finished.
+/// FRAME_SKIPPED: the window is 0 x 0, minimised or hidden, or is being resized; nothing was presented: wait for its next event. Any thread
+/// (macOS: the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context;
+/// INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST when the window is gone, or the context was recovered since: destroy the surface and make it again;
+/// DEVICE_LOST, OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *mut BhrSurface) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
-        on_context("bhr_render_surface", context, |_state| {
-            if surface.is_null() {
-                return Err(is_null("surface"));
-            }
-            no_surfaces()
+        on_context("bhr_render_surface", context, |state| {
+            let surface = surface.as_ref().ok_or_else(|| is_null("surface"))?;
+            Ok(match state.renderer.render_surface(&surface.surface)? {
+                Shown::Presented => News(BHR_OK),
+                Shown::Skipped => News(BHR_FRAME_SKIPPED),
+            })
         })
     }
 }
 
-/// Ends a surface; the window stays the host's. NULL is a no-op, and any destroy order is safe.
+/// Ends a surface; the window stays the host's and is free for another. NULL is a no-op; its context may be gone. No other thread may use it any
+/// more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
-    let _ = surface;
+    const NAME: &str = "bhr_surface_destroy";
+    if surface.is_null() {
+        return;
+    }
+    if in_callback() {
+        let ignored = Error::state("ignored inside a log or progress callback; call it after the callback returned");
+        finish::<()>(NAME, Err(ignored));
+        return;
+    }
+    // SAFETY: bhr_surface_create made it with Box::into_raw, and the host destroys it once.
+    let BhrSurface { surface, sink } = *unsafe { Box::from_raw(surface) };
+    let _scope = log::Scope::enter(sink);
+    let ended = super::entry::guarded(|| {
+        surface.end("it was destroyed");
+        Ok(())
+    });
+    finish(NAME, ended);
 }

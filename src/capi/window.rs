@@ -1,10 +1,12 @@
-//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Read and checked; never touched.
+//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Read and checked; nothing behind its pointers.
 
 use super::pointer::{check_reserved, unknown};
 use super::versioned::{self, Versioned};
 use crate::error::{Error, Result};
+use crate::window::NativeWindow;
 use std::ffi::c_void;
-use std::ptr::null_mut;
+use std::num::{NonZeroIsize, NonZeroU32};
+use std::ptr::{NonNull, null_mut};
 
 /// What a BhrWindow holds. Fields that are not named for a kind are ignored.
 pub type BhrWindowKind = i32;
@@ -73,25 +75,37 @@ unsafe impl Versioned for BhrWindow {
 ///
 /// # Safety
 /// `window` is NULL or points to a BhrWindow.
-pub(super) unsafe fn read(window: *const BhrWindow, name: &str) -> Result<BhrWindow> {
+pub(super) unsafe fn read(window: *const BhrWindow, name: &str) -> Result<NativeWindow> {
     // SAFETY: this function's contract.
     let given = unsafe { versioned::read(window, name) }?;
     check_reserved(given.reserved, name)?;
-    let display = ("display", !given.display.is_null());
-    let handle = ("handle", !given.handle.is_null());
-    let id = ("id", given.id != 0);
-    let needed: &[(&str, bool)] = match given.kind {
-        BHR_WINDOW_XLIB | BHR_WINDOW_XCB => &[display, id],
-        BHR_WINDOW_WAYLAND => &[display, handle],
-        BHR_WINDOW_WIN32 | BHR_WINDOW_APPKIT | BHR_WINDOW_UIKIT | BHR_WINDOW_METAL_LAYER | BHR_WINDOW_ANDROID => {
-            &[handle]
-        }
-        kind => return unknown(kind, &format!("{name} kind"), "BHR_WINDOW_XLIB (1) to BHR_WINDOW_ANDROID (8)"),
+    let needed = |field: &str| Error::argument(format!("{name} {field} is 0; windows of kind {} need it", given.kind));
+    let display = || NonNull::new(given.display).ok_or_else(|| needed("display"));
+    let handle = || NonNull::new(given.handle).ok_or_else(|| needed("handle"));
+    let xcb_id = |field: &str, value: u64| {
+        u32::try_from(value).map_err(|_| Error::argument(format!("{name} {field} is {value:#x}; XCB's have 32 bits")))
     };
-    match needed.iter().find(|(_, present)| !present) {
-        Some((field, _)) => {
-            Err(Error::argument(format!("{name} {field} is 0; windows of kind {} need it", given.kind)))
+    Ok(match given.kind {
+        BHR_WINDOW_XLIB => {
+            let display = display()?;
+            let window = Some(given.id).filter(|id| *id != 0).ok_or_else(|| needed("id"))?;
+            NativeWindow::Xlib { display, window, visual: given.visual_id, screen: given.screen }
         }
-        None => Ok(given),
-    }
+        BHR_WINDOW_XCB => {
+            let connection = display()?;
+            let window = NonZeroU32::new(xcb_id("id", given.id)?).ok_or_else(|| needed("id"))?;
+            let visual = NonZeroU32::new(xcb_id("visual_id", given.visual_id)?);
+            NativeWindow::Xcb { connection, window, visual, screen: given.screen }
+        }
+        BHR_WINDOW_WAYLAND => NativeWindow::Wayland { display: display()?, surface: handle()? },
+        BHR_WINDOW_WIN32 => NativeWindow::Win32 {
+            hwnd: NonZeroIsize::new(given.handle.addr() as isize).ok_or_else(|| needed("handle"))?,
+            hinstance: NonZeroIsize::new(given.aux.addr() as isize),
+        },
+        BHR_WINDOW_APPKIT => NativeWindow::AppKit { view: handle()? },
+        BHR_WINDOW_UIKIT => NativeWindow::UiKit { view: handle()? },
+        BHR_WINDOW_METAL_LAYER => NativeWindow::MetalLayer { layer: handle()? },
+        BHR_WINDOW_ANDROID => NativeWindow::Android { window: handle()? },
+        kind => return unknown(kind, &format!("{name} kind"), "BHR_WINDOW_XLIB (1) to BHR_WINDOW_ANDROID (8)"),
+    })
 }

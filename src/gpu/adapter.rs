@@ -10,6 +10,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 pub enum Search {
     /// Every interface of this platform. Its order is what an adapter index counts.
     All,
+    /// Every interface but GL: those that can present.
+    Native,
     /// As `All`, but GL is left alone when another interface has an adapter: starting it takes as long as all the rest.
     Auto,
     /// This interface alone. `Backend::Cpu` finds nothing: the CPU tracer is no adapter of wgpu.
@@ -26,12 +28,19 @@ impl Adapter {
     pub(super) fn raw(&self) -> Result<&wgpu::Adapter> {
         self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
     }
+
+    /// What makes surfaces for windows; `None` for GL, whose instances are tied to a display.
+    pub(super) fn instance(&self) -> Option<&wgpu::Instance> {
+        self.handle.instance.as_ref()
+    }
 }
 
 /// Drops a GL adapter where it may touch GL contexts.
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
+    /// What makes surfaces for windows; `None` for GL.
+    instance: Option<wgpu::Instance>,
     gl: bool,
 }
 
@@ -52,10 +61,14 @@ impl Drop for Handle {
 ///
 /// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
 pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
-    let native = || native(validation).into_iter().filter_map(usable).collect::<Vec<_>>();
+    let native = || {
+        let (instance, list) = native(validation);
+        list.into_iter().filter_map(|raw| usable(raw, instance.clone())).collect::<Vec<_>>()
+    };
     let gl = || gl(validation);
     let mut list = match search {
         Search::All => [native(), gl()].into_iter().flatten().collect(),
+        Search::Native => native(),
         Search::Auto => Some(native()).filter(|list| !list.is_empty()).unwrap_or_else(gl),
         Search::Only(Backend::Cpu) => Vec::new(),
         Search::Only(Backend::Gl) => gl(),
@@ -72,7 +85,7 @@ pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
 /// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
 /// through the old one's adapters; devices in use keep theirs.
 pub fn forget_drivers() {
-    *found() = [Vec::new(), Vec::new()];
+    *found() = [(None, Vec::new()), (None, Vec::new())];
 }
 
 /// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
@@ -83,16 +96,19 @@ pub(super) fn required_limits() -> wgpu::Limits {
 /// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the life
 /// of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded under
 /// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
-static FOUND: Mutex<[Vec<wgpu::Adapter>; 2]> = Mutex::new([Vec::new(), Vec::new()]);
+static FOUND: Mutex<[Found; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
 
-fn found() -> MutexGuard<'static, [Vec<wgpu::Adapter>; 2]> {
+/// The instance that a search asked, and the adapters it has.
+type Found = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
+
+fn found() -> MutexGuard<'static, [Found; 2]> {
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn native(validation: bool) -> Vec<wgpu::Adapter> {
+fn native(validation: bool) -> Found {
     let [plain, validated] = &mut *found();
     let kept = if validation { validated } else { plain };
-    if kept.is_empty() {
+    if kept.1.is_empty() {
         let all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
         *kept = ask_drivers(all, validation);
     }
@@ -102,7 +118,10 @@ fn native(validation: bool) -> Vec<wgpu::Adapter> {
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
 /// once.
 fn gl(validation: bool) -> Vec<Usable> {
-    let work = move || ask_drivers(wgpu::Backends::GL, validation).into_iter().filter_map(usable).collect();
+    let work = move || {
+        let (_, list) = ask_drivers(wgpu::Backends::GL, validation);
+        list.into_iter().filter_map(|raw| usable(raw, None)).collect()
+    };
     on_own_thread(work).unwrap_or_else(|error| {
         log::info!("adapters of GL passed over: {error}");
         Vec::new()
@@ -117,21 +136,22 @@ fn on_own_thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -
 }
 
 /// A driver that panics has no adapters.
-fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Vec<wgpu::Adapter> {
-    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none.
-    let flags = if validation {
-        wgpu::InstanceFlags::DEBUG | wgpu::InstanceFlags::VALIDATION
-    } else {
-        wgpu::InstanceFlags::empty()
-    };
+fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
+    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none; without DEBUG, whose
+    // shaders say that they were WGSL, which older layers take for an error.
+    let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     let descriptor =
         wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
-    let ask = || pollster::block_on(wgpu::Instance::new(descriptor).enumerate_adapters(backends));
+    let ask = || {
+        let instance = wgpu::Instance::new(descriptor);
+        let list = pollster::block_on(instance.enumerate_adapters(backends));
+        (Some(instance), list)
+    };
     let found = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| {
         log::warn!("the search for adapters of {backends:?} panicked");
-        Vec::new()
+        (None, Vec::new())
     });
-    if found.is_empty() {
+    if found.1.is_empty() {
         log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
     }
     found
@@ -147,7 +167,7 @@ struct Usable {
 type Rank = (u8, bool);
 
 /// `None`, with the reason in the log, when it cannot run the tracer.
-fn usable(raw: wgpu::Adapter) -> Option<Usable> {
+fn usable(raw: wgpu::Adapter, instance: Option<wgpu::Instance>) -> Option<Usable> {
     let found = raw.get_info();
     let pass_over = |reason: String| {
         log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
@@ -177,7 +197,8 @@ fn usable(raw: wgpu::Adapter) -> Option<Usable> {
         name: found.name,
     };
     let rank = rank(found.device_type, backend);
-    Some(Usable { rank, adapter: Adapter { info, handle: Handle { raw: Some(raw), gl: backend == Backend::Gl } } })
+    let handle = Handle { raw: Some(raw), instance, gl: backend == Backend::Gl };
+    Some(Usable { rank, adapter: Adapter { info, handle } })
 }
 
 fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {

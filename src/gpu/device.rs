@@ -128,6 +128,15 @@ impl Device {
         }
     }
 
+    /// [`Self::scoped`] for calls that panic, about windows. A panic is `DeviceLost` if the device is gone, else `SurfaceLost`.
+    pub(super) fn guarded<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+        let done = self.scoped(what, |device| catch_unwind(AssertUnwindSafe(|| work(device))));
+        done?.or_else(|panic| {
+            self.check()?;
+            Err(Error::new(ErrorKind::SurfaceLost, format!("{what}: {}", panic_text(&*panic))))
+        })
+    }
+
     /// Begins recording. Mistakes in what is recorded are reported by [`Self::submit`].
     pub fn encoder(&self, label: &str) -> Result<wgpu::CommandEncoder> {
         self.scoped(label, |device| {

@@ -224,8 +224,8 @@ impl GpuTracer {
         let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
         tables.update(&self.device, scene)?;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: samples > 1 };
-        self.buffers.prepare(&self.device, size, &setup, self.adapter.software)?;
-        let software = self.adapter.software;
+        self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
+        let software = self.adapter.info.software;
         let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
         Ok(BegunFrame { stages, request: *request, to_host, samples, source, plan, submitted: 0 })
@@ -286,7 +286,7 @@ impl GpuTracer {
             source,
             variant: kernels::Variant { azimuth: pattern, ..variant(scene, settings, inside) },
             // wgpu makes no array texture of one layer on GL.
-            crossings: if self.adapter.backend == Backend::Gl { crossings.max(2) } else { crossings },
+            crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             eye,
             wanted: Wanted {
                 orders: if disk_u.is_some() { settings.max_crossings as u32 } else { 0 },
@@ -311,7 +311,7 @@ impl GpuTracer {
         let tile = [request.width, request.height];
         let device = &self.device;
         let size = Size { tile, pixel_bytes: EXPORT_BYTES, several_samples: false };
-        self.buffers.prepare(device, size, &setup, self.adapter.software)?;
+        self.buffers.prepare(device, size, &setup, self.adapter.info.software)?;
         let buffers = &mut self.buffers;
         let (fixed, sized) = buffers
             .fixed
@@ -327,7 +327,7 @@ impl GpuTracer {
         let take = |kernels: &mut Kernels, source| {
             kernels.export(device, source, footprints)?.stage(device, &[&scene, &group, &exported])
         };
-        let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.software, take)?;
+        let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.info.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;

@@ -287,6 +287,7 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("rays", rays_source()),
         ("pixels", pixels_source()),
         ("count", count_source()),
+        ("present", super::present::present_source()),
         ("develop", develop_source(film(true))),
         ("develop for a window", develop_source(film(false))),
         ("shade only for a window", shade_only_source(kerr(false), film(false))),

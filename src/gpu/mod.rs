@@ -10,9 +10,11 @@ mod kernels;
 mod lens_kerr;
 mod lens_schwarzschild;
 mod pipeline;
+mod present;
 mod rays;
 mod readback;
 mod records;
+mod swapchain;
 mod tables;
 mod texture;
 mod tiles;
@@ -26,13 +28,16 @@ pub use frame::{BegunFrame, FrameTarget, Submitted};
 #[doc(hidden)]
 pub use kernels::shader_sources;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
+#[doc(hidden)]
+pub use present::Presenter;
 pub use readback::{Copied, Readback};
+pub use swapchain::{Acquired, Swapchain};
 pub use texture::Texture;
 pub use timer::{GpuTimer, read_time};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;
-use crate::renderer::{AdapterInfo, Backend};
+use crate::renderer::Backend;
 use crate::scene::{Method, Scene};
 use kernels::{Kernels, Variant};
 use std::sync::Arc;
@@ -45,7 +50,7 @@ const RAY_STEP: f64 = 0.2;
 
 /// Traces on one device.
 pub struct GpuTracer {
-    adapter: AdapterInfo,
+    adapter: Arc<Adapter>,
     device: Arc<Device>,
     kernels: Kernels,
     /// Made when light is first shaded.
@@ -64,7 +69,7 @@ impl GpuTracer {
             kernels.count(&device).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         }
         Ok(Self {
-            adapter: adapter.info.clone(),
+            adapter: Arc::new(adapter),
             device: Arc::new(device),
             kernels,
             tables: None,
@@ -73,7 +78,7 @@ impl GpuTracer {
         })
     }
 
-    pub fn adapter(&self) -> &AdapterInfo {
+    pub fn adapter(&self) -> &Arc<Adapter> {
         &self.adapter
     }
 

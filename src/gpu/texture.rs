@@ -1,6 +1,7 @@
 //! Textures on a device: counted while they exist, like buffers.
 
 use super::device::Device;
+use super::kernels::{SCREEN, TextureKind};
 use crate::error::{Error, Result};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -25,6 +26,15 @@ impl Device {
     ) -> Result<Texture> {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
         self.any_texture(label, format, dimension, size, layers, usage)
+    }
+
+    /// What a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as [`Device::scoped`].
+    pub fn screen(&self, size: [u32; 2], host_fills: bool) -> Result<Texture> {
+        let TextureKind { format, dimension } = SCREEN;
+        match host_fills {
+            true => self.table("screen", format, size),
+            false => self.texture("screen", format, dimension, size, 1),
+        }
     }
 
     /// A texture that the host fills ([`Device::write_rows`]) and kernels read. Errors: as [`Device::scoped`].
@@ -87,6 +97,13 @@ impl Device {
 
 fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
     format.block_copy_size(None).unwrap_or(0).into()
+}
+
+impl Texture {
+    /// In texels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.raw.width(), self.raw.height()]
+    }
 }
 
 impl Drop for Texture {

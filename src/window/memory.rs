@@ -1,0 +1,152 @@
+//! Frames into a window as plain memory, where no GPU device can present to it: by XCB to X11 windows, by the softbuffer crate to others.
+//! (Softbuffer's own X11 loads Xlib into every process that loads bhr, and sets Xlib's error handler.)
+
+use super::native::Handles;
+use super::{Window, native::NativeWindow};
+use crate::error::{Error, ErrorKind, Result};
+use raw_window_handle as rwh;
+use std::num::NonZeroU32;
+
+/// A window that takes frames as memory.
+pub enum MemoryWindow {
+    #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+    X11(x11::Painter),
+    Other(Box<softbuffer::Surface<Shared, Shared>>),
+}
+
+/// Handles that the owner of the [`MemoryWindow`] keeps valid.
+#[derive(Clone, Copy)]
+pub struct Shared {
+    display: rwh::RawDisplayHandle,
+    window: rwh::RawWindowHandle,
+}
+
+// SAFETY: the handles are only handed on; the header tells the host which platforms want which thread.
+unsafe impl Send for Shared {}
+// SAFETY: as above.
+unsafe impl Sync for Shared {}
+
+impl rwh::HasDisplayHandle for Shared {
+    fn display_handle(&self) -> Result<rwh::DisplayHandle<'_>, rwh::HandleError> {
+        // SAFETY: the host keeps its window and display until the surface ends.
+        Ok(unsafe { rwh::DisplayHandle::borrow_raw(self.display) })
+    }
+}
+
+impl rwh::HasWindowHandle for Shared {
+    fn window_handle(&self) -> Result<rwh::WindowHandle<'_>, rwh::HandleError> {
+        // SAFETY: as above.
+        Ok(unsafe { rwh::WindowHandle::borrow_raw(self.window) })
+    }
+}
+
+fn unsupported(error: impl std::fmt::Display) -> Error {
+    Error::unsupported(format!("the window takes no frames as memory: {error}"))
+}
+
+fn lost(error: impl std::fmt::Display) -> Error {
+    Error::new(ErrorKind::SurfaceLost, format!("the window took no frame: {error}"))
+}
+
+impl MemoryWindow {
+    /// Errors: UNSUPPORTED, with the platform's reason.
+    pub fn new(window: &Window) -> Result<Self> {
+        #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+        if let Some(window) = &window.x11 {
+            return x11::Painter::new(window).map(Self::X11);
+        }
+        if matches!(window.native, NativeWindow::Android { .. } | NativeWindow::UiKit { .. }) {
+            return Err(unsupported("not on this platform"));
+        }
+        let Handles::Raw(display, window) = window.handles() else { return Err(unsupported("it is a bare layer")) };
+        let shared = Shared { display, window };
+        let context = softbuffer::Context::new(shared).map_err(unsupported)?;
+        let surface = softbuffer::Surface::new(&context, shared).map_err(unsupported)?;
+        Ok(Self::Other(Box::new(surface)))
+    }
+
+    /// Shows `pixels`, rows of `size` BGRA pixels without gaps, from the window's top left corner. Errors: SURFACE_LOST.
+    pub fn present(&mut self, window: &Window, size: [u32; 2], pixels: &[u8]) -> Result<()> {
+        match self {
+            #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+            Self::X11(painter) => match &window.x11 {
+                Some(window) => painter.put(window, size, pixels),
+                None => Err(Error::internal("an X11 painter on another window")),
+            },
+            Self::Other(surface) => {
+                let [Some(width), Some(height)] = size.map(NonZeroU32::new) else { return Ok(()) };
+                surface.resize(width, height).map_err(lost)?;
+                let mut buffer = surface.buffer_mut().map_err(lost)?;
+                for (out, pixel) in buffer.iter_mut().zip(pixels.as_chunks::<4>().0) {
+                    // Blue, green, red, and a byte that is zero.
+                    *out = u32::from_le_bytes(*pixel) & 0xff_ffff;
+                }
+                buffer.present().map_err(lost)
+            }
+        }
+    }
+}
+
+#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+mod x11 {
+    use super::super::x11::X11Window;
+    use super::{lost, unsupported};
+    use crate::error::Result;
+    use x11rb::connection::{Connection, RequestConnection};
+    use x11rb::protocol::xproto::{ConnectionExt, CreateGCAux, Gcontext, ImageFormat, ImageOrder};
+
+    /// Of a PutImage request, before its pixels.
+    const HEAD: usize = 64;
+
+    /// Puts images into a window.
+    pub struct Painter {
+        context: Gcontext,
+    }
+
+    impl Painter {
+        pub fn new(window: &X11Window) -> Result<Self> {
+            let connection = window.connection();
+            let setup = connection.setup();
+            let bits = setup.pixmap_formats.iter().find(|f| f.depth == window.depth).map(|f| f.bits_per_pixel);
+            if !matches!(window.depth, 24 | 32) || bits != Some(32) || setup.image_byte_order != ImageOrder::LSB_FIRST {
+                return Err(unsupported(format!(
+                    "its depth is {}, of {} bits a pixel; 24 or 32 of 32, little-endian, are served",
+                    window.depth,
+                    bits.unwrap_or(0)
+                )));
+            }
+            let context = connection.generate_id().map_err(unsupported)?;
+            let created = connection.create_gc(context, window.id(), &CreateGCAux::new().graphics_exposures(0));
+            created.map_err(unsupported)?.check().map_err(unsupported)?;
+            Ok(Self { context })
+        }
+
+        /// Waits until the server has it.
+        pub fn put(&mut self, window: &X11Window, [width, height]: [u32; 2], pixels: &[u8]) -> Result<()> {
+            let connection = window.connection();
+            let row = width as usize * 4;
+            let rows = (connection.maximum_request_bytes().saturating_sub(HEAD) / row.max(1)).clamp(1, height as usize);
+            let mut last = None;
+            for (piece, y) in pixels.chunks(row * rows).zip((0..).step_by(rows)) {
+                let lines = (piece.len() / row) as u16;
+                let put = connection.put_image(
+                    ImageFormat::Z_PIXMAP,
+                    window.id(),
+                    self.context,
+                    width as u16,
+                    lines,
+                    0,
+                    y,
+                    0,
+                    window.depth,
+                    piece,
+                );
+                last = Some(put.map_err(lost)?);
+            }
+            let Some(last) = last else { return Ok(()) };
+            let checked = last.check().map_err(lost);
+            window.drop_errors();
+            checked
+        }
+    }
+}

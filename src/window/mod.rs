@@ -1,0 +1,89 @@
+//! Windows of the host as targets of frames. A [`Surface`] shows a renderer's frames in one window: traced and presented by the same
+//! GPU device, or, where that cannot present, uploaded to one that can, or put there as memory. Hosts' handles come in as a
+//! [`NativeWindow`]; nothing here knows C, or what a frame shows.
+
+mod claim;
+mod memory;
+mod native;
+mod surface;
+#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+mod x11;
+
+pub use native::{Handles, NativeWindow};
+pub use surface::{Showing, Shown, Surface, Tracing};
+
+use crate::error::Result;
+
+/// How frames reach the screen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PresentMode {
+    /// At the display's rate, never torn.
+    Vsync,
+    /// At once.
+    Immediate,
+    /// The newest at the display's rate.
+    Mailbox,
+}
+
+/// A window of the host's that was looked at and found there, with what it takes to present to it.
+pub struct Window {
+    native: NativeWindow,
+    #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+    x11: Option<x11::X11Window>,
+}
+
+#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+impl Window {
+    /// Errors: INVALID_ARGUMENT for a window that is not there; UNSUPPORTED for a kind that this platform does not have.
+    pub fn open(native: NativeWindow) -> Result<Self> {
+        native.check_platform()?;
+        Ok(Self { native, x11: x11::X11Window::open(&native)? })
+    }
+
+    /// What to present through.
+    pub fn handles(&self) -> Handles {
+        self.x11.as_ref().map_or_else(|| self.native.handles(), |window| window.handles())
+    }
+
+    /// Whether it is still there, as far as this platform tells.
+    pub fn exists(&self) -> bool {
+        self.x11.as_ref().is_none_or(|window| window.size().is_some())
+    }
+
+    /// Its size in pixels, where the platform knows it: X11.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        self.x11.as_ref().and_then(|window| window.size())
+    }
+
+    fn claim_key(&self) -> claim::Key {
+        self.x11.as_ref().map_or_else(|| self.native.claim_key(), |window| window.claim_key())
+    }
+}
+
+#[cfg(not(all(unix, not(target_vendor = "apple"), not(target_os = "android"))))]
+impl Window {
+    /// Errors: UNSUPPORTED for a kind that this platform does not have.
+    pub fn open(native: NativeWindow) -> Result<Self> {
+        native.check_platform()?;
+        Ok(Self { native })
+    }
+
+    /// What to present through.
+    pub fn handles(&self) -> Handles {
+        self.native.handles()
+    }
+
+    /// Whether it is still there, as far as this platform tells.
+    pub fn exists(&self) -> bool {
+        true
+    }
+
+    /// Its size in pixels, where the platform knows it: X11.
+    pub fn size(&self) -> Option<[u32; 2]> {
+        None
+    }
+
+    fn claim_key(&self) -> claim::Key {
+        self.native.claim_key()
+    }
+}

@@ -1,0 +1,427 @@
+//! One window and the way frames get into it. Frames of the window's own device are not waited for: their numbers are taken when they
+//! have run. Locks: its own before the tracer's.
+
+use super::claim::Claim;
+use super::memory::MemoryWindow;
+use super::{NativeWindow, PresentMode, Window};
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
+use crate::image::PixelFormat;
+use crate::renderer::{FrameRequest, FrameStats, SharedTracer, StatsBoard, Tile, Tracer};
+use crate::scene::{Region, Scene};
+use parking_lot::Mutex;
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Frames whose numbers are not taken yet, at most: more than a window's images hold back.
+const UNTAKEN: usize = 4;
+/// Steps of one frame under way at most.
+const AHEAD: usize = 3;
+
+/// What became of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    Presented,
+    /// The window is 0 x 0, minimised or hidden: nothing was presented.
+    Skipped,
+}
+
+/// A window that a renderer shows its frames in.
+pub struct Surface {
+    inner: Mutex<Inner>,
+}
+
+struct Inner {
+    /// `None` once it has ended: then `end` says why. Goes before the window.
+    way: Option<Way>,
+    end: &'static str,
+    /// Goes before the claim.
+    window: Option<Window>,
+    _claim: Option<Claim>,
+    size: [u32; 2],
+    mode: PresentMode,
+    /// Submitted frames whose numbers are not taken yet, oldest first.
+    untaken: VecDeque<Untaken>,
+}
+
+/// How frames get into the window.
+enum Way {
+    /// Traced and presented by the tracer's device, to which nobody else may submit while images are made or go.
+    Direct(Screen, SharedTracer),
+    /// Traced elsewhere, and uploaded to a device that can present.
+    Uploaded(Screen, Vec<u8>),
+    /// Traced, and put there as memory.
+    Memory(MemoryWindow, Vec<u8>),
+}
+
+/// A window's images, and the texture that they are filled from.
+struct Screen {
+    swapchain: Swapchain,
+    texture: Option<Texture>,
+}
+
+struct Untaken {
+    device: Arc<Device>,
+    steps: VecDeque<Submitted>,
+    stats: FrameStats,
+    /// From the call's begin to its end.
+    call: Duration,
+}
+
+/// A GPU tracer, and what it runs on.
+pub struct Tracing<'a> {
+    pub adapter: &'a Adapter,
+    pub device: Arc<Device>,
+    pub tracer: SharedTracer,
+}
+
+/// A frame to be shown: the scene, what traces it, and where its numbers go.
+pub struct Showing<'a> {
+    pub scene: &'a Scene,
+    pub tracer: &'a SharedTracer,
+    pub stats: &'a StatsBoard,
+}
+
+impl Surface {
+    /// `tracing`: with a GPU tracer. `validation` of a device that is opened for presenting.
+    ///
+    /// Errors: INVALID_ARGUMENT for a window that is not there; INVALID_STATE for one that has a surface; UNSUPPORTED where nothing
+    /// can present to it, with every reason; for a size beyond what the device's images have.
+    pub fn new(
+        native: NativeWindow,
+        size: [u32; 2],
+        mode: PresentMode,
+        tracing: Option<Tracing<'_>>,
+        validation: bool,
+    ) -> Result<Self> {
+        let window = Window::open(native)?;
+        let claim = Claim::new(window.claim_key())?;
+        let way = Way::find(&window, tracing, validation)?;
+        way.check_size(size)?;
+        Ok(Self {
+            inner: Mutex::new(Inner {
+                way: Some(way),
+                end: "",
+                window: Some(window),
+                _claim: Some(claim),
+                size,
+                mode,
+                untaken: VecDeque::new(),
+            }),
+        })
+    }
+
+    /// The window's new size in pixels; 0 x 0: minimised. Errors: UNSUPPORTED beyond what the device's images have; SURFACE_LOST.
+    pub fn resize(&self, size: [u32; 2]) -> Result<()> {
+        let mut inner = self.inner.lock();
+        inner.way()?.check_size(size)?;
+        if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut inner.way
+            && size != [0, 0]
+        {
+            screen.swapchain.window_changed();
+        }
+        inner.size = size;
+        Ok(())
+    }
+
+    /// Errors: SURFACE_LOST.
+    pub fn set_present_mode(&self, mode: PresentMode) -> Result<()> {
+        let mut inner = self.inner.lock();
+        inner.way()?;
+        inner.mode = mode;
+        Ok(())
+    }
+
+    pub fn has_ended(&self) -> bool {
+        self.inner.lock().way.is_none()
+    }
+
+    /// Ends it, for a reason: later calls are SURFACE_LOST. The window is free for another.
+    pub fn end(&self, reason: &'static str) {
+        self.inner.lock().end(reason);
+    }
+
+    /// Renders the scene into the window. Errors: as `Renderer::render`; SURFACE_LOST, then and ever after, when the window is gone.
+    pub fn show(&self, showing: &Showing<'_>) -> Result<Shown> {
+        let mut inner = self.inner.lock();
+        let shown = inner.show(showing);
+        if shown.as_ref().is_err_and(|error| error.kind == ErrorKind::SurfaceLost) {
+            inner.end("its window is gone");
+        }
+        shown
+    }
+}
+
+impl Inner {
+    fn way(&mut self) -> Result<&mut Way> {
+        let end = self.end;
+        self.way.as_mut().ok_or_else(|| Error::new(ErrorKind::SurfaceLost, format!("the surface was lost: {end}")))
+    }
+
+    fn end(&mut self, reason: &'static str) {
+        if self.way.is_some() {
+            self.end = reason;
+        }
+        match self.way.take() {
+            Some(Way::Direct(screen, tracer)) => {
+                let _alone = tracer.lock();
+                drop(screen);
+            }
+            way => drop(way),
+        }
+        self.untaken.clear();
+        self.window = None;
+        self._claim = None;
+    }
+
+    fn show(&mut self, showing: &Showing<'_>) -> Result<Shown> {
+        let begun = Instant::now();
+        self.way()?;
+        if self.size.contains(&0) {
+            return Ok(Shown::Skipped);
+        }
+        let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
+        // X11 windows know their size better than a host whose events are still to come.
+        let (given, mode) = (self.size, self.mode);
+        let shown = match self.way.as_mut().ok_or_else(|| Error::internal("a surface without a way"))? {
+            Way::Direct(screen, tracer) => {
+                let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
+                    return Ok(Shown::Skipped);
+                };
+                let steps = screen.trace(showing, size)?;
+                screen.present(image)?;
+                Some(steps)
+            }
+            Way::Uploaded(screen, pixels) => {
+                let size = window.size().unwrap_or(given);
+                let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
+                let stats = render_to_memory(showing, &request, pixels)?;
+                let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
+                    return Ok(Shown::Skipped);
+                };
+                screen.upload(&request, pixels)?;
+                screen.present(image)?;
+                showing.stats.publish(stats, begun.elapsed());
+                None
+            }
+            Way::Memory(memory, pixels) => {
+                let size = match window.size() {
+                    Some(size) => size,
+                    None if !window.exists() => return Err(window_gone()),
+                    None => given,
+                };
+                let request = request(showing.scene, size, PixelFormat::Bgra8Srgb);
+                let stats = render_to_memory(showing, &request, pixels)?;
+                let stretched = stretched(&request, pixels, size)?;
+                memory.present(window, size, stretched.as_deref().unwrap_or(pixels))?;
+                showing.stats.publish(stats, begun.elapsed());
+                None
+            }
+        };
+        if let Some((device, steps, stats)) = shown {
+            self.untaken.push_back(Untaken { device, steps, stats, call: begun.elapsed() });
+        }
+        self.take_numbers(showing.stats)?;
+        Ok(Shown::Presented)
+    }
+
+    /// Of the frames that have run.
+    fn take_numbers(&mut self, board: &StatsBoard) -> Result<()> {
+        while let Some(first) = self.untaken.front() {
+            let done = match first.steps.back() {
+                Some(last) => last.is_done(&first.device)?,
+                None => true,
+            };
+            if !done && self.untaken.len() <= UNTAKEN {
+                break;
+            }
+            let Some(mut frame) = self.untaken.pop_front() else { break };
+            for step in frame.steps {
+                step.finish(&frame.device, &mut frame.stats, &mut |_, _, _| Ok(()))?;
+            }
+            frame.stats.device_bytes = frame.device.bytes();
+            frame.stats.readback_ns = 0;
+            board.publish(frame.stats, frame.call);
+        }
+        Ok(())
+    }
+}
+
+fn window_gone() -> Error {
+    Error::new(ErrorKind::SurfaceLost, "the surface's window is gone")
+}
+
+/// The whole frame of a window of `size`, as large as the scene's quality has it traced.
+fn request(scene: &Scene, size: [u32; 2], format: PixelFormat) -> FrameRequest {
+    let [width, height] = size.map(|side| ((f64::from(side) * scene.quality.render_scale).round() as u32).max(1));
+    let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
+    FrameRequest { width, height, region, format, transparent: false }
+}
+
+/// Rows of 4-byte pixels without gaps. Errors: as `Renderer::render`; OUT_OF_MEMORY.
+fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut Vec<u8>) -> Result<FrameStats> {
+    let row = request.width as usize * 4;
+    let bytes = row * request.height as usize;
+    pixels.clear();
+    pixels.try_reserve_exact(bytes).map_err(|error| {
+        Error::new(ErrorKind::OutOfMemory, format!("a frame of {} x {}: {error}", request.width, request.height))
+    })?;
+    pixels.resize(bytes, 0);
+    let mut sink = |tile: Tile, packed: &[u8], row_bytes: usize| {
+        let part = tile.x as usize * 4..(tile.x + tile.width) as usize * 4;
+        for (out, line) in pixels.chunks_exact_mut(row).skip(tile.y as usize).zip(packed.chunks(row_bytes)) {
+            if let (Some(out), Some(line)) = (out.get_mut(part.clone()), line.get(..part.len())) {
+                out.copy_from_slice(line);
+            }
+        }
+        Ok(())
+    };
+    showing.tracer.lock().render(showing.scene, request, &mut sink, &mut |_| true)
+}
+
+/// `pixels` in the window's size, if the frame has another.
+fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Option<Vec<u8>>> {
+    if [request.width, request.height] == size {
+        return Ok(None);
+    }
+    let frame = image::ImageBuffer::<image::Rgba<u8>, _>::from_raw(request.width, request.height, pixels)
+        .ok_or_else(|| Error::internal("a frame of another size"))?;
+    let filter = image::imageops::FilterType::Triangle;
+    Ok(Some(image::imageops::resize(&frame, size[0], size[1], filter).into_raw()))
+}
+
+impl Way {
+    fn find(window: &Window, tracing: Option<Tracing<'_>>, validation: bool) -> Result<Self> {
+        let mut reasons = Vec::new();
+        if let Some(Tracing { adapter, device, tracer }) = tracing {
+            match Swapchain::new(adapter, device, window) {
+                Ok(swapchain) => return Ok(Self::Direct(Screen { swapchain, texture: None }, tracer)),
+                Err(error) if error.kind == ErrorKind::Unsupported => reasons.push(error.message),
+                Err(error) => return Err(error),
+            }
+        }
+        for adapter in gpu::adapters(Search::Native, validation) {
+            let opened = adapter.check_presents(window).and_then(|()| Device::open(&adapter));
+            match opened.and_then(|device| Swapchain::new(&adapter, Arc::new(device), window)) {
+                Ok(swapchain) => {
+                    log::info!("frames of this window are presented by {}", adapter.info.name);
+                    return Ok(Self::Uploaded(Screen { swapchain, texture: None }, Vec::new()));
+                }
+                Err(error) => reasons.push(error.message),
+            }
+        }
+        match MemoryWindow::new(window) {
+            Ok(memory) => {
+                log::info!("frames of this window are put there as memory ({})", reasons.join("; "));
+                Ok(Self::Memory(memory, Vec::new()))
+            }
+            Err(error) => {
+                reasons.push(error.message);
+                Err(Error::unsupported(format!("nothing here presents to the window: {}", reasons.join("; "))))
+            }
+        }
+    }
+
+    fn check_size(&self, [width, height]: [u32; 2]) -> Result<()> {
+        let limit = match self {
+            Self::Direct(screen, _) | Self::Uploaded(screen, _) => {
+                screen.swapchain.device().limits().max_texture_dimension_2d
+            }
+            // Of an X11 window, and of the coordinates in its requests.
+            Self::Memory(..) => i16::MAX as u32,
+        };
+        if width <= limit && height <= limit {
+            return Ok(());
+        }
+        Err(Error::unsupported(format!("surface size is {width} x {height}; here each side can be {limit} at most")))
+    }
+}
+
+/// A window's image, and its size.
+type Image = (wgpu::SurfaceTexture, [u32; 2]);
+
+impl Screen {
+    /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors: SURFACE_LOST; as
+    /// [`Swapchain::acquire`].
+    fn acquire(
+        &mut self,
+        window: &Window,
+        given: [u32; 2],
+        mode: PresentMode,
+        tracer: Option<&SharedTracer>,
+    ) -> Result<Option<Image>> {
+        for _ in 0..2 {
+            if !self.swapchain.is_configured(mode) {
+                // What X11 says; elsewhere, and if the window has just gone, what the host says.
+                let size = window.size().unwrap_or(given).map(|side| side.max(1));
+                let _alone = tracer.map(|tracer| tracer.lock());
+                let configured = self.swapchain.configure(size, mode);
+                if configured.is_err() && !window.exists() {
+                    return Err(window_gone());
+                }
+                configured?;
+            }
+            match self.swapchain.acquire()? {
+                Acquired::Image(image) => {
+                    let size = [image.texture.width(), image.texture.height()];
+                    return Ok(Some((image, size)));
+                }
+                Acquired::None if window.exists() => return Ok(None),
+                Acquired::Outdated if window.exists() => {}
+                Acquired::None | Acquired::Outdated | Acquired::Lost => return Err(window_gone()),
+            }
+        }
+        // It changes faster than its images can be made.
+        Ok(None)
+    }
+
+    /// A texture of the frame's size.
+    fn texture(&mut self, request: &FrameRequest, host_fills: bool) -> Result<&Texture> {
+        let size = [request.width, request.height];
+        if self.texture.as_ref().is_none_or(|texture| texture.size() != size) {
+            // The old one goes first: both together need not fit.
+            self.texture = None;
+            self.texture = Some(self.swapchain.device().screen(size, host_fills)?);
+        }
+        self.texture.as_ref().ok_or_else(|| Error::internal("a screen without its texture"))
+    }
+
+    /// Submits the frame for an image of `size`.
+    fn trace(
+        &mut self,
+        showing: &Showing<'_>,
+        size: [u32; 2],
+    ) -> Result<(Arc<Device>, VecDeque<Submitted>, FrameStats)> {
+        let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
+        let device = self.swapchain.device().clone();
+        let texture = self.texture(&request, false)?;
+        let mut tracer = showing.tracer.lock();
+        let Tracer::Gpu(tracer) = &mut *tracer else {
+            return Err(Error::internal("a window of a GPU on another tracer"));
+        };
+        let mut frame = tracer.begin(showing.scene, &request, FrameTarget::Screen(texture))?;
+        let mut stats = frame.stats();
+        let mut steps = VecDeque::new();
+        while let Some(step) = tracer.submit(&mut frame)? {
+            steps.push_back(step);
+            if steps.len() > AHEAD
+                && let Some(first) = steps.pop_front()
+            {
+                first.finish(&device, &mut stats, &mut |_, _, _| Ok(()))?;
+            }
+        }
+        Ok((device, steps, stats))
+    }
+
+    /// Brings a frame from memory into the texture.
+    fn upload(&mut self, request: &FrameRequest, pixels: &[u8]) -> Result<()> {
+        let device = self.swapchain.device().clone();
+        device.write_rows(self.texture(request, true)?, 0, pixels)
+    }
+
+    fn present(&mut self, image: wgpu::SurfaceTexture) -> Result<()> {
+        let texture = self.texture.as_ref().ok_or_else(|| Error::internal("a screen without its texture"))?;
+        self.swapchain.present(image, texture)
+    }
+}
