@@ -331,7 +331,10 @@ typedef struct BhrContextOptions {
     BhrLogFn log_fn;
     /** Handed to log_fn. */
     void *log_user;
-    /** A window that the adapter must be able to present to. NULL (default): off-screen only. */
+    /**
+     * A window that the adapter must be able to present to; it is looked at during the call only. The CPU tracer is taken to be able
+     * to. NULL (default): any adapter; where it cannot present, surfaces work all the same, by way of the host's memory, slower.
+     */
     const BhrWindow *compatible_window;
 } BhrContextOptions;
 
@@ -353,8 +356,9 @@ BhrStatus bhr_context_create(uint32_t abi_version,
 BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 
 /**
- * Opens the device anew after BHR_ERROR_DEVICE_LOST; the scene stays. Errors: as bhr_context_create; the context
- * then stays lost.
+ * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there; the scene stays, the sky's map included. Jobs begun before fail with
+ * DEVICE_LOST; surfaces made before are lost: destroy them and make them again. Until this call every call that renders or
+ * traces returns DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost.
  */
 BhrStatus bhr_context_recover(BhrContext *context);
 
@@ -1018,8 +1022,13 @@ typedef int32_t BhrPresentMode;
 #define BHR_PRESENT_MAILBOX 2
 
 /**
- * Makes a surface of width x height pixels from a window. macOS: on the main thread only. Errors: INVALID_ARGUMENT
- * for NULL, a bad window, an unknown mode; UNSUPPORTED otherwise in this version.
+ * Makes a surface of width x height pixels from a window, to be rendered into by this context; 0 x 0: a minimised one. The window, which
+ * takes one surface at a time, must outlive it, and its display too. (X11: bhr presents through a connection of its own, so there the host may end its window and
+ * display first.) Where the context's adapter cannot present to the window, or traces on the CPU, another adapter presents, or frames are put
+ * into the window as memory; the log (info) says which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for NULL, a bad window or
+ * one that does not exist (X11), a side beyond 2^20, an unknown mode; INVALID_STATE for a window that has a surface; UNSUPPORTED, with the
+ * reasons, for a kind of window that this platform does not have, where nothing can present to it, or for a side that the device's images cannot have (mostly
+ * 16384); DEVICE_LOST, OUT_OF_MEMORY.
  */
 BhrStatus bhr_surface_create(BhrContext *context,
                              const BhrWindow *window,
@@ -1029,24 +1038,37 @@ BhrStatus bhr_surface_create(BhrContext *context,
                              BhrSurface **out_surface);
 
 /**
- * Follows a window's new size in pixels; 0 x 0: minimised. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED
- * otherwise in this version.
+ * Follows a window's new size in pixels; 0 x 0: minimised. Cheap: the next frame makes new images. (X11: the window's own size counts,
+ * and this call says that it has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's images
+ * cannot have; SURFACE_LOST.
  */
-BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
+BhrStatus bhr_surface_resize(BhrSurface *surface,
+                             uint32_t width,
+                             uint32_t height);
 
 /**
- * Changes how frames reach the screen; a mode that the window does not have falls back to VSYNC. Errors:
- * INVALID_ARGUMENT for NULL or an unknown mode; UNSUPPORTED otherwise in this version.
+ * Changes how frames reach the screen, from the next on; a mode that the window does not have falls back to VSYNC. Errors:
+ * INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
  */
-BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode);
+BhrStatus bhr_surface_set_present_mode(BhrSurface *surface,
+                                       BhrPresentMode mode);
 
 /**
- * Renders the scene into the surface's window and presents it. Errors: INVALID_ARGUMENT for NULL; UNSUPPORTED
- * otherwise in this version.
+ * Renders the scene into the surface's window and presents it, in sRGB, with the film; the region is not obeyed. BhrQuality.render_scale
+ * says how large it is traced. Returns when the frame is on its way (with VSYNC it waits for the window to take another, at
+ * most a second; frames that go through the host's memory are finished); bhr_frame_stats then tells of the last frame that is finished.
+ * FRAME_SKIPPED: the window is 0 x 0, minimised or hidden, or is being resized; nothing was presented: wait for its next event. Any thread
+ * (macOS: the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context;
+ * INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST when the window is gone, or the context was recovered since: destroy the surface and make it again;
+ * DEVICE_LOST, OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
+BhrStatus bhr_render_surface(BhrContext *context,
+                             BhrSurface *surface);
 
-/** Ends a surface; the window stays the host's. NULL is a no-op, and any destroy order is safe. */
+/**
+ * Ends a surface; the window stays the host's and is free for another. NULL is a no-op; its context may be gone. No other thread may use it any
+ * more. From inside a callback it does nothing: bhr_error_message then says so.
+ */
 void bhr_surface_destroy(BhrSurface *surface);
 
 /* ---- rays: the same tracer, asked directly ---- */
