@@ -57,9 +57,8 @@ fn begin_ray(look: vec3<f32>) -> RayBegin {
 fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
     begin.frequency_ratio = 1.0;
-    // Rain frames are for spin 0. (The condition also keeps Mesa 22.3's lavapipe, which compiles uniforms that decide into the kernel,
-    // from a crash.)
-    if !SPINNING && frame.rain != 0u {
+    // Rain frames are for spin 0.
+    if !SPINNING && deciding(frame.rain) != 0u {
         begin_rain(&begin, n);
     } else {
         begin_zamo(&begin, n);

@@ -145,6 +145,7 @@ fn pattern_is_good(p: Patch) -> bool {
 
 @compute @workgroup_size(8, 16)
 fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
     let inner = id.y >= lens.outer_rows;
     let row = id.y - kerr_first_row(inner);
     let rows = select(lens.outer_rows, lens.inner_rows, inner);
@@ -161,17 +162,18 @@ fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
     if !inner && !sky_is_good() {
         flags = KERR_DIRECT;
     }
+    let orders = deciding(lens.orders);
     if PATTERN {
-        for (var order = 0u; order < lens.orders; order += 1u) {
+        for (var order = 0u; order < orders; order += 1u) {
             let p = patch_of(order);
             let here = crossing_flags(p, 0u, order);
             let good = here == 0u || pattern_is_good(p);
             flags |= here | select(KERR_DIRECT, 0u, good);
         }
     } else {
-        for (var order = 0u; order < lens.orders; order += 4u) {
+        for (var order = 0u; order < orders; order += 4u) {
             let p = patch_of(order / 4u);
-            for (var k = 0u; k < 4u && order + k < lens.orders; k += 1u) {
+            for (var k = 0u; k < 4u && order + k < orders; k += 1u) {
                 flags |= crossing_flags(p, k, order + k);
             }
         }

@@ -23,6 +23,7 @@ var<private> four: vec4<f32>;
 
 @compute @workgroup_size(8, 16)
 fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
     if id.x >= KERR_COLUMNS || id.y >= lens.outer_rows + lens.inner_rows {
         return;
     }

@@ -11,6 +11,7 @@
 
 @compute @workgroup_size(32)
 fn fill_columns(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
     let nodes = nodes_of(id.y);
     if id.x >= nodes {
         return;

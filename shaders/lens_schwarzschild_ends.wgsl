@@ -9,6 +9,7 @@ const END_STEPS: u32 = 400u;
 
 @compute @workgroup_size(32)
 fn find_ends(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
     if id.x >= nodes_of(id.y) {
         return;
     }

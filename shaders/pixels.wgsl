@@ -32,6 +32,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 
 @compute @workgroup_size(8, 16)
 fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
     if id.x >= pass_.size.x || id.y >= pass_.size.y {
         return;
     }

@@ -37,7 +37,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
     // max_crossings bounds what next_crossing gives; behind the first crossing of an opaque disk nothing is seen.
-    for (var k = 0u; k < select(frame.max_crossings, 1u, OPAQUE); k += 1u) {
+    for (var k = 0u; k < select(deciding(frame.max_crossings), 1u, OPAQUE); k += 1u) {
         let crossing = next_crossing();
         if crossing.u <= 0.0 {
             break;
@@ -75,7 +75,7 @@ fn view_value(here: Record, id: vec2<u32>) -> f32 {
     let first = next_crossing();
     let on_disk = first.u > 0.0;
     let in_sky = here.fate == FATE_ESCAPED;
-    switch frame.view {
+    switch deciding(frame.view) {
         case VIEW_REDSHIFT: {
             return select(select(nothing, here.sky_redshift, in_sky), first.g, on_disk);
         }

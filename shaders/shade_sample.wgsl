@@ -6,7 +6,7 @@
 
 fn take_record(id: vec2<u32>, record: Record) {
     var sum = shade_record(id, record) * pass_.weight;
-    if pass_.first == 0u {
+    if deciding(pass_.first) == 0u {
         sum += textureLoad(radiance_before, id, 0);
     }
     textureStore(radiance, id, sum);

@@ -136,7 +136,8 @@ const SCHWARZSCHILD: &str = include_str!("../../shaders/lens_schwarzschild.wgsl"
 const INTEGRATION: [&str; 3] =
     [NYSTROM, include_str!("../../shaders/integrator.wgsl"), include_str!("../../shaders/trace.wgsl")];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
-const FRAME: &str = include_str!("../../shaders/frame.wgsl");
+const FRAME: &str =
+    concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 
