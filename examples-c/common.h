@@ -8,6 +8,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 #define PI 3.14159265358979323846
 
@@ -57,5 +61,9 @@ void print_adapter(FILE *out, const BhrAdapterInfo *info);              /* one l
 /* ---- the process ---- */
 double wall_seconds(void);         /* monotonic; only differences mean something */
 int    is_terminal(FILE *stream);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
