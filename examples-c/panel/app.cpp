@@ -11,8 +11,9 @@ constexpr double POLL_SECONDS = 0.002;        // between two looks at frames tha
 constexpr double REDRAW_SECONDS = 0.1;        // of the window, when nothing happens
 constexpr double FASTEST_REDRAW = 1.0 / 90.0; // where the display sets no pace
 constexpr double REST_SECONDS = 0.3;          // so long after the last touch the picture is made in full again
-constexpr double TOUCHED_FRAME = 1.0 / 30.0;  // a frame's time that the scene aims for while it is touched
-constexpr double COARSEST = 0.15;             // for that
+constexpr double TOUCHED_FRAME = 1.0 / 30.0;  // the time to aim for of a frame while the scene is touched
+constexpr double RUNNING_FRAME = 1.0 / 10.0;  // the same, while only the clock runs
+constexpr double COARSEST = 0.15;             // for both
 constexpr double STEPS_PAUSE = 0.25;          // between two looks at the integration steps
 constexpr double RECOVERY_PAUSE = 1.0;        // between two tries to bring a lost device back
 constexpr double COUNTED_FRAME = 1.0 / 30.0;  // of the clock, with --frames: the same pictures on every machine
@@ -120,16 +121,24 @@ void App::take_picture(FinishedFrame &&frame, double now) {
         return;
     }
     error_.clear();
-    // With several frames under way each of them waits for the others: then the time between their ends counts.
-    const double seconds = std::min(1e-9 * static_cast<double>(frame.stats.cpu_ns), now - finished_at_);
-    const double size = static_cast<double>(frame.pixels.image.width) * frame.pixels.image.height;
-    const double latest = seconds / size;
-    seconds_per_pixel_ = seconds_per_pixel_ > 0.0 ? 0.8 * seconds_per_pixel_ + 0.2 * latest : latest;
+    measure_speed(frame, now);
     finished_at_ = now;
     performance_.finished(frame.stats);
     to_show_ = frame.submitted;
     queue_.reuse(picture_.take(std::move(frame.pixels)));
     shown_++;
+}
+
+// Seconds per pixel, for the next frames' size. The first frame tells nothing: it waits for the driver's compiler.
+void App::measure_speed(const FinishedFrame &frame, double now) {
+    if (shown_ == 0) {
+        return;
+    }
+    // With several frames under way each of them waits for the others: then the time between their ends counts.
+    const double seconds = std::min(1e-9 * static_cast<double>(frame.stats.cpu_ns), now - finished_at_);
+    const double pixels = static_cast<double>(frame.pixels.image.width) * frame.pixels.image.height;
+    const double latest = seconds / pixels;
+    seconds_per_pixel_ = seconds_per_pixel_ > 0.0 ? 0.7 * seconds_per_pixel_ + 0.3 * latest : latest;
 }
 
 void App::submit_frames(double now) {
@@ -152,11 +161,13 @@ void App::submit_frames(double now) {
 }
 
 double App::picture_scale(double now) const {
-    if (counted() || !frame_settings_.adaptive || !touched(now) || seconds_per_pixel_ <= 0.0) {
+    const bool running = clock_.running && clock_.speed != 0.0;
+    if (counted() || !frame_settings_.adaptive || !(touched(now) || running) || seconds_per_pixel_ <= 0.0) {
         return frame_settings_.scale;
     }
+    const double aim = touched(now) ? TOUCHED_FRAME : RUNNING_FRAME;
     const double pixels = static_cast<double>(picture_.width()) * picture_.height();
-    const double scale = std::sqrt(TOUCHED_FRAME / (seconds_per_pixel_ * pixels));
+    const double scale = std::sqrt(aim / (seconds_per_pixel_ * pixels));
     // In steps, lest each frame have another size.
     return std::clamp(std::floor(scale * 16.0) / 16.0, COARSEST, frame_settings_.scale);
 }
@@ -271,8 +282,9 @@ void App::draw(double now, Pixels *copy) {
         char              news[96];
         const FixedWindow window("Picture", layout.picture, true);
         const BhrImage   &image = picture_.pixels().image;
-        std::snprintf(news, sizeof news, "%u x %u, %.1f frames / s", image.width, image.height,
-                      performance_.frames_per_second());
+        const double rate = performance_.frames_per_second();
+        std::snprintf(news, sizeof news, rate > 0.0 ? "%u x %u, %.1f frames / s" : "%u x %u", image.width, image.height,
+                      rate);
         input = picture_.draw(window_.pixel_ratio(), options_.bare != 0, news, error_);
     }
     move_camera(input);

@@ -48,6 +48,7 @@ private:
     bool   touched(double now) const;
     void   collect_frames(double now);
     void   take_picture(FinishedFrame &&frame, double now);
+    void   measure_speed(const FinishedFrame &frame, double now);
     void   submit_frames(double now);
     void   submit_picture(double now);
     double picture_scale(double now) const;

@@ -9,6 +9,7 @@
 namespace {
 
 constexpr double RATE_MEMORY = 0.9; // of the running mean of the time between frames
+constexpr double REST = 2.0;        // seconds between two frames that do not follow on one another
 
 double milliseconds(uint64_t nanoseconds) {
     return 1e-6 * static_cast<double>(nanoseconds);
@@ -45,8 +46,10 @@ void Performance::finished(const BhrFrameStats &stats) {
 void Performance::shown(double submitted, double now) {
     latency_ = now - submitted;
     latencies_.append(1e3 * latency_);
-    if (last_shown_ >= 0.0 && now > last_shown_) {
-        const double interval = now - last_shown_;
+    const double interval = now - last_shown_;
+    if (last_shown_ < 0.0 || interval > REST) {
+        rate_ = 0.0;
+    } else if (interval > 0.0) {
         const double mean = rate_ > 0.0 ? RATE_MEMORY / rate_ + (1.0 - RATE_MEMORY) * interval : interval;
         rate_ = 1.0 / mean;
         rates_.append(rate_);

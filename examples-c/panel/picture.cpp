@@ -45,8 +45,9 @@ Picture::Input Picture::draw(double pixel_ratio, bool bare, const std::string &n
         input.wheel = io.MouseWheel;
     }
     if (ImGui::IsItemDeactivated() && ImGui::IsItemHovered() && !moved) {
-        x_ = static_cast<double>((io.MousePos.x - corner_.x) / room.x);
-        y_ = static_cast<double>((io.MousePos.y - corner_.y) / room.y);
+        // A mouse at whole coordinates means the pixel there, not its corner.
+        x_ = (static_cast<double>(io.MousePos.x - corner_.x) * pixel_ratio + 0.5) / width_;
+        y_ = (static_cast<double>(io.MousePos.y - corner_.y) * pixel_ratio + 0.5) / height_;
         input.clicked = true;
     }
 
@@ -55,9 +56,9 @@ Picture::Input Picture::draw(double pixel_ratio, bool bare, const std::string &n
         list->AddImage(texture_.id(), corner_, end);
     }
     if (!bare) {
-        const double ratio = pixel_ratio;
         cross(list,
-              {corner_.x + static_cast<float>((column() + 0.5) / ratio), corner_.y + static_cast<float>((row() + 0.5) / ratio)},
+              {corner_.x + static_cast<float>((column() + 0.5) / pixel_ratio),
+               corner_.y + static_cast<float>((row() + 0.5) / pixel_ratio)},
               12.0F);
         list->AddText({corner_.x + 8.0F, corner_.y + 5.0F}, colour::dim, news.c_str());
     }

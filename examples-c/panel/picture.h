@@ -34,7 +34,7 @@ private:
     Texture  texture_;
     uint32_t width_ = 0, height_ = 0;
     ImVec2   corner_{};
-    double   x_ = 0.37, y_ = 0.40; // of the pixel, as parts of the sides: at first one whose ray bends well
+    double   x_ = 0.434, y_ = 0.376; // of the pixel, as parts of the sides: at first one whose ray bends well
 };
 
 #endif

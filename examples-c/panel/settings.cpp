@@ -40,7 +40,8 @@ void SettingsPanel::report(const char *section, const char *widget, const std::s
     const std::string key = std::string(section) + "/" + widget;
     if (message.empty()) {
         messages_.erase(key);
-    } else {
+        refused_.erase(key);
+    } else if (messages_[key] != message) {
         messages_[key] = last_refusal_ = message;
         refusals_++;
     }
@@ -61,6 +62,20 @@ bool SettingsPanel::section(const char *name, bool open) {
     return ImGui::CollapsingHeader(name, open ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
 }
 
+// ImGui offers a number that is being typed anew with every frame, as long as it is not the one in force: what was
+// refused is not asked for again.
+template <class Set> void SettingsPanel::try_number(const char *label, double value, Set set) {
+    const std::string key = std::string(section_) + "/" + label;
+    if (const auto found = refused_.find(key); found != refused_.end() && found->second == value) {
+        return;
+    }
+    const Result result = set();
+    report(section_, label, result.message);
+    if (!result.ok()) {
+        refused_[key] = value;
+    }
+}
+
 // low and high bound the slider only: with Ctrl and a click any number can be typed, and the library judges it.
 template <class Set>
 void SettingsPanel::number(const char *label, double value, double low, double high, const char *format, bool logarithmic,
@@ -68,7 +83,7 @@ void SettingsPanel::number(const char *label, double value, double low, double h
     begin_row(label);
     const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
     if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format, flags)) {
-        report(section_, label, set(value).message);
+        try_number(label, value, [&] { return set(value); });
     }
     ImGui::PopID();
     show_message(label);
@@ -79,7 +94,7 @@ void SettingsPanel::whole(const char *label, uint32_t value, uint32_t low, uint3
     begin_row(label);
     const ImGuiSliderFlags flags = high > 100 ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
     if (ImGui::SliderScalar("##value", ImGuiDataType_U32, &value, &low, &high, "%u", flags)) {
-        report(section_, label, set(value).message);
+        try_number(label, value, [&] { return set(value); });
     }
     ImGui::PopID();
     show_message(label);

@@ -51,10 +51,12 @@ private:
     template <class Set>
     void choice(const char *label, int32_t value, const char *const *names, int32_t count, int32_t first, Set set);
     template <class Set> void flag(const char *label, uint32_t flags, uint32_t bit, Set set);
-    void show_message(const char *label);
+    template <class Set> void try_number(const char *label, double value, Set set);
+    void                      show_message(const char *label);
 
     const char                        *section_ = "";
     std::map<std::string, std::string> messages_; // by "section/widget"
+    std::map<std::string, double>      refused_;  // numbers, while their message stands
     size_t                             refusals_ = 0;
     std::string                        last_refusal_;
 };

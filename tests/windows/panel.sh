@@ -1,0 +1,178 @@
+# panel.sh -- examples-c/panel driven as a person would, under the X display of DISPLAY. Functions only, for check of
+# tests/lib.sh: each succeeds or says what was wrong. Needs xdotool and ImageMagick, and from its caller: $panel, the
+# program; $scratch, a folder.
+# shellcheck shell=bash
+
+panel_start=60  # seconds for a first picture, on a slow machine
+panel_action=20 # seconds for what follows on an input
+
+# panel_open OPTIONS...: starts the program, what it says going to $panel_log, and waits for its first picture.
+panel_open() {
+    panel_log=$(mktemp -p "$scratch" panel-XXXXXX)
+    "$panel" --verbose "$@" >"$panel_log" 2>"$panel_log.err" &
+    panel_pid=$!
+    panel_says 1 '^shown ' "$panel_start"
+}
+
+# Puts the window of a program that stays open into $panel_window.
+panel_find() {
+    panel_window=$(xdotool search --pid "$panel_pid" --name 'bhr: panel' | head -n 1)
+    [ -n "$panel_window" ] || panel_complain 'it has no window'
+}
+
+panel_complain() {
+    printf '%s\n' "$1"
+    tail -n 20 -- "$panel_log" "$panel_log.err"
+    kill "$panel_pid" 2>/dev/null
+    return 1
+}
+
+# panel_says COUNT PATTERN [SECONDS]: waits until so many lines match.
+panel_says() {
+    local count=$1 pattern=$2 end=$((SECONDS + ${3:-$panel_action}))
+    until [ "$(grep -cE -- "$pattern" "$panel_log")" -ge "$count" ]; do
+        if [ "$SECONDS" -ge "$end" ]; then
+            panel_complain "no '$pattern' in time"
+            return 1
+        fi
+        if ! kill -0 "$panel_pid" 2>/dev/null; then
+            panel_complain "it ended before '$pattern'"
+            return 1
+        fi
+        sleep 0.1
+    done
+}
+
+panel_last() {
+    grep -E -- "$1" "$panel_log" | tail -n 1
+}
+
+# panel_ends: it was asked to end, and does so by itself with status 0, whatever is in flight.
+panel_ends() {
+    local end=$((SECONDS + panel_action))
+    while kill -0 "$panel_pid" 2>/dev/null; do
+        if [ "$SECONDS" -ge "$end" ]; then
+            panel_complain 'it does not end'
+            return 1
+        fi
+        sleep 0.1
+    done
+    wait "$panel_pid" || panel_complain "exit status $?"
+}
+
+# Inputs with pauses: a program that draws 10 frames a second sees what lasts for one of them.
+panel_point() {
+    xdotool mousemove --window "$panel_window" "$1" "$2" && sleep 0.3
+}
+
+panel_press() {
+    panel_point "$1" "$2" && xdotool mousedown 1 && sleep 0.3 && xdotool mouseup 1 && sleep 0.3
+}
+
+# panel_ray X Y: a click there; the answer is in $panel_answer.
+panel_ray() {
+    local before
+    before=$(grep -c '^ray ' "$panel_log")
+    panel_press "$1" "$2" && panel_says $((before + 1)) '^ray ' || return 1
+    panel_answer=$(panel_last '^ray ')
+}
+
+# panel_type_into X Y TEXT: the slider there takes what is typed instead of its value.
+panel_type_into() {
+    panel_point "$1" "$2" && xdotool keydown ctrl && sleep 0.3 && xdotool mousedown 1 && sleep 0.3 &&
+        xdotool mouseup 1 && sleep 0.3 && xdotool keyup ctrl && sleep 0.3 &&
+        xdotool type --delay 150 -- "$3" && sleep 0.3 && xdotool key Return && sleep 0.3
+}
+
+# A value of the scene as the program says it: panel_scene NAME.
+panel_scene() {
+    panel_last '^scene ' | sed -nE "s/.* $1 ([^ ]+).*/\1/p"
+}
+
+# panel_expect GOT WANTED
+panel_expect() {
+    if [ "$1" != "$2" ]; then
+        panel_complain "expected '$2', got '$1'"
+    fi
+}
+
+# ---- the tests ----
+
+# A window with all panels, exactly as many pictures as asked for, and a clean end by itself.
+panel_starts() {
+    panel_open --size 1600x1000 --frames 3 --hold 0 --screenshot "$scratch/panel-starts.png" && panel_ends || return 1
+    panel_expect "$(grep -c '^shown ' "$panel_log")" 3 || return 1
+    panel_expect "$(identify -format '%wx%h' "$scratch/panel-starts.png")" 1600x1000 || return 1
+    # Without a display, or with a backend that is not there: a message and status 1.
+    if DISPLAY='' "$panel" --frames 1 2>"$panel_log.err" || [ ! -s "$panel_log.err" ]; then
+        panel_complain 'it starts without a display'
+        return 1
+    fi
+    if "$panel" --frames 1 --backend metal 2>"$panel_log.err" || [ ! -s "$panel_log.err" ]; then
+        panel_complain 'it starts with a backend that does not exist'
+    fi
+}
+
+# Clicks ask for rays, drags orbit, the wheel zooms, Ctrl and a click takes a number, and what the library refuses leaves
+# the old one.
+panel_takes_clicks() {
+    local left top width height middle_x middle_y
+    panel_open --size 1600x1000 --paused --backend cpu --screenshot "$scratch/panel-clicks.png" &&
+        panel_find || return 1
+    read -r _ left top width height <<<"$(panel_last '^picture ')"
+    middle_x=$((left + width / 2))
+    middle_y=$((top + height / 2))
+
+    panel_ray "$middle_x" "$middle_y" || return 1 # into the hole
+    case $panel_answer in "ray $((width / 2)) $((height / 2)) captured "*) ;; *) panel_complain "$panel_answer" || return 1 ;; esac
+    panel_ray $((left + 5)) $((top + 30)) || return 1 # past it
+    case $panel_answer in "ray 5 30 escaped "*) ;; *) panel_complain "$panel_answer" || return 1 ;; esac
+
+    # 100 pixels to the right and 40 down: a quarter of a degree each.
+    panel_point "$middle_x" "$middle_y" && xdotool mousedown 1 && sleep 0.3
+    panel_point $((middle_x + 60)) $((middle_y + 20)) && panel_point $((middle_x + 100)) $((middle_y + 40))
+    xdotool mouseup 1
+    panel_says 1 'azimuth -115 elevation 20$' || return 1
+    xdotool click 4
+    panel_says 1 'distance 27 ' || return 1
+
+    # The second row of the first section is the spin.
+    panel_type_into 200 66 0.25 && panel_says 1 ' spin 0.25 ' || return 1
+    panel_type_into 200 66 1.5
+    panel_says 1 '^refused .*1\.5.*0\.999' || return 1
+    panel_expect "$(panel_scene spin)" 0.25 || return 1
+
+    panel_point "$middle_x" "$middle_y" && xdotool key Escape && panel_ends
+}
+
+# Ten sizes, 1 x 1 among them, with frames in flight all the time: the picture follows each.
+panel_resizes() {
+    local size width height shown
+    panel_open --size 800x600 --bare && panel_find || return 1
+    for size in 1000x700 640x480 333x77 1x1 200x900 2x500 1599x33 17x17 1280x720 400x300; do
+        width=${size%x*}
+        height=${size#*x}
+        xdotool windowsize "$panel_window" "$width" "$height"
+        panel_says 1 "^picture 0 0 $width $height\$" || return 1
+        sleep 0.2
+    done
+    shown=$(grep -c '^shown ' "$panel_log")
+    panel_says $((shown + 2)) '^shown ' || return 1
+    # Without a window manager the keyboard is that of the window under the mouse.
+    panel_point 50 50 && xdotool key Escape && panel_ends
+}
+
+# The window's content is the picture, byte for byte, and the picture is what the same scene gives every time.
+panel_saves() {
+    local run
+    for run in one two; do
+        panel_open --size 480x300 --bare --frames 2 --hold 0 --screenshot "$scratch/panel-window-$run.png" \
+            --picture "$scratch/panel-picture-$run.png" && panel_ends || return 1
+    done
+    panel_expect "$(compare -metric AE "$scratch/panel-window-one.png" "$scratch/panel-picture-one.png" null: 2>&1)" 0 &&
+        panel_expect "$(compare -metric AE "$scratch/panel-picture-one.png" "$scratch/panel-picture-two.png" null: 2>&1)" 0 ||
+        return 1
+    # Not one colour all over: a hole, a disk, a sky.
+    [ "$(identify -format '%k' "$scratch/panel-picture-one.png")" -gt 1000 ] || panel_complain 'the picture is empty'
+    panel_expect "$(identify -format '%wx%h' "$scratch/panel-picture-one.png")" 480x300
+}
