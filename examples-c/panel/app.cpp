@@ -8,7 +8,8 @@
 namespace {
 
 constexpr double POLL_SECONDS = 0.002;        // between two looks at frames that are under way
-constexpr double REDRAW_SECONDS = 0.1;        // of the window, when nothing happens
+constexpr double REDRAW_SECONDS = 0.1;        // between two looks of the window, when no frames come
+constexpr double LIVELY_SECONDS = 1.0;        // so long after an input the window is drawn again and again
 constexpr double FASTEST_REDRAW = 1.0 / 90.0; // where the display sets no pace
 constexpr double REST_SECONDS = 0.3;          // so long after the last touch the picture is made in full again
 constexpr double TOUCHED_FRAME = 1.0 / 30.0;  // the time to aim for of a frame while the scene is touched
@@ -73,22 +74,26 @@ std::string App::start() {
 }
 
 int App::run() {
-    double last = glfwGetTime(), drawn_at = -1.0;
+    double last = glfwGetTime(), drawn_at = -1.0, input_at = last;
     bool   stale = true; // the window
     for (;;) {
-        stale |= window_.wait(queue_.in_flight() > 0 ? POLL_SECONDS : 0.5 * FASTEST_REDRAW);
+        const bool input = window_.wait(queue_.in_flight() > 0 ? POLL_SECONDS
+                                        : stale                ? 0.5 * FASTEST_REDRAW
+                                                               : REDRAW_SECONDS);
         const double now = glfwGetTime();
+        input_at = input ? now : input_at;
         if (!counted()) {
             advance_clock(std::min(now - last, LONGEST_TICK));
         }
         last = now;
         collect_frames(now);
         submit_frames(now);
-        const bool ends = finished(now);
-        stale |= to_show_ >= 0.0 || now - drawn_at >= REDRAW_SECONDS;
-        if (ends) {
+        if (finished(now)) {
             return save();
         }
+        // ImGui shows what an input did some frames later: menus open, and text cursors blink.
+        const bool lively = now - input_at < LIVELY_SECONDS && now - drawn_at >= REDRAW_SECONDS;
+        stale |= input || lively || to_show_ >= 0.0;
         if (stale && now - drawn_at >= FASTEST_REDRAW) {
             draw(now, nullptr);
             drawn_at = now;
@@ -126,12 +131,12 @@ void App::take_picture(FinishedFrame &&frame, double now) {
     performance_.finished(frame.stats);
     to_show_ = frame.submitted;
     queue_.reuse(picture_.take(std::move(frame.pixels)));
-    shown_++;
+    pictures_++;
 }
 
 // Seconds per pixel, for the next frames' size. The first frame tells nothing: it waits for the driver's compiler.
 void App::measure_speed(const FinishedFrame &frame, double now) {
-    if (shown_ == 0) {
+    if (pictures_ == 0) {
         return;
     }
     // With several frames under way each of them waits for the others: then the time between their ends counts.
@@ -297,9 +302,6 @@ void App::draw(double now, Pixels *copy) {
     if (scene_.version() != version) {
         touched_at_ = now;
     }
-    if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE) && !ImGui::IsAnyItemActive()) {
-        window_.close();
-    }
     window_.end_frame(copy);
     if (to_show_ >= 0.0) {
         performance_.shown(to_show_, glfwGetTime());
@@ -366,9 +368,10 @@ bool App::finished(double now) {
     if (window_.closed()) {
         return true;
     }
+    const bool recovers = lost_ && retry_at_ <= now; // it has not been tried yet
     const bool complete =
-        !counted() || (!error_.empty() && queue_.in_flight() == 0) ||
-        (shown_ >= options_.frames && to_show_ < 0.0 &&
+        !counted() || (!error_.empty() && queue_.in_flight() == 0 && !recovers) ||
+        (pictures_ >= options_.frames && to_show_ < 0.0 &&
          (options_.bare || steps_plot_.settled(scene_.geometry_version(), picture_.width(), picture_.height(), picture_.row())));
     if (!complete || (!counted() && options_.hold < 0.0)) {
         return false;
@@ -395,7 +398,7 @@ int App::save() {
             return EXIT_FAILURE;
         }
     }
-    if (counted() && shown_ < options_.frames && !window_.closed()) {
+    if (counted() && pictures_ < options_.frames && !window_.closed()) {
         std::fprintf(stderr, "cannot make %u frames: %s\n", options_.frames, error_.c_str());
         return EXIT_FAILURE;
     }
@@ -428,8 +431,8 @@ void App::say(const Picture::Input &input) {
                     fate_name(ray_.hit.fate), ray_.deflection / DEGREE, ray_.hit.crossing_count, ray_.hit.steps,
                     ray_.path.size());
     }
-    if (shown_ != said_shown_) {
-        std::printf("shown %u\n", shown_);
-        said_shown_ = shown_;
+    if (pictures_ != said_pictures_) {
+        std::printf("frames %u\n", pictures_);
+        said_pictures_ = pictures_;
     }
 }

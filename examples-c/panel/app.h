@@ -88,7 +88,7 @@ private:
     double      retry_at_ = 0.0;
     unsigned    recoveries_ = 0;
     Wanted      submitted_of_;
-    uint32_t    submitted_ = 0, shown_ = 0;
+    uint32_t    submitted_ = 0, pictures_ = 0;
     double      to_show_ = -1.0;      // when the picture was submitted that came last, until the window shows it
     double      touched_at_ = -1e9;   // by the user, last
     double      steps_at_ = -1e9;     // last look at the integration steps
@@ -99,7 +99,7 @@ private:
     Wanted   said_place_; // what --verbose said last
     uint64_t said_geometry_ = 0;
     size_t   said_refusals_ = 0;
-    uint32_t said_shown_ = 0;
+    uint32_t said_pictures_ = 0;
 };
 
 #endif

@@ -58,7 +58,7 @@ public:
     ImVec2 low() const { return low_; }
     ImVec2 high() const { return high_; }
 
-    void grid(double step) const; // lines with their values, every `step`
+    void grid(double step, ImU32 numbers = colour::dim) const; // lines every `step`, with their values
     void circle(double radius, ImU32 color, float thickness) const;   // about (0, 0)
     void disc(double radius, ImU32 color) const;                      // filled
     void ring(double inner, double outer, ImU32 color) const;         // filled between two circles

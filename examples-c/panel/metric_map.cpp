@@ -66,7 +66,7 @@ void MetricMap::draw(const Inspector &inspector, uint64_t version) {
     {
         const Diagram diagram("g_tt", {side, side}, -extent_, extent_, -extent_, extent_);
         ImGui::GetWindowDrawList()->AddImage(texture_.id(), diagram.low(), diagram.high());
-        diagram.grid(round_step(2.0 * extent_, 4));
+        diagram.grid(round_step(2.0 * extent_, 4), IM_COL32(20, 24, 40, 255));
         diagram.circle(inspector.numbers().horizon_radius / inspector.mass(), IM_COL32(0, 0, 0, 255), 2.0F);
         std::vector<ImVec2> limit;
         for (int i = 0; i <= 360; i++) {

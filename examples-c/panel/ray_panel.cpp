@@ -191,7 +191,7 @@ void RayPanel::draw_side(const RayReport &report, const Inspector &inspector) {
         draw_ray(
             diagram, report,
             [&](const Vec3 &p) { return diagram.at(std::hypot(p.x, p.y) / mass, p.z / mass); }, mass);
-        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, "z against distance from the axis, M");
+        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, "rho, z / M");
         hovered = diagram.hovered();
     }
     zoom(hovered);
@@ -223,7 +223,7 @@ void RayPanel::draw_top(const RayReport &report, const Inspector &inspector) {
         for_each_orbit(numbers.isco_prograde, numbers.isco_retrograde,
                        [&](double r) { diagram.circle(r / mass, colour::isco, 1.2F); });
         draw_ray(diagram, report, [&](const Vec3 &p) { return diagram.at(p.x / mass, p.y / mass); }, mass);
-        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, "x, y from above, M");
+        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, "x, y / M");
         hovered = diagram.hovered();
     }
     zoom(hovered);

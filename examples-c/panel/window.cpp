@@ -93,7 +93,13 @@ void Window::start_imgui() {
     glfwSetCursorEnterCallback(window_, [](GLFWwindow *window, int) { on_input(window); });
     glfwSetMouseButtonCallback(window_, [](GLFWwindow *window, int, int, int) { on_input(window); });
     glfwSetScrollCallback(window_, [](GLFWwindow *window, double, double) { on_input(window); });
-    glfwSetKeyCallback(window_, [](GLFWwindow *window, int, int, int, int) { on_input(window); });
+    glfwSetKeyCallback(window_, [](GLFWwindow *window, int key, int, int action, int) {
+        on_input(window);
+        // Not by ImGui, which sees keys that are down when a frame begins only. In a text field Escape leaves the field.
+        if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS && !ImGui::GetIO().WantTextInput) {
+            glfwSetWindowShouldClose(window, GLFW_TRUE);
+        }
+    });
     glfwSetCharCallback(window_, [](GLFWwindow *window, unsigned) { on_input(window); });
     glfwSetWindowFocusCallback(window_, [](GLFWwindow *window, int) { on_input(window); });
     glfwSetFramebufferSizeCallback(window_, [](GLFWwindow *window, int, int) { on_input(window); });
@@ -128,10 +134,6 @@ Window::~Window() {
 
 bool Window::closed() const {
     return glfwWindowShouldClose(window_) != 0;
-}
-
-void Window::close() {
-    glfwSetWindowShouldClose(window_, GLFW_TRUE);
 }
 
 bool Window::wait(double seconds) {

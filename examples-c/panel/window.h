@@ -20,8 +20,8 @@ public:
     // "", or why there is no window.
     std::string open(uint32_t width, uint32_t height, const char *title);
 
+    // By its frame or the Escape key.
     bool closed() const;
-    void close();
     // Sleeps until there is input, at most so long. True when there was some.
     bool wait(double seconds);
     // False while the window has no pixels, minimised: then nothing may be drawn.
