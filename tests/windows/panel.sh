@@ -58,6 +58,14 @@ panel_ends() {
     wait "$panel_pid" || panel_complain "exit status $?"
 }
 
+# panel_close X Y: ends the program by its key, with the mouse in its window: without a window manager the keyboard is that
+# of the window under the mouse. The first Escape may leave a text field instead.
+panel_close() {
+    panel_point "$1" "$2" && xdotool key Escape && sleep 0.5 || return 1
+    kill -0 "$panel_pid" 2>/dev/null && xdotool key Escape
+    panel_ends
+}
+
 # Inputs with pauses: a program that draws 10 frames a second sees what lasts for one of them.
 panel_point() {
     xdotool mousemove --window "$panel_window" "$1" "$2" && sleep 0.3
@@ -83,7 +91,8 @@ panel_type_into() {
     for attempt in 1 2 3; do
         panel_point "$1" "$2" && xdotool keydown ctrl && sleep 0.4 && xdotool mousedown 1 && sleep 0.4 &&
             xdotool mouseup 1 && sleep 0.4 && xdotool keyup ctrl && sleep 0.4 &&
-            xdotool type --delay 150 -- "$3" && sleep 0.4 && xdotool key Return || return 1
+            xdotool type --delay 150 -- "$3" && sleep 0.4 &&
+            xdotool keydown Return && sleep 0.4 && xdotool keyup Return || return 1
         panel_hears 1 "$4" 5 && return 0
         printf 'attempt %s to type %s was not seen\n' "$attempt" "$3"
     done
@@ -142,7 +151,7 @@ panel_takes_clicks() {
     panel_type_into 200 66 1.5 '^refused .*1\.5.*0\.999' || return 1
     panel_expect "$(panel_last '^(scene|refused) ' | cut -d ' ' -f 1)" refused || return 1 # the scene is as it was
 
-    panel_point "$middle_x" "$middle_y" && xdotool key Escape && panel_ends
+    panel_close "$middle_x" "$middle_y"
 }
 
 # Ten sizes, 1 x 1 among them, with frames in flight all the time: the picture follows each.
@@ -158,8 +167,7 @@ panel_resizes() {
     done
     frames=$(grep -c '^frames ' "$panel_log")
     panel_says $((frames + 2)) '^frames ' || return 1
-    # Without a window manager the keyboard is that of the window under the mouse.
-    panel_point 50 50 && xdotool key Escape && panel_ends
+    panel_close 50 50
 }
 
 # The window's content is the picture, byte for byte, and the picture is what the same scene gives every time.
