@@ -45,7 +45,7 @@ int main(int argc, char **argv) {
     int32_t    backend = BHR_BACKEND_AUTO;
     int        help = 0;
     const Option table[] = {
-        {"--size", OPTION_SIZE, options.size, "WxH", "of the window; default 1600x1000", nullptr},
+        {"--size", OPTION_SIZE, options.size, "WxH", "of the window, larger where the display scales; default 1600x1000", nullptr},
         {"--backend", OPTION_CHOICE, &backend, nullptr, "what traces the light; default auto", BACKENDS},
         {"--paused", OPTION_FLAG, &options.paused, nullptr, "begins with the scene's time at rest", nullptr},
         {"--bare", OPTION_FLAG, &options.bare, nullptr, "nothing but the picture, at the window's size", nullptr},

@@ -128,7 +128,7 @@ void App::take_picture(FinishedFrame &&frame, double now) {
     error_.clear();
     measure_speed(frame, now);
     finished_at_ = now;
-    performance_.finished(frame.stats);
+    performance_.finished(frame.stats, frame.submitted);
     to_show_ = frame.submitted;
     queue_.reuse(picture_.take(std::move(frame.pixels)));
     pictures_++;
@@ -160,7 +160,9 @@ void App::submit_frames(double now) {
         if (!result.ok()) {
             failed(result, now);
         }
-        steps_at_ = queue_.has_room() ? now : steps_at_;
+        if (queue_.has_room()) { // else there was none for all that is missing
+            steps_at_ = now;
+        }
     }
     submit_picture(now);
 }

@@ -36,8 +36,16 @@ void Performance::Course::append(double value) {
     values.back() = static_cast<float>(value);
 }
 
-void Performance::finished(const BhrFrameStats &stats) {
+// Frames that were begun before the first was shown waited for the driver's compiler: no other would show beside them.
+bool Performance::usual(double submitted) const {
+    return first_shown_ >= 0.0 && submitted >= first_shown_;
+}
+
+void Performance::finished(const BhrFrameStats &stats, double submitted) {
     stats_ = stats;
+    if (!usual(submitted)) {
+        return;
+    }
     cpu_.append(milliseconds(stats.cpu_ns));
     gpu_.append(milliseconds(stats.gpu_ns));
     readback_.append(milliseconds(stats.readback_ns));
@@ -45,9 +53,11 @@ void Performance::finished(const BhrFrameStats &stats) {
 
 void Performance::shown(double submitted, double now) {
     latency_ = now - submitted;
-    latencies_.append(1e3 * latency_);
+    if (usual(submitted)) {
+        latencies_.append(1e3 * latency_);
+    }
     const double interval = now - last_shown_;
-    if (last_shown_ < 0.0 || interval > REST) {
+    if (!usual(submitted) || interval > REST) {
         rate_ = 0.0;
     } else if (interval > 0.0) {
         const double mean = rate_ > 0.0 ? RATE_MEMORY / rate_ + (1.0 - RATE_MEMORY) * interval : interval;
@@ -55,6 +65,7 @@ void Performance::shown(double submitted, double now) {
         rates_.append(rate_);
     }
     last_shown_ = now;
+    first_shown_ = first_shown_ < 0.0 ? now : first_shown_;
     count_++;
 }
 
@@ -99,7 +110,7 @@ void Performance::draw(const BhrAdapterInfo &adapter, size_t in_flight, unsigned
                {"readback", readback_.values.data(), colour::ergosphere}},
               HISTORY, "%g ms", -1);
     ImGui::TextColored(ImGui::ColorConvertU32ToFloat4(colour::dim), "frames per second:");
-    std::snprintf(text, sizeof text, "%.1f", rate_);
+    std::snprintf(text, sizeof text, rate_ > 0.0 ? "%.1f" : "at rest", rate_);
     legend(text, colour::crossing);
     line_plot("rate", {ImGui::GetContentRegionAvail().x, height},
               {{"rate", rates_.values.data(), colour::crossing}}, HISTORY, "%g / s", -1);

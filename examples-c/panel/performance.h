@@ -9,15 +9,14 @@
 
 class Performance {
 public:
-    // A picture came into the program's memory.
-    void finished(const BhrFrameStats &stats);
-    // It was shown; both on the program's clock.
+    // A picture came into the program's memory. Times are on the program's clock.
+    void finished(const BhrFrameStats &stats, double submitted);
+    // It was shown.
     void shown(double submitted, double now);
 
-    void   draw(const BhrAdapterInfo &adapter, size_t in_flight, unsigned recoveries) const;
+    void draw(const BhrAdapterInfo &adapter, size_t in_flight, unsigned recoveries) const;
+
     double frames_per_second() const { return rate_; }
-    double latency() const { return latency_; } // of the last picture, seconds
-    const BhrFrameStats &stats() const { return stats_; }
 
 private:
     static constexpr size_t HISTORY = 160;
@@ -28,10 +27,13 @@ private:
         std::array<float, HISTORY> values; // the oldest first
     };
 
+    bool usual(double submitted) const;
+
     BhrFrameStats stats_{};
     Course        cpu_, gpu_, readback_, latencies_, rates_;
-    double        latency_ = 0.0, rate_ = 0.0;
-    double        last_shown_ = -1.0;
+    double        latency_ = 0.0; // of the last picture, seconds
+    double        rate_ = 0.0;    // 0: not known
+    double        first_shown_ = -1.0, last_shown_ = -1.0; // < 0: not yet
     uint64_t      count_ = 0;
 };
 
