@@ -1,6 +1,6 @@
-// panel.cpp -- a black hole inside another program: frames come through asynchronous jobs into the program's own memory
-// and are shown as an OpenGL texture, among panels that set and measure everything. For C++ hosts that have a picture to
-// fill and no window to give away. This file: command line, context, exit status.
+// panel.cpp -- a black hole inside another program: frames come through asynchronous jobs into the program's own
+// memory and are shown as an OpenGL texture, among panels that set and measure everything. For C++ hosts that have a
+// picture to fill and no window to give away. This file: command line, context, exit status.
 //
 //   panel/handles.h    bhr's handles as C++ objects           panel/settings     hole, camera, disk ..: the widgets
 //   panel/frames       jobs and the memory they write to      panel/picture      the picture, and the mouse on it
@@ -45,7 +45,8 @@ int main(int argc, char **argv) {
     int32_t    backend = BHR_BACKEND_AUTO;
     int        help = 0;
     const Option table[] = {
-        {"--size", OPTION_SIZE, options.size, "WxH", "of the window, larger where the display scales; default 1600x1000", nullptr},
+        {"--size", OPTION_SIZE, options.size, "WxH", "of the window; a display may scale it; default 1600x1000",
+         nullptr},
         {"--backend", OPTION_CHOICE, &backend, nullptr, "what traces the light; default auto", BACKENDS},
         {"--paused", OPTION_FLAG, &options.paused, nullptr, "begins with the scene's time at rest", nullptr},
         {"--bare", OPTION_FLAG, &options.bare, nullptr, "nothing but the picture, at the window's size", nullptr},
@@ -61,7 +62,8 @@ int main(int argc, char **argv) {
         return result;
     }
     if (help != 0) {
-        std::puts("Usage: panel [options]\nA black hole to look at, set and measure. Drag: about the hole; wheel: nearer;\n"
+        std::puts("Usage: panel [options]\n"
+                  "A black hole to look at, set and measure. Drag: about the hole; wheel: nearer;\n"
                   "click: the pixel's ray; Ctrl and a click on a slider: type a number; Escape: end.\n");
         options_print(stdout, table, COUNT_OF(table));
         return EXIT_SUCCESS;

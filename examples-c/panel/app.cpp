@@ -365,17 +365,22 @@ void App::move_camera(const Picture::Input &input) {
 
 // ---- the end ----
 
-// Whether it is time to end: when the window is closed, or all that the options ask for was shown.
+// Whether all the frames that were asked for by number were shown, with everything about them, or will never be.
+bool App::counted_out(double now) const {
+    const bool recovers = lost_ && retry_at_ <= now; // it has not been tried yet
+    if (!error_.empty() && queue_.in_flight() == 0 && !recovers) {
+        return true;
+    }
+    const bool steps_known = options_.bare != 0 || steps_plot_.settled(scene_.geometry_version(), picture_.width(),
+                                                                       picture_.height(), picture_.row());
+    return pictures_ >= options_.frames && to_show_ < 0.0 && steps_known;
+}
+
 bool App::finished(double now) {
     if (window_.closed()) {
         return true;
     }
-    const bool recovers = lost_ && retry_at_ <= now; // it has not been tried yet
-    const bool complete =
-        !counted() || (!error_.empty() && queue_.in_flight() == 0 && !recovers) ||
-        (pictures_ >= options_.frames && to_show_ < 0.0 &&
-         (options_.bare || steps_plot_.settled(scene_.geometry_version(), picture_.width(), picture_.height(), picture_.row())));
-    if (!complete || (!counted() && options_.hold < 0.0)) {
+    if (counted() ? !counted_out(now) && hold_until_ < 0.0 : options_.hold < 0.0) {
         return false;
     }
     if (hold_until_ < 0.0) {
@@ -413,8 +418,8 @@ void App::say(const Picture::Input &input) {
     const ImVec2 corner = picture_.corner();
     const Wanted place{0, picture_.width(), picture_.height()};
     if (place.width != said_place_.width || place.height != said_place_.height) {
-        std::printf("picture %.0f %.0f %u %u\n", static_cast<double>(corner.x), static_cast<double>(corner.y), place.width,
-                    place.height);
+        std::printf("picture %.0f %.0f %u %u\n", static_cast<double>(corner.x), static_cast<double>(corner.y),
+                    place.width, place.height);
         said_place_ = place;
     }
     if (scene_.geometry_version() != said_geometry_) {

@@ -1,5 +1,5 @@
-// app.h -- the program itself: the loop that begins frames, takes those that are done, and draws the window. One thread,
-// which never waits for a frame.
+// app.h -- the program itself: the loop that begins frames, takes those that are done, and draws the window. One
+// thread, which never waits for a frame.
 #ifndef PANEL_APP_H
 #define PANEL_APP_H
 
@@ -59,6 +59,7 @@ private:
     void   draw(double now, Pixels *copy);
     void   draw_panels(const Layout &layout);
     void   move_camera(const Picture::Input &input);
+    bool   counted_out(double now) const;
     bool   finished(double now);
     int    save();
     void   say(const Picture::Input &input);
@@ -94,7 +95,7 @@ private:
     double      steps_at_ = -1e9;     // last look at the integration steps
     double      finished_at_ = -1e9;  // last picture
     double      seconds_per_pixel_ = 0.0;
-    double      hold_until_ = -1.0;
+    double      hold_until_ = -1.0; // < 0: not yet holding
 
     Wanted   said_place_; // what --verbose said last
     uint64_t said_geometry_ = 0;

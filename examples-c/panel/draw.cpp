@@ -124,7 +124,8 @@ void Diagram::dot(double x, double y, ImU32 color, float size) const {
 }
 
 void Diagram::curve(const std::vector<ImVec2> &screen_points, ImU32 color, float thickness) const {
-    list_->AddPolyline(screen_points.data(), static_cast<int>(screen_points.size()), color, ImDrawFlags_None, thickness);
+    const auto count = static_cast<int>(screen_points.size());
+    list_->AddPolyline(screen_points.data(), count, color, ImDrawFlags_None, thickness);
 }
 
 void Diagram::label(ImVec2 screen, ImU32 color, const char *text) const {

@@ -87,7 +87,8 @@ struct Series {
 
 // Values from left to right, each series of the same count, NaN left out, above a common axis that begins at 0; its top
 // is written with `format`. marker: an index to mark, or < 0.
-void line_plot(const char *id, ImVec2 size, const std::vector<Series> &series, size_t count, const char *format, int marker);
+void line_plot(const char *id, ImVec2 size, const std::vector<Series> &series, size_t count, const char *format,
+               int marker);
 
 // The colour of a number in -1 .. 1: blue, white at 0, red.
 ImU32 diverging(double value);

@@ -37,7 +37,8 @@ public:
     explicit FrameQueue(BhrContext *context) : context_(context) {}
 
     // Begins a frame of the scene as it is now. There must be room.
-    Result submit(FrameKind kind, BhrFormat format, uint32_t width, uint32_t height, uint64_t scene_version, double now);
+    Result submit(FrameKind kind, BhrFormat format, uint32_t width, uint32_t height, uint64_t scene_version,
+                  double now);
     // The frames that are done, in the order of their submission.
     std::vector<FinishedFrame> collect();
     // Memory of a frame that is not needed any more; the next submission uses it.

@@ -60,7 +60,8 @@ RayReport Inspector::inspect(uint32_t width, uint32_t height, double x, double y
     BhrContext *context = context_.get();
     report.result = result_of(bhr_camera_ray(context, width, height, x, y, &report.ray));
     if (report.result.ok()) {
-        report.result = result_of(bhr_trace_rays(context, &report.ray, sizeof report.ray, 1, &report.hit, sizeof report.hit));
+        report.result =
+            result_of(bhr_trace_rays(context, &report.ray, sizeof report.ray, 1, &report.hit, sizeof report.hit));
     }
     std::vector<double> points(size_t{4} * PATH_CAPACITY);
     uint32_t            count = 0;

@@ -11,8 +11,12 @@ public:
     void draw(const Inspector &inspector, uint64_t version);
 
 private:
-    void   fill(const Inspector &inspector);
-    Vec3   place(double across, double up, double mass) const;
+    void fill(const Inspector &inspector);
+    Vec3 place(double across, double up, double mass) const;
+    void choose_plane();
+    void follow_mouse(const Diagram &diagram, const Inspector &inspector);
+    void draw_outlines(const Diagram &diagram, const Inspector &inspector) const;
+    void draw_scale(ImVec2 at, float height) const;
 
     Texture  texture_, scale_;
     bool     meridional_ = true; // the plane that holds the axis, else the equatorial one

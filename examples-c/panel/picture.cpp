@@ -11,7 +11,8 @@ void cross(ImDrawList *list, ImVec2 at, float size) {
     constexpr float gap = 4.0F;
     const ImVec2    ends[4] = {{1.0F, 0.0F}, {-1.0F, 0.0F}, {0.0F, 1.0F}, {0.0F, -1.0F}};
     for (const ImVec2 &end : ends) {
-        list->AddLine({at.x + gap * end.x, at.y + gap * end.y}, {at.x + size * end.x, at.y + size * end.y}, colour::ray, 1.5F);
+        list->AddLine({at.x + gap * end.x, at.y + gap * end.y}, {at.x + size * end.x, at.y + size * end.y}, colour::ray,
+                      1.5F);
     }
 }
 

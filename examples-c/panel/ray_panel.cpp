@@ -59,7 +59,7 @@ void draw_crossings(const BhrHit &hit, double mass) {
 // How a place of the chart is drawn: from the side by its distance from the axis and its height, from above by x, y.
 using Projection = std::function<ImVec2(const Vec3 &place)>;
 
-void draw_ray(const Diagram &diagram, const RayReport &report, const Projection &projection, double mass) {
+void draw_ray(const Diagram &diagram, const RayReport &report, const Projection &projection) {
     std::vector<ImVec2> points;
     points.reserve(report.path.size());
     for (const PathPoint &point : report.path) {
@@ -70,13 +70,10 @@ void draw_ray(const Diagram &diagram, const RayReport &report, const Projection 
         const BhrCrossing &crossing = report.hit.crossings[i];
         const ImVec2       at = projection(
             {crossing.radius * std::cos(crossing.azimuth), crossing.radius * std::sin(crossing.azimuth), 0.0});
-        const double x = crossing.radius / mass;
-        char         text[16];
+        char text[16];
         std::snprintf(text, sizeof text, "%u", i);
-        if (std::isfinite(x)) {
-            ImGui::GetWindowDrawList()->AddCircleFilled(at, 3.5F, colour::crossing);
-            diagram.label({at.x + 5.0F, at.y - ImGui::GetFontSize() - 1.0F}, colour::crossing, text);
-        }
+        ImGui::GetWindowDrawList()->AddCircleFilled(at, 3.5F, colour::crossing);
+        diagram.label({at.x + 5.0F, at.y - ImGui::GetFontSize() - 1.0F}, colour::crossing, text);
     }
     if (!points.empty()) { // the eye
         ImGui::GetWindowDrawList()->AddCircleFilled(points.front(), 4.0F, colour::text);
@@ -103,12 +100,51 @@ void draw_legend(const Inspector &inspector) {
     legend("crossings", colour::crossing);
 }
 
-// Orbits of both senses; one where they agree.
-void for_each_orbit(double prograde, double retrograde, const std::function<void(double)> &draw) {
-    draw(prograde);
+// Orbits of both senses, in M; one where they agree.
+template <class Draw> void for_each_orbit(double prograde, double retrograde, double mass, Draw draw) {
+    draw(prograde / mass);
     if (retrograde != prograde) {
-        draw(retrograde);
+        draw(retrograde / mass);
     }
+}
+
+// Circular orbits lie in the equatorial plane: from the side they are dots. Without spin the photons' is one of a
+// sphere of them.
+void draw_hole_from_side(const Diagram &diagram, const Inspector &inspector) {
+    const BhrHoleInfo &numbers = inspector.numbers();
+    const double       mass = inspector.mass();
+    diagram.line(0.0, -1e4, 0.0, 1e4, colour::frame, 1.0F);
+    if (inspector.has_disk()) {
+        diagram.line(inspector.disk_inner() / mass, 0.0, inspector.disk_outer() / mass, 0.0, colour::disk, 5.0F);
+    }
+    diagram.disc(numbers.horizon_radius / mass, colour::hole);
+    diagram.circle(numbers.horizon_radius / mass, colour::horizon, 1.5F);
+    if (inspector.spin() != 0.0) {
+        draw_ergosphere(diagram, inspector.spin());
+    } else {
+        diagram.circle(numbers.photon_orbit_prograde / mass, colour::photon, 1.2F);
+    }
+    for_each_orbit(numbers.photon_orbit_prograde, numbers.photon_orbit_retrograde, mass,
+                   [&](double r) { diagram.dot(r, 0.0, colour::photon, 3.0F); });
+    for_each_orbit(numbers.isco_prograde, numbers.isco_retrograde, mass,
+                   [&](double r) { diagram.dot(r, 0.0, colour::isco, 3.0F); });
+}
+
+void draw_hole_from_above(const Diagram &diagram, const Inspector &inspector) {
+    const BhrHoleInfo &numbers = inspector.numbers();
+    const double       mass = inspector.mass();
+    if (inspector.has_disk()) {
+        diagram.ring(inspector.disk_inner() / mass, inspector.disk_outer() / mass, colour::disk);
+    }
+    diagram.disc(numbers.horizon_radius / mass, colour::hole);
+    diagram.circle(numbers.horizon_radius / mass, colour::horizon, 1.5F);
+    if (inspector.spin() != 0.0) {
+        diagram.circle(numbers.ergosphere_equatorial_radius / mass, colour::ergosphere, 1.5F);
+    }
+    for_each_orbit(numbers.photon_orbit_prograde, numbers.photon_orbit_retrograde, mass,
+                   [&](double r) { diagram.circle(r, colour::photon, 1.2F); });
+    for_each_orbit(numbers.isco_prograde, numbers.isco_retrograde, mass,
+                   [&](double r) { diagram.circle(r, colour::isco, 1.2F); });
 }
 
 } // namespace
@@ -159,71 +195,38 @@ void RayPanel::zoom(bool hovered) {
 }
 
 void RayPanel::draw_side(const RayReport &report, const Inspector &inspector) {
-    const float side = ImGui::GetContentRegionAvail().x;
-    const float height = std::min(side, ImGui::GetContentRegionAvail().y - 2.2F * ImGui::GetTextLineHeightWithSpacing());
-    if (height < 8.0F) {
-        return;
-    }
-    const double mass = inspector.mass(), half = 0.5 * extent_ * static_cast<double>(height / side);
-    const BhrHoleInfo &numbers = inspector.numbers();
-    bool hovered = false;
-    {
-        const double  margin = 0.03 * extent_;
-        const Diagram diagram("side", {side, height}, -margin, extent_ - margin, -half, half);
-        diagram.grid(round_step(extent_, 5));
-        diagram.line(0.0, -half, 0.0, half, colour::frame, 1.0F);
-        if (inspector.has_disk()) {
-            diagram.line(inspector.disk_inner() / mass, 0.0, inspector.disk_outer() / mass, 0.0, colour::disk, 5.0F);
-        }
-        diagram.disc(numbers.horizon_radius / mass, colour::hole);
-        diagram.circle(numbers.horizon_radius / mass, colour::horizon, 1.5F);
-        if (inspector.spin() != 0.0) {
-            draw_ergosphere(diagram, inspector.spin());
-        } else {
-            diagram.circle(numbers.photon_orbit_prograde / mass, colour::photon, 1.2F);
-        }
-        // Circular orbits lie in the equatorial plane: from the side they are dots, and without spin the photons' is
-        // one of a sphere of them.
-        for_each_orbit(numbers.photon_orbit_prograde, numbers.photon_orbit_retrograde,
-                       [&](double r) { diagram.dot(r / mass, 0.0, colour::photon, 3.0F); });
-        for_each_orbit(numbers.isco_prograde, numbers.isco_retrograde,
-                       [&](double r) { diagram.dot(r / mass, 0.0, colour::isco, 3.0F); });
-        draw_ray(
-            diagram, report,
-            [&](const Vec3 &p) { return diagram.at(std::hypot(p.x, p.y) / mass, p.z / mass); }, mass);
-        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, "rho, z / M");
-        hovered = diagram.hovered();
-    }
-    zoom(hovered);
-    draw_legend(inspector);
+    draw_view("rho, z / M", true, report, inspector);
 }
 
 void RayPanel::draw_top(const RayReport &report, const Inspector &inspector) {
-    const float side = ImGui::GetContentRegionAvail().x;
-    const float height = std::min(side, ImGui::GetContentRegionAvail().y - 2.2F * ImGui::GetTextLineHeightWithSpacing());
-    if (height < 8.0F) {
+    draw_view("x, y / M", false, report, inspector);
+}
+
+// From the side the axis stands near the left border: a distance from it has no sign.
+void RayPanel::draw_view(const char *axes, bool side, const RayReport &report, const Inspector &inspector) {
+    const ImVec2 room = ImGui::GetContentRegionAvail();
+    const float  legend_height = 2.2F * ImGui::GetTextLineHeightWithSpacing();
+    const ImVec2 size(room.x, std::min(room.x, room.y - legend_height));
+    if (size.x < 8.0F || size.y < 8.0F) {
         return;
     }
-    const double mass = inspector.mass(), across = extent_, up = extent_ * static_cast<double>(height / side);
-    const BhrHoleInfo &numbers = inspector.numbers();
-    bool hovered = false;
+    const double left = side ? -0.03 * extent_ : -extent_, right = side ? 0.97 * extent_ : extent_;
+    const double up = 0.5 * (right - left) * static_cast<double>(size.y / size.x), mass = inspector.mass();
+    bool         hovered = false;
     {
-        const Diagram diagram("top", {side, height}, -across, across, -up, up);
-        diagram.grid(round_step(2.0 * extent_, 6));
-        if (inspector.has_disk()) {
-            diagram.ring(inspector.disk_inner() / mass, inspector.disk_outer() / mass, colour::disk);
+        const Diagram diagram(axes, size, left, right, -up, up);
+        diagram.grid(round_step(right - left, 6));
+        if (side) {
+            draw_hole_from_side(diagram, inspector);
+        } else {
+            draw_hole_from_above(diagram, inspector);
         }
-        diagram.disc(numbers.horizon_radius / mass, colour::hole);
-        diagram.circle(numbers.horizon_radius / mass, colour::horizon, 1.5F);
-        if (inspector.spin() != 0.0) {
-            diagram.circle(numbers.ergosphere_equatorial_radius / mass, colour::ergosphere, 1.5F);
-        }
-        for_each_orbit(numbers.photon_orbit_prograde, numbers.photon_orbit_retrograde,
-                       [&](double r) { diagram.circle(r / mass, colour::photon, 1.2F); });
-        for_each_orbit(numbers.isco_prograde, numbers.isco_retrograde,
-                       [&](double r) { diagram.circle(r / mass, colour::isco, 1.2F); });
-        draw_ray(diagram, report, [&](const Vec3 &p) { return diagram.at(p.x / mass, p.y / mass); }, mass);
-        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, "x, y / M");
+        const Projection projection = [&](const Vec3 &place) {
+            const double across = side ? std::hypot(place.x, place.y) : place.x, height = side ? place.z : place.y;
+            return diagram.at(across / mass, height / mass);
+        };
+        draw_ray(diagram, report, projection);
+        diagram.label({diagram.low().x + 5.0F, diagram.low().y + 2.0F}, colour::dim, axes);
         hovered = diagram.hovered();
     }
     zoom(hovered);

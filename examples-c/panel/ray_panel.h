@@ -1,5 +1,5 @@
-// ray_panel.h -- one ray in numbers, and its curve about the hole from the side and from above, to scale. Draws what the
-// inspector found; traces nothing itself.
+// ray_panel.h -- one ray in numbers, and its curve about the hole from the side and from above, to scale. Draws what
+// the inspector found; traces nothing itself.
 #ifndef PANEL_RAY_PANEL_H
 #define PANEL_RAY_PANEL_H
 
@@ -16,6 +16,7 @@ public:
     void draw_top(const RayReport &report, const Inspector &inspector);
 
 private:
+    void draw_view(const char *axes, bool side, const RayReport &report, const Inspector &inspector);
     void zoom(bool hovered);
 
     double extent_ = 16.0; // of both views, in M

@@ -78,8 +78,8 @@ template <class Set> void SettingsPanel::try_number(const char *label, double va
 
 // low and high bound the slider only: with Ctrl and a click any number can be typed, and the library judges it.
 template <class Set>
-void SettingsPanel::number(const char *label, double value, double low, double high, const char *format, bool logarithmic,
-                           Set set) {
+void SettingsPanel::number(const char *label, double value, double low, double high, const char *format,
+                           bool logarithmic, Set set) {
     begin_row(label);
     const ImGuiSliderFlags flags = logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
     if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format, flags)) {

@@ -45,7 +45,8 @@ private:
 
     bool section(const char *name, bool open);
     template <class Set>
-    void number(const char *label, double value, double low, double high, const char *format, bool logarithmic, Set set);
+    void number(const char *label, double value, double low, double high, const char *format, bool logarithmic,
+                Set set);
     template <class Set> void whole(const char *label, uint32_t value, uint32_t low, uint32_t high, Set set);
     template <class Set> void vector(const char *label, const double value[3], Set set);
     template <class Set>

@@ -97,7 +97,7 @@ void Window::start_imgui() {
     glfwSetScrollCallback(window_, [](GLFWwindow *window, double, double) { on_input(window); });
     glfwSetKeyCallback(window_, [](GLFWwindow *window, int key, int, int action, int) {
         on_input(window);
-        // Not by ImGui, which sees keys that are down when a frame begins only. In a text field Escape leaves the field.
+        // Not by ImGui, which sees only keys that are down when a frame begins. In a text field Escape leaves it.
         if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS && !ImGui::GetIO().WantTextInput) {
             glfwSetWindowShouldClose(window, GLFW_TRUE);
         }
