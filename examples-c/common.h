@@ -1,5 +1,5 @@
-/* common.h -- what the example programs, in C and C++, share: a table of command-line options, names of constants, a clock,
- * reports of failures. Needs libc and bhr.h only; knows no scene and makes no frame. */
+/* common.h -- what the example programs, in C and C++, share: a table of command-line options, names of constants, a
+ * clock, reports of failures. Needs libc and bhr.h only; knows no scene and makes no frame. */
 #ifndef EXAMPLES_COMMON_H
 #define EXAMPLES_COMMON_H
 
