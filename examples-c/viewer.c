@@ -187,11 +187,14 @@ static void update_title(Viewer *v) {
     if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
         return;
     }
-    char title[192], rate[32], gpu[32];
+    char title[192], rate[32], gpu[32], scale[32] = "";
     snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
     snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
-    snprintf(title, sizeof title, "bhr   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f", rate, gpu,
-             v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate);
+    if (is_moving(v) && v->governor.enabled && v->governor.scale < 1.0) {
+        snprintf(scale, sizeof scale, "   traced at %.0f %%", 100.0 * v->governor.scale);
+    }
+    snprintf(title, sizeof title, "bhr   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s", rate, gpu,
+             v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, scale);
     glfwSetWindowTitle(v->window, title);
     v->titled_at = v->now;
     v->frames_untitled = 0;
@@ -398,15 +401,16 @@ static int run(int argc, char **argv) {
         {"--size", OPTION_SIZE, s.size, "WxH", "of the window; default 1280x720", NULL},
         {"--mass", OPTION_DOUBLE, &o->mass, "M", "in scene lengths; default 1", NULL},
         {"--spin", OPTION_DOUBLE, &o->spin, "A", "a / M, -0.999 to 0.999; default 0.7", NULL},
-        {"--distance", OPTION_DOUBLE, &o->distance, "R", "camera's radius in M; default 24", NULL},
-        {"--azimuth", OPTION_DOUBLE, &o->azimuth, "DEG", "camera's azimuth about the spin axis; default -90", NULL},
+        {"--distance", OPTION_DOUBLE, &o->distance, "R", "camera's radius in M; default 34", NULL},
+        {"--azimuth", OPTION_DOUBLE, &o->azimuth, "DEG", "camera's azimuth about the spin axis; default 20", NULL},
         {"--elevation", OPTION_DOUBLE, &o->elevation, "DEG", "camera above the disk's plane; default 10", NULL},
-        {"--fov", OPTION_DOUBLE, &o->fov, "DEG", "vertical field of view, below 180; default 50", NULL},
+        {"--fov", OPTION_DOUBLE, &o->fov, "DEG", "vertical field of view, below 180; default 42", NULL},
         {"--motion", OPTION_CHOICE, &s.motion, NULL, "of the camera; default static", MOTIONS},
+        {"--disk-outer", OPTION_DOUBLE, &o->disk_outer, "R", "in M; default 15", NULL},
         {"--turbulence", OPTION_DOUBLE, &o->turbulence, "X", "structure of the disk, 0 to 1; default 0.8", NULL},
         {"--no-disk", OPTION_FLAG, &o->no_disk, NULL, "leaves the disk out", NULL},
         {"--no-stars", OPTION_FLAG, &o->no_sky, NULL, "makes the sky black", NULL},
-        {"--exposure", OPTION_DOUBLE, &o->exposure, "EV", "stops, -20 to 20; default 0", NULL},
+        {"--exposure", OPTION_DOUBLE, &o->exposure, "EV", "stops, -20 to 20; default 0.5", NULL},
         {"--view", OPTION_CHOICE, &o->view, NULL, "what a pixel shows; default light", VIEWS},
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
         {"--present", OPTION_CHOICE, &s.present, NULL, "how frames reach the screen; default vsync", PRESENT_MODES},

@@ -140,20 +140,30 @@ static void fly(Pilot *pilot, BhrCamera *camera, const BhrHoleInfo *info, double
     pilot->steered = 1;
 }
 
-static void turn_to_hole(Pilot *pilot, BhrCamera *camera, double part) {
-    double towards[3], axis[3], axis_length;
+/* Where the middle of the view looks, in the frame in which places and directions are given: a moving observer sees the
+ * hole where aberration has shifted it to, not where it lies. */
+static void seen_ahead(const BhrContext *context, const BhrCamera *camera, double out[3]) {
+    BhrRay    middle;
+    BhrStatus status = bhr_camera_ray(context, 2, 2, 1.0, 1.0, &middle);
+    memcpy(out, status >= 0 ? middle.direction : camera->forward, sizeof middle.direction);
+    scale(out, 1.0 / length(out));
+}
+
+static void turn_to_hole(Pilot *pilot, BhrCamera *camera, const BhrContext *context, double part) {
+    double ahead[3], towards[3], axis[3], axis_length;
+    seen_ahead(context, camera, ahead);
     memcpy(towards, camera->position, sizeof towards);
     scale(towards, -1.0 / length(towards));
-    cross(camera->forward, towards, axis);
+    cross(ahead, towards, axis);
     axis_length = length(axis);
-    double angle = atan2(axis_length, dot(camera->forward, towards));
+    double angle = atan2(axis_length, dot(ahead, towards));
     if (angle < SETTLED) {
         pilot->centring = 0;
         return;
     }
     if (axis_length < 1e-9) { /* straight away from the hole: any way round is as good */
         memcpy(axis, camera->up, sizeof axis);
-        axis_length = 1.0;
+        axis_length = length(axis);
     }
     scale(axis, 1.0 / axis_length);
     rotate(camera->forward, axis, part * angle);
@@ -293,14 +303,14 @@ static BhrStatus orbit(Pilot *pilot, Scene *scene, const BhrContext *context, do
 
 /* ---- a step ---- */
 
-static void steer(Pilot *pilot, Scene *scene, const BhrHoleInfo *info, double seconds) {
+static void steer(Pilot *pilot, Scene *scene, const BhrContext *context, const BhrHoleInfo *info, double seconds) {
     BhrCamera *camera = &scene->camera;
     turn_by_hand(pilot, camera, share(seconds, EASE_HAND));
     zoom_by_hand(pilot, camera, info, share(seconds, EASE_ZOOM));
     look_by_hand(pilot, camera, share(seconds, EASE_HAND));
     fly(pilot, camera, info, seconds);
     if (pilot->centring) {
-        turn_to_hole(pilot, camera, share(seconds, EASE_VIEW));
+        turn_to_hole(pilot, camera, context, share(seconds, EASE_VIEW));
     }
 }
 
@@ -320,11 +330,11 @@ BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, doub
         return status;
     }
     pilot->settling = 0;
-    steer(pilot, scene, &info, seconds);
+    steer(pilot, scene, context, &info, seconds);
     scene->camera.motion = pilot->motion;
     if (pilot->motion == BHR_MOTION_ORBIT && !is_on_circle(pilot, scene, &scene->camera, share(seconds, EASE_VIEW))) {
         scene->camera.motion = BHR_MOTION_STATIC;
-        pilot->settling = 1;
+        pilot->settling = pilot->centring = 1;
     }
     if (pilot->motion != BHR_MOTION_FREE_FALL) {
         pilot->fall_begin = 0.0;

@@ -79,6 +79,7 @@ static void cycle_motion(Viewer *v, double unused) {
                       : v->pilot.motion == BHR_MOTION_FREE_FALL ? BHR_MOTION_ORBIT
                                                                 : BHR_MOTION_STATIC;
     v->pilot.flying = 0;
+    v->pilot.centring = 1;
     v->pilot.steered = 1;
     SAY(v, "motion of the camera: %s", choice_name(MOTIONS, v->pilot.motion));
 }

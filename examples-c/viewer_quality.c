@@ -10,10 +10,11 @@
 
 #define SMALLEST_SCALE 0.1
 #define LOAD_TOO_HIGH 1.08 /* above: the scale falls */
-#define LOAD_EASY 0.65     /* of GPU time, below: the scale may rise; between the two nothing changes */
+#define LOAD_EASY 0.65     /* below: the scale can rise; between the two nothing changes, or a little more is tried */
 #define LOAD_AIMED_AT 0.85
 #define SMOOTHING 0.25
 #define RAISE 1.1
+#define LATE_FRAMES 3
 #define PATIENCE_LEAST 20
 #define PATIENCE_MOST 1200
 #define LONGEST_REFINEMENT 1.0 /* seconds: a hand that moves again must not wait longer */
@@ -25,6 +26,7 @@ void governor_init(Governor *governor, double display_rate) {
     const Governor fresh = {.enabled = 1,
                             .period = 1.0 / (display_rate > 0.0 ? display_rate : 60.0),
                             .scale = 1.0,
+                            .load = LOAD_AIMED_AT,
                             .patience = PATIENCE_LEAST};
     *governor = fresh;
 }
@@ -48,8 +50,8 @@ void governor_choose(const Governor *governor, int moving, BhrQuality *quality) 
 
 static void set_scale(Governor *governor, double scale) {
     governor->scale = fmax(SMALLEST_SCALE, fmin(1.0, scale));
-    governor->load = 0.0;
-    governor->easy_frames = 0;
+    governor->load = LOAD_AIMED_AT;
+    governor->late_frames = governor->easy_frames = 0;
 }
 
 static void raise(Governor *governor, double factor) {
@@ -57,40 +59,45 @@ static void raise(Governor *governor, double factor) {
     governor->just_raised = 2 * PATIENCE_LEAST;
 }
 
-static void lower(Governor *governor) {
+static void lower(Governor *governor, double load) {
     if (governor->just_raised > 0) {
         governor->patience = governor->patience < PATIENCE_MOST / 2 ? 2 * governor->patience : PATIENCE_MOST;
     }
     governor->just_raised = 0;
-    set_scale(governor, governor->scale * sqrt(LOAD_AIMED_AT / governor->load));
+    set_scale(governor, governor->scale * sqrt(LOAD_AIMED_AT / load));
 }
 
-static void hear_moving(Governor *governor, double seconds, double gpu_seconds) {
-    double cost = gpu_seconds;
-    /* A late frame counts whatever the GPU says: the time may go elsewhere. */
-    if (gpu_seconds == 0.0 || seconds > LOAD_TOO_HIGH * governor->period) {
-        cost = fmax(cost, seconds);
+/* A late frame may be an accident: the least late of several in a row says what the scale must fall by. */
+static void hear_late(Governor *governor, double load) {
+    governor->easy_frames = 0;
+    governor->least_late = governor->late_frames == 0 ? load : fmin(governor->least_late, load);
+    if (++governor->late_frames >= LATE_FRAMES && governor->scale > SMALLEST_SCALE) {
+        lower(governor, governor->least_late);
     }
-    double load = cost / governor->period;
-    governor->load = governor->load == 0.0 ? load : governor->load + SMOOTHING * (load - governor->load);
-    governor->resting_cost = cost / (governor->scale * governor->scale);
+}
+
+static void hear_in_time(Governor *governor, double load, int measured) {
+    governor->late_frames = 0;
+    governor->load += SMOOTHING * (load - governor->load);
     if (governor->just_raised > 0 && --governor->just_raised == 0) {
         governor->patience = PATIENCE_LEAST; /* it held */
     }
-    if (governor->load > LOAD_TOO_HIGH) {
+    const int room = governor->load < LOAD_EASY; /* for certain: even vsync did not lengthen these frames */
+    if (governor->scale >= 1.0 || (!room && measured)) {
         governor->easy_frames = 0;
-        /* One late frame is an accident, unless it is far too late. */
-        if (load > LOAD_TOO_HIGH && governor->scale > SMALLEST_SCALE) {
-            lower(governor);
-        }
-        return;
+    } else if (++governor->easy_frames >= (room ? PATIENCE_LEAST : governor->patience)) {
+        raise(governor, room ? sqrt(LOAD_AIMED_AT / governor->load) : RAISE);
     }
-    if (governor->scale >= 1.0 || (gpu_seconds > 0.0 && governor->load > LOAD_EASY)) {
-        governor->easy_frames = 0;
-        return;
-    }
-    if (++governor->easy_frames >= governor->patience) {
-        raise(governor, gpu_seconds > 0.0 ? fmin(2.0 * RAISE, sqrt(LOAD_AIMED_AT / governor->load)) : RAISE);
+}
+
+static void hear_moving(Governor *governor, double seconds, double gpu_seconds) {
+    const int measured = gpu_seconds > 0.0, late = seconds > LOAD_TOO_HIGH * governor->period;
+    /* A late frame counts whatever the GPU says: the time may go elsewhere. */
+    double cost = !measured ? seconds : late ? fmax(seconds, gpu_seconds) : gpu_seconds, load = cost / governor->period;
+    if (load > LOAD_TOO_HIGH) {
+        hear_late(governor, load);
+    } else {
+        hear_in_time(governor, load, measured);
     }
 }
 

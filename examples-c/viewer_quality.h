@@ -9,7 +9,9 @@ typedef struct Governor {
     int      enabled;
     double   period;       /* seconds between frames that it holds: 1 / the display's rate */
     double   scale;        /* BhrQuality.render_scale while moving */
-    double   load;         /* cost of a moving frame / period, smoothed; 0: not known yet */
+    double   load;         /* cost of a moving frame in time / period, smoothed */
+    int      late_frames;  /* in a row */
+    double   least_late;   /* their least load */
     int      easy_frames;  /* since the load last spoke against a larger scale */
     int      patience;     /* easy frames to wait for before a larger scale is tried */
     int      just_raised;  /* frames until a raise counts as a success */

@@ -5,11 +5,13 @@
 const SceneOptions SCENE_DEFAULTS = {
     .mass = 1.0,
     .spin = 0.7,
-    .distance = 24.0,
-    .azimuth = -90.0,
+    .distance = 34.0,
+    .azimuth = 20.0,
     .elevation = 10.0,
-    .fov = 50.0,
+    .fov = 42.0,
+    .disk_outer = 15.0,
     .turbulence = 0.8,
+    .exposure = 0.5,
     .view = BHR_VIEW_LIGHT,
 };
 
@@ -52,6 +54,7 @@ BhrStatus scene_init(Scene *scene, const SceneOptions *options) {
     scene->view = options->view;
     scene->has_disk = !options->no_disk;
     scene->has_sky = !options->no_sky;
+    scene->disk.outer_radius = options->disk_outer;
     scene->disk.turbulence = options->turbulence;
     scene->film.exposure_ev = options->exposure;
     scene->camera.fov_y = options->fov * PI / 180.0;

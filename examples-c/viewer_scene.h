@@ -26,7 +26,7 @@ typedef struct Scene {
 typedef struct SceneOptions {
     double  mass, spin;
     double  distance, azimuth, elevation, fov;
-    double  turbulence, exposure;
+    double  disk_outer, turbulence, exposure;
     int     no_disk, no_sky;
     int32_t view;
 } SceneOptions;
