@@ -226,7 +226,6 @@ static void hold(Viewer *v, double seconds) {
     const double end = wall_seconds() + seconds;
     v->still = 1;
     puts("holding");
-    fflush(stdout);
     while (!glfwWindowShouldClose(v->window) && !v->broken && wall_seconds() < end) {
         handle_events(v);
         turn(v);
@@ -295,7 +294,6 @@ static void print_what_renders(const BhrContext *context, int32_t backend) {
         printf("\nno GPU driver was usable, so the CPU traces the light; --verbose says why");
     }
     printf("\nH prints the keys, Esc quits\n");
-    fflush(stdout);
 }
 
 /* A context on an adapter that can present to the window. */
@@ -333,6 +331,7 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->tried_projection = v->scene.camera.projection;
     v->pilot.motion = s->motion;
     v->pilot.steered = 1;
+    v->pilot.centring = s->motion != BHR_MOTION_STATIC; /* aberration moves the hole aside */
     v->pace = FIRST_PACE;
     governor_init(&v->governor, display_rate());
     if (s->frames != 0) { /* the same frames on every machine */
@@ -440,6 +439,7 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what it says is read while it runs, from a file too */
     int result = run(argc, argv);
     if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
         fprintf(stderr, "cannot write to standard output\n");

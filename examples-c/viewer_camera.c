@@ -13,6 +13,7 @@
 #define FLIGHT 0.4       /* distances to the horizon per second */
 #define FAST_FLIGHT 1.6
 #define SETTLED 1e-5             /* radians, and of ln r: far below a pixel; then the rest is done at once */
+#define IN_PLANE 1e-3            /* radians, about a pixel: then the way into the plane ends with a step */
 #define NEAREST 1.02             /* of the radius where standing or orbiting ends */
 #define FARTHEST 2000.0          /* M */
 #define HIGHEST (89.0 * PI / 180.0) /* elevation: at the poles up has no direction */
@@ -248,7 +249,7 @@ static int is_on_circle(Pilot *pilot, const Scene *scene, BhrCamera *camera, dou
     if (scene->spin == 0.0 || elevation == 0.0) {
         return 1;
     }
-    int arrived = fabs(elevation) < SETTLED;
+    int arrived = fabs(elevation) < IN_PLANE;
     east(camera->position, axis);
     turn_about_hole(camera, axis, arrived ? elevation : part * elevation);
     if (arrived) {

@@ -307,7 +307,6 @@ void input_print_keys(void) {
         key_name(&KEYS[i], name, sizeof name);
         printf("  %-12s %s\n", name, KEYS[i].help);
     }
-    fflush(stdout);
 }
 
 /* ---- callbacks of GLFW ---- */
@@ -339,7 +338,6 @@ static void act(Viewer *v, const Key *key, double argument) {
         }
     } else if (v->said[0] != '\0') {
         puts(v->said);
-        fflush(stdout);
     }
     v->changed_at = v->now;
     v->dirty = 1;
