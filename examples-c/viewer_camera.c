@@ -17,6 +17,8 @@
 #define NEAREST 1.02             /* of the radius where standing or orbiting ends */
 #define FARTHEST 2000.0          /* M */
 #define HIGHEST (89.0 * PI / 180.0) /* elevation: at the poles up has no direction */
+#define EDGE_AT_REST 0.3         /* of the view's height: how far the shadow may reach before the gaze rises */
+#define GAZE_PER_SHADOW 1.3
 #define SECONDS_PER_E_FOLD 1.5   /* a fall is shown slowed down where it is faster than this */
 #define SINGULARITY 0.01         /* M: where a fall into a spin-0 hole ends */
 #define ABOVE_HORIZON 1.002      /* of r+: where a fall into a spinning hole ends */
@@ -116,6 +118,10 @@ static void zoom_by_hand(Pilot *pilot, BhrCamera *camera, const BhrHoleInfo *inf
 
 static void look_by_hand(Pilot *pilot, BhrCamera *camera, double part) {
     double right[3], yaw = take(&pilot->look[0], part), pitch = take(&pilot->look[1], part);
+    if (yaw != 0.0 || pitch != 0.0) {
+        pilot->looked_away = 1;
+        pilot->centring = 0;
+    }
     rotate(camera->forward, camera->up, -yaw);
     camera_right(camera, right);
     rotate(camera->forward, right, pitch);
@@ -141,32 +147,55 @@ static void fly(Pilot *pilot, BhrCamera *camera, const BhrHoleInfo *info, double
     pilot->steered = 1;
 }
 
-/* Where the middle of the view looks, in the frame in which places and directions are given: a moving observer sees the
- * hole where aberration has shifted it to, not where it lies. */
+/* Where the middle of the view looks, in the frame in which places and directions are given: an orbiting observer sees
+ * the hole where aberration has shifted it to, not where it lies. (A falling one moves along the line to the hole.) */
 static void seen_ahead(const BhrContext *context, const BhrCamera *camera, double out[3]) {
-    BhrRay    middle;
-    BhrStatus status = bhr_camera_ray(context, 2, 2, 1.0, 1.0, &middle);
-    memcpy(out, status >= 0 ? middle.direction : camera->forward, sizeof middle.direction);
+    BhrRay middle;
+    int    shifted = camera->motion == BHR_MOTION_ORBIT || camera->motion == BHR_MOTION_VELOCITY;
+    memcpy(out, camera->forward, sizeof middle.direction);
+    if (shifted && bhr_camera_ray(context, 2, 2, 1.0, 1.0, &middle) >= 0) {
+        memcpy(out, middle.direction, sizeof middle.direction);
+    }
     scale(out, 1.0 / length(out));
 }
 
-static void turn_to_hole(Pilot *pilot, BhrCamera *camera, const BhrContext *context, double part) {
-    double ahead[3], towards[3], axis[3], axis_length;
+/* Angular radius of the shadow that an observer falling from rest at infinity sees, spin 0, at any r: the look angle x
+ * from the hole with b(x) = r sin x / (1 - sqrt(2 M / r) cos x) = 3 sqrt(3) M, in Painleve-Gullstrand coordinates. With
+ * spin it is near enough to aim a view. */
+static double falling_shadow(double r) { /* M = 1 */
+    const double sine = 3.0 * sqrt(3.0) / r, cosine = sine * sqrt(2.0 / r);
+    const double peak = asin(fmin(1.0, sine / hypot(1.0, cosine)));
+    return (r > 3.0 ? peak : PI - peak) - atan(cosine);
+}
+
+/* How far above the hole's middle to look: close to the hole a fall would show nothing but black, so the gaze rises with
+ * the shadow's edge, and in the end above it. */
+static double gaze_above_hole(const Scene *scene) {
+    if (scene->camera.motion != BHR_MOTION_FREE_FALL) {
+        return 0.0;
+    }
+    double shadow = falling_shadow(length(scene->camera.position) / scene->mass);
+    return fmax(0.0, GAZE_PER_SHADOW * (shadow - EDGE_AT_REST * scene->camera.fov_y));
+}
+
+static void turn_to_hole(Pilot *pilot, Scene *scene, const BhrContext *context, double part) {
+    BhrCamera *camera = &scene->camera;
+    double     ahead[3], towards[3], right[3], axis[3];
     seen_ahead(context, camera, ahead);
     memcpy(towards, camera->position, sizeof towards);
     scale(towards, -1.0 / length(towards));
+    camera_right(camera, right);
+    rotate(towards, right, gaze_above_hole(scene));
     cross(ahead, towards, axis);
-    axis_length = length(axis);
-    double angle = atan2(axis_length, dot(ahead, towards));
+    double angle = atan2(length(axis), dot(ahead, towards));
     if (angle < SETTLED) {
         pilot->centring = 0;
         return;
     }
-    if (axis_length < 1e-9) { /* straight away from the hole: any way round is as good */
+    if (length(axis) < 1e-9) { /* straight away from it: any way round is as good */
         memcpy(axis, camera->up, sizeof axis);
-        axis_length = length(axis);
     }
-    scale(axis, 1.0 / axis_length);
+    scale(axis, 1.0 / length(axis));
     rotate(camera->forward, axis, part * angle);
     rotate(camera->up, axis, part * angle);
 }
@@ -310,8 +339,11 @@ static void steer(Pilot *pilot, Scene *scene, const BhrContext *context, const B
     zoom_by_hand(pilot, camera, info, share(seconds, EASE_ZOOM));
     look_by_hand(pilot, camera, share(seconds, EASE_HAND));
     fly(pilot, camera, info, seconds);
+    if (scene->camera.motion == BHR_MOTION_FREE_FALL && !pilot->looked_away) {
+        pilot->centring = 1; /* the gaze goes with the shadow */
+    }
     if (pilot->centring) {
-        turn_to_hole(pilot, camera, context, share(seconds, EASE_VIEW));
+        turn_to_hole(pilot, scene, context, share(seconds, EASE_VIEW));
     }
 }
 

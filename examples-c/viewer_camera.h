@@ -15,6 +15,7 @@ typedef struct Pilot {
     double    velocity[3]; /* free flight: the same axes, in distances to the horizon per second */
     int       flying;      /* free flight instead of orbiting by hand */
     int       centring;    /* the view turns to the hole */
+    int       looked_away; /* by hand: a fall leaves the view alone then */
     int       steered;     /* the orbit and the fall begin anew from here: position, mass or spin were changed */
     int       settling;    /* still levelling, or on the way to the plane of an orbit */
     BhrMotion motion;      /* asked for; Scene.camera.motion is what holds */

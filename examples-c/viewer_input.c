@@ -68,6 +68,11 @@ static void toggle_sky(Viewer *v, double unused) {
     SAY(v, "stars %s", v->scene.has_sky ? "on" : "off");
 }
 
+static void look_at_hole(Viewer *v) {
+    v->pilot.centring = 1;
+    v->pilot.looked_away = 0;
+}
+
 static void cycle_motion(Viewer *v, double unused) {
     BhrHoleInfo info = {.struct_size = sizeof info};
     (void)unused;
@@ -79,7 +84,7 @@ static void cycle_motion(Viewer *v, double unused) {
                       : v->pilot.motion == BHR_MOTION_FREE_FALL ? BHR_MOTION_ORBIT
                                                                 : BHR_MOTION_STATIC;
     v->pilot.flying = 0;
-    v->pilot.centring = 1;
+    look_at_hole(v);
     v->pilot.steered = 1;
     SAY(v, "motion of the camera: %s", choice_name(MOTIONS, v->pilot.motion));
 }
@@ -102,7 +107,7 @@ static void thrust_more(Viewer *v, double by) { v->pilot.boost += by; }
 
 static void centre_hole(Viewer *v, double unused) {
     (void)unused;
-    v->pilot.centring = 1;
+    look_at_hole(v);
 }
 
 static void cycle_view(Viewer *v, double unused) {

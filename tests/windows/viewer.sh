@@ -1,6 +1,6 @@
 # viewer.sh -- tests of examples-c/viewer in a window: started, driven with xdotool, looked at with ImageMagick. Functions
-# only, each one a test for `check` or a helper of them; needs tests/lib.sh's $scratch, an X server in DISPLAY without a
-# window manager, and $viewer, the program.
+# only, each one a test for `check` or a helper of them. Needs tests/lib.sh's $scratch, $viewer (the program), and an X
+# server in DISPLAY without a window manager; Xvfb with -noreset, as it is deaf for a moment after its last client left.
 # shellcheck shell=bash disable=SC2154
 
 viewer_log=$scratch/viewer.log
@@ -81,11 +81,13 @@ viewer_starts() {
     [ ! -s "$scratch/viewer-errors" ] && [ "$(viewer_colours "$scratch/viewer-first.png")" -gt 200 ]
 }
 
-# The driver's own checks, where its validation layers are installed, have nothing to say.
+# The driver's own checks, where its validation layers are installed, have nothing to say. Debian 12's do not know WGSL,
+# which naga names as the language of its shaders: that message is none about what the viewer does.
 viewer_is_valid() {
     "$viewer" --size 160x90 --frames 5 --validation 2>"$scratch/viewer-errors" || return 1
     cat -- "$scratch/viewer-errors"
-    ! grep -qi -e 'error' -e 'vuid' "$scratch/viewer-errors"
+    [ "$(grep -c 'VALIDATION \[' "$scratch/viewer-errors")" -eq \
+        "$(grep -c 'Invalid source language operand' "$scratch/viewer-errors")" ]
 }
 
 viewer_needs_display() {
