@@ -79,10 +79,14 @@ static int is_moving(const Viewer *v) {
            (time_runs(v) && (v->pilot.motion != BHR_MOTION_STATIC || scene_changes_with_time(&v->scene)));
 }
 
+/* All frames that a machine asked for are presented. */
+static int is_complete(const Viewer *v) { return v->most_frames != 0 && v->frames >= v->most_frames && !v->still; }
+
 static int is_visible(const Viewer *v) { return v->size[0] != 0 && v->size[1] != 0; }
 
 static int needs_frame(const Viewer *v) {
-    return is_visible(v) && (v->dirty || is_moving(v) || !governor_is_done(&v->governor, &v->scene.quality));
+    return is_visible(v) && !v->broken && !is_complete(v) &&
+           (v->dirty || is_moving(v) || !governor_is_done(&v->governor, &v->scene.quality));
 }
 
 /* Back to the scene of the last good frame, with everything that led away from it stopped. */
@@ -104,8 +108,8 @@ static void go_back(Viewer *v) {
 static void move(Viewer *v) {
     double now = wall_seconds(), seconds = fmin(now - v->now, LONGEST_STEP);
     v->now = now;
-    if (v->still) {
-        return;
+    if (v->still || is_complete(v) || (v->fixed_step > 0.0 && v->skipped)) {
+        return; /* every step of a machine's run is presented */
     }
     if (v->fixed_step > 0.0 || v->recorder.running) {
         seconds = v->fixed_step > 0.0 ? v->fixed_step : 1.0 / RECORDED_RATE;
@@ -203,7 +207,7 @@ static void update_title(Viewer *v) {
 /* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. */
 static void turn(Viewer *v) {
     move(v);
-    if (needs_frame(v) && !v->broken) {
+    if (needs_frame(v)) {
         draw(v);
         if (v->recorder.running) {
             recorder_add(&v->recorder, v->context);
@@ -212,10 +216,10 @@ static void turn(Viewer *v) {
     update_title(v);
 }
 
-/* Until the window is closed, or `frames` are presented (0: no limit). */
-static void show(Viewer *v, uint32_t frames) {
+/* Until the window is closed, or everything is shown. */
+static void show(Viewer *v) {
     v->now = wall_seconds();
-    while (!glfwWindowShouldClose(v->window) && !v->broken && (frames == 0 || v->frames < frames)) {
+    while (!glfwWindowShouldClose(v->window) && !v->broken && !is_complete(v)) {
         handle_events(v);
         turn(v);
     }
@@ -335,6 +339,7 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->pace = FIRST_PACE;
     governor_init(&v->governor, display_rate());
     if (s->frames != 0) { /* the same frames on every machine */
+        v->most_frames = s->frames;
         v->fixed_step = MACHINE_STEP;
         v->governor.enabled = 0;
     }
@@ -378,7 +383,7 @@ static int view(const Settings *s) {
     Viewer viewer = {0};
     int    good = start(&viewer, s);
     if (good) {
-        show(&viewer, s->frames);
+        show(&viewer);
         if (s->screenshot != NULL && !viewer.broken) {
             good = picture_save(viewer.context, viewer.size[0], viewer.size[1], s->screenshot);
         }

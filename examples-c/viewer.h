@@ -50,6 +50,7 @@ typedef struct Viewer {
     int      still;           /* nothing moves any more: --hold */
     int      dirty;           /* the window needs a frame even if the picture rests */
     int      broken;          /* it cannot go on; the reason was said */
+    uint64_t most_frames;     /* 0: no limit */
     double   fixed_step;      /* seconds of every step; 0: the wall clock's */
 } Viewer;
 

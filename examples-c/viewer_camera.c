@@ -12,6 +12,7 @@
 
 #define FLIGHT 0.4       /* distances to the horizon per second */
 #define FAST_FLIGHT 1.6
+#define STOPPED 3e-4
 #define SETTLED 1e-5             /* radians, and of ln r: far below a pixel; then the rest is done at once */
 #define IN_PLANE 1e-3            /* radians, about a pixel: then the way into the plane ends with a step */
 #define NEAREST 1.02             /* of the radius where standing or orbiting ends */
@@ -136,6 +137,9 @@ static void fly(Pilot *pilot, BhrCamera *camera, const BhrHoleInfo *info, double
     for (int i = 0; i < 3; i++) {
         double missing = speed * pilot->thrust[i] - pilot->velocity[i];
         pilot->velocity[i] += take(&missing, part);
+    }
+    if (length(pilot->thrust) == 0.0 && length(pilot->velocity) < STOPPED) {
+        memset(pilot->velocity, 0, sizeof pilot->velocity);
     }
     if (length(pilot->velocity) == 0.0 || height <= 0.0) {
         return;
