@@ -91,10 +91,9 @@ static int needs_frame(const Viewer *v) {
 
 /* Back to the scene of the last good frame, with everything that led away from it stopped. */
 static void go_back(Viewer *v) {
-    const Pilot idle = {.motion = v->pilot.motion, .steered = 1};
+    BhrMotion motion = v->good.camera.motion;
     v->scene = v->good;
-    v->pilot = idle;
-    v->pilot.motion = v->good.camera.motion == BHR_MOTION_VELOCITY ? BHR_MOTION_ORBIT : v->good.camera.motion;
+    pilot_stop(&v->pilot, motion == BHR_MOTION_VELOCITY ? BHR_MOTION_ORBIT : motion);
     v->tried_view = v->scene.view;
     v->paused = 1;
     v->dirty = 1;
@@ -171,6 +170,15 @@ static void draw(Viewer *v) {
     }
 }
 
+void viewer_apply_for_picture(Viewer *v) {
+    Scene picture = v->scene;
+    governor_choose_for_picture(&v->governor, &picture.quality);
+    BhrStatus status = scene_apply(&picture, v->context);
+    if (status < 0) {
+        report_failure("prepare a picture", status); /* then it is as fine as the window is */
+    }
+}
+
 /* Sleeps while there is nothing to do: a resting picture costs no power. */
 static void handle_events(Viewer *v) {
     if (!is_visible(v)) {
@@ -210,6 +218,7 @@ static void turn(Viewer *v) {
     if (needs_frame(v)) {
         draw(v);
         if (v->recorder.running) {
+            viewer_apply_for_picture(v);
             recorder_add(&v->recorder, v->context);
         }
     }

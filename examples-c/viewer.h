@@ -54,4 +54,7 @@ typedef struct Viewer {
     double   fixed_step;      /* seconds of every step; 0: the wall clock's */
 } Viewer;
 
+/* Readies the context for bhr_render_image: the scene of the window, not coarser than a picture to keep should be. */
+void viewer_apply_for_picture(Viewer *viewer);
+
 #endif

@@ -393,6 +393,12 @@ BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, doub
     return status;
 }
 
+void pilot_stop(Pilot *pilot, BhrMotion motion) {
+    Pilot idle = {.motion = motion, .steered = 1, .boost = pilot->boost};
+    memcpy(idle.thrust, pilot->thrust, sizeof idle.thrust);
+    *pilot = idle;
+}
+
 int pilot_is_moving(const Pilot *pilot) {
     return pilot->turn[0] != 0.0 || pilot->turn[1] != 0.0 || pilot->zoom != 0.0 || pilot->look[0] != 0.0 ||
            pilot->look[1] != 0.0 || pilot->centring || pilot->settling || length(pilot->velocity) != 0.0 ||

@@ -29,6 +29,9 @@ typedef struct Pilot {
  * scene is then half-way: go back to a copy. */
 BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, double seconds, double proper_time);
 
+/* Forgets everything that is not done yet, except for keys that are still held. */
+void pilot_stop(Pilot *pilot, BhrMotion motion);
+
 /* Whether the next step moves the camera when no time goes by. */
 int pilot_is_moving(const Pilot *pilot);
 

@@ -170,10 +170,9 @@ static void change_pace(Viewer *v, double factor) {
 }
 
 static void reset(Viewer *v, double unused) {
-    const Pilot idle = {.motion = BHR_MOTION_STATIC, .steered = 1};
     (void)unused;
     v->scene = v->first;
-    v->pilot = idle;
+    pilot_stop(&v->pilot, BHR_MOTION_STATIC);
     v->pace = FIRST_PACE;
     v->paused = 0;
     v->tried_view = v->scene.view;
@@ -184,6 +183,7 @@ static void reset(Viewer *v, double unused) {
 static void save_picture(Viewer *v, double unused) {
     (void)unused;
     if (v->size[0] != 0 && v->size[1] != 0) {
+        viewer_apply_for_picture(v);
         picture_save_numbered(v->context, v->size[0], v->size[1]);
     }
 }

@@ -19,6 +19,8 @@
 #define PATIENCE_MOST 1200
 #define LONGEST_REFINEMENT 1.0 /* seconds: a hand that moves again must not wait longer */
 
+#define PICTURE_SAMPLES 4
+
 static const unsigned REFINED_SAMPLES[] = {1, 4, 16};
 #define REFINEMENTS (sizeof REFINED_SAMPLES / sizeof REFINED_SAMPLES[0])
 
@@ -45,6 +47,12 @@ void governor_choose(const Governor *governor, int moving, BhrQuality *quality) 
     /* The user's choice counts where it is finer than ours at its end. */
     if (governor->refinement + 1 < REFINEMENTS || samples > quality->samples_per_pixel) {
         quality->samples_per_pixel = samples;
+    }
+}
+
+void governor_choose_for_picture(const Governor *governor, BhrQuality *quality) {
+    if (governor->enabled && quality->samples_per_pixel < PICTURE_SAMPLES) {
+        quality->samples_per_pixel = PICTURE_SAMPLES;
     }
 }
 

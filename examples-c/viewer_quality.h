@@ -24,6 +24,9 @@ void governor_init(Governor *governor, double display_rate);
 /* Lays scale and samples for the next frame over the user's quality. */
 void governor_choose(const Governor *governor, int moving, BhrQuality *quality);
 
+/* The same for a picture that is saved. */
+void governor_choose_for_picture(const Governor *governor, BhrQuality *quality);
+
 /* Hears what a presented frame cost: `seconds` from the last frame's end to this one's (0: there was a pause between),
  * gpu_seconds 0 where the adapter has no timestamps. */
 void governor_hear(Governor *governor, int moving, double seconds, double gpu_seconds);
