@@ -400,7 +400,10 @@ static int view(const Settings *s) {
             hold(&viewer, s->hold);
         }
     }
-    good = good && !viewer.broken;
+    if (viewer.broken) {
+        fprintf(stderr, "the viewer cannot go on\n");
+        good = 0;
+    }
     finish(&viewer);
     return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }
