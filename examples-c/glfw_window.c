@@ -5,7 +5,7 @@
 
 /* GLFW 3.4 holds X11 and Wayland in one library and says at run time which one a window is on; before, a library has
  * one of them, and nothing at compile time tells which: X11, unless EXAMPLES_GLFW_WAYLAND is defined. Each needs its
- * headers (Debian: libx11-dev and libxrandr-dev; libwayland-dev): EXAMPLES_NO_X11, EXAMPLES_NO_WAYLAND leave one out. */
+ * headers (Debian: libx11-dev, libxrandr-dev; libwayland-dev): EXAMPLES_NO_X11, EXAMPLES_NO_WAYLAND leave one out. */
 #define GLFW_CHOOSES_PLATFORM (GLFW_VERSION_MAJOR > 3 || (GLFW_VERSION_MAJOR == 3 && GLFW_VERSION_MINOR >= 4))
 
 #if defined(_WIN32)

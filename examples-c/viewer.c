@@ -1,6 +1,6 @@
 /* viewer.c -- a black hole in a window, to fly around in: how a host hands its window to bhr, presents frames, follows
- * sizes, and lives through a lost window or GPU. Its camera, scene, quality, input and pictures are in viewer_*.c. Lengths on
- * the command line are in units of the hole's mass M, angles in degrees. */
+ * sizes, and lives through a lost window or GPU. Its camera, scene, quality, input and pictures are in viewer_*.c.
+ * Lengths on the command line are in units of the hole's mass M, angles in degrees. */
 #include "viewer.h"
 #include "viewer_input.h"
 
@@ -8,12 +8,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LONGEST_STEP 0.1    /* seconds: after a stall the scene goes on from where it was */
-#define MACHINE_STEP (1.0 / 60.0) /* seconds between the frames of --frames */
-#define MOVING_FOR 0.2      /* seconds after a change by hand in which another one is likely */
-#define RESTING_WAIT 0.25   /* seconds between looks at a picture that rests, or cannot be seen */
+/* In seconds: */
+#define LONGEST_STEP 0.1          /* after a stall the scene goes on from where it was */
+#define MACHINE_STEP (1.0 / 60.0) /* between the frames of --frames */
+#define MOVING_FOR 0.2            /* after a change by hand another one is likely for so long */
+#define RESTING_WAIT 0.25         /* between looks at a picture that rests, or cannot be seen */
 #define TITLE_PERIOD 0.25
-#define MOST_FAILURES 3     /* frames in a row, before it gives up */
+#define MOST_FAILURES 3 /* frames in a row, before it gives up */
 
 typedef struct Settings {
     uint32_t     size[2];

@@ -5,24 +5,31 @@
 #include <string.h>
 
 /* Time constants in seconds: what is asked for is done by the share 1 - exp(-dt / constant). */
-#define EASE_HAND 0.07   /* short: the picture must hang on the mouse */
+#define EASE_HAND 0.07 /* short: the picture must hang on the mouse */
 #define EASE_ZOOM 0.12
 #define EASE_THRUST 0.25 /* long: a ship has weight */
 #define EASE_VIEW 0.35   /* turning to the hole, levelling */
 
-#define FLIGHT 0.4       /* distances to the horizon per second */
+/* What is asked for is done when less than this is left: */
+#define SETTLED 1e-5  /* radians, and of ln r: far below a pixel */
+#define IN_PLANE 1e-3 /* radians, about a pixel: the way into the plane of an orbit */
+#define STOPPED 3e-4  /* of free flight's speed */
+
+/* Free flight, in distances to the horizon per second. */
+#define FLIGHT 0.4
 #define FAST_FLIGHT 1.6
-#define STOPPED 3e-4
-#define SETTLED 1e-5             /* radians, and of ln r: far below a pixel; then the rest is done at once */
-#define IN_PLANE 1e-3            /* radians, about a pixel: then the way into the plane ends with a step */
-#define NEAREST 1.02             /* of the radius where standing or orbiting ends */
-#define FARTHEST 2000.0          /* M */
+
+/* Where a camera may be. */
+#define NEAREST 1.02                /* of the radius where standing or orbiting ends */
+#define FARTHEST 2000.0             /* M */
 #define HIGHEST (89.0 * PI / 180.0) /* elevation: at the poles up has no direction */
-#define EDGE_AT_REST 0.3         /* of the view's height: how far the shadow may reach before the gaze rises */
+#define SINGULARITY 0.01            /* M: where a fall into a spin-0 hole ends */
+#define ABOVE_HORIZON 1.002         /* of r+: where a fall into a spinning hole ends */
+
+/* How a fall is shown. */
+#define SECONDS_PER_E_FOLD 1.5 /* slowed down where it is faster than this */
+#define EDGE_AT_REST 0.3       /* of the view's height: how far the shadow reaches before the gaze rises */
 #define GAZE_PER_SHADOW 1.3
-#define SECONDS_PER_E_FOLD 1.5   /* a fall is shown slowed down where it is faster than this */
-#define SINGULARITY 0.01         /* M: where a fall into a spin-0 hole ends */
-#define ABOVE_HORIZON 1.002      /* of r+: where a fall into a spinning hole ends */
 
 /* ---- vectors ---- */
 
@@ -172,8 +179,8 @@ static double falling_shadow(double r) { /* M = 1 */
     return (r > 3.0 ? peak : PI - peak) - atan(cosine);
 }
 
-/* How far above the hole's middle to look: close to the hole a fall would show nothing but black, so the gaze rises with
- * the shadow's edge, and in the end above it. */
+/* How far above the hole's middle to look: close to the hole a fall would show nothing but black, so the gaze rises
+ * with the shadow's edge, and in the end above it. */
 static double gaze_above_hole(const Scene *scene) {
     if (scene->camera.motion != BHR_MOTION_FREE_FALL) {
         return 0.0;
@@ -271,7 +278,8 @@ static BhrStatus fall(Pilot *pilot, Scene *scene, const BhrContext *context, con
     } else if (radius >= 0.999 * FARTHEST * scene->mass && proper_time < 0.0) {
         return BHR_OK; /* time runs backward, and the fall came from infinity */
     }
-    BhrStatus status = bhr_camera_advance(context, &scene->camera, slow_motion(scene, info, seconds, proper_time), &time);
+    proper_time = slow_motion(scene, info, seconds, proper_time);
+    BhrStatus status = bhr_camera_advance(context, &scene->camera, proper_time, &time);
     scene->time += time;
     return status;
 }

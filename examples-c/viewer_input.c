@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#define DRAG_PER_HEIGHT PI       /* radians about the hole when the mouse is dragged over the window's height */
+#define DRAG_PER_HEIGHT PI /* radians about the hole when the mouse is dragged over the window's height */
 #define ZOOM_PER_NOTCH 0.18      /* of ln(r - r_horizon) */
 #define LARGEST_SPIN 0.998       /* a disk's own light keeps a hole from turning faster (Thorne 1974) */
 #define FASTEST_PACE 1e4         /* M per second */

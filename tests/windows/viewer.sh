@@ -1,6 +1,7 @@
-# viewer.sh -- tests of examples-c/viewer in a window: started, driven with xdotool, looked at with ImageMagick. Functions
-# only, each one a test for `check` or a helper of them. Needs tests/lib.sh's $scratch, $viewer (the program), and an X
-# server in DISPLAY without a window manager; Xvfb with -noreset, as it is deaf for a moment after its last client left.
+# viewer.sh -- tests of examples-c/viewer in a window: started, driven with xdotool, looked at with ImageMagick.
+# Functions only, each one a test for `check` or a helper of them. Needs tests/lib.sh's $scratch, $viewer (the program),
+# and an X server in DISPLAY without a window manager; Xvfb with -noreset, as it is deaf for a moment after its last
+# client has left.
 # shellcheck shell=bash disable=SC2154
 
 viewer_log=$scratch/viewer.log
@@ -127,8 +128,8 @@ viewer_takes_mouse() {
     viewer_equal "$scratch/mouse-1.png" "$scratch/mouse-2.png" && return 1
     viewer_until 10 viewer_title_says 'r 34 M' || return 1
     xdotool click 4 click 4 click 4 && viewer_until 20 viewer_title_says 'r 20.* M' || { viewer_title; return 1; }
-    xdotool key f keydown w && sleep 2 && xdotool keyup w && viewer_until 20 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' ||
-        { viewer_title; return 1; }
+    xdotool key f keydown w && sleep 2 && xdotool keyup w &&
+        viewer_until 20 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' || { viewer_title; return 1; }
     viewer_close
 }
 
