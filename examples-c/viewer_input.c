@@ -5,12 +5,12 @@
 #include <math.h>
 #include <string.h>
 
-#define DRAG_PER_HEIGHT PI /* radians about the hole when the mouse is dragged over the window's height */
-#define ZOOM_PER_NOTCH 0.18      /* of ln(r - r_horizon) */
-#define LARGEST_SPIN 0.998       /* a disk's own light keeps a hole from turning faster (Thorne 1974) */
-#define FASTEST_PACE 1e4         /* M per second */
+#define DRAG_PER_HEIGHT PI  /* radians about the hole when the mouse is dragged over the window's height */
+#define ZOOM_PER_NOTCH 0.18 /* of ln(r - r_horizon) */
+#define LARGEST_SPIN 0.998  /* a disk's own light keeps a hole from turning faster (Thorne 1974) */
+#define FASTEST_PACE 1e4    /* M per second */
 
-/* ---- what keys do: each changes the scene or a wish and says so; input_key asks bhr whether it agrees ---- */
+/* ---- what keys do: each changes the scene or a wish and says so; `act` asks bhr whether it agrees ---- */
 
 #define SAY(viewer, ...) snprintf((viewer)->said, SAID, __VA_ARGS__)
 
