@@ -21,7 +21,7 @@ typedef struct Settings {
     SceneOptions scene;
     int32_t      motion, backend, present;
     uint32_t     frames;
-    double       hold;
+    double       rate, hold;
     const char  *screenshot;
     int          validation, verbose, help;
 } Settings;
@@ -331,6 +331,12 @@ static int open_context(Viewer *v, const Settings *s) {
     return 1;
 }
 
+/* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
+static int is_software(const BhrContext *context) {
+    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    return bhr_context_adapter(context, &adapter) >= 0 && (adapter.flags & BHR_ADAPTER_SOFTWARE);
+}
+
 static int set_first_scene(Viewer *v, const Settings *s) {
     BhrStatus status = scene_init(&v->scene, &s->scene);
     if (status >= 0) {
@@ -347,7 +353,7 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->pilot.steered = 1;
     v->pilot.centring = s->motion != BHR_MOTION_STATIC; /* aberration moves the hole aside */
     v->pace = FIRST_PACE;
-    governor_init(&v->governor, display_rate());
+    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
     if (s->frames != 0) { /* the same frames on every machine */
         v->most_frames = s->frames;
         v->fixed_step = MACHINE_STEP;
@@ -431,6 +437,7 @@ static int run(int argc, char **argv) {
         {"--view", OPTION_CHOICE, &o->view, NULL, "what a pixel shows; default light", VIEWS},
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
         {"--present", OPTION_CHOICE, &s.present, NULL, "how frames reach the screen; default vsync", PRESENT_MODES},
+        {"--rate", OPTION_DOUBLE, &s.rate, "FPS", "that the quality gives way to; default the display's", NULL},
         {"--frames", OPTION_UINT, &s.frames, "N", "ends after N frames, 1/60 s of the scene apart", NULL},
         {"--screenshot", OPTION_TEXT, &s.screenshot, "FILE", "saves the last picture, .png or .ppm", NULL},
         {"--hold", OPTION_DOUBLE, &s.hold, "SECONDS", "keeps the last picture before it ends", NULL},

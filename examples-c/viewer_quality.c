@@ -24,10 +24,10 @@
 static const unsigned REFINED_SAMPLES[] = {1, 4, 16};
 #define REFINEMENTS (sizeof REFINED_SAMPLES / sizeof REFINED_SAMPLES[0])
 
-void governor_init(Governor *governor, double display_rate) {
+void governor_init(Governor *governor, double rate, double scale) {
     const Governor fresh = {.enabled = 1,
-                            .period = 1.0 / (display_rate > 0.0 ? display_rate : 60.0),
-                            .scale = 1.0,
+                            .period = 1.0 / (rate > 0.0 ? rate : 60.0),
+                            .scale = fmax(SMALLEST_SCALE, fmin(1.0, scale)),
                             .load = LOAD_AIMED_AT,
                             .patience = PATIENCE_LEAST};
     *governor = fresh;

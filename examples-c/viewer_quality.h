@@ -7,7 +7,7 @@
 
 typedef struct Governor {
     int      enabled;
-    double   period;       /* seconds between frames that it holds: 1 / the display's rate */
+    double   period;       /* seconds between frames that it holds */
     double   scale;        /* BhrQuality.render_scale while moving */
     double   load;         /* cost of a moving frame in time / period, smoothed */
     int      late_frames;  /* in a row */
@@ -19,7 +19,8 @@ typedef struct Governor {
     double   resting_cost; /* seconds of a frame with one sample at whole scale; 0: not known */
 } Governor;
 
-void governor_init(Governor *governor, double display_rate);
+/* `rate` in frames per second; `scale` to begin with, 0.1 .. 1. */
+void governor_init(Governor *governor, double rate, double scale);
 
 /* Lays scale and samples for the next frame over the user's quality. */
 void governor_choose(const Governor *governor, int moving, BhrQuality *quality);
