@@ -14,6 +14,7 @@
 #define LOAD_AIMED_AT 0.85
 #define SMOOTHING 0.25
 #define RAISE 1.1
+#define SAME 0.98 /* scales nearer than this to each other are one */
 #define LATE_FRAMES 3
 #define PATIENCE_LEAST 20
 #define PATIENCE_MOST 1200
@@ -29,6 +30,7 @@ void governor_init(Governor *governor, double rate, double scale) {
                             .period = 1.0 / (rate > 0.0 ? rate : 60.0),
                             .scale = fmax(SMALLEST_SCALE, fmin(1.0, scale)),
                             .load = LOAD_AIMED_AT,
+                            .ceiling = 2.0,
                             .patience = PATIENCE_LEAST};
     *governor = fresh;
 }
@@ -63,16 +65,26 @@ static void set_scale(Governor *governor, double scale) {
 }
 
 static void raise(Governor *governor, double factor) {
-    set_scale(governor, governor->scale * factor);
+    governor->before_raise = governor->scale;
     governor->just_raised = 2 * PATIENCE_LEAST;
+    set_scale(governor, governor->scale * factor);
+}
+
+static void forget_ceiling(Governor *governor) {
+    governor->ceiling = 2.0;
+    governor->patience = PATIENCE_LEAST;
 }
 
 static void lower(Governor *governor, double load) {
-    if (governor->just_raised > 0) {
+    if (governor->just_raised > 0) { /* that was too much: back, and not so soon again */
+        governor->ceiling = governor->scale;
         governor->patience = governor->patience < PATIENCE_MOST / 2 ? 2 * governor->patience : PATIENCE_MOST;
+        set_scale(governor, governor->before_raise);
+    } else { /* the scene has become dearer */
+        forget_ceiling(governor);
+        set_scale(governor, governor->scale * sqrt(LOAD_AIMED_AT / load));
     }
     governor->just_raised = 0;
-    set_scale(governor, governor->scale * sqrt(LOAD_AIMED_AT / load));
 }
 
 /* A late frame may be an accident: the least late of several in a row says what the scale must fall by. */
@@ -87,14 +99,18 @@ static void hear_late(Governor *governor, double load) {
 static void hear_in_time(Governor *governor, double load, int measured) {
     governor->late_frames = 0;
     governor->load += SMOOTHING * (load - governor->load);
-    if (governor->just_raised > 0 && --governor->just_raised == 0) {
-        governor->patience = PATIENCE_LEAST; /* it held */
+    if (governor->just_raised > 0 && --governor->just_raised == 0 && governor->scale >= SAME * governor->ceiling) {
+        forget_ceiling(governor); /* it held */
     }
     const int room = governor->load < LOAD_EASY; /* for certain: even vsync did not lengthen these frames */
     if (governor->scale >= 1.0 || (!room && measured)) {
         governor->easy_frames = 0;
-    } else if (++governor->easy_frames >= (room ? PATIENCE_LEAST : governor->patience)) {
-        raise(governor, room ? sqrt(LOAD_AIMED_AT / governor->load) : RAISE);
+        return;
+    }
+    const double factor = room ? sqrt(LOAD_AIMED_AT / governor->load) : RAISE;
+    const int    known = room || governor->scale * factor < SAME * governor->ceiling;
+    if (++governor->easy_frames >= (known ? PATIENCE_LEAST : governor->patience)) {
+        raise(governor, factor);
     }
 }
 

@@ -13,7 +13,9 @@ typedef struct Governor {
     int      late_frames;  /* in a row */
     double   least_late;   /* their least load */
     int      easy_frames;  /* since the load last spoke against a larger scale */
-    int      patience;     /* easy frames to wait for before a larger scale is tried */
+    double   ceiling;      /* the scale that was too large when it was tried last */
+    int      patience;     /* easy frames to wait for before it is tried again */
+    double   before_raise; /* the scale before the last raise */
     int      just_raised;  /* frames until a raise counts as a success */
     unsigned refinement;   /* of the resting picture: 0 none, 1 whole scale, 2 .. more samples */
     double   resting_cost; /* seconds of a frame with one sample at whole scale; 0: not known */
