@@ -351,7 +351,6 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->tried_projection = v->scene.camera.projection;
     v->pilot.motion = s->motion;
     v->pilot.steered = 1;
-    v->pilot.centring = s->motion != BHR_MOTION_STATIC; /* aberration moves the hole aside */
     v->pace = FIRST_PACE;
     governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
     if (s->frames != 0) { /* the same frames on every machine */

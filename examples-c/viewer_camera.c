@@ -374,12 +374,13 @@ BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, doub
     if (status < 0) {
         return status;
     }
+    const BhrMotion before = scene->camera.motion;
     pilot->settling = 0;
     steer(pilot, scene, context, &info, seconds);
     scene->camera.motion = pilot->motion;
     if (pilot->motion == BHR_MOTION_ORBIT && !is_on_circle(pilot, scene, &scene->camera, share(seconds, EASE_VIEW))) {
         scene->camera.motion = BHR_MOTION_STATIC;
-        pilot->settling = pilot->centring = 1;
+        pilot->settling = 1;
     }
     if (pilot->motion != BHR_MOTION_FREE_FALL) {
         pilot->fall_begin = 0.0;
@@ -395,6 +396,9 @@ BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, doub
     default:
         status = stand(scene, context, proper_time);
         break;
+    }
+    if (scene->camera.motion != before && !pilot->looked_away && !pilot->flying) {
+        pilot->centring = 1; /* aberration has moved the hole aside */
     }
     upright(pilot, scene, seconds);
     pilot->steered = 0;
