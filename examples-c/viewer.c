@@ -180,14 +180,27 @@ void viewer_apply_for_picture(Viewer *v) {
     }
 }
 
+/* Seconds until the display wants the next frame. Some displays, as one without a screen, do not hold frames back: what
+ * nobody would see is not rendered. */
+static double spare_time(const Viewer *v) {
+    if (v->present == BHR_PRESENT_IMMEDIATE || v->fixed_step > 0.0 || v->recorder.running || v->presented_at == 0.0) {
+        return 0.0;
+    }
+    double spare = 0.9 * v->governor.period - (wall_seconds() - v->presented_at);
+    return spare > 0.5 * v->governor.period ? spare : 0.0; /* less may be the display's own rhythm: leave it alone */
+}
+
 /* Sleeps while there is nothing to do: a resting picture costs no power. */
 static void handle_events(Viewer *v) {
+    const double spare = spare_time(v);
     if (!is_visible(v)) {
         glfwWaitEvents();
     } else if (v->skipped || !needs_frame(v)) {
         v->presented_at = 0.0;
         glfwWaitEventsTimeout(RESTING_WAIT);
         v->now = wall_seconds(); /* the scene did not move meanwhile */
+    } else if (spare > 0.0) {
+        glfwWaitEventsTimeout(spare);
     } else {
         glfwPollEvents();
     }

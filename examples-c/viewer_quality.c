@@ -14,6 +14,8 @@
 #define LOAD_AIMED_AT 0.85
 #define SMOOTHING 0.25
 #define RAISE 1.1
+#define BOLD_RAISE 1.3    /* as long as that is not known to be too much */
+#define MOST_LOWERING 0.5 /* the machine may only have stumbled */
 #define SAME 0.98 /* scales nearer than this to each other are one */
 #define LATE_FRAMES 3
 #define PATIENCE_LEAST 20
@@ -82,7 +84,7 @@ static void lower(Governor *governor, double load) {
         set_scale(governor, governor->before_raise);
     } else { /* the scene has become dearer */
         forget_ceiling(governor);
-        set_scale(governor, governor->scale * sqrt(LOAD_AIMED_AT / load));
+        set_scale(governor, governor->scale * fmax(MOST_LOWERING, sqrt(LOAD_AIMED_AT / load)));
     }
     governor->just_raised = 0;
 }
@@ -107,7 +109,8 @@ static void hear_in_time(Governor *governor, double load, int measured) {
         governor->easy_frames = 0;
         return;
     }
-    const double factor = room ? sqrt(LOAD_AIMED_AT / governor->load) : RAISE;
+    const double blind = governor->scale * BOLD_RAISE < SAME * governor->ceiling ? BOLD_RAISE : RAISE;
+    const double factor = room ? sqrt(LOAD_AIMED_AT / governor->load) : blind;
     const int    known = room || governor->scale * factor < SAME * governor->ceiling;
     if (++governor->easy_frames >= (known ? PATIENCE_LEAST : governor->patience)) {
         raise(governor, factor);

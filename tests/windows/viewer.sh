@@ -133,6 +133,32 @@ viewer_takes_mouse() {
     viewer_close
 }
 
+# With time stopped the picture is refined, and then costs nothing: less than a tenth of a core.
+viewer_rests() {
+    viewer_open --size 320x180 && xdotool key space || return 1
+    viewer_until 60 viewer_title_says 'at rest' && sleep 2 || return 1
+    local before after
+    before=$(viewer_ticks) && sleep 3 && after=$(viewer_ticks) && echo "$((after - before)) ticks in 3 s" || return 1
+    [ $((after - before)) -lt $((3 * $(getconf CLK_TCK) / 10)) ] && viewer_close
+}
+viewer_ticks() { awk '{ print $14 + $15 }' "/proc/$viewer_pid/stat"; }
+
+# A fall into a hole without spin goes on inside and begins again; one into a spinning hole ends above its horizon.
+# Orbits near the hole, in the plane and inclined. Every frame of all that can be rendered.
+viewer_falls_and_orbits() {
+    local spin
+    for spin in 0 0.9; do
+        "$viewer" --size 64x36 --spin "$spin" --motion freefall --distance 4 --frames 900 >"$scratch/fall" 2>&1 || {
+            cat -- "$scratch/fall"
+            return 1
+        }
+        cat -- "$scratch/fall"
+        grep -q 'begins again' "$scratch/fall" || return 1
+        "$viewer" --size 64x36 --spin "$spin" --motion orbit --distance 4 --frames 300 >"$scratch/orbit" 2>&1 &&
+            ! grep 'cannot' "$scratch/orbit" "$scratch/fall" || return 1
+    done
+}
+
 # Ten sizes; after each the window shows a picture of that size.
 viewer_resizes() {
     viewer_open --size 320x180 || return 1
