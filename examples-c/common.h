@@ -61,6 +61,7 @@ void print_adapter(FILE *out, const BhrAdapterInfo *info);              /* one l
 /* ---- the process ---- */
 double wall_seconds(void);         /* monotonic; only differences mean something */
 int    is_terminal(FILE *stream);
+int    make_folder(const char *path); /* 1; 0 with errno when it could not be made, EEXIST when there is one */
 
 #ifdef __cplusplus
 }
