@@ -218,9 +218,8 @@ impl XWindow {
         let mut surface = null_mut();
         let [width, height] = SIZE.map(u32::from);
         // SAFETY: the window outlives the surfaces of these tests.
-        let status = unsafe {
-            bhr_surface_create(context.0, &window, width, height, BHR_PRESENT_IMMEDIATE, &mut surface)
-        };
+        let status =
+            unsafe { bhr_surface_create(context.0, &window, width, height, BHR_PRESENT_IMMEDIATE, &mut surface) };
         assert_eq!(status, BHR_OK, "{}", message());
         surface
     }
@@ -238,8 +237,8 @@ fn a_window_is_shown_again_after_the_recovery() {
         for round in 0..3 {
             assert_eq!(bhr_render_surface(context.0, surface), BHR_OK, "{}", message());
             context.lose_device();
-            assert_eq!(bhr_render_surface(context.0, surface), BHR_ERROR_DEVICE_LOST);
-            assert_eq!(bhr_render_surface(context.0, surface), BHR_ERROR_DEVICE_LOST);
+            assert_eq!(bhr_render_surface(context.0, surface), BHR_ERROR_DEVICE_LOST, "{}", message());
+            assert_eq!(bhr_render_surface(context.0, surface), BHR_ERROR_DEVICE_LOST, "{}", message());
             context.recover();
             assert_eq!(bhr_render_surface(context.0, surface), BHR_ERROR_SURFACE_LOST);
             assert_eq!(bhr_surface_resize(surface, 10, 10), BHR_ERROR_SURFACE_LOST);
