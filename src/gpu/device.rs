@@ -123,7 +123,7 @@ impl Device {
         let done = work(&self.raw);
         let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
         match errors.into_iter().flatten().next() {
-            Some(error) => Err(from_wgpu(what, &error)),
+            Some(error) => Err(self.explain(from_wgpu(what, &error))),
             None => self.check().map(|()| done),
         }
     }
@@ -178,6 +178,13 @@ impl Device {
             }
             self.check()?;
         }
+    }
+
+    /// An error that may come from the device's loss, of which wgpu tells only once all that was submitted has ended: the loss, if so.
+    pub(super) fn explain(&self, error: Error) -> Error {
+        let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
+        let looked = self.poll(all).and_then(|_| self.check());
+        looked.err().unwrap_or(error)
     }
 
     /// Whether `submission` has run. Errors: `DeviceLost`.

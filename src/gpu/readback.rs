@@ -116,7 +116,7 @@ impl Copied {
     ) -> Result<T> {
         let mapping = Mapping::request(device, self.staging.buffer()?, self.size)?;
         device.wait(submission)?;
-        mapping.read(take)
+        mapping.read(device, take)
     }
 }
 
@@ -141,8 +141,8 @@ impl<'a> Mapping<'a> {
     }
 
     /// Once the copy into the buffer is done.
-    fn read<T>(self, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
-        let failed = |why: &dyn std::fmt::Display| Error::internal(format!("mapping a buffer: {why}"));
+    fn read<T>(self, device: &Device, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
+        let failed = |why: &dyn std::fmt::Display| device.explain(Error::internal(format!("mapping a buffer: {why}")));
         match self.outcome.try_recv() {
             Ok(Ok(())) => take(&self.buffer.get_mapped_range(0..self.size).map_err(|error| failed(&error))?),
             Ok(Err(error)) => Err(failed(&error)),
