@@ -4,7 +4,7 @@
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Adapter, GpuTracer, Search};
-use crate::image::{ImageMut, PixelFormat};
+use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::job::{Job, Order, ThreadScope, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
@@ -179,6 +179,7 @@ pub struct Renderer {
     gpu: Option<(Arc<Adapter>, Arc<gpu::Device>)>,
     tracer: SharedTracer,
     stats: StatsBoard,
+    copiers: Arc<Copiers>,
     /// From the first job on.
     worker: Option<Worker>,
     /// Made for this renderer, and perhaps still there.
@@ -205,6 +206,7 @@ impl Renderer {
             gpu: tracer.gpu(),
             tracer: Arc::new(Mutex::new(tracer)),
             stats: StatsBoard::default(),
+            copiers: Arc::default(),
             worker: None,
             surfaces: Vec::new(),
         })
@@ -372,6 +374,13 @@ impl Renderer {
         Ok(FrameRequest { width, height, region, format, transparent })
     }
 
+    /// A GPU's frames come out of its staging memory faster than one thread writes them; the CPU tracer's are what its threads wait for.
+    fn help_to_write(&self, target: &mut ImageMut<'_>) {
+        if self.gpu.is_some() {
+            target.write_with(self.copiers.clone());
+        }
+    }
+
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
@@ -386,6 +395,7 @@ impl Renderer {
     ) -> Result<()> {
         let start = Instant::now();
         let request = self.request(target, transparent, region)?;
+        self.help_to_write(target);
         let mut written = 0_u64;
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
             written += u64::from(tile.width) * u64::from(tile.height);
@@ -411,7 +421,7 @@ impl Renderer {
     /// a thread; DEVICE_LOST.
     pub fn render_in_background(
         &mut self,
-        target: ImageMut<'static>,
+        mut target: ImageMut<'static>,
         transparent: bool,
         region: Option<Region>,
         scope: impl FnOnce() -> ThreadScope,
@@ -419,6 +429,7 @@ impl Renderer {
         let request = self.request(&target, transparent, region)?;
         self.scene.lens(&request.region)?;
         self.check_device()?;
+        self.help_to_write(&mut target);
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new(scope())?),

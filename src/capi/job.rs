@@ -93,7 +93,8 @@ pub unsafe extern "C" fn bhr_render_image_async(
             let target = image::read(target, "target")?;
             let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
             let of_thread = sink.clone();
-            let scope = || -> crate::job::ThreadScope { Box::new(|| Box::new(log::Scope::enter(of_thread))) };
+            let scope =
+                || -> crate::job::ThreadScope { Arc::new(move || Box::new(log::Scope::enter(of_thread.clone()))) };
             let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region, scope)?;
             let job = BhrJob { job, progress: state.progress, progress_gate, sink, broken };
             out.set(Box::into_raw(Box::new(job)));

@@ -111,9 +111,10 @@ impl Device {
         lock(&self.health.stray).take().map_or(Ok(()), Err)
     }
 
-    /// [`Self::check`] after a failure: wgpu refuses work for a lost device before it calls back to say that it is lost.
+    /// [`Self::check`] after a failure: of a loss wgpu tells only once all that was submitted has ended.
     pub(super) fn check_anew(&self) -> Result<()> {
-        let _ = self.poll(wgpu::PollType::Poll)?;
+        let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
+        let _ = self.poll(all)?;
         self.check()
     }
 
@@ -128,11 +129,10 @@ impl Device {
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
         let done = work(&self.raw);
         let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
-        if let Some(error) = errors.into_iter().flatten().next() {
-            self.check_anew()?;
-            return Err(from_wgpu(what, &error));
+        match errors.into_iter().flatten().next() {
+            Some(error) => Err(self.explain(from_wgpu(what, &error))),
+            None => self.check().map(|()| done),
         }
-        self.check().map(|()| done)
     }
 
     /// [`Self::scoped`] for calls that panic, about windows. A panic is `DeviceLost` if the device is gone, else `SurfaceLost`.
@@ -185,6 +185,11 @@ impl Device {
             }
             self.check()?;
         }
+    }
+
+    /// An error that may come from the device's loss: the loss, if so.
+    pub(super) fn explain(&self, error: Error) -> Error {
+        self.check_anew().err().unwrap_or(error)
     }
 
     /// Whether `submission` has run. Errors: `DeviceLost`.

@@ -9,7 +9,7 @@ use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
-use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, read_time, variant};
+use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, timer, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::physics::trace::Settings;
@@ -36,8 +36,7 @@ pub struct FrameBuffers {
     fixed: Option<FixedBuffers>,
     sized: Option<SizedBuffers>,
     makers: RecordMakers,
-    pixels: Readback,
-    steps: Readback,
+    readback: Readback,
     timer: Option<GpuTimer>,
 }
 
@@ -125,11 +124,17 @@ pub struct BegunFrame {
 /// A submission that has not been read yet.
 pub struct Submitted {
     submission: wgpu::SubmissionIndex,
-    pixels: Option<(Tile, Copied)>,
+    /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
+    copied: Copied,
+    tick_bytes: u64,
+    tile: Option<Tile>,
     row_bytes: usize,
-    steps: Copied,
-    time: Option<Copied>,
 }
+
+/// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device.
+const TICKS: u64 = 0;
+const STEPS: u64 = 64;
+const PIXELS: u64 = 256;
 
 /// What a frame is set up with before its tiles run.
 struct Setup {
@@ -339,7 +344,7 @@ impl GpuTracer {
             taking.dispatch(&mut pass, 0, tile);
         }
         let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
-        let copied = buffers.pixels.copy(device, &mut encoder, &sized.packed, bytes)?;
+        let copied = buffers.readback.copy(device, &mut encoder, &sized.packed, bytes)?;
         let submission = device.submit(encoder)?;
         copied.read(device, &submission, |bytes| Ok(bytes.chunks_exact(EXPORT_BYTES as usize).map(imported).collect()))
     }
@@ -551,23 +556,20 @@ impl FrameBuffers {
                 develop[(frame.samples as usize - 1) % 2].dispatch(&mut pass, 0, size);
             }
         }
-        let time = match &mut self.timer {
-            Some(timer) => timer.finish(device, &mut encoder)?,
-            None => None,
-        };
-        let steps =
-            self.steps.copy(device, &mut encoder, self.makers.steps(frame.source, &fixed.step_sum), STEP_SUM)?;
         let row_bytes = tile.width as usize * frame.request.format.bytes_per_pixel();
-        let pixels = match (&self.sized, last && frame.to_host) {
-            (Some(sized), true) => {
-                let bytes = row_bytes as u64 * u64::from(tile.height);
-                Some((tile, self.pixels.copy(device, &mut encoder, &sized.packed, bytes)?))
-            }
-            _ => None,
-        };
+        let pixel_bytes = if last && frame.to_host { row_bytes as u64 * u64::from(tile.height) } else { 0 };
+        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
+        let staging = self.readback.staging(device, size)?;
+        let to = staging.buffer()?;
+        encoder.copy_buffer_to_buffer(self.makers.steps(frame.source, &fixed.step_sum), 0, to, STEPS, STEP_SUM);
+        let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
+        if let (Some(sized), true) = (&self.sized, pixel_bytes > 0) {
+            encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
+        }
+        let copied = staging.filled(size);
         let submission = device.submit(encoder)?;
         frame.submitted += 1;
-        Ok(Some(Submitted { submission, pixels, row_bytes, steps, time }))
+        Ok(Some(Submitted { submission, copied, tick_bytes, tile: (pixel_bytes > 0).then_some(tile), row_bytes }))
     }
 }
 
@@ -579,21 +581,24 @@ impl Submitted {
 
     /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as [`Device::wait`].
     pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
-        device.wait(&self.submission)?;
-        let started = Instant::now();
-        let steps = self.steps.read(device, &self.submission, |bytes| {
-            bytemuck::try_pod_read_unaligned::<u32>(bytes).map_err(|e| Error::internal(format!("step sum: {e}")))
-        })?;
-        stats.steps += u64::from(steps);
-        if let Some(time) = self.time {
-            stats.gpu_ns += read_time(device, time, &self.submission)?;
-        }
-        if let Some((tile, copied)) = self.pixels {
-            copied.read(device, &self.submission, |bytes| sink(tile, bytes, self.row_bytes))?;
-        }
-        stats.readback_ns += started.elapsed().as_nanos() as u64;
-        Ok(())
+        self.copied.read(device, &self.submission, |bytes| {
+            let started = Instant::now();
+            let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
+            stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+            stats.gpu_ns += timer::nanoseconds(device, part(bytes, TICKS, self.tick_bytes)?)?;
+            if let (Some(tile), Some(pixels)) = (self.tile, bytes.get(PIXELS as usize..)) {
+                sink(tile, pixels, self.row_bytes)?;
+            }
+            stats.readback_ns += started.elapsed().as_nanos() as u64;
+            Ok(())
+        })
     }
+}
+
+/// Of what a submission left in its staging buffer.
+fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
+    let found = bytes.get(begin as usize..(begin + size) as usize);
+    found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
 }
 
 /// `slot`: of the sample in its submission.

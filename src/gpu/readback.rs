@@ -6,26 +6,48 @@ use super::device::Device;
 use crate::error::{Error, Result};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-/// Staging buffers kept for the next copies: as many as there are pieces under way at most times.
-const KEPT: usize = 3;
+/// Staging buffers kept for the next pieces: as many as there are pieces under way at most times.
+const KEPT: usize = 5;
 
 /// Staging buffers that grow to the largest piece they were asked for. Clones share them.
-#[derive(Clone, Default)]
+#[derive(Clone)]
 pub struct Readback {
     free: Arc<Mutex<Vec<Buffer>>>,
+    usage: wgpu::BufferUsages,
 }
 
-/// A recorded copy, to be read after its submission. Copies may be dropped unread, and outlive the [`Readback`].
+/// A staging buffer that commands are to fill. It goes back to its [`Readback`] when it is dropped, and may outlive it.
+pub struct Staging {
+    /// `None` only while it is being dropped.
+    buffer: Option<Buffer>,
+    home: Readback,
+}
+
+/// A piece on its way to the host, to be read after its submission. Pieces may be dropped unread.
 #[must_use]
 pub struct Copied {
-    staging: Option<Buffer>,
+    staging: Staging,
     size: u64,
-    home: Readback,
+}
+
+impl Default for Readback {
+    fn default() -> Self {
+        Self { free: Arc::default(), usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ }
+    }
 }
 
 impl Readback {
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// A staging buffer of at least `size` bytes. Errors: as [`Device::buffer`].
+    pub fn staging(&self, device: &Device, size: u64) -> Result<Staging> {
+        let buffer = match self.take(size) {
+            Some(buffer) => buffer,
+            None => device.buffer("readback", size, self.usage)?,
+        };
+        Ok(Staging { buffer: Some(buffer), home: self.clone() })
     }
 
     /// Records the copy of the first `size` bytes (a multiple of 4) of `source`, whose usage has `COPY_SRC`.
@@ -38,13 +60,9 @@ impl Readback {
         source: &wgpu::Buffer,
         size: u64,
     ) -> Result<Copied> {
-        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        let staging = match self.take(size) {
-            Some(buffer) => buffer,
-            None => device.buffer("readback", size, usage)?,
-        };
-        encoder.copy_buffer_to_buffer(source, 0, &staging, 0, size);
-        Ok(Copied { staging: Some(staging), size, home: self.clone() })
+        let staging = self.staging(device, size)?;
+        encoder.copy_buffer_to_buffer(source, 0, staging.buffer()?, 0, size);
+        Ok(staging.filled(size))
     }
 
     /// A free buffer that holds `size` bytes. When all are smaller, one goes to make room for a larger one.
@@ -67,8 +85,27 @@ impl Readback {
     }
 }
 
+impl Staging {
+    pub fn buffer(&self) -> Result<&Buffer> {
+        self.buffer.as_ref().ok_or_else(|| Error::internal("a readback has no staging buffer"))
+    }
+
+    /// Once the commands that fill its first `size` bytes are recorded.
+    pub fn filled(self, size: u64) -> Copied {
+        Copied { staging: self, size }
+    }
+}
+
+impl Drop for Staging {
+    fn drop(&mut self) {
+        if let Some(buffer) = self.buffer.take() {
+            self.home.give_back(buffer);
+        }
+    }
+}
+
 impl Copied {
-    /// Waits for `submission`, which the copy was recorded in, and hands its bytes to `take`.
+    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`.
     ///
     /// Errors: those of `take` and of [`Device::wait`]; `Internal` when it was not submitted.
     pub fn read<T>(
@@ -77,20 +114,9 @@ impl Copied {
         submission: &wgpu::SubmissionIndex,
         take: impl FnOnce(&[u8]) -> Result<T>,
     ) -> Result<T> {
-        let Some(staging) = &self.staging else {
-            return Err(Error::internal("a readback has no staging buffer"));
-        };
-        let mapping = Mapping::request(device, staging, self.size)?;
+        let mapping = Mapping::request(device, self.staging.buffer()?, self.size)?;
         device.wait(submission)?;
-        mapping.read(take)
-    }
-}
-
-impl Drop for Copied {
-    fn drop(&mut self) {
-        if let Some(staging) = self.staging.take() {
-            self.home.give_back(staging);
-        }
+        mapping.read(device, take)
     }
 }
 
@@ -115,8 +141,8 @@ impl<'a> Mapping<'a> {
     }
 
     /// Once the copy into the buffer is done.
-    fn read<T>(self, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
-        let failed = |why: &dyn std::fmt::Display| Error::internal(format!("mapping a buffer: {why}"));
+    fn read<T>(self, device: &Device, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
+        let failed = |why: &dyn std::fmt::Display| device.explain(Error::internal(format!("mapping a buffer: {why}")));
         match self.outcome.try_recv() {
             Ok(Ok(())) => take(&self.buffer.get_mapped_range(0..self.size).map_err(|error| failed(&error))?),
             Ok(Err(error)) => Err(failed(&error)),

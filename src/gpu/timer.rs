@@ -47,21 +47,36 @@ impl GpuTimer {
         })
     }
 
-    /// After the last pass, in the same encoder. `None` when no pass was timed.
-    pub fn finish(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder) -> Result<Option<Copied>> {
+    /// After the last pass, in the same encoder: brings its ticks to `target`, from `offset` (a multiple of 256) on. How many bytes they are.
+    pub fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Buffer, offset: u64) -> u64 {
         let passes = std::mem::take(&mut self.passes);
-        if passes == 0 {
+        let bytes = u64::from(passes) * PASS_BYTES;
+        if passes > 0 {
+            encoder.resolve_query_set(&self.queries, 0..2 * passes, &self.resolved, 0);
+            encoder.copy_buffer_to_buffer(&self.resolved, 0, target, offset, bytes);
+        }
+        bytes
+    }
+
+    /// [`Self::resolve`] to a staging buffer of the timer's. `None` when no pass was timed.
+    pub fn finish(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder) -> Result<Option<Copied>> {
+        if self.passes == 0 {
             return Ok(None);
         }
-        encoder.resolve_query_set(&self.queries, 0..2 * passes, &self.resolved, 0);
-        self.readback.copy(device, encoder, &self.resolved, u64::from(passes) * PASS_BYTES).map(Some)
+        let staging = self.readback.staging(device, u64::from(self.capacity) * PASS_BYTES)?;
+        let bytes = self.resolve(encoder, staging.buffer()?, 0);
+        Ok(Some(staging.filled(bytes)))
     }
 }
 
 /// Nanoseconds that the passes of `submission` took together. Errors: as [`Copied::read`].
 pub fn read_time(device: &Device, copied: Copied, submission: &wgpu::SubmissionIndex) -> Result<u64> {
-    let ticks = copied.read(device, submission, sum_of_spans)?;
-    Ok((ticks as f64 * device.timestamp_period()) as u64)
+    copied.read(device, submission, |bytes| nanoseconds(device, bytes))
+}
+
+/// Nanoseconds that passes took together, by what [`GpuTimer::resolve`] wrote.
+pub(super) fn nanoseconds(device: &Device, bytes: &[u8]) -> Result<u64> {
+    Ok((sum_of_spans(bytes)? as f64 * device.timestamp_period()) as u64)
 }
 
 /// The bytes are pairs of begin and end. A driver's clock may jump back; such a span counts as 0.

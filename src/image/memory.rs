@@ -2,8 +2,11 @@
 //! images may lie side by side in one block and be written by different threads. Outside `capi` this is the only
 //! file with raw pointers.
 
+use super::Copiers;
 use crate::error::{Error, Result};
 use std::marker::PhantomData;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Longest side of an image, pixels. A larger one is more than any format's header or any address space holds well.
 pub const MAX_SIDE: u32 = 1 << 20;
@@ -225,7 +228,46 @@ impl<'a> ImageRef<'a> {
 pub struct ImageMut<'a> {
     rows: Rows,
     touched: bool,
+    /// Who helps to write large tiles.
+    copiers: Option<Arc<Copiers>>,
     memory: PhantomData<&'a mut [u8]>,
+}
+
+/// A tile that lies inside an image, on its way into it.
+struct Copying<'t> {
+    rows: Rows,
+    /// Of the tile's left column in the image, bytes.
+    left: usize,
+    /// Of the tile's first row in the image.
+    top: u32,
+    /// Of a row of the tile.
+    row_bytes: usize,
+    pixels: &'t [u8],
+    bytes_per_row: usize,
+}
+
+// SAFETY: threads share it to write rows that are not another's (`Copying::write`); what they read nobody writes.
+unsafe impl Sync for Copying<'_> {}
+
+impl Copying<'_> {
+    /// Copies some rows of the tile.
+    ///
+    /// # Safety
+    /// No other thread copies any of these rows meanwhile, and the image is the caller's to write.
+    unsafe fn write(&self, lines: Range<u32>) {
+        let packed = self.bytes_per_row == self.row_bytes && self.rows.stride == self.row_bytes as isize;
+        // Without gaps on both sides (the tile is as wide as the image then) rows are copied as one.
+        let at_once = if packed { lines.end.saturating_sub(lines.start) } else { 1 };
+        for line in lines.step_by(at_once.max(1) as usize) {
+            let begin = line as usize * self.bytes_per_row;
+            let bytes = at_once as usize * self.row_bytes;
+            if let (Some(to), Some(from)) = (self.rows.row(self.top + line), self.pixels.get(begin..begin + bytes)) {
+                // SAFETY: the tile lies inside the image, and the image's rows inside the host's block, which is no part of `pixels`;
+                // rows do not overlap, since `Layout::check` sees that the stride is no shorter than a row.
+                unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to.add(self.left), bytes) };
+            }
+        }
+    }
 }
 
 // SAFETY: it stands for a `&'a mut [u8]`, which is Send.
@@ -237,7 +279,7 @@ impl<'a> ImageMut<'a> {
         let lead = Rows::lead(layout)?;
         let byte_size = block.len() as u64;
         let top_left = block.as_mut_ptr().wrapping_add(lead);
-        Ok(Self { rows: Rows::new(layout, top_left, byte_size)?, touched: false, memory: PhantomData })
+        Ok(Self { rows: Rows::new(layout, top_left, byte_size)?, touched: false, copiers: None, memory: PhantomData })
     }
 
     /// Errors: as `new`, or `pixels` NULL.
@@ -246,7 +288,7 @@ impl<'a> ImageMut<'a> {
     /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not what lies
     /// between them) are readable and writable, and nobody else's, during `'a`.
     pub unsafe fn from_raw(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
-        Ok(Self { rows: Rows::new(layout, pixels, byte_size)?, touched: false, memory: PhantomData })
+        Ok(Self { rows: Rows::new(layout, pixels, byte_size)?, touched: false, copiers: None, memory: PhantomData })
     }
 
     pub fn width(&self) -> u32 {
@@ -264,6 +306,11 @@ impl<'a> ImageMut<'a> {
     /// A tile has been written.
     pub fn is_touched(&self) -> bool {
         self.touched
+    }
+
+    /// Has large tiles written with others' help.
+    pub fn write_with(&mut self, copiers: Arc<Copiers>) {
+        self.copiers = Some(copiers);
     }
 
     /// The same pixels, to read.
@@ -300,12 +347,13 @@ impl<'a> ImageMut<'a> {
             )));
         }
         self.touched = true;
-        for (line, from) in (y..y + height).zip(pixels.chunks(bytes_per_row)) {
-            if let (Some(begin), Some(from)) = (self.rows.row(line), from.get(..row)) {
-                // SAFETY: the tile's columns lie inside the row by the check above, and the row inside the host's
-                // block, which is no part of `pixels`.
-                unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), begin.add(x as usize * pixel), row) };
-            }
+        let left = x as usize * pixel;
+        let copying = Copying { rows: self.rows, left, top: y, row_bytes: row, pixels, bytes_per_row };
+        // SAFETY: `&mut self` is alone with the image, and `share` hands out each row once.
+        let copy = |lines| unsafe { copying.write(lines) };
+        match &self.copiers {
+            Some(copiers) => copiers.share(height, row * height as usize, copy),
+            None => copy(0..height),
         }
         Ok(())
     }
@@ -354,6 +402,27 @@ mod tests {
         assert_eq!(image.as_image_ref().row(2)[4..12], tile[..8]);
         assert_eq!(image.as_image_ref().row(3)[4..12], tile[20..28]);
         assert_eq!(block.iter().filter(|byte| **byte != 0).count(), 15);
+    }
+
+    #[test]
+    fn threads_that_share_a_tile_write_what_one_writes() {
+        let (width, height) = (700, 500);
+        let tile = (0..width * height).flat_map(|i: u32| i.wrapping_mul(2654435761).to_le_bytes()).collect::<Vec<u8>>();
+        let row = width as usize * 4;
+        for stride in [0, row as i64, row as i64 + 12, -(row as i64), -(row as i64) - 4] {
+            // The whole tile, and one that is narrower than the image and has padded rows.
+            for (x, w) in [(0, width), (3, width - 10)] {
+                let written = |threads: usize| {
+                    let mut block = vec![0xee; (row + 12) * height as usize];
+                    let mut image = ImageMut::new(layout(Rgba8Srgb, width, height, stride), &mut block).unwrap();
+                    image.write_with(Arc::new(Copiers::new(threads)));
+                    image.write_tile(x, 0, w, height, &tile, row).unwrap();
+                    assert_eq!(image.as_image_ref().row(499)[x as usize * 4..][..8], tile[499 * row..][..8]);
+                    block
+                };
+                assert!(written(1) == written(3), "stride {stride}, width {w}");
+            }
+        }
     }
 
     #[test]

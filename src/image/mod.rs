@@ -1,8 +1,10 @@
 //! Pixels in memory and in files: formats, strides, and reading and writing image files. Knows neither scenes nor
 //! tracers.
 
+mod copiers;
 pub mod file;
 pub mod memory;
 
+pub use copiers::Copiers;
 pub use file::{Loaded, Pixels, load, save};
 pub use memory::{ImageMut, ImageRef, Layout, MAX_SIDE, PixelFormat};

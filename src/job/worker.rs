@@ -1,0 +1,368 @@
+//! The two threads that make a renderer's jobs. One prepares frames and submits them to the GPU; the other waits for what it has made
+//! and copies that into the host's memory. So copying, which may take as long as tracing, delays no submission. Frames end in the
+//! order in which they were ordered. Only the first thread holds a tracer; the second needs nothing that anybody holds for longer than
+//! a few instructions, so that it always gets on.
+
+use super::{Job, Order, Shared, lock};
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::{BegunFrame, Device, FrameTarget, Submitted};
+use crate::renderer::{FrameStats, Tile, Tracer};
+use parking_lot::{ArcMutexGuard, RawMutex};
+use std::any::Any;
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::Ordering;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+
+/// Jobs of one renderer that may be unfinished at a time.
+pub const MAX_UNFINISHED: usize = 64;
+
+/// Submissions that are not finished, at most: one is copied to the host, one has run and waits for that, two keep the GPU busy.
+const AHEAD: usize = 4;
+
+/// What a worker's threads enter when they begin and leave when they end: a scope of the caller's log.
+pub type ThreadScope = Arc<dyn Fn() -> Box<dyn Any> + Send + Sync>;
+
+/// What the submitting thread hands to the finishing one. Of each frame: `Begun`, then its steps, and `Left` if those are not all; or
+/// `Made` alone.
+enum Event {
+    Begun(Box<Running>),
+    Step(Box<Submitted>),
+    /// The frame ends with an error.
+    Left(Error),
+    /// A frame of the CPU tracer's, or one that failed before its begin.
+    Made(Box<Order>, Result<FrameStats>),
+}
+
+/// A frame of which steps are under way on the GPU.
+struct Running {
+    order: Order,
+    device: Arc<Device>,
+    stats: FrameStats,
+    done: u64,
+    count: u64,
+}
+
+/// What host and threads share.
+#[derive(Default)]
+struct Line {
+    state: Mutex<State>,
+    /// An order came, or room for a step, or the end.
+    to_submit: Condvar,
+    /// An event came, or the end.
+    to_finish: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    waiting: VecDeque<Order>,
+    /// Orders taken by the submitting thread and not yet finished.
+    taken: usize,
+    events: VecDeque<Event>,
+    /// Submitted and not yet finished.
+    steps: usize,
+    /// No more orders will come.
+    closed: bool,
+    /// A thread panicked: orders that wait are not made any more.
+    broken: bool,
+    /// The submitting thread has ended: no more events will come.
+    submitted: bool,
+    /// The finishing thread has ended: nobody takes events any more.
+    finished: bool,
+}
+
+/// A renderer's threads, which make its jobs in their order. Dropping it finishes them all first.
+pub struct Worker {
+    line: Arc<Line>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Errors: OUT_OF_MEMORY when the system gives no threads.
+    pub fn new(scope: ThreadScope) -> Result<Self> {
+        let mut worker = Self { line: Arc::default(), threads: Vec::new() };
+        worker.spawn("bhr-jobs", scope.clone(), submit_all, |state| state.submitted = true)?;
+        worker.spawn("bhr-finish", scope, finish_all, |state| state.finished = true)?;
+        Ok(worker)
+    }
+
+    /// `end`: what the others hear when `work` has ended.
+    fn spawn(&mut self, name: &str, scope: ThreadScope, work: fn(&Line), end: fn(&mut State)) -> Result<()> {
+        let line = self.line.clone();
+        let body = move || {
+            let _scope = scope();
+            // Unwind safe: after a panic nothing is taken any more, and what was taken ends as it is dropped.
+            let result = catch_unwind(AssertUnwindSafe(|| work(&line)));
+            line.end(result.is_err(), end);
+            if let Err(payload) = result {
+                // Dropping an unknown payload may panic again.
+                std::mem::forget(payload);
+                log::error!("a thread that renders in the background panicked");
+            }
+        };
+        let thread = std::thread::Builder::new().name(name.into()).spawn(body).map_err(|error| {
+            Error::new(ErrorKind::OutOfMemory, format!("no thread to render in the background: {error}"))
+        })?;
+        self.threads.push(thread);
+        Ok(())
+    }
+
+    /// Errors: INVALID_STATE when too many are unfinished; INTERNAL when a job panicked before.
+    pub fn order(&self, order: Order) -> Result<Job> {
+        let job = Job { shared: order.shared.clone() };
+        let mut state = lock(&self.line.state);
+        if state.closed {
+            return Err(Error::internal("a thread that renders in the background failed before"));
+        }
+        let unfinished = state.waiting.len() + state.taken;
+        if unfinished >= MAX_UNFINISHED {
+            return Err(Error::state(format!(
+                "{unfinished} jobs are unfinished, as many as a context takes; wait for one or cancel it"
+            )));
+        }
+        state.waiting.push_back(order);
+        self.line.to_submit.notify_one();
+        Ok(job)
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        lock(&self.line.state).closed = true;
+        self.line.to_submit.notify_one();
+        for thread in self.threads.drain(..) {
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Line {
+    /// The next order, once there is room for its first step; `None`: the end.
+    fn take(&self) -> Option<Order> {
+        let mut state = lock(&self.state);
+        loop {
+            if state.broken {
+                return None;
+            }
+            if state.steps < AHEAD
+                && let Some(order) = state.waiting.pop_front()
+            {
+                state.taken += 1;
+                return Some(order);
+            }
+            if state.closed && state.waiting.is_empty() {
+                return None;
+            }
+            state = self.to_submit.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Waits until another step may be submitted. Errors: INTERNAL when the finishing thread has failed.
+    fn wait_for_room(&self) -> Result<()> {
+        let mut state = lock(&self.state);
+        while state.steps >= AHEAD && !state.broken {
+            state = self.to_submit.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+        match state.broken {
+            true => Err(Error::internal("the thread that finishes frames failed")),
+            false => Ok(()),
+        }
+    }
+
+    fn send(&self, event: Event) {
+        let mut state = lock(&self.state);
+        if state.finished {
+            // An order in it ends as it is dropped, for which the lock is not needed.
+            drop(state);
+            return drop(event);
+        }
+        state.steps += usize::from(matches!(event, Event::Step(_)));
+        state.events.push_back(event);
+        self.to_finish.notify_one();
+    }
+
+    /// `None`: the end.
+    fn next_event(&self) -> Option<Event> {
+        let mut state = lock(&self.state);
+        loop {
+            if let Some(event) = state.events.pop_front() {
+                return Some(event);
+            }
+            if state.submitted {
+                return None;
+            }
+            state = self.to_finish.wait(state).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    fn step_finished(&self) {
+        lock(&self.state).steps -= 1;
+        self.to_submit.notify_one();
+    }
+
+    fn finish(&self, order: Order, outcome: Result<FrameStats>) {
+        // First, so that a host that has seen the end may order again.
+        lock(&self.state).taken -= 1;
+        order.finish(outcome);
+    }
+
+    /// Of a thread. What it leaves behind is dropped.
+    fn end(&self, panicked: bool, end: fn(&mut State)) {
+        let left = {
+            let mut state = lock(&self.state);
+            end(&mut state);
+            state.broken |= panicked;
+            state.closed |= panicked;
+            let events = if state.finished { std::mem::take(&mut state.events) } else { VecDeque::new() };
+            let waiting = if state.broken { std::mem::take(&mut state.waiting) } else { VecDeque::new() };
+            (events, waiting)
+        };
+        self.to_submit.notify_one();
+        self.to_finish.notify_one();
+        drop(left);
+    }
+}
+
+/// The submitting thread.
+fn submit_all(line: &Line) {
+    while let Some(order) = line.take() {
+        submit(line, order);
+    }
+}
+
+/// Submits a frame to the GPU; on the CPU, makes it.
+fn submit(line: &Line, mut order: Order) {
+    if let Err(error) = order.shared.check_cancelled() {
+        return line.send(Event::Made(Box::new(order), Err(error)));
+    }
+    let mut guard = order.tracer.lock_arc();
+    let begun = match &mut *guard {
+        Tracer::Gpu(tracer) => {
+            tracer.begin(&order.scene, &order.request, FrameTarget::Host).map(|frame| (frame, tracer.device()))
+        }
+        Tracer::Cpu(_) => {
+            let rendered = render_on_cpu(&mut guard, &mut order);
+            // Whoever waits for the tracer gets it before the next job does.
+            ArcMutexGuard::unlock_fair(guard);
+            return line.send(Event::Made(Box::new(order), rendered));
+        }
+    };
+    match begun {
+        Err(error) => line.send(Event::Made(Box::new(order), Err(error))),
+        Ok((frame, device)) => {
+            let (stats, count, shared) = (frame.stats(), frame.count(), order.shared.clone());
+            line.send(Event::Begun(Box::new(Running { order, device, stats, done: 0, count })));
+            let submitted = Submitting { guard: Some(guard), frame }.submit(line, &shared);
+            if let Err(error) = submitted {
+                line.send(Event::Left(error));
+            }
+        }
+    }
+}
+
+fn render_on_cpu(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
+    let (scene, request, target, shared) = (&order.scene, &order.request, &mut order.target, order.shared.clone());
+    let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
+        target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
+    };
+    let mut progress = |fraction: f64| {
+        shared.report(fraction);
+        !shared.cancelled.load(Ordering::Relaxed)
+    };
+    let rendered = tracer.render(scene, request, &mut sink, &mut progress);
+    rendered.map_err(|error| match error.kind {
+        ErrorKind::Cancelled => Error::new(ErrorKind::Cancelled, "the job was cancelled"),
+        _ => error,
+    })
+}
+
+/// A frame of which steps are left, and the tracer, which no other frame may use before they are submitted.
+struct Submitting {
+    /// `None` only while it is being dropped.
+    guard: Option<ArcMutexGuard<RawMutex, Tracer>>,
+    frame: BegunFrame,
+}
+
+impl Submitting {
+    /// Submits the steps. Errors: CANCELLED; as [`crate::gpu::GpuTracer::submit`].
+    fn submit(mut self, line: &Line, shared: &Shared) -> Result<()> {
+        while !self.frame.is_submitted() {
+            line.wait_for_room()?;
+            shared.check_cancelled()?;
+            let Some(Tracer::Gpu(tracer)) = self.guard.as_deref_mut() else {
+                return Err(Error::internal("a frame of the GPU on another tracer"));
+            };
+            if let Some(step) = tracer.submit(&mut self.frame)? {
+                line.send(Event::Step(Box::new(step)));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Submitting {
+    fn drop(&mut self) {
+        let Some(mut guard) = self.guard.take() else { return };
+        if let Tracer::Gpu(tracer) = &mut *guard
+            && !self.frame.is_submitted()
+        {
+            tracer.forget();
+        }
+        // Whoever waits for the tracer gets it before the next job does.
+        ArcMutexGuard::unlock_fair(guard);
+    }
+}
+
+/// The finishing thread.
+fn finish_all(line: &Line) {
+    // The frame that the steps are of; none if it has ended before its last.
+    let mut current = None;
+    while let Some(event) = line.next_event() {
+        match event {
+            Event::Begun(frame) => current = Some(*frame),
+            Event::Made(order, outcome) => line.finish(*order, outcome),
+            Event::Left(error) => {
+                if let Some(frame) = current.take() {
+                    line.finish(frame.order, Err(error));
+                }
+            }
+            Event::Step(step) => {
+                current = current.take().and_then(|frame| frame.finish_step(line, *step));
+                line.step_finished();
+            }
+        }
+    }
+}
+
+impl Running {
+    /// Waits for the oldest step and takes its pixels. `None`: the frame has ended.
+    fn finish_step(mut self, line: &Line, step: Submitted) -> Option<Self> {
+        match self.take_pixels(step) {
+            Err(error) => {
+                // Steps that are left need not be submitted any more.
+                self.order.shared.cancelled.store(true, Ordering::Relaxed);
+                line.finish(self.order, Err(error));
+                None
+            }
+            Ok(()) if self.done < self.count => Some(self),
+            Ok(()) => {
+                self.stats.device_bytes = self.device.bytes();
+                line.finish(self.order, Ok(self.stats));
+                None
+            }
+        }
+    }
+
+    fn take_pixels(&mut self, step: Submitted) -> Result<()> {
+        self.order.shared.check_cancelled()?;
+        let target = &mut self.order.target;
+        let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
+            target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
+        };
+        step.finish(&self.device, &mut self.stats, &mut sink)?;
+        self.done += 1;
+        self.order.shared.report(self.done as f64 / self.count as f64);
+        Ok(())
+    }
+}
