@@ -159,7 +159,7 @@ fn jobs(
         }
         if i == warm {
             start = Instant::now();
-            (calls.clear(), latencies.clear(), readbacks.clear());
+            [&mut calls, &mut latencies, &mut readbacks].map(Vec::clear);
         }
         turn(&mut renderer.scene, i);
         let (pixels, length) = targets[i % in_flight];

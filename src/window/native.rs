@@ -137,7 +137,7 @@ mod tests {
     fn all() -> [NativeWindow; 8] {
         let (id, hwnd) = (NonZeroU32::new(0x20).unwrap(), NonZeroIsize::new(-0x30).unwrap());
         [
-            NativeWindow::Xlib { display: pointer(0x10), window: 0x1_0000_0020, visual: 0x21, screen: 3 },
+            NativeWindow::Xlib { display: pointer(0x10), window: 0x24, visual: 0x21, screen: 3 },
             NativeWindow::Xcb { connection: pointer(0x11), window: id, visual: NonZeroU32::new(0x22), screen: 4 },
             NativeWindow::Wayland { display: pointer(0x12), surface: pointer(0x23) },
             NativeWindow::Win32 { hwnd, hinstance: NonZeroIsize::new(0x31) },
@@ -151,8 +151,9 @@ mod tests {
     #[test]
     fn every_kind_becomes_its_raw_window_handle() {
         let [xlib, xcb, wayland, win32, appkit, uikit, layer, android] = all().map(|window| window.handles());
+        // An XID has 32 bits, in a C long.
         assert!(matches!(xlib, Handles::Raw(RawDisplayHandle::Xlib(d), RawWindowHandle::Xlib(w))
-            if d.display == Some(pointer(0x10)) && d.screen == 3 && w.window as u64 == 0x1_0000_0020 && w.visual_id == 0x21));
+            if d.display == Some(pointer(0x10)) && d.screen == 3 && w.window == 0x24 && w.visual_id == 0x21));
         assert!(matches!(xcb, Handles::Raw(RawDisplayHandle::Xcb(d), RawWindowHandle::Xcb(w))
             if d.connection == Some(pointer(0x11)) && d.screen == 4 && w.window.get() == 0x20
                 && w.visual_id.unwrap().get() == 0x22));
