@@ -76,8 +76,10 @@ pub struct BhrContextOptions {
     pub log_fn: BhrLogFn,
     /// Handed to log_fn.
     pub log_user: *mut c_void,
-    /// A window that the adapter must be able to present to; it is looked at during the call only. The CPU tracer is taken to be able
-    /// to. NULL (default): any adapter; where it cannot present, surfaces work all the same, by way of the host's memory, slower.
+    /// A window that the adapter must be able to present to; looked at during the call only. With AUTO adapters
+    /// that cannot are passed over; the CPU tracer, whose frames reach windows in other ways, always serves. NULL
+    /// (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
+    /// present.
     pub compatible_window: *const BhrWindow,
 }
 
@@ -152,7 +154,8 @@ pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOption
 /// 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
 /// BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
 /// why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
-/// INVALID_ARGUMENT for a bad option; NO_ADAPTER when the backend or adapter asked for is not there.
+/// INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's; NO_ADAPTER when
+/// the backend or adapter asked for is not there, or cannot present to compatible_window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create(
     abi_version: u32,
@@ -205,9 +208,10 @@ pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *
     }
 }
 
-/// Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there; the scene stays, the sky's map included. Jobs begun before fail with
-/// DEVICE_LOST; surfaces made before are lost: destroy them and make them again. Until this call every call that renders or
-/// traces returns DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost.
+/// Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays,
+/// the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs begun before fail
+/// with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
+/// Errors: as bhr_context_create; the context then stays lost, and the call may be tried again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -221,9 +225,10 @@ pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
     unsafe { on_context("lose_device", context, |state| state.renderer.lose_device()) }
 }
 
-/// Ends a context: waits for a call that is running on it and until its jobs are done (bhr_job_cancel shortens that), then frees it. NULL is a no-op, and any
-/// destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
-/// From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.
+/// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then
+/// frees it. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
+/// no-op. No callback runs after it has returned. No other thread may begin a call on it any more. From inside a
+/// callback it does nothing, as the context is in use: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";

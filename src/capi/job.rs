@@ -14,7 +14,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-/// A frame that is being rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after its context.
+/// A frame that is rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after
+/// its context.
 pub struct BhrJob {
     pub(super) job: Job,
     progress: Option<Callback>,
@@ -71,12 +72,13 @@ pub(super) unsafe fn on_job<T: entry::Success>(
     })
 }
 
-/// Begins to render an image and returns at once: the scene and the region are taken as they are now, and the frame is
-/// rendered by a thread of the library's. Frames of a context are made in the order in which they were begun, several under
-/// way at a time, so that one is copied while the next is traced; setters never wait for them, other calls that render do for those under
-/// way. At most 64 jobs of a context may be unfinished. target->pixels is written until the job is done or destroyed, and must
-/// stay valid and be nobody else's so long. End *out_job with bhr_job_destroy. Errors: as bhr_render_image, which may also come from
-/// bhr_job_wait; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
+/// Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
+/// as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
+/// order, by a thread of the library's, several under way at a time: one is copied to the host while the next is
+/// traced. Other calls that render wait for the job that is being traced. At most 64 jobs of a context may be
+/// unfinished. target itself is copied; target->pixels is written until the job is done or destroyed, and must stay
+/// valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of
+/// bhr_render_image, some of which come from bhr_job_wait instead; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_image_async(
     context: *mut BhrContext,
@@ -103,11 +105,12 @@ pub unsafe extern "C" fn bhr_render_image_async(
     }
 }
 
-/// Waits until the job is done, at most timeout_ns nanoseconds; 0 polls, UINT64_MAX waits for ever. *out_fraction, unless
-/// NULL, becomes the part that is done, 0 .. 1. Meanwhile the progress callback that the context had when the job was begun is called on
-/// this thread. NOT_READY: still running. A job's failure is returned, with its message, here, each time: CANCELLED after
-/// bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as bhr_render_image; once the first pixels are
-/// written the message says so. Errors otherwise: INVALID_ARGUMENT for NULL.
+/// Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
+/// it is still running. OK: the image is complete. *out_fraction, unless NULL, becomes the part that is done, 0 ..
+/// 1, and 0 after a failure. Meanwhile the progress callback that the context had when the job was begun is called,
+/// on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
+/// bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
+/// bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fraction: *mut f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -117,7 +120,8 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
     }
 }
 
-/// Asks a job to stop; bhr_job_wait then returns CANCELLED, or OK when it was done before. Does not wait. NULL is a no-op. Any thread, inside callbacks too.
+/// Asks a job to stop, and does not wait: bhr_job_wait then returns CANCELLED, or OK when the job was done before.
+/// NULL is a no-op. Any thread, inside callbacks too.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
     // SAFETY: NULL or alive, by the header's conventions.
@@ -126,8 +130,9 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
     }
 }
 
-/// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it: the target is the host's again. NULL is a no-op. No
-/// other thread may use it any more. From inside a callback it does nothing: bhr_error_message then says so.
+/// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
+/// host's again. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
+/// bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     const NAME: &str = "bhr_job_destroy";

@@ -16,16 +16,17 @@ pub struct BhrFrameStats {
     pub struct_size: u32,
     /// 0.
     pub reserved: u32,
-    /// 1 for the first frame of a context.
+    /// Counts the finished frames of a context from 1: images, jobs and windows.
     pub frame_index: u64,
+    /// Pixels times samples.
     pub rays: u64,
     /// Integration steps of all rays; rays that were looked up take none.
     pub steps: u64,
-    /// From the call's begin to its end.
+    /// From the call's begin to its end; of a job: from bhr_render_image_async until it was done.
     pub cpu_ns: u64,
-    /// On the GPU; 0: the adapter has no timestamps.
+    /// Time on the GPU; 0: the adapter has no timestamps, or traces on the CPU.
     pub gpu_ns: u64,
-    /// From the GPU's memory to the host's.
+    /// Copying pixels from the GPU's memory to the host's, without the wait for the GPU.
     pub readback_ns: u64,
     /// Device memory that the context holds.
     pub device_bytes: u64,
@@ -65,8 +66,8 @@ pub unsafe extern "C" fn bhr_frame_stats(context: *const BhrContext, stats: *mut
     }
 }
 
-/// Numbers about a finished job's frame: cpu_ns is from bhr_render_image_async to its end. Errors: INVALID_ARGUMENT for NULL or a wrong
-/// struct_size; INVALID_STATE for a job that is not done, or that failed.
+/// Numbers about the frame of a job that is done. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size;
+/// INVALID_STATE for a job that is not done, or that failed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_stats(job: *const BhrJob, stats: *mut BhrFrameStats) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -11,7 +11,7 @@ pub type BhrStatus = i32;
 pub const BHR_OK: BhrStatus = 0;
 /// bhr_job_wait: the job was still running when the timeout ran out.
 pub const BHR_NOT_READY: BhrStatus = 1;
-/// bhr_render_surface: the window is minimised, occluded or 0 x 0; nothing was presented.
+/// bhr_render_surface: the window is 0 x 0 or hidden, or is being resized; nothing was presented.
 pub const BHR_FRAME_SKIPPED: BhrStatus = 2;
 /// An argument is NULL, not finite, out of its range, or an unknown constant; the message names it, its value and
 /// the limit.
@@ -28,13 +28,13 @@ pub const BHR_ERROR_NO_ADAPTER: BhrStatus = 0 - 5;
 pub const BHR_ERROR_OUT_OF_MEMORY: BhrStatus = 0 - 6;
 /// The progress callback, or bhr_job_cancel, stopped the work.
 pub const BHR_ERROR_CANCELLED: BhrStatus = 0 - 7;
-/// The window behind a surface is gone.
+/// The window behind a surface is gone, or its context was recovered: destroy the surface.
 pub const BHR_ERROR_SURFACE_LOST: BhrStatus = 0 - 8;
-/// The device is gone; bhr_context_recover brings the context back.
+/// The GPU's device is gone; bhr_context_recover brings the context back.
 pub const BHR_ERROR_DEVICE_LOST: BhrStatus = 0 - 9;
 /// A file could not be read or written.
 pub const BHR_ERROR_IO: BhrStatus = 0 - 10;
-/// A bug in bhr was caught; only destroy calls are valid on this context from now on.
+/// A bug in bhr was caught; only destroy calls are valid on this context, its jobs and surfaces from now on.
 pub const BHR_ERROR_INTERNAL: BhrStatus = 0 - 99;
 
 pub(super) fn of(kind: ErrorKind) -> BhrStatus {

@@ -11,7 +11,8 @@ use crate::image::MAX_SIDE;
 use crate::window::{PresentMode, Shown, Surface};
 use std::sync::Arc;
 
-/// A window that a context renders into.
+/// A window that a context renders into. It belongs to that context; end it with bhr_surface_destroy, before or
+/// after the context, before the window.
 pub struct BhrSurface {
     surface: Arc<Surface>,
     sink: Option<Arc<Sink>>,
@@ -19,11 +20,11 @@ pub struct BhrSurface {
 
 /// How frames reach the screen.
 pub type BhrPresentMode = i32;
-/// At the display's rate, never torn.
+/// At the display's rate, never torn: a frame waits for the display. Every window has it.
 pub const BHR_PRESENT_VSYNC: BhrPresentMode = 0;
 /// At once; may tear.
 pub const BHR_PRESENT_IMMEDIATE: BhrPresentMode = 1;
-/// The newest frame at the display's rate; older ones are dropped.
+/// The newest frame at the display's rate, never torn; frames that are not the newest any more are dropped.
 pub const BHR_PRESENT_MAILBOX: BhrPresentMode = 2;
 
 fn present_mode(mode: BhrPresentMode) -> Result<PresentMode> {
@@ -60,13 +61,16 @@ unsafe fn on_surface(
     outside_callbacks(function, || body(&surface.surface))
 }
 
-/// Makes a surface of width x height pixels from a window, to be rendered into by this context; 0 x 0: a minimised one. The window, which
-/// takes one surface at a time, must outlive it, and its display too. (X11: bhr presents through a connection of its own, so there the host may end its window and
-/// display first.) Where the context's adapter cannot present to the window, or traces on the CPU, another adapter presents, or frames are put
-/// into the window as memory; the log (info) says which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for NULL, a bad window or
-/// one that does not exist (X11), a side beyond 2^20, an unknown mode; INVALID_STATE for a window that has a surface; UNSUPPORTED, with the
-/// reasons, for a kind of window that this platform does not have, where nothing can present to it, or for a side that the device's images cannot have (mostly
-/// 16384); DEVICE_LOST, OUT_OF_MEMORY.
+/// Makes a surface of a window, width x height pixels (0 x 0: minimised), for this context to render into. A window
+/// takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
+/// presents through a connection of its own, may they end first. On Wayland the driver crashes when a surface is
+/// destroyed after its display was closed.) Where the context's adapter cannot present to the window, or traces on
+/// the CPU, another adapter presents the frames, or they are put into the window as memory; the log (info) says
+/// which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for
+/// NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
+/// window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
+/// have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
+/// beyond 16384); DEVICE_LOST, OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_create(
     context: *mut BhrContext,
@@ -92,17 +96,18 @@ pub unsafe extern "C" fn bhr_surface_create(
     }
 }
 
-/// Follows a window's new size in pixels; 0 x 0: minimised. Cheap: the next frame makes new images. (X11: the window's own size counts,
-/// and this call says that it has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's images
-/// cannot have; SURFACE_LOST.
+/// Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
+/// size are made by the next frame. (X11: frames have the size that the window really has; this call says that it
+/// has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
+/// images cannot have; SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_resize(surface: *mut BhrSurface, width: u32, height: u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe { on_surface("bhr_surface_resize", surface, |surface| surface.resize(check_size(width, height)?)) }
 }
 
-/// Changes how frames reach the screen, from the next on; a mode that the window does not have falls back to VSYNC. Errors:
-/// INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
+/// Changes how frames reach the screen, from the next one on. A mode that the window does not have becomes VSYNC.
+/// Errors: INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, mode: BhrPresentMode) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -111,13 +116,17 @@ pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, 
     }
 }
 
-/// Renders the scene into the surface's window and presents it, in sRGB, with the film; the region is not obeyed. BhrQuality.render_scale
-/// says how large it is traced. Returns when the frame is on its way (with VSYNC it waits for the window to take another, at
-/// most a second; frames that go through the host's memory are finished); bhr_frame_stats then tells of the last frame that is finished.
-/// FRAME_SKIPPED: the window is 0 x 0, minimised or hidden, or is being resized; nothing was presented: wait for its next event. Any thread
-/// (macOS: the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context;
-/// INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST when the window is gone, or the context was recovered since: destroy the surface and make it again;
-/// DEVICE_LOST, OUT_OF_MEMORY.
+/// Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
+/// The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
+/// frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
+/// earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
+/// takes another frame, at most a second (on Wayland some drivers wait for as long as the compositor does not show
+/// the window, and calls on the context with them). FRAME_SKIPPED: the window is 0 x 0, hidden as far as the
+/// platform tells, or is being resized; nothing was presented: wait for the window's next event. Any thread (macOS:
+/// the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of
+/// another context; INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST, from then on, when the window
+/// is gone or the context was recovered: destroy the surface, and make it again if there is a window; DEVICE_LOST:
+/// see bhr_context_recover; OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *mut BhrSurface) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -132,8 +141,8 @@ pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *
     }
 }
 
-/// Ends a surface; the window stays the host's and is free for another. NULL is a no-op; its context may be gone. No other thread may use it any
-/// more. From inside a callback it does nothing: bhr_error_message then says so.
+/// Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread
+/// may use the surface any more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
     const NAME: &str = "bhr_surface_destroy";

@@ -1,4 +1,5 @@
-//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Read and checked; nothing behind its pointers.
+//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Read and checked; nothing behind
+//! its pointers.
 
 use super::pointer::{check_reserved, unknown};
 use super::versioned::{self, Versioned};
@@ -8,7 +9,7 @@ use std::ffi::c_void;
 use std::num::{NonZeroIsize, NonZeroU32};
 use std::ptr::{NonNull, null_mut};
 
-/// What a BhrWindow holds. Fields that are not named for a kind are ignored.
+/// Which kind a BhrWindow is of. Fields that the kind does not name are ignored.
 pub type BhrWindowKind = i32;
 /// X11 through Xlib: display = Display *, id = Window.
 pub const BHR_WINDOW_XLIB: BhrWindowKind = 1;
@@ -27,7 +28,8 @@ pub const BHR_WINDOW_METAL_LAYER: BhrWindowKind = 7;
 /// Android: handle = ANativeWindow *.
 pub const BHR_WINDOW_ANDROID: BhrWindowKind = 8;
 
-/// A window of the host's: not owned, it must outlive every surface made from it. Fields as in the
+/// A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
+/// Begin with all bytes 0, then set struct_size, kind, and what the kind names. Handles are those of the
 /// raw-window-handle crate.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -36,17 +38,17 @@ pub struct BhrWindow {
     pub struct_size: u32,
     /// BHR_WINDOW_*.
     pub kind: BhrWindowKind,
-    /// By kind.
+    /// As the kind says.
     pub display: *mut c_void,
-    /// By kind.
+    /// As the kind says.
     pub handle: *mut c_void,
-    /// By kind.
+    /// As the kind says.
     pub aux: *mut c_void,
-    /// By kind: an X11 window id.
+    /// As the kind says: the id of an X11 window.
     pub id: u64,
-    /// X11: the visual's id; 0 when not known.
+    /// X11: the id of the window's visual; may be 0.
     pub visual_id: u64,
-    /// X11: the screen's number.
+    /// X11: the number of the window's screen; may be 0.
     pub screen: i32,
     /// 0.
     pub reserved: u32,
