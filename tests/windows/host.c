@@ -40,44 +40,50 @@ BhrWindowKind host_kind(const char *name) {
 
 /* ---- windows ---- */
 
-static void open_xlib(Host *host, const char *server, uint32_t width, uint32_t height) {
-    host->display = XOpenDisplay(server);
-    if (host->display == NULL) {
-        give_up("no X server");
-    }
-    /* Without a background the server itself never draws into it. */
-    host->id = (uint32_t)XCreateWindow(host->display, DefaultRootWindow(host->display), 0, 0, width, height, 0,
-                                       CopyFromParent, InputOutput, CopyFromParent, 0, NULL);
-    XMapWindow(host->display, host->id);
-    XSync(host->display, False);
-}
-
 /* Returns when the server has done all that was asked. */
-static void settle(xcb_connection_t *connection) {
-    free(xcb_get_input_focus_reply(connection, xcb_get_input_focus(connection), NULL));
+static void settle(const Host *host) {
+    if (host->display != NULL) {
+        XSync(host->display, False);
+    } else {
+        free(xcb_get_input_focus_reply(host->connection, xcb_get_input_focus(host->connection), NULL));
+    }
 }
 
-static void open_xcb(Host *host, const char *server, uint32_t width, uint32_t height) {
-    int screen = 0;
-    host->connection = xcb_connect(server, &screen);
-    if (xcb_connection_has_error(host->connection)) {
-        give_up("no X server");
-    }
-    const xcb_screen_t *root = xcb_setup_roots_iterator(xcb_get_setup(host->connection)).data;
-    host->id = xcb_generate_id(host->connection);
-    xcb_create_window(host->connection, XCB_COPY_FROM_PARENT, host->id, root->root, 0, 0, (uint16_t)width,
-                      (uint16_t)height, 0, XCB_WINDOW_CLASS_INPUT_OUTPUT, XCB_COPY_FROM_PARENT, 0, NULL);
-    xcb_map_window(host->connection, host->id);
-    settle(host->connection);
+/* Without a background, so that the server itself never draws into them. */
+static uint32_t new_xlib_window(Display *display, uint32_t width, uint32_t height) {
+    const Window id = XCreateWindow(display, DefaultRootWindow(display), 0, 0, width, height, 0, CopyFromParent,
+                                    InputOutput, CopyFromParent, 0, NULL);
+    XMapWindow(display, id);
+    return (uint32_t)id;
+}
+
+static uint32_t new_xcb_window(xcb_connection_t *connection, uint32_t width, uint32_t height) {
+    const xcb_screen_t *root = xcb_setup_roots_iterator(xcb_get_setup(connection)).data;
+    const uint32_t      id = xcb_generate_id(connection);
+    xcb_create_window(connection, XCB_COPY_FROM_PARENT, id, root->root, 0, 0, (uint16_t)width, (uint16_t)height, 0,
+                      XCB_WINDOW_CLASS_INPUT_OUTPUT, XCB_COPY_FROM_PARENT, 0, NULL);
+    xcb_map_window(connection, id);
+    return id;
+}
+
+void host_new_window(Host *host, uint32_t width, uint32_t height) {
+    host_destroy_window(host);
+    host->id = host->display != NULL ? new_xlib_window(host->display, width, height)
+                                     : new_xcb_window(host->connection, width, height);
+    settle(host);
 }
 
 Host host_open(BhrWindowKind kind, const char *server, uint32_t width, uint32_t height) {
     Host host = {kind, NULL, NULL, 0};
     if (kind == BHR_WINDOW_XLIB) {
-        open_xlib(&host, server, width, height);
+        host.display = XOpenDisplay(server);
     } else {
-        open_xcb(&host, server, width, height);
+        host.connection = xcb_connect(server, NULL);
     }
+    if (kind == BHR_WINDOW_XLIB ? host.display == NULL : xcb_connection_has_error(host.connection)) {
+        give_up("no X server");
+    }
+    host_new_window(&host, width, height);
     return host;
 }
 
@@ -94,32 +100,30 @@ BhrWindow host_window(const Host *host) {
 void host_resize(const Host *host, uint32_t width, uint32_t height) {
     if (host->kind == BHR_WINDOW_XLIB) {
         XResizeWindow(host->display, host->id, width, height);
-        XSync(host->display, False);
     } else {
         const uint32_t size[] = {width, height};
         xcb_configure_window(host->connection, host->id, XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, size);
-        settle(host->connection);
     }
+    settle(host);
 }
 
 void host_move(const Host *host, uint32_t x, uint32_t y) {
     if (host->kind == BHR_WINDOW_XLIB) {
         XMoveWindow(host->display, host->id, (int)x, (int)y);
-        XSync(host->display, False);
     } else {
         const uint32_t place[] = {x, y};
         xcb_configure_window(host->connection, host->id, XCB_CONFIG_WINDOW_X | XCB_CONFIG_WINDOW_Y, place);
-        settle(host->connection);
     }
+    settle(host);
 }
 
 void host_destroy_window(Host *host) {
     if (host->id != 0 && host->display != NULL) {
         XDestroyWindow(host->display, host->id);
-        XSync(host->display, False);
+        settle(host);
     } else if (host->id != 0 && host->connection != NULL) {
         xcb_destroy_window(host->connection, host->id);
-        settle(host->connection);
+        settle(host);
     }
     host->id = 0;
 }
@@ -147,6 +151,13 @@ static xcb_connection_t *onlooker(void) {
         }
     }
     return connection;
+}
+
+int host_exists(uint32_t id) {
+    xcb_connection_t         *connection = onlooker();
+    xcb_get_geometry_reply_t *reply = xcb_get_geometry_reply(connection, xcb_get_geometry(connection, id), NULL);
+    free(reply);
+    return reply != NULL;
 }
 
 int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *rgba) {
@@ -209,7 +220,7 @@ void run_threads(ThreadBody body, void *arguments, size_t argument_size, int cou
         if (i >= (int)COUNT_OF(threads) ||
             pthread_create(&threads[i], NULL, body, (char *)arguments + (size_t)i * argument_size) != 0) {
             give_up("cannot start a thread");
-        }
+    }
     }
     for (int i = 0; i < count; i++) {
         pthread_join(threads[i], NULL);

@@ -21,12 +21,14 @@ typedef struct Host {
 BhrWindowKind host_kind(const char *name); /* of a program's argument: xlib, xcb; ends the program for others */
 /* A visible window of the server (NULL: that of DISPLAY) whose content nobody but bhr draws. */
 Host      host_open(BhrWindowKind kind, const char *server, uint32_t width, uint32_t height);
+void      host_new_window(Host *host, uint32_t width, uint32_t height); /* instead of the one it has */
 BhrWindow host_window(const Host *host);
 void      host_resize(const Host *host, uint32_t width, uint32_t height); /* returns when it has happened */
 void      host_move(const Host *host, uint32_t x, uint32_t y);            /* from under another */
 void      host_destroy_window(Host *host);
 void      host_close(Host *host); /* the connection, and with it the window; both only once */
 
+int host_exists(uint32_t id); /* DISPLAY's server has a window of this number */
 /* The window's width x height pixels as RGBA; 0 when it has no such part, or is gone. */
 int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *rgba);
 /* Looks at the window until it shows these pixels, to `tolerance` 8-bit steps of each channel, for some seconds at most.
