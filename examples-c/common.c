@@ -1,5 +1,5 @@
-/* common.c -- see common.h. The only file of the examples that asks more of the system than C99: a monotonic clock and
- * whether a stream is a terminal. */
+/* common.c -- see common.h. The only file of the examples that asks more of the system than C99: a monotonic clock,
+ * whether a stream is a terminal, a new folder. */
 #ifndef _WIN32
 #define _POSIX_C_SOURCE 199506L /* clock_gettime, isatty, fileno */
 #endif
@@ -12,9 +12,11 @@
 #include <string.h>
 #include <time.h>
 #ifdef _WIN32
+#include <direct.h>
 #include <io.h>
 #include <windows.h>
 #else
+#include <sys/stat.h>
 #include <unistd.h>
 #endif
 
@@ -253,5 +255,13 @@ int is_terminal(FILE *stream) {
     return _isatty(_fileno(stream));
 #else
     return isatty(fileno(stream));
+#endif
+}
+
+int make_folder(const char *path) {
+#ifdef _WIN32
+    return _mkdir(path) == 0;
+#else
+    return mkdir(path, 0777) == 0;
 #endif
 }

@@ -1,5 +1,5 @@
-/* common.h -- what the example programs share: a table of command-line options, names of constants, a clock, reports of
- * failures. Needs libc and bhr.h only; knows no scene and makes no frame. */
+/* common.h -- what the example programs, in C and C++, share: a table of command-line options, names of constants, a
+ * clock, reports of failures. Needs libc and bhr.h only; knows no scene and makes no frame. */
 #ifndef EXAMPLES_COMMON_H
 #define EXAMPLES_COMMON_H
 
@@ -7,6 +7,10 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
 
 #define COUNT_OF(array) (sizeof(array) / sizeof((array)[0]))
 #define PI 3.14159265358979323846
@@ -57,5 +61,10 @@ void print_adapter(FILE *out, const BhrAdapterInfo *info);              /* one l
 /* ---- the process ---- */
 double wall_seconds(void);         /* monotonic; only differences mean something */
 int    is_terminal(FILE *stream);
+int    make_folder(const char *path); /* 1; 0 with errno when it could not be made, EEXIST when there is one */
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

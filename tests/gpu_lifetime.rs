@@ -1,6 +1,6 @@
 //! Memory and time of GPU devices that are opened and closed many times, and memory of many frames on one. Alone in its
 //! process, and one test at a time, so that no other test's memory is seen. Without a Vulkan adapter this fails.
-#![cfg(target_os = "linux")]
+#![cfg(all(target_os = "linux", target_env = "gnu"))]
 
 use bhr::gpu::{Device, Search, adapters, forget_drivers};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
@@ -66,7 +66,6 @@ fn two_hundred_devices_leave_no_memory_behind() {
 }
 
 /// What the heap holds, KiB. (Not the resident memory: what others have given back would hide growth there.)
-#[cfg(target_env = "gnu")]
 fn allocated() -> u64 {
     // SAFETY: takes no argument and keeps nothing.
     let heap = unsafe { libc::mallinfo2() };
@@ -74,7 +73,6 @@ fn allocated() -> u64 {
 }
 
 /// Frames of an eye that moves in each; how much more the heap holds after the last one than after the first few, KiB.
-#[cfg(target_env = "gnu")]
 fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     let mut renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
@@ -99,7 +97,6 @@ fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
 }
 
 /// Lavapipe keeps every kernel that it compiles, and may compile some for each frame: shaders/deciding.wgsl.
-#[cfg(target_env = "gnu")]
 #[test]
 fn many_frames_leave_no_memory_behind() {
     let _alone = alone();

@@ -214,6 +214,13 @@ pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrSta
     unsafe { on_context("bhr_context_recover", context, |state| state.renderer.recover()) }
 }
 
+/// Destroys the GPU device under a context, as a driver may at any time: for tests of the recovery.
+#[doc(hidden)]
+pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
+    // SAFETY: NULL or valid, as for the API.
+    unsafe { on_context("lose_device", context, |state| state.renderer.lose_device()) }
+}
+
 /// Ends a context: waits for a call that is running on it and until its jobs are done (bhr_job_cancel shortens that), then frees it. NULL is a no-op, and any
 /// destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
 /// From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.

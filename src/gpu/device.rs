@@ -111,6 +111,12 @@ impl Device {
         lock(&self.health.stray).take().map_or(Ok(()), Err)
     }
 
+    /// [`Self::check`] after a failure: wgpu refuses work for a lost device before it calls back to say that it is lost.
+    pub(super) fn check_anew(&self) -> Result<()> {
+        let _ = self.poll(wgpu::PollType::Poll)?;
+        self.check()
+    }
+
     /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins the
     /// message.
     ///
@@ -122,10 +128,11 @@ impl Device {
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
         let done = work(&self.raw);
         let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
-        match errors.into_iter().flatten().next() {
-            Some(error) => Err(from_wgpu(what, &error)),
-            None => self.check().map(|()| done),
+        if let Some(error) = errors.into_iter().flatten().next() {
+            self.check_anew()?;
+            return Err(from_wgpu(what, &error));
         }
+        self.check().map(|()| done)
     }
 
     /// [`Self::scoped`] for calls that panic, about windows. A panic is `DeviceLost` if the device is gone, else `SurfaceLost`.

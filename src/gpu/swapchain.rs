@@ -152,10 +152,11 @@ impl Swapchain {
                 Acquired::Outdated
             }
             Current::Lost => {
-                self.device.check()?;
+                self.device.check_anew()?;
                 Acquired::Lost
             }
             Current::Validation => {
+                self.device.check_anew()?;
                 return Err(Error::new(ErrorKind::Internal, "the window's image was refused by validation"));
             }
         })

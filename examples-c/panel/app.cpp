@@ -1,0 +1,445 @@
+// app.cpp -- see app.h.
+#include "app.h"
+
+#include <GLFW/glfw3.h>
+#include <cstdio>
+#include <cstdlib>
+
+namespace {
+
+constexpr double POLL_SECONDS = 0.002;        // between two looks at frames that are under way
+constexpr double REDRAW_SECONDS = 0.1;        // between two looks of the window, when no frames come
+constexpr double LIVELY_SECONDS = 1.0;        // so long after an input the window is drawn again and again
+constexpr double FASTEST_REDRAW = 1.0 / 90.0; // where the display sets no pace
+constexpr double REST_SECONDS = 0.3;          // so long after the last touch the picture is made in full again
+constexpr double TOUCHED_FRAME = 1.0 / 30.0;  // the time to aim for of a frame while the scene is touched
+constexpr double RUNNING_FRAME = 1.0 / 10.0;  // the same, while only the clock runs
+constexpr double COARSEST = 0.15;             // for both
+constexpr double STEPS_PAUSE = 0.25;          // between two looks at the integration steps
+constexpr double RECOVERY_PAUSE = 1.0;        // between two tries to bring a lost device back
+constexpr double COUNTED_FRAME = 1.0 / 30.0;  // of the clock, with --frames: the same pictures on every machine
+constexpr double LONGEST_TICK = 0.25;         // of the clock: after a pause of the process the scene does not leap
+constexpr double DEGREES_PER_UNIT = 0.25;     // of a drag
+constexpr double ZOOM_PER_NOTCH = 0.9;
+constexpr double NEAREST = 1.05;              // that zooming goes, in horizon radii
+
+// A window of ImGui's that stays in its place. bare: without border and title.
+class FixedWindow {
+public:
+    FixedWindow(const char *title, const Place &place, bool bare = false) {
+        ImGui::SetNextWindowPos(place.at);
+        ImGui::SetNextWindowSize(place.size);
+        ImGuiWindowFlags flags = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+                                 ImGuiWindowFlags_NoBringToFrontOnFocus;
+        if (bare) {
+            flags |= ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoScrollWithMouse;
+            ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+            ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
+        }
+        ImGui::Begin(title, nullptr, flags);
+        if (bare) {
+            ImGui::PopStyleVar(2);
+        }
+    }
+    ~FixedWindow() { ImGui::End(); }
+    FixedWindow(const FixedWindow &) = delete;
+    FixedWindow &operator=(const FixedWindow &) = delete;
+};
+
+} // namespace
+
+App::App(BhrContext *context, const AppOptions &options)
+    : options_(options), context_(context), scene_(context), queue_(context) {
+    clock_.running = options.paused == 0;
+}
+
+// Frames that are still under way write into the queue's memory, not the window's: it only must go before the context.
+App::~App() {
+    queue_.clear();
+}
+
+std::string App::start() {
+    Result result = scene_.begin();
+    if (result.ok()) {
+        result = inspector_.create();
+    }
+    if (result.ok()) {
+        adapter_ = sized<BhrAdapterInfo>();
+        result = result_of(bhr_context_adapter(context_, &adapter_));
+    }
+    if (!result.ok()) {
+        return result.message;
+    }
+    return window_.open(options_.size[0], options_.size[1], "bhr: panel");
+}
+
+int App::run() {
+    double last = glfwGetTime(), drawn_at = -1.0, input_at = last;
+    bool   stale = true; // the window
+    for (;;) {
+        const bool input = window_.wait(queue_.in_flight() > 0 ? POLL_SECONDS
+                                        : stale                ? 0.5 * FASTEST_REDRAW
+                                                               : REDRAW_SECONDS);
+        const double now = glfwGetTime();
+        input_at = input ? now : input_at;
+        if (!counted()) {
+            advance_clock(std::min(now - last, LONGEST_TICK));
+        }
+        last = now;
+        collect_frames(now);
+        submit_frames(now);
+        if (finished(now)) {
+            return save();
+        }
+        // ImGui shows what an input did some frames later: menus open, and text cursors blink.
+        const bool lively = now - input_at < LIVELY_SECONDS && now - drawn_at >= REDRAW_SECONDS;
+        stale |= input || lively || to_show_ >= 0.0;
+        if (stale && now - drawn_at >= FASTEST_REDRAW) {
+            draw(now, nullptr);
+            drawn_at = now;
+            stale = false;
+        }
+    }
+}
+
+// ---- frames ----
+
+bool App::touched(double now) const {
+    return now - touched_at_ < REST_SECONDS;
+}
+
+void App::collect_frames(double now) {
+    for (FinishedFrame &frame : queue_.collect()) {
+        if (frame.kind == FrameKind::picture) {
+            take_picture(std::move(frame), now);
+        } else {
+            steps_plot_.take(frame);
+            queue_.reuse(std::move(frame.pixels));
+        }
+    }
+}
+
+void App::take_picture(FinishedFrame &&frame, double now) {
+    if (!frame.result.ok()) {
+        failed(frame.result, now);
+        queue_.reuse(std::move(frame.pixels));
+        return;
+    }
+    error_.clear();
+    measure_speed(frame, now);
+    finished_at_ = now;
+    performance_.finished(frame.stats, frame.submitted);
+    to_show_ = frame.submitted;
+    queue_.reuse(picture_.take(std::move(frame.pixels)));
+    pictures_++;
+}
+
+// Seconds per pixel, for the next frames' size. The first frame tells nothing: it waits for the driver's compiler.
+void App::measure_speed(const FinishedFrame &frame, double now) {
+    if (pictures_ == 0) {
+        return;
+    }
+    // With several frames under way each of them waits for the others: then the time between their ends counts.
+    const double seconds = std::min(1e-9 * static_cast<double>(frame.stats.cpu_ns), now - finished_at_);
+    const double pixels = static_cast<double>(frame.pixels.image.width) * frame.pixels.image.height;
+    const double latest = seconds / pixels;
+    seconds_per_pixel_ = seconds_per_pixel_ > 0.0 ? 0.7 * seconds_per_pixel_ + 0.3 * latest : latest;
+}
+
+void App::submit_frames(double now) {
+    if (lost_) {
+        recover(now);
+    }
+    if (lost_ || picture_.width() == 0) { // a place for the picture comes with the window's first frame
+        return;
+    }
+    // Before the next picture, which would take the room again.
+    if (!options_.bare && !touched(now) && now - steps_at_ > STEPS_PAUSE) {
+        const Result result = steps_plot_.request(context_, scene_, queue_, picture_.width(), picture_.height(),
+                                                  picture_.row(), now);
+        if (!result.ok()) {
+            failed(result, now);
+        }
+        if (queue_.has_room()) { // else there was none for all that is missing
+            steps_at_ = now;
+        }
+    }
+    submit_picture(now);
+}
+
+double App::picture_scale(double now) const {
+    const bool running = clock_.running && clock_.speed != 0.0;
+    if (counted() || !frame_settings_.adaptive || !(touched(now) || running) || seconds_per_pixel_ <= 0.0) {
+        return frame_settings_.scale;
+    }
+    const double aim = touched(now) ? TOUCHED_FRAME : RUNNING_FRAME;
+    const double pixels = static_cast<double>(picture_.width()) * picture_.height();
+    const double scale = std::sqrt(aim / (seconds_per_pixel_ * pixels));
+    // In steps, lest each frame have another size.
+    return std::clamp(std::floor(scale * 16.0) / 16.0, COARSEST, frame_settings_.scale);
+}
+
+// As many as there is room for, if there is something new to show.
+void App::submit_picture(double now) {
+    const double scale = picture_scale(now);
+    const auto   size = [scale](uint32_t whole) {
+        return static_cast<uint32_t>(std::max(1L, std::lround(scale * whole)));
+    };
+    const Wanted wanted{scene_.version(), size(picture_.width()), size(picture_.height())};
+    while (!lost_ && queue_.has_room() && queue_.in_flight(FrameKind::picture) < frame_settings_.in_flight) {
+        const bool changed = wanted.version != submitted_of_.version || wanted.width != submitted_of_.width ||
+                             wanted.height != submitted_of_.height;
+        const bool counting = counted() && submitted_ < options_.frames;
+        // Those that were counted are shown before any others are made.
+        if (counted() && !counting && hold_until_ < 0.0) {
+            return;
+        }
+        if (!changed && !counting && !(frame_settings_.always && error_.empty())) {
+            return;
+        }
+        const Result result =
+            queue_.submit(FrameKind::picture, BHR_FORMAT_RGBA8_SRGB, wanted.width, wanted.height, wanted.version, now);
+        submitted_of_ = wanted;
+        if (!result.ok()) {
+            failed(result, now);
+            return;
+        }
+        submitted_++;
+        if (counted() && submitted_ < options_.frames) {
+            advance_clock(COUNTED_FRAME);
+            return;
+        }
+    }
+}
+
+void App::failed(const Result &result, double now) {
+    error_ = result.message;
+    if (options_.verbose != 0) {
+        std::printf("failed %s\n", error_.c_str());
+    }
+    if (result.status == BHR_ERROR_DEVICE_LOST && !lost_) {
+        lost_ = true;
+        retry_at_ = now;
+    }
+}
+
+void App::recover(double now) {
+    if (now < retry_at_) {
+        return;
+    }
+    queue_.clear();
+    steps_plot_.forget();
+    submitted_of_ = Wanted{};
+    const Result result = result_of(bhr_context_recover(context_));
+    if (!result.ok()) {
+        error_ = result.message;
+        retry_at_ = now + RECOVERY_PAUSE;
+        return;
+    }
+    lost_ = false;
+    recoveries_++;
+    error_.clear();
+    bhr_context_adapter(context_, &adapter_); // it may be another one
+}
+
+void App::advance_clock(double seconds) {
+    if (!clock_.running || clock_.speed == 0.0) {
+        return;
+    }
+    const double time = seconds * clock_.speed * scene_.hole().mass;
+    const bool   moving = scene_.camera().motion == BHR_MOTION_FREE_FALL || scene_.camera().motion == BHR_MOTION_ORBIT;
+    if (clock_.moves_camera && moving) {
+        const Result result = scene_.advance_camera(time);
+        settings_.report("Time", "camera follows its motion", result.message);
+        if (result.ok()) {
+            return;
+        }
+        clock_.moves_camera = false;
+    }
+    const Result result = scene_.set_time(scene_.time() + time);
+    settings_.report("Time", "time", result.message);
+}
+
+// ---- the window ----
+
+void App::inspect() {
+    if (const Result result = inspector_.follow(context_); !result.ok()) {
+        ray_.result = result;
+        return;
+    }
+    const Wanted of{scene_.geometry_version(), picture_.width(), picture_.height()};
+    if (of.version == ray_of_.version && of.width == ray_of_.width && of.height == ray_of_.height &&
+        ray_column_ == picture_.column() && ray_row_ == picture_.row()) {
+        return;
+    }
+    ray_of_ = of;
+    ray_column_ = picture_.column();
+    ray_row_ = picture_.row();
+    ray_ = inspector_.inspect(of.width, of.height, ray_column_ + 0.5, ray_row_ + 0.5);
+}
+
+void App::draw(double now, Pixels *copy) {
+    if (!window_.begin_frame()) {
+        return;
+    }
+    const uint64_t version = scene_.version();
+    const Layout   layout = arrange(ImGui::GetIO().DisplaySize, ImGui::GetFontSize(), options_.bare != 0);
+    Picture::Input input;
+    {
+        char              news[96];
+        const FixedWindow window("Picture", layout.picture, true);
+        const BhrImage   &image = picture_.pixels().image;
+        const double rate = performance_.frames_per_second();
+        std::snprintf(news, sizeof news, rate > 0.0 ? "%u x %u, %.1f frames / s" : "%u x %u", image.width, image.height,
+                      rate);
+        input = picture_.draw(window_.pixel_ratio(), options_.bare != 0, news, error_);
+    }
+    move_camera(input);
+    if (picture_.width() > 0 && !options_.bare) {
+        inspect();
+    }
+    if (layout.panels) {
+        draw_panels(layout);
+    }
+    if (scene_.version() != version) {
+        touched_at_ = now;
+    }
+    window_.end_frame(copy);
+    if (to_show_ >= 0.0) {
+        performance_.shown(to_show_, glfwGetTime());
+        to_show_ = -1.0;
+    }
+    if (options_.verbose != 0) {
+        say(input);
+    }
+}
+
+void App::draw_panels(const Layout &layout) {
+    {
+        const FixedWindow window("Scene", layout.settings);
+        settings_.draw(scene_, inspector_.numbers(), frame_settings_, clock_);
+    }
+    {
+        const FixedWindow window("Ray, from the side", layout.side);
+        ray_panel_.draw_side(ray_, inspector_);
+    }
+    {
+        const FixedWindow window("Ray, from above", layout.top);
+        ray_panel_.draw_top(ray_, inspector_);
+    }
+    {
+        const FixedWindow window("g_tt", layout.metric);
+        metric_map_.draw(inspector_, scene_.geometry_version());
+    }
+    {
+        const FixedWindow window("Performance", layout.performance);
+        performance_.draw(adapter_, queue_.in_flight(), recoveries_);
+    }
+    {
+        const FixedWindow window("Ray", layout.ray);
+        ray_panel_.draw_numbers(ray_, inspector_, ray_column_, ray_row_);
+    }
+    {
+        const FixedWindow window("Integration steps", layout.steps);
+        steps_plot_.draw(scene_, picture_.column(), picture_.width());
+    }
+}
+
+// Dragging moves the camera about the hole as if the hole were turned by the hand; the wheel goes nearer and away.
+void App::move_camera(const Picture::Input &input) {
+    if (input.drag_x == 0.0F && input.drag_y == 0.0F && input.wheel == 0.0F) {
+        return;
+    }
+    Orbit orbit = scene_.orbit();
+    orbit.azimuth -= static_cast<double>(input.drag_x) * DEGREES_PER_UNIT * DEGREE;
+    orbit.azimuth = std::remainder(orbit.azimuth, 360.0 * DEGREE);
+    orbit.elevation += static_cast<double>(input.drag_y) * DEGREES_PER_UNIT * DEGREE;
+    orbit.elevation = std::clamp(orbit.elevation, -90.0 * DEGREE, 90.0 * DEGREE);
+    if (input.wheel != 0.0F) {
+        // What is inside already, falling, is left there.
+        const double nearest = std::min(NEAREST * inspector_.numbers().horizon_radius, orbit.distance);
+        orbit.distance = std::max(orbit.distance * std::pow(ZOOM_PER_NOTCH, static_cast<double>(input.wheel)), nearest);
+    }
+    settings_.report("Camera", "distance", scene_.set_orbit(orbit).message);
+}
+
+// ---- the end ----
+
+// Whether all the frames that were asked for by number were shown, with everything about them, or will never be.
+bool App::counted_out(double now) const {
+    const bool recovers = lost_ && retry_at_ <= now; // it has not been tried yet
+    if (!error_.empty() && queue_.in_flight() == 0 && !recovers) {
+        return true;
+    }
+    const bool steps_known = options_.bare != 0 || steps_plot_.settled(scene_.geometry_version(), picture_.width(),
+                                                                       picture_.height(), picture_.row());
+    return pictures_ >= options_.frames && to_show_ < 0.0 && steps_known;
+}
+
+bool App::finished(double now) {
+    if (window_.closed()) {
+        return true;
+    }
+    if (counted() ? !counted_out(now) && hold_until_ < 0.0 : options_.hold < 0.0) {
+        return false;
+    }
+    if (hold_until_ < 0.0) {
+        hold_until_ = now + std::max(options_.hold, 0.0);
+    }
+    return now >= hold_until_;
+}
+
+int App::save() {
+    Pixels window;
+    draw(glfwGetTime(), &window);
+    const struct {
+        const char     *path;
+        const BhrImage *image;
+    } files[] = {{options_.screenshot, &window.image}, {options_.picture, &picture_.pixels().image}};
+    for (const auto &[path, image] : files) {
+        if (path == nullptr) {
+            continue;
+        }
+        if (const Result result = result_of(bhr_image_save(image, path)); !result.ok()) {
+            std::fprintf(stderr, "cannot save %s: %s\n", path, result.message.c_str());
+            return EXIT_FAILURE;
+        }
+    }
+    if (counted() && pictures_ < options_.frames && !window_.closed()) {
+        std::fprintf(stderr, "cannot make %u frames: %s\n", options_.frames, error_.c_str());
+        return EXIT_FAILURE;
+    }
+    return EXIT_SUCCESS;
+}
+
+// ---- what --verbose says: lines for programs that drive this one ----
+
+void App::say(const Picture::Input &input) {
+    const ImVec2 corner = picture_.corner();
+    const Wanted place{0, picture_.width(), picture_.height()};
+    if (place.width != said_place_.width || place.height != said_place_.height) {
+        std::printf("picture %.0f %.0f %u %u\n", static_cast<double>(corner.x), static_cast<double>(corner.y),
+                    place.width, place.height);
+        said_place_ = place;
+    }
+    if (scene_.geometry_version() != said_geometry_) {
+        const Hole  &hole = scene_.hole();
+        const Orbit &orbit = scene_.orbit();
+        std::printf("scene mass %g spin %g distance %.9g azimuth %.9g elevation %.9g\n", hole.mass, hole.spin,
+                    orbit.distance, orbit.azimuth / DEGREE, orbit.elevation / DEGREE);
+        said_geometry_ = scene_.geometry_version();
+    }
+    if (settings_.refusals() != said_refusals_) {
+        std::printf("refused %s\n", settings_.last_refusal().c_str());
+        said_refusals_ = settings_.refusals();
+    }
+    if (input.clicked) {
+        std::printf("ray %u %u %s deflection %.9g crossings %u steps %u points %zu\n", ray_column_, ray_row_,
+                    fate_name(ray_.hit.fate), ray_.deflection / DEGREE, ray_.hit.crossing_count, ray_.hit.steps,
+                    ray_.path.size());
+    }
+    if (pictures_ != said_pictures_) {
+        std::printf("frames %u\n", pictures_);
+        said_pictures_ = pictures_;
+    }
+}

@@ -1,0 +1,40 @@
+// picture.h -- the picture as the window shows it, and what the mouse does on it. Traces nothing and sets nothing.
+#ifndef PANEL_PICTURE_H
+#define PANEL_PICTURE_H
+
+#include "draw.h"
+#include "frames.h"
+
+#include <string>
+
+class Picture {
+public:
+    struct Input {
+        float  drag_x = 0.0F, drag_y = 0.0F; // since the last frame of the window
+        float  wheel = 0.0F;
+        bool   clicked = false;              // the pixel has moved
+    };
+
+    // Takes the pixels over; gives back those that it had.
+    Pixels take(Pixels &&pixels);
+    // Into the rest of the current ImGui window. bare: nothing but the picture.
+    Input draw(double pixel_ratio, bool bare, const std::string &news, const std::string &error);
+
+    const Pixels &pixels() const { return pixels_; }
+    // Of its place in the window, in pixels; 0 before it was first drawn.
+    uint32_t width() const { return width_; }
+    uint32_t height() const { return height_; }
+    // The pixel that was last clicked on.
+    uint32_t column() const { return std::min(static_cast<uint32_t>(x_ * width_), width_ - 1); }
+    uint32_t row() const { return std::min(static_cast<uint32_t>(y_ * height_), height_ - 1); }
+    ImVec2   corner() const { return corner_; }
+
+private:
+    Pixels   pixels_;
+    Texture  texture_;
+    uint32_t width_ = 0, height_ = 0;
+    ImVec2   corner_{};
+    double   x_ = 0.434, y_ = 0.376; // of the pixel, as parts of the sides: at first one whose ray bends well
+};
+
+#endif

@@ -1,0 +1,130 @@
+// scene.cpp -- see scene.h.
+#include "scene.h"
+
+Result Scene::begin() {
+    camera_ = with_defaults(bhr_camera_init);
+    camera_.fov_y = 45.0 * DEGREE;
+    read_back();
+    Result result = set_spin(0.7);
+    if (result.ok()) {
+        result = set_orbit(Orbit{});
+    }
+    if (result.ok()) {
+        BhrDisk disk = disk_;
+        disk.turbulence = 0.6;
+        result = set_disk(&disk);
+    }
+    return result;
+}
+
+// After a setter: what is in force is what the library says, so a refused value never lingers here.
+Result Scene::accepted(BhrStatus status, bool changes_rays) {
+    const Result result = result_of(status);
+    if (result.ok()) {
+        version_++;
+        geometry_version_ += changes_rays ? 1 : 0;
+        read_back();
+    }
+    return result;
+}
+
+// None of these calls can fail: pointers and sizes are right.
+void Scene::read_back() {
+    bhr_get_hole(context_, &hole_.mass, &hole_.spin, hole_.axis);
+    disk_ = sized<BhrDisk>();
+    int32_t present = 0;
+    bhr_get_disk(context_, &disk_, &present);
+    has_disk_ = present != 0;
+    sky_ = sized<BhrSky>();
+    bhr_get_sky(context_, &sky_);
+    film_ = sized<BhrFilm>();
+    bhr_get_film(context_, &film_);
+    quality_ = sized<BhrQuality>();
+    bhr_get_quality(context_, &quality_);
+}
+
+Result Scene::set_mass(double mass) {
+    return accepted(bhr_set_mass(context_, mass), true);
+}
+
+Result Scene::set_spin(double spin) {
+    return accepted(bhr_set_spin(context_, spin), true);
+}
+
+Result Scene::set_axis(const double axis[3]) {
+    return accepted(bhr_set_axis(context_, axis), true);
+}
+
+Result Scene::set_orbit(const Orbit &orbit) {
+    BhrCamera moved = camera_;
+    Result    result = result_of(bhr_camera_orbit(&moved, orbit.distance, orbit.azimuth, orbit.elevation));
+    if (result.ok()) {
+        result = set_camera(moved);
+    }
+    if (result.ok()) {
+        orbit_ = orbit;
+    }
+    return result;
+}
+
+Result Scene::set_camera(const BhrCamera &camera) {
+    const Result result = accepted(bhr_set_camera(context_, &camera), true);
+    if (result.ok()) {
+        camera_ = camera;
+    }
+    return result;
+}
+
+Result Scene::set_disk(const BhrDisk *disk) {
+    return accepted(bhr_set_disk(context_, disk), true);
+}
+
+Result Scene::set_sky(const BhrSky &sky) {
+    return accepted(bhr_set_sky(context_, &sky), false);
+}
+
+Result Scene::set_film(const BhrFilm &film) {
+    return accepted(bhr_set_film(context_, &film), false);
+}
+
+Result Scene::set_quality(const BhrQuality &quality) {
+    return accepted(bhr_set_quality(context_, &quality), true);
+}
+
+Result Scene::set_view(BhrView view) {
+    const Result result = accepted(bhr_set_view(context_, view), false);
+    if (result.ok()) {
+        view_ = view;
+    }
+    return result;
+}
+
+Result Scene::set_effects(uint32_t effects) {
+    const Result result = accepted(bhr_set_effects(context_, effects), false);
+    if (result.ok()) {
+        effects_ = effects;
+    }
+    return result;
+}
+
+Result Scene::set_time(double time) {
+    const Result result = accepted(bhr_set_time(context_, time), false);
+    if (result.ok()) {
+        time_ = time;
+    }
+    return result;
+}
+
+Result Scene::advance_camera(double proper_time) {
+    BhrCamera    moved = camera_;
+    double       coordinate_time = 0.0;
+    const Result result = result_of(bhr_camera_advance(context_, &moved, proper_time, &coordinate_time));
+    if (!result.ok()) {
+        return result;
+    }
+    const Vec3   place{moved.position[0], moved.position[1], moved.position[2]};
+    const double distance = length(place);
+    const Result placed =
+        set_orbit({distance, std::atan2(place.y, place.x), std::asin(std::clamp(place.z / distance, -1.0, 1.0))});
+    return placed.ok() ? set_time(time_ + coordinate_time) : placed;
+}

@@ -1,0 +1,79 @@
+// scene.h -- the scene as the panel edits it. Every change goes through the library's own checks: what a setter refuses
+// leaves everything as it was. Knows no window.
+#ifndef PANEL_SCENE_H
+#define PANEL_SCENE_H
+
+#include "handles.h"
+#include "vec.h"
+
+// The camera about the hole, which it looks at. Scene lengths and radians.
+struct Orbit {
+    double distance = 30.0, azimuth = -90.0 * DEGREE, elevation = 10.0 * DEGREE;
+};
+
+struct Hole {
+    double mass = 1.0, spin = 0.0;
+    double axis[3] = {0.0, 0.0, 1.0};
+};
+
+class Scene {
+public:
+    explicit Scene(BhrContext *context) : context_(context) {}
+
+    // The scene that the panel begins with.
+    Result begin();
+
+    // The values in force.
+    const Hole       &hole() const { return hole_; }
+    const Orbit      &orbit() const { return orbit_; }
+    const BhrCamera  &camera() const { return camera_; }
+    const BhrDisk    &disk() const { return disk_; }
+    bool              has_disk() const { return has_disk_; }
+    const BhrSky     &sky() const { return sky_; }
+    const BhrFilm    &film() const { return film_; }
+    const BhrQuality &quality() const { return quality_; }
+    BhrView           view() const { return view_; }
+    uint32_t          effects() const { return effects_; }
+    double            time() const { return time_; }
+    Chart             chart() const { return Chart(hole_.axis); }
+
+    // Numbers that grow with every change: of anything a frame shows, and of rays and what they meet only.
+    uint64_t version() const { return version_; }
+    uint64_t geometry_version() const { return geometry_version_; }
+
+    Result set_mass(double mass);
+    Result set_spin(double spin);
+    Result set_axis(const double axis[3]);
+    Result set_orbit(const Orbit &orbit);
+    Result set_camera(const BhrCamera &camera); // lens and motion; place and direction are the orbit's
+    Result set_disk(const BhrDisk *disk);       // NULL: none
+    Result set_sky(const BhrSky &sky);
+    Result set_film(const BhrFilm &film);
+    Result set_quality(const BhrQuality &quality);
+    Result set_view(BhrView view);
+    Result set_effects(uint32_t effects);
+    Result set_time(double time);
+
+    // Moves the camera along its world line, and the scene's time with it.
+    Result advance_camera(double proper_time);
+
+private:
+    Result accepted(BhrStatus status, bool changes_rays);
+    void   read_back();
+
+    BhrContext *context_;
+    Hole        hole_;
+    Orbit       orbit_;
+    BhrCamera   camera_{};
+    BhrDisk     disk_{};
+    bool        has_disk_ = true;
+    BhrSky      sky_{};
+    BhrFilm     film_{};
+    BhrQuality  quality_{};
+    BhrView     view_ = BHR_VIEW_LIGHT;
+    uint32_t    effects_ = BHR_EFFECT_ALL;
+    double      time_ = 0.0;
+    uint64_t    version_ = 0, geometry_version_ = 0;
+};
+
+#endif

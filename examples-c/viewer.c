@@ -1,0 +1,486 @@
+/* viewer.c -- a black hole in a window, to fly around in: how a host hands its window to bhr, presents frames, follows
+ * sizes, and lives through a lost window or GPU. Its camera, scene, quality, input and pictures are in viewer_*.c.
+ * Lengths on the command line are in units of the hole's mass M, angles in degrees. */
+#include "viewer.h"
+#include "viewer_input.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* In seconds: */
+#define LONGEST_STEP 0.1          /* after a stall the scene goes on from where it was */
+#define MACHINE_STEP (1.0 / 60.0) /* between the frames of --frames */
+#define MOVING_FOR 0.2            /* after a change by hand another one is likely for so long */
+#define RESTING_WAIT 0.25         /* between looks at a picture that rests, or cannot be seen */
+#define TITLE_PERIOD 0.25
+#define MOST_FAILURES 3 /* frames in a row, before it gives up */
+
+typedef struct Settings {
+    uint32_t     size[2];
+    SceneOptions scene;
+    int32_t      motion, backend, present;
+    uint32_t     frames;
+    double       rate, hold;
+    const char  *screenshot;
+    int          validation, verbose, help;
+} Settings;
+
+static const Choice PRESENT_MODES[] = {{"vsync", BHR_PRESENT_VSYNC},
+                                       {"immediate", BHR_PRESENT_IMMEDIATE},
+                                       {"mailbox", BHR_PRESENT_MAILBOX},
+                                       {NULL, 0}};
+
+/* ---- the surface ---- */
+
+/* 1, or 0 after a message. */
+static int open_surface(Viewer *v) {
+    BhrWindow window;
+    if (!window_from_glfw(v->window, &window)) {
+        fprintf(stderr, "cannot use the window: this program was built without the platform that GLFW runs on\n");
+        return 0;
+    }
+    BhrStatus status = bhr_surface_create(v->context, &window, v->size[0], v->size[1], v->present, &v->surface);
+    if (status < 0) {
+        report_failure("render into the window", status);
+    }
+    v->dirty = 1;
+    return status >= 0;
+}
+
+static int reopen_surface(Viewer *v) {
+    bhr_surface_destroy(v->surface);
+    v->surface = NULL;
+    return open_surface(v);
+}
+
+/* The context keeps the scene; what belonged to the device, the surface, is made again. */
+static int recover(Viewer *v) {
+    bhr_surface_destroy(v->surface);
+    v->surface = NULL;
+    BhrStatus status = bhr_context_recover(v->context);
+    if (status < 0) {
+        report_failure("bring the GPU back", status);
+        return 0;
+    }
+    printf("the GPU is back\n");
+    return open_surface(v);
+}
+
+/* ---- what has to be done ---- */
+
+static int time_runs(const Viewer *v) { return !v->paused && !v->still && v->pace != 0.0; }
+
+static int is_moving(const Viewer *v) {
+    if (v->still) {
+        return 0;
+    }
+    return v->recorder.running || v->fixed_step > 0.0 || v->now - v->changed_at < MOVING_FOR ||
+           pilot_is_moving(&v->pilot) ||
+           (time_runs(v) && (v->pilot.motion != BHR_MOTION_STATIC || scene_changes_with_time(&v->scene)));
+}
+
+/* All frames that a machine asked for are presented. */
+static int is_complete(const Viewer *v) { return v->most_frames != 0 && v->frames >= v->most_frames && !v->still; }
+
+static int is_visible(const Viewer *v) { return v->size[0] != 0 && v->size[1] != 0; }
+
+static int needs_frame(const Viewer *v) {
+    return is_visible(v) && !v->broken && !is_complete(v) &&
+           (v->dirty || is_moving(v) || !governor_is_done(&v->governor, &v->scene.quality));
+}
+
+/* Back to the scene of the last good frame, with everything that led away from it stopped. */
+static void go_back(Viewer *v) {
+    BhrMotion motion = v->good.camera.motion;
+    v->scene = v->good;
+    pilot_stop(&v->pilot, motion == BHR_MOTION_VELOCITY ? BHR_MOTION_ORBIT : motion);
+    v->tried_view = v->scene.view;
+    v->paused = 1;
+    v->dirty = 1;
+    printf("back to the last picture; time stands still\n");
+    v->broken |= ++v->failures >= MOST_FAILURES;
+}
+
+/* ---- a frame ---- */
+
+/* Moves the scene on, by the wall clock or by the fixed step of machines and recordings. */
+static void move(Viewer *v) {
+    double now = wall_seconds(), seconds = fmin(now - v->now, LONGEST_STEP);
+    v->now = now;
+    if (v->still || is_complete(v) || (v->fixed_step > 0.0 && v->skipped)) {
+        return; /* every step of a machine's run is presented */
+    }
+    if (v->fixed_step > 0.0 || v->recorder.running) {
+        seconds = v->fixed_step > 0.0 ? v->fixed_step : 1.0 / RECORDED_RATE;
+    }
+    double    proper_time = time_runs(v) ? v->pace * v->scene.mass * seconds : 0.0;
+    BhrStatus status = pilot_step(&v->pilot, &v->scene, v->context, seconds, proper_time);
+    if (status < 0) {
+        report_failure("move the camera", status);
+        go_back(v);
+    }
+}
+
+/* What a presented frame cost: the governor and the title want to know. */
+static void account(Viewer *v, int moving) {
+    BhrFrameStats stats = {.struct_size = sizeof stats};
+    double        now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;
+    BhrStatus     status = bhr_frame_stats(v->context, &stats);
+    governor_hear(&v->governor, moving, seconds, status >= 0 ? (double)stats.gpu_ns * 1e-9 : 0.0);
+    v->presented_at = now;
+    v->good = v->scene;
+    v->failures = 0;
+    v->frames++;
+    v->frames_untitled++;
+}
+
+/* Renders and presents the scene, and deals with every status that can come of it. */
+static void draw(Viewer *v) {
+    const int moving = is_moving(v);
+    Scene     shown = v->scene;
+    if (moving || v->dirty) {
+        governor_restart(&v->governor);
+    }
+    v->dirty = 0;
+    governor_choose(&v->governor, moving, &shown.quality);
+    BhrStatus status = scene_apply(&shown, v->context);
+    if (status >= 0) {
+        status = bhr_render_surface(v->context, v->surface);
+    }
+    v->skipped = status == BHR_FRAME_SKIPPED;
+    switch (status) {
+    case BHR_OK:
+        account(v, moving);
+        break;
+    case BHR_FRAME_SKIPPED:
+        v->dirty = 1;
+        break;
+    case BHR_ERROR_DEVICE_LOST:
+        report_failure("render the frame", status);
+        v->broken |= ++v->failures >= MOST_FAILURES || !recover(v);
+        break;
+    case BHR_ERROR_SURFACE_LOST:
+        report_failure("render the frame", status);
+        v->broken |= ++v->failures >= MOST_FAILURES || !reopen_surface(v);
+        break;
+    default: /* what was set cannot be, or not here: the last picture could */
+        report_failure("render the frame", status);
+        go_back(v);
+        break;
+    }
+}
+
+void viewer_apply_for_picture(Viewer *v) {
+    Scene picture = v->scene;
+    governor_choose_for_picture(&v->governor, &picture.quality);
+    BhrStatus status = scene_apply(&picture, v->context);
+    if (status < 0) {
+        report_failure("prepare a picture", status); /* then it is as fine as the window is */
+    }
+}
+
+/* Seconds until the display wants the next frame. Some displays, as one without a screen, do not hold frames back: what
+ * nobody would see is not rendered. */
+static double spare_time(const Viewer *v) {
+    if (v->present == BHR_PRESENT_IMMEDIATE || v->fixed_step > 0.0 || v->recorder.running || v->presented_at == 0.0) {
+        return 0.0;
+    }
+    double spare = 0.9 * v->governor.period - (wall_seconds() - v->presented_at);
+    return spare > 0.5 * v->governor.period ? spare : 0.0; /* less may be the display's own rhythm: leave it alone */
+}
+
+/* Sleeps while there is nothing to do: a resting picture costs no power. */
+static void handle_events(Viewer *v) {
+    const double spare = spare_time(v);
+    if (!is_visible(v)) {
+        glfwWaitEvents();
+    } else if (v->skipped || !needs_frame(v)) {
+        v->presented_at = 0.0;
+        glfwWaitEventsTimeout(RESTING_WAIT);
+        v->now = wall_seconds(); /* the scene did not move meanwhile */
+    } else if (spare > 0.0) {
+        glfwWaitEventsTimeout(spare);
+    } else {
+        glfwPollEvents();
+    }
+}
+
+static void update_title(Viewer *v) {
+    double        elapsed = v->now - v->titled_at;
+    BhrHoleInfo   info = {.struct_size = sizeof info};
+    BhrFrameStats stats = {.struct_size = sizeof stats};
+    if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
+        return;
+    }
+    char title[192], rate[32], gpu[32], scale[32] = "";
+    snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
+    snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
+    if (is_moving(v) && v->governor.enabled && v->governor.scale < 1.0) {
+        snprintf(scale, sizeof scale, "   traced at %.0f %%", 100.0 * v->governor.scale);
+    }
+    snprintf(title, sizeof title, "bhr   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s", rate, gpu,
+             v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, scale);
+    glfwSetWindowTitle(v->window, title);
+    v->titled_at = v->now;
+    v->frames_untitled = 0;
+}
+
+/* One turn of the loop after the events; also called while the system's own loop drags an edge of the window. */
+static void turn(Viewer *v) {
+    move(v);
+    if (needs_frame(v)) {
+        draw(v);
+        if (v->recorder.running) {
+            viewer_apply_for_picture(v);
+            recorder_add(&v->recorder, v->context);
+        }
+    }
+    update_title(v);
+}
+
+/* Until the window is closed, or everything is shown. */
+static void show(Viewer *v) {
+    v->now = wall_seconds();
+    while (!glfwWindowShouldClose(v->window) && !v->broken && !is_complete(v)) {
+        handle_events(v);
+        turn(v);
+    }
+}
+
+/* The last picture stays, as it is: whoever tests the window can compare. */
+static void hold(Viewer *v, double seconds) {
+    const double end = wall_seconds() + seconds;
+    v->still = 1;
+    puts("holding");
+    while (!glfwWindowShouldClose(v->window) && !v->broken && wall_seconds() < end) {
+        handle_events(v);
+        turn(v);
+    }
+}
+
+/* ---- callbacks of GLFW ---- */
+
+static void on_error(int code, const char *description) {
+    fprintf(stderr, "GLFW: %s (error 0x%x)\n", description, (unsigned)code);
+}
+
+static void on_framebuffer_size(GLFWwindow *window, int width, int height) {
+    Viewer *v = glfwGetWindowUserPointer(window);
+    v->size[0] = (uint32_t)width;
+    v->size[1] = (uint32_t)height;
+    v->changed_at = v->now;
+    v->dirty = 1;
+    BhrStatus status = bhr_surface_resize(v->surface, v->size[0], v->size[1]);
+    if (status < 0) {
+        report_failure("follow the window's size", status); /* the next frame says whether that matters */
+    }
+}
+
+/* The system wants the contents again, as while an edge is dragged: GLFW's poll does not return then. */
+static void on_refresh(GLFWwindow *window) {
+    Viewer *v = glfwGetWindowUserPointer(window);
+    v->dirty = 1;
+    turn(v);
+}
+
+/* ---- beginning and end ---- */
+
+static GLFWwindow *open_window(const Settings *s) {
+    glfwSetErrorCallback(on_error);
+    if (!glfwInit()) {
+        fprintf(stderr, "cannot open a window: is there a display? (X11: DISPLAY; Wayland: WAYLAND_DISPLAY)\n");
+        return NULL;
+    }
+    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API); /* bhr brings its own graphics */
+    const int      sized = s->size[0] != 0;
+    const uint32_t width = sized ? s->size[0] : 1280, height = sized ? s->size[1] : 720;
+    /* A size that was asked for is meant in pixels. */
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, sized ? GLFW_FALSE : GLFW_TRUE);
+    if (width > INT32_MAX || height > INT32_MAX) {
+        fprintf(stderr, "cannot open a window of %u x %u\n", (unsigned)width, (unsigned)height);
+        return NULL;
+    }
+    return glfwCreateWindow((int)width, (int)height, "bhr", NULL, NULL);
+}
+
+static double display_rate(void) {
+    GLFWmonitor       *monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode *mode = monitor != NULL ? glfwGetVideoMode(monitor) : NULL;
+    return mode != NULL ? mode->refreshRate : 0.0;
+}
+
+static void print_what_renders(const BhrContext *context, int32_t backend) {
+    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    if (bhr_context_adapter(context, &adapter) < 0) {
+        return;
+    }
+    printf("rendering on ");
+    print_adapter(stdout, &adapter);
+    if (backend == BHR_BACKEND_AUTO && adapter.backend == BHR_BACKEND_CPU) {
+        printf("\nno GPU driver was usable, so the CPU traces the light; --verbose says why");
+    }
+    printf("\nH prints the keys, Esc quits\n");
+}
+
+/* A context on an adapter that can present to the window. */
+static int open_context(Viewer *v, const Settings *s) {
+    BhrContextOptions options;
+    BhrWindow         window;
+    BhrStatus         status = bhr_context_options_init(&options, sizeof options);
+    if (status >= 0) {
+        options.backend = s->backend;
+        options.compatible_window = window_from_glfw(v->window, &window) ? &window : NULL;
+        options.flags = s->validation ? BHR_CONTEXT_VALIDATION : 0;
+        options.log_fn = s->verbose || s->validation ? log_to_stderr : NULL;
+        options.log_level = s->verbose ? BHR_LOG_INFO : BHR_LOG_WARN;
+        status = bhr_context_create(BHR_ABI_VERSION, &options, &v->context);
+    }
+    if (status < 0) {
+        report_failure("create a context", status);
+        return 0;
+    }
+    print_what_renders(v->context, s->backend);
+    return 1;
+}
+
+/* Such an adapter is not asked for a whole picture in time: the quality begins low, and rises. */
+static int is_software(const BhrContext *context) {
+    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    return bhr_context_adapter(context, &adapter) >= 0 && (adapter.flags & BHR_ADAPTER_SOFTWARE);
+}
+
+static int set_first_scene(Viewer *v, const Settings *s) {
+    BhrStatus status = scene_init(&v->scene, &s->scene);
+    if (status >= 0) {
+        status = scene_apply(&v->scene, v->context);
+    }
+    if (status < 0) {
+        report_failure("set the scene", status);
+        return 0;
+    }
+    v->first = v->good = v->scene;
+    v->tried_view = v->scene.view;
+    v->tried_projection = v->scene.camera.projection;
+    v->pilot.motion = s->motion;
+    v->pilot.steered = 1;
+    v->pace = FIRST_PACE;
+    governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
+    if (s->frames != 0) { /* the same frames on every machine */
+        v->most_frames = s->frames;
+        v->fixed_step = MACHINE_STEP;
+        v->governor.enabled = 0;
+    }
+    return 1;
+}
+
+static int start(Viewer *v, const Settings *s) {
+    v->present = s->present;
+    v->window = open_window(s);
+    if (v->window == NULL) {
+        return 0;
+    }
+    int width, height;
+    glfwGetFramebufferSize(v->window, &width, &height);
+    v->size[0] = (uint32_t)width;
+    v->size[1] = (uint32_t)height;
+    if (!open_context(v, s) || !set_first_scene(v, s) || !open_surface(v)) {
+        return 0;
+    }
+    glfwSetWindowUserPointer(v->window, v);
+    glfwSetFramebufferSizeCallback(v->window, on_framebuffer_size);
+    glfwSetWindowRefreshCallback(v->window, on_refresh);
+    input_attach(v);
+    return 1;
+}
+
+/* In any order; NULL is fine, except for the window. */
+static void finish(Viewer *v) {
+    if (v->recorder.running) {
+        recorder_stop(&v->recorder);
+    }
+    bhr_surface_destroy(v->surface);
+    bhr_context_destroy(v->context);
+    if (v->window != NULL) {
+        glfwDestroyWindow(v->window);
+    }
+    glfwTerminate();
+}
+
+static int view(const Settings *s) {
+    Viewer viewer = {0};
+    int    good = start(&viewer, s);
+    if (good) {
+        show(&viewer);
+        if (s->screenshot != NULL && !viewer.broken) {
+            good = picture_save(viewer.context, viewer.size[0], viewer.size[1], s->screenshot);
+        }
+        if (s->hold > 0.0) {
+            hold(&viewer, s->hold);
+        }
+    }
+    if (viewer.broken) {
+        fprintf(stderr, "the viewer cannot go on\n");
+        good = 0;
+    }
+    finish(&viewer);
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+/* ---- command line ---- */
+
+static int run(int argc, char **argv) {
+    Settings      s = {.scene = SCENE_DEFAULTS};
+    SceneOptions *o = &s.scene;
+    const Option  options[] = {
+        {"--size", OPTION_SIZE, s.size, "WxH", "of the window; default 1280x720", NULL},
+        {"--mass", OPTION_DOUBLE, &o->mass, "M", "in scene lengths; default 1", NULL},
+        {"--spin", OPTION_DOUBLE, &o->spin, "A", "a / M, -0.999 to 0.999; default 0.7", NULL},
+        {"--distance", OPTION_DOUBLE, &o->distance, "R", "camera's radius in M; default 34", NULL},
+        {"--azimuth", OPTION_DOUBLE, &o->azimuth, "DEG", "camera's azimuth about the spin axis; default 20", NULL},
+        {"--elevation", OPTION_DOUBLE, &o->elevation, "DEG", "camera above the disk's plane; default 10", NULL},
+        {"--fov", OPTION_DOUBLE, &o->fov, "DEG", "vertical field of view, below 180; default 42", NULL},
+        {"--motion", OPTION_CHOICE, &s.motion, NULL, "of the camera; default static", MOTIONS},
+        {"--disk-outer", OPTION_DOUBLE, &o->disk_outer, "R", "in M; default 15", NULL},
+        {"--turbulence", OPTION_DOUBLE, &o->turbulence, "X", "structure of the disk, 0 to 1; default 0.8", NULL},
+        {"--no-disk", OPTION_FLAG, &o->no_disk, NULL, "leaves the disk out", NULL},
+        {"--no-stars", OPTION_FLAG, &o->no_sky, NULL, "makes the sky black", NULL},
+        {"--exposure", OPTION_DOUBLE, &o->exposure, "EV", "stops, -20 to 20; default 0.5", NULL},
+        {"--view", OPTION_CHOICE, &o->view, NULL, "what a pixel shows; default light", VIEWS},
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
+        {"--present", OPTION_CHOICE, &s.present, NULL, "how frames reach the screen; default vsync", PRESENT_MODES},
+        {"--rate", OPTION_DOUBLE, &s.rate, "FPS", "that the quality gives way to; default the display's", NULL},
+        {"--frames", OPTION_UINT, &s.frames, "N", "ends after N frames, 1/60 s of the scene apart", NULL},
+        {"--screenshot", OPTION_TEXT, &s.screenshot, "FILE", "saves the last picture, .png or .ppm", NULL},
+        {"--hold", OPTION_DOUBLE, &s.hold, "SECONDS", "keeps the last picture before it ends", NULL},
+        {"--validation", OPTION_FLAG, &s.validation, NULL, "the graphics driver's checks, reported on stderr", NULL},
+        {"--verbose", OPTION_FLAG, &s.verbose, NULL, "the library's log on stderr", NULL},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+    };
+    int result = options_parse(options, COUNT_OF(options), argc, argv);
+    if (result != 0) {
+        return result;
+    }
+    if (s.help) {
+        printf("Usage: viewer [options]\nA black hole in a window. Lengths in units of its mass M.\n\n");
+        options_print(stdout, options, COUNT_OF(options));
+        printf("\nKeys:\n");
+        input_print_keys();
+        return EXIT_SUCCESS;
+    }
+    if (s.motion == BHR_MOTION_VELOCITY) {
+        fprintf(stderr, "%s: --motion velocity is not for a camera that moves by itself\n", argv[0]);
+        return EXIT_USAGE;
+    }
+    return view(&s);
+}
+
+int main(int argc, char **argv) {
+    setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what it says is read while it runs, from a file too */
+    int result = run(argc, argv);
+    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
+        fprintf(stderr, "cannot write to standard output\n");
+        return EXIT_FAILURE;
+    }
+    return result;
+}

@@ -1,0 +1,60 @@
+/* viewer.h -- what the viewer's parts share: its one struct, which GLFW's callbacks find through the window's user
+ * pointer. viewer.c renders and presents, viewer_input.c turns keys and mouse into wishes. */
+#ifndef EXAMPLES_VIEWER_H
+#define EXAMPLES_VIEWER_H
+
+#include "glfw_window.h"
+#include "viewer_camera.h"
+#include "viewer_pictures.h"
+#include "viewer_quality.h"
+#include "viewer_scene.h"
+
+#define SAID 96
+#define FIRST_PACE 3.0 /* M per second: the disk's inner edge turns in half a minute */
+
+typedef struct Mouse {
+    double x, y;    /* window coordinates, not pixels */
+    int    orbits;  /* left button: the camera goes about the hole */
+    int    looks;   /* right button: the view turns */
+} Mouse;
+
+typedef struct Viewer {
+    GLFWwindow *window;
+    BhrContext *context;
+    BhrSurface *surface;
+    BhrPresentMode present;
+    uint32_t    size[2]; /* of the framebuffer, in pixels: larger than the window on a high-density display */
+
+    Scene    first;      /* for going back to the beginning */
+    Scene    scene;      /* what the next frame shows */
+    Pilot    pilot;
+    Scene    good;       /* what the last presented frame showed: to go back to when a frame fails */
+    double   pace;       /* M of the camera's proper time that go by in a second; < 0: backwards */
+    int      paused;
+    Governor governor;
+    Recorder recorder;
+
+    Mouse   mouse;
+    int     windowed[4]; /* position and size to come back to from the full screen */
+    int32_t tried_view, tried_projection; /* the cycling keys pass over what is refused */
+    char    said[SAID];  /* by the last key; printed when bhr has accepted the change */
+
+    double   now;           /* wall_seconds() of this turn of the loop */
+    double   changed_at;    /* when the picture was last changed by hand */
+    double   presented_at;  /* when the last frame was done; 0: there was a pause since */
+    double   titled_at;
+    unsigned frames_untitled; /* presented since the title was written */
+    uint64_t frames;          /* presented */
+    unsigned failures;        /* frames that failed since the last good one */
+    int      skipped;         /* the last frame was: the window cannot be seen */
+    int      still;           /* nothing moves any more: --hold */
+    int      dirty;           /* the window needs a frame even if the picture rests */
+    int      broken;          /* it cannot go on; the reason was said */
+    uint64_t most_frames;     /* 0: no limit */
+    double   fixed_step;      /* seconds of every step; 0: the wall clock's */
+} Viewer;
+
+/* Readies the context for bhr_render_image: the scene of the window, not coarser than a picture to keep should be. */
+void viewer_apply_for_picture(Viewer *viewer);
+
+#endif

@@ -1,0 +1,13 @@
+/* viewer_input.h -- keys and mouse. One table holds the keys: it dispatches them and prints the help. Changes wishes
+ * and values in the Viewer; renders nothing except for the picture keys. */
+#ifndef EXAMPLES_VIEWER_INPUT_H
+#define EXAMPLES_VIEWER_INPUT_H
+
+#include "viewer.h"
+
+/* Hears the window's keys and mouse from now on; the window's user pointer must be the viewer. */
+void input_attach(Viewer *viewer);
+
+void input_print_keys(void);
+
+#endif

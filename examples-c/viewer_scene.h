@@ -1,0 +1,46 @@
+/* viewer_scene.h -- everything that a frame of the viewer shows, as plain values that are copied to try a change and
+ * thrown away when bhr refuses it. Knows no window and no input. */
+#ifndef EXAMPLES_VIEWER_SCENE_H
+#define EXAMPLES_VIEWER_SCENE_H
+
+#include "common.h"
+
+#include <bhr.h>
+
+typedef struct Scene {
+    double     mass; /* scene lengths */
+    double     spin; /* a / M */
+    double     time; /* scene lengths */
+    BhrCamera  camera;
+    BhrDisk    disk;
+    int        has_disk;
+    BhrSky     sky;
+    int        has_sky;
+    BhrFilm    film;
+    uint32_t   effects; /* BHR_EFFECT_* */
+    BhrView    view;
+    BhrQuality quality;
+} Scene;
+
+/* What the command line says about the first scene. Lengths in units of M, angles in degrees. */
+typedef struct SceneOptions {
+    double  mass, spin;
+    double  distance, azimuth, elevation, fov;
+    double  disk_outer, turbulence, exposure;
+    int     no_disk, no_sky;
+    int32_t view;
+} SceneOptions;
+
+extern const SceneOptions SCENE_DEFAULTS;
+extern const Choice       VIEWS[], PROJECTIONS[];
+
+/* The defaults of the library with the options laid over them. Errors: as the library's. */
+BhrStatus scene_init(Scene *scene, const SceneOptions *options);
+
+/* Sets all of it in a context; at the first failure stops and returns it. What was the same before costs nothing. */
+BhrStatus scene_apply(const Scene *scene, BhrContext *context);
+
+/* Whether frames differ while time goes by and the camera stands still. */
+int scene_changes_with_time(const Scene *scene);
+
+#endif

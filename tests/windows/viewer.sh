@@ -1,0 +1,205 @@
+# viewer.sh -- tests of examples-c/viewer in a window: started, driven with xdotool, looked at with ImageMagick.
+# Functions only, each one a test for `check` or a helper of them. Needs tests/lib.sh's $scratch, $viewer (the program),
+# and an X server in DISPLAY without a window manager; Xvfb with -noreset, as it is deaf for a moment after its last
+# client has left.
+# shellcheck shell=bash disable=SC2154
+
+viewer_log=$scratch/viewer.log
+
+# viewer_until SECONDS COMMAND...: asks again and again until it succeeds; fails after the time.
+viewer_until() {
+    local end=$((SECONDS + $1))
+    shift
+    until "$@" >/dev/null 2>&1; do
+        [ "$SECONDS" -lt "$end" ] || {
+            echo "waited in vain for: $*"
+            return 1
+        }
+        sleep 0.1
+    done
+}
+
+viewer_window_of() { xdotool search --onlyvisible --pid "$1"; }
+viewer_says() { grep -q -e "$1" "$viewer_log"; }
+viewer_lives() { kill -0 "$viewer_pid" 2>/dev/null || { echo "the viewer is gone"; return 1; }; }
+viewer_title() { xdotool getwindowname "$viewer_window"; }
+viewer_title_says() { viewer_title | grep -q -e "$1"; }
+
+# viewer_open OPTIONS...: starts it in the background in a folder of its own, waits for its first frames and puts the
+# mouse, and so the keys, over its window. Sets viewer_pid, viewer_window, viewer_folder.
+viewer_open() {
+    viewer_folder=$(mktemp -d -p "$scratch") || return 1
+    : >"$viewer_log"
+    (cd -- "$viewer_folder" && exec "$viewer" "$@") >"$viewer_log" 2>&1 &
+    viewer_pid=$!
+    trap 'viewer_end' EXIT # check runs every test in a subshell
+    viewer_until 30 viewer_window_of "$viewer_pid" || { cat -- "$viewer_log"; return 1; }
+    viewer_window=$(viewer_window_of "$viewer_pid" | tail -n 1)
+    viewer_until 60 viewer_title_says 'M 1' && xdotool mousemove --window "$viewer_window" 100 60
+}
+
+# Ends a viewer that a failed test has left.
+viewer_end() {
+    [ -n "${viewer_pid:-}" ] && kill "$viewer_pid" 2>/dev/null && wait "$viewer_pid"
+    return 0
+}
+
+# Esc: it must end by itself, with status 0.
+viewer_close() {
+    local status=0
+    viewer_lives && xdotool key Escape && viewer_until 60 viewer_is_gone || return 1
+    wait "$viewer_pid" || status=$?
+    viewer_pid=
+    cat -- "$viewer_log"
+    [ "$status" -eq 0 ]
+}
+viewer_is_gone() { ! kill -0 "$viewer_pid"; }
+
+# viewer_grab FILE: what the window shows now.
+viewer_grab() { import -window "$viewer_window" "$1"; }
+
+# viewer_colours FILE: how many.
+viewer_colours() { identify -format '%k' "$1"; }
+
+# viewer_equal A B: the pictures' sizes are equal, and no channel of a pixel differs by more than one 8-bit step.
+viewer_equal() {
+    local error
+    [ "$(identify -format '%wx%h' "$1")" = "$(identify -format '%wx%h' "$2")" ] || {
+        identify "$1" "$2"
+        return 1
+    }
+    error=$(compare -metric PAE "$1" "$2" -alpha off null: 2>&1)
+    echo "largest difference of a channel: $error"
+    awk -v text="$error" 'BEGIN { gsub(/.*\(|\)/, "", text); exit !(text ~ /^[0-9.e+-]+$/ && text * 255 < 1.001) }'
+}
+
+# ---- the tests ----
+
+# Exactly so many frames, status 0, nothing on stderr.
+viewer_starts() {
+    "$viewer" --size 320x180 --frames 20 --screenshot "$scratch/viewer-first.png" 2>"$scratch/viewer-errors" || return 1
+    cat -- "$scratch/viewer-errors"
+    [ ! -s "$scratch/viewer-errors" ] && [ "$(viewer_colours "$scratch/viewer-first.png")" -gt 200 ]
+}
+
+# The driver's own checks, where its validation layers are installed, have nothing to say. Debian 12's do not know WGSL,
+# which naga names as the language of its shaders: that message is none about what the viewer does.
+viewer_is_valid() {
+    "$viewer" --size 160x90 --frames 5 --validation 2>"$scratch/viewer-errors" || return 1
+    cat -- "$scratch/viewer-errors"
+    [ "$(grep -c 'VALIDATION \[' "$scratch/viewer-errors")" -eq \
+        "$(grep -c 'Invalid source language operand' "$scratch/viewer-errors")" ]
+}
+
+viewer_needs_display() {
+    local status=0
+    env -u DISPLAY -u WAYLAND_DISPLAY "$viewer" 2>"$scratch/viewer-errors" || status=$?
+    cat -- "$scratch/viewer-errors"
+    [ "$status" -eq 1 ] && grep -q 'display' "$scratch/viewer-errors"
+}
+
+# Every kind of key: values, switches, what bhr refuses, motions, help; and the viewer goes on.
+viewer_takes_keys() {
+    viewer_open --size 320x180 || return 1
+    local key
+    for key in Right x x 3 v v v v v v n n n m p space period slash t g bracketleft Up k i l l h; do
+        xdotool key "$key" && sleep 0.1
+    done
+    viewer_until 30 viewer_says '^  Esc *quit' || return 1
+    local words
+    for words in 'spin 0.800' 'disk off' 'disk on' 'beaming off' 'view: metric' 'camera: freefall' 'camera: orbit' \
+        'camera: static' 'mass 1.1' 'time stands still' '6 M of the' '-6 M of the' 'turbulence of the disk 0.90' \
+        'tone map: agx' 'field of view 38.2' 'exposure +0.75' 'stars off' 'method: rk4' 'quality as it is set'; do
+        viewer_says "$words" || { echo "it did not say: $words"; cat -- "$viewer_log"; return 1; }
+    done
+    xdotool key BackSpace && viewer_until 20 viewer_says 'back to the beginning' &&
+        viewer_until 30 viewer_title_says 'a +0.700' && viewer_close
+}
+
+# Dragging turns the picture, the wheel brings the hole nearer, W flies on to it.
+viewer_takes_mouse() {
+    viewer_open --size 320x180 && xdotool key space && sleep 1 || return 1
+    viewer_grab "$scratch/mouse-1.png" && xdotool mousedown 1 || return 1
+    local step
+    for step in 1 2 3 4 5 6; do
+        xdotool mousemove_relative -- 8 6 && sleep 0.1
+    done
+    xdotool mouseup 1 && sleep 2 && viewer_grab "$scratch/mouse-2.png" || return 1
+    viewer_equal "$scratch/mouse-1.png" "$scratch/mouse-2.png" && return 1
+    viewer_until 10 viewer_title_says 'r 34 M' || return 1
+    xdotool click 4 click 4 click 4 && viewer_until 20 viewer_title_says 'r 20.* M' || { viewer_title; return 1; }
+    xdotool key f keydown w && sleep 2 && xdotool keyup w &&
+        viewer_until 20 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' || { viewer_title; return 1; }
+    viewer_close
+}
+
+# With time stopped the picture is refined, and then costs nothing: less than a tenth of a core.
+viewer_rests() {
+    viewer_open --size 320x180 && xdotool key space || return 1
+    viewer_until 60 viewer_title_says 'at rest' && sleep 2 || return 1
+    local before after
+    before=$(viewer_ticks) && sleep 3 && after=$(viewer_ticks) && echo "$((after - before)) ticks in 3 s" || return 1
+    [ $((after - before)) -lt $((3 * $(getconf CLK_TCK) / 10)) ] && viewer_close
+}
+viewer_ticks() { awk '{ print $14 + $15 }' "/proc/$viewer_pid/stat"; }
+
+# A fall into a hole without spin goes on inside and begins again; one into a spinning hole ends above its horizon.
+# Orbits near the hole, in the plane and inclined. Every frame of all that can be rendered.
+viewer_falls_and_orbits() {
+    local spin
+    for spin in 0 0.9; do
+        "$viewer" --size 64x36 --spin "$spin" --motion freefall --distance 4 --frames 900 >"$scratch/fall" 2>&1 || {
+            cat -- "$scratch/fall"
+            return 1
+        }
+        cat -- "$scratch/fall"
+        grep -q 'begins again' "$scratch/fall" || return 1
+        "$viewer" --size 64x36 --spin "$spin" --motion orbit --distance 4 --frames 300 >"$scratch/orbit" 2>&1 &&
+            ! grep 'cannot' "$scratch/orbit" "$scratch/fall" || return 1
+    done
+}
+
+# Ten sizes; after each the window shows a picture of that size.
+viewer_resizes() {
+    viewer_open --size 320x180 || return 1
+    local size
+    for size in 200x100 1x1 640x360 100x400 33x17 2x300 500x2 801x451 64x64 320x180; do
+        xdotool windowsize "$viewer_window" "${size%x*}" "${size#*x}" && sleep 0.5 && viewer_lives || return 1
+        viewer_grab "$scratch/size.png" && [ "$(identify -format '%wx%h' "$scratch/size.png")" = "$size" ] || {
+            identify "$scratch/size.png"
+            return 1
+        }
+    done
+    xdotool mousemove --window "$viewer_window" 100 60 key space
+    viewer_until 30 viewer_shows_picture && viewer_close && ! viewer_says 'cannot'
+}
+viewer_shows_picture() { viewer_grab "$scratch/shown.png" && [ "$(viewer_colours "$scratch/shown.png")" -gt 200 ]; }
+
+# viewer_screenshot_equals_window OPTIONS...: of the same scene, to one 8-bit step in all pixels.
+viewer_screenshot_equals_window() {
+    viewer_open --size 480x270 --frames 3 --screenshot "$scratch/held.png" --hold 60 "$@" || return 1
+    viewer_until 60 viewer_says '^holding' && sleep 0.5 && viewer_grab "$scratch/window.png" &&
+        viewer_equal "$scratch/held.png" "$scratch/window.png" && viewer_end
+}
+
+# F12: numbered pictures of the window's size, none overwritten.
+viewer_saves_pictures() {
+    viewer_open --size 320x180 && printf 'kept' >"$viewer_folder/viewer-0001.png" || return 1
+    xdotool key F12 && viewer_until 30 viewer_says 'saved: viewer-0002.png' &&
+        xdotool key F12 && viewer_until 30 viewer_says 'saved: viewer-0003.png' && viewer_close &&
+        [ "$(cat -- "$viewer_folder/viewer-0001.png")" = kept ] &&
+        [ "$(identify -format '%wx%h' "$viewer_folder/viewer-0003.png")" = 320x180 ]
+}
+
+# R: a folder of numbered pictures that differ, as many as it says, even when the window changes its size on the way.
+viewer_records() {
+    viewer_open --size 160x90 --motion freefall --distance 8 || return 1
+    xdotool key r && viewer_until 60 test -e "$viewer_folder/viewer-film-01/frame-000004.png" &&
+        xdotool windowsize "$viewer_window" 200 100 &&
+        viewer_until 60 test -e "$viewer_folder/viewer-film-01/frame-000008.png" &&
+        xdotool key r && viewer_until 30 viewer_says '^recorded' && viewer_close || return 1
+    local files=("$viewer_folder"/viewer-film-01/frame-*.png)
+    viewer_says "^recorded ${#files[@]} frames in viewer-film-01" &&
+        [ "$(identify -format '%wx%h\n' "${files[@]}" | sort -u)" = 160x90 ] &&
+        ! viewer_equal "${files[0]}" "${files[6]}"
+}
