@@ -153,6 +153,11 @@ static xcb_connection_t *onlooker(void) {
     return connection;
 }
 
+Host host_screen(void) {
+    const Host screen = {BHR_WINDOW_XCB, NULL, NULL, xcb_setup_roots_iterator(xcb_get_setup(onlooker())).data->root};
+    return screen;
+}
+
 int host_exists(uint32_t id) {
     xcb_connection_t         *connection = onlooker();
     xcb_get_geometry_reply_t *reply = xcb_get_geometry_reply(connection, xcb_get_geometry(connection, id), NULL);
