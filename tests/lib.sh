@@ -1,4 +1,4 @@
-# lib.sh -- what tests/run and tests/c/run share: folders, the Vulkan driver, counting. Sourced by them; runs no test.
+# lib.sh -- what tests/run, tests/c/run and tests/windows/run share: folders, the Vulkan driver, counting. Sourced by them; runs no test.
 # shellcheck shell=bash
 
 tests=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
@@ -56,6 +56,14 @@ without_drivers() {
         : >"$folder/$name"
     done
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} "$@"
+}
+
+# under_valgrind COMMAND...: of the CPU backend, in the checked library, which has symbols; for at most $seconds. Without
+# drivers: their own leaks and unknown instructions are not the library's. LD_LIBRARY_PATH goes before a runpath.
+under_valgrind() {
+    LD_LIBRARY_PATH=$target/checked without_drivers timeout "${seconds:-600}" \
+        valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite \
+        --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }
 
 # check NAME COMMAND...: one test, in a subshell. Says ok or FAIL and the time; shows what it printed only when it

@@ -1,0 +1,128 @@
+/* growth.c -- thousands of frames of a moving camera, into a window and into memory by jobs: after a warm-up the process
+ * holds no more memory (to MAX_GROWTH), descriptors or threads than before. A device's driver counts, too: software drivers
+ * once leaked with every submission (shaders/deciding.wgsl).
+ *
+ *     growth BACKEND xlib|xcb [FRAMES [JOBS]] */
+#define _POSIX_C_SOURCE 200809L
+
+#include "host.h"
+
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define WIDTH 64u
+#define HEIGHT 48u
+#define BYTES (WIDTH * HEIGHT * 4u)
+#define WARM_UP 500
+#define FLIGHT 3 /* jobs under way at once */
+#define MAX_GROWTH (20L << 20)
+
+/* ---- what the process holds ---- */
+
+typedef struct Holding {
+    long bytes; /* resident */
+    int  descriptors, threads;
+} Holding;
+
+/* Entries of a folder. */
+static int entries(const char *path) {
+    int  count = 0;
+    DIR *folder = opendir(path);
+    while (folder != NULL && readdir(folder) != NULL) {
+        count++;
+    }
+    if (folder != NULL) {
+        closedir(folder);
+    }
+    return count;
+}
+
+static Holding look(void) {
+    Holding holding = {0, entries("/proc/self/fd"), entries("/proc/self/task")};
+    long    total = 0, resident = 0;
+    FILE   *file = fopen("/proc/self/statm", "r");
+    if (file != NULL) {
+        if (fscanf(file, "%ld %ld", &total, &resident) == 2) {
+            holding.bytes = resident * sysconf(_SC_PAGESIZE);
+        }
+        fclose(file);
+    }
+    CHECK(holding.bytes > 0 && holding.descriptors > 0 && holding.threads > 0, "no /proc to look at");
+    return holding;
+}
+
+static void check_growth(Holding before, const char *what, int frames) {
+    const Holding after = look();
+    printf("%s: %ld KiB, %d descriptors, %d threads before; %+ld KiB, %+d, %+d after %d frames\n", what,
+           before.bytes >> 10, before.descriptors, before.threads, (after.bytes - before.bytes) / 1024,
+           after.descriptors - before.descriptors, after.threads - before.threads, frames);
+    CHECK(after.bytes - before.bytes < MAX_GROWTH, "%s: grew by %ld KiB; less than %ld are granted", what,
+          (after.bytes - before.bytes) / 1024, MAX_GROWTH / 1024);
+    CHECK(after.descriptors <= before.descriptors, "%s: %d descriptors became %d", what, before.descriptors,
+          after.descriptors);
+    CHECK(after.threads <= before.threads, "%s: %d threads became %d", what, before.threads, after.threads);
+}
+
+/* ---- frames ---- */
+
+/* Another place at every frame, round the hole and in and out, without spin and with it by turns: nothing that one frame has
+ * made serves the next. */
+static void move_camera(BhrContext *context, int frame) {
+    BhrCamera camera;
+    CHECK_OK(bhr_camera_init(&camera, sizeof camera));
+    CHECK_OK(bhr_camera_orbit(&camera, 20.0 + frame % 97 * 0.1, 0.02 * frame, 0.3));
+    CHECK_OK(bhr_set_camera(context, &camera));
+    CHECK_OK(bhr_set_spin(context, frame % 2 == 0 ? 0.0 : 0.5));
+}
+
+static void present(BhrContext *context, BhrSurface *surface, int first, int count) {
+    for (int i = first; i < first + count; i++) {
+        move_camera(context, i);
+        CHECK_OK(bhr_render_surface(context, surface));
+    }
+}
+
+/* The oldest of FLIGHT jobs is waited for before the next is begun. */
+static void run_jobs(BhrContext *context, int count) {
+    static unsigned char pixels[FLIGHT][BYTES];
+    BhrJob              *jobs[FLIGHT] = {NULL};
+    for (int i = 0; i < count + FLIGHT; i++) {
+        BhrJob        **job = &jobs[i % FLIGHT];
+        const BhrImage target = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels[i % FLIGHT], BYTES);
+        if (*job != NULL) {
+            CHECK_OK(bhr_job_wait(*job, UINT64_MAX, NULL));
+            bhr_job_destroy(*job);
+            *job = NULL;
+        }
+        if (i < count) {
+            move_camera(context, i);
+            CHECK_OK(bhr_render_image_async(context, &target, job));
+        }
+    }
+}
+
+int main(int argc, char **argv) {
+    const BhrBackend    backend = check_begin(argc, argv);
+    const BhrWindowKind kind = host_kind(argc > 2 ? argv[2] : NULL);
+    const int           frames = argc > 3 ? atoi(argv[3]) : 5000, jobs = argc > 4 ? atoi(argv[4]) : 1000;
+    BhrContext         *context = check_context(backend);
+    Host                host = host_open(kind, NULL, WIDTH, HEIGHT);
+    BhrSurface         *surface = check_surface(context, &host, WIDTH, HEIGHT, BHR_PRESENT_IMMEDIATE);
+    present(context, surface, 0, WARM_UP);
+    Holding before = look();
+    present(context, surface, WARM_UP, frames);
+    check_growth(before, "window", frames);
+
+    run_jobs(context, WARM_UP);
+    before = look();
+    run_jobs(context, jobs);
+    check_growth(before, "jobs", jobs);
+
+    bhr_surface_destroy(surface);
+    bhr_context_destroy(context);
+    host_close(&host);
+    return check_end();
+}

@@ -1,0 +1,233 @@
+/* host.c -- see host.h. */
+#define _POSIX_C_SOURCE 200809L
+
+#include "host.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define PATIENCE 10.0 /* seconds until a window must show what was presented: lavapipe presents on threads of its own */
+
+void pause_ms(long ms) {
+    const struct timespec time = {ms / 1000, ms % 1000 * 1000000};
+    nanosleep(&time, NULL);
+}
+
+double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static void give_up(const char *why) {
+    CHECK(0, "%s", why);
+    exit(check_end());
+}
+
+BhrWindowKind host_kind(const char *name) {
+    if (name != NULL && strcmp(name, "xlib") == 0) {
+        return BHR_WINDOW_XLIB;
+    }
+    if (name != NULL && strcmp(name, "xcb") == 0) {
+        return BHR_WINDOW_XCB;
+    }
+    fprintf(stderr, "the second argument is xlib or xcb\n");
+    exit(2);
+}
+
+/* ---- windows ---- */
+
+/* Returns when the server has done all that was asked. */
+static void settle(const Host *host) {
+    if (host->display != NULL) {
+        XSync(host->display, False);
+    } else {
+        free(xcb_get_input_focus_reply(host->connection, xcb_get_input_focus(host->connection), NULL));
+    }
+}
+
+/* Without a background, so that the server itself never draws into them. */
+static uint32_t new_xlib_window(Display *display, uint32_t width, uint32_t height) {
+    const Window id = XCreateWindow(display, DefaultRootWindow(display), 0, 0, width, height, 0, CopyFromParent,
+                                    InputOutput, CopyFromParent, 0, NULL);
+    XMapWindow(display, id);
+    return (uint32_t)id;
+}
+
+static uint32_t new_xcb_window(xcb_connection_t *connection, uint32_t width, uint32_t height) {
+    const xcb_screen_t *root = xcb_setup_roots_iterator(xcb_get_setup(connection)).data;
+    const uint32_t      id = xcb_generate_id(connection);
+    xcb_create_window(connection, XCB_COPY_FROM_PARENT, id, root->root, 0, 0, (uint16_t)width, (uint16_t)height, 0,
+                      XCB_WINDOW_CLASS_INPUT_OUTPUT, XCB_COPY_FROM_PARENT, 0, NULL);
+    xcb_map_window(connection, id);
+    return id;
+}
+
+void host_new_window(Host *host, uint32_t width, uint32_t height) {
+    host_destroy_window(host);
+    host->id = host->display != NULL ? new_xlib_window(host->display, width, height)
+                                     : new_xcb_window(host->connection, width, height);
+    settle(host);
+}
+
+Host host_open(BhrWindowKind kind, const char *server, uint32_t width, uint32_t height) {
+    Host host = {kind, NULL, NULL, 0};
+    if (kind == BHR_WINDOW_XLIB) {
+        host.display = XOpenDisplay(server);
+    } else {
+        host.connection = xcb_connect(server, NULL);
+    }
+    if (kind == BHR_WINDOW_XLIB ? host.display == NULL : xcb_connection_has_error(host.connection)) {
+        give_up("no X server");
+    }
+    host_new_window(&host, width, height);
+    return host;
+}
+
+BhrWindow host_window(const Host *host) {
+    BhrWindow window;
+    memset(&window, 0, sizeof window);
+    window.struct_size = sizeof window;
+    window.kind = host->kind;
+    window.display = host->kind == BHR_WINDOW_XLIB ? (void *)host->display : (void *)host->connection;
+    window.id = host->id;
+    return window;
+}
+
+void host_resize(const Host *host, uint32_t width, uint32_t height) {
+    if (host->kind == BHR_WINDOW_XLIB) {
+        XResizeWindow(host->display, host->id, width, height);
+    } else {
+        const uint32_t size[] = {width, height};
+        xcb_configure_window(host->connection, host->id, XCB_CONFIG_WINDOW_WIDTH | XCB_CONFIG_WINDOW_HEIGHT, size);
+    }
+    settle(host);
+}
+
+void host_move(const Host *host, uint32_t x, uint32_t y) {
+    if (host->kind == BHR_WINDOW_XLIB) {
+        XMoveWindow(host->display, host->id, (int)x, (int)y);
+    } else {
+        const uint32_t place[] = {x, y};
+        xcb_configure_window(host->connection, host->id, XCB_CONFIG_WINDOW_X | XCB_CONFIG_WINDOW_Y, place);
+    }
+    settle(host);
+}
+
+void host_destroy_window(Host *host) {
+    if (host->id != 0 && host->display != NULL) {
+        XDestroyWindow(host->display, host->id);
+        settle(host);
+    } else if (host->id != 0 && host->connection != NULL) {
+        xcb_destroy_window(host->connection, host->id);
+        settle(host);
+    }
+    host->id = 0;
+}
+
+void host_close(Host *host) {
+    if (host->display != NULL) {
+        XCloseDisplay(host->display);
+    }
+    if (host->connection != NULL) {
+        xcb_disconnect(host->connection);
+    }
+    host->display = NULL;
+    host->connection = NULL;
+    host->id = 0;
+}
+
+/* ---- what is to be seen ---- */
+
+static xcb_connection_t *onlooker(void) {
+    static xcb_connection_t *connection;
+    if (connection == NULL) {
+        connection = xcb_connect(NULL, NULL);
+        if (xcb_connection_has_error(connection)) {
+            give_up("no X server to look at");
+        }
+    }
+    return connection;
+}
+
+Host host_screen(void) {
+    const Host screen = {BHR_WINDOW_XCB, NULL, NULL, xcb_setup_roots_iterator(xcb_get_setup(onlooker())).data->root};
+    return screen;
+}
+
+int host_exists(uint32_t id) {
+    xcb_connection_t         *connection = onlooker();
+    xcb_get_geometry_reply_t *reply = xcb_get_geometry_reply(connection, xcb_get_geometry(connection, id), NULL);
+    free(reply);
+    return reply != NULL;
+}
+
+int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *rgba) {
+    xcb_connection_t      *connection = onlooker();
+    xcb_get_image_cookie_t asked = xcb_get_image(connection, XCB_IMAGE_FORMAT_Z_PIXMAP, host->id, 0, 0,
+                                                 (uint16_t)width, (uint16_t)height, UINT32_MAX);
+    xcb_get_image_reply_t *image = xcb_get_image_reply(connection, asked, NULL);
+    const size_t           pixels = (size_t)width * height;
+    /* 24 bits of colour in 32, blue first: Xvfb's, as the runner starts it. */
+    const int is_there = image != NULL && (size_t)xcb_get_image_data_length(image) == 4 * pixels;
+    for (size_t i = 0; is_there && i < pixels; i++) {
+        const unsigned char *from = xcb_get_image_data(image) + 4 * i;
+        unsigned char       *to = rgba + 4 * i;
+        to[0] = from[2];
+        to[1] = from[1];
+        to[2] = from[0];
+        to[3] = 255;
+    }
+    free(image);
+    return is_there;
+}
+
+static int largest_difference(const unsigned char *a, const unsigned char *b, size_t bytes) {
+    int largest = 0;
+    for (size_t i = 0; i < bytes; i++) {
+        const int difference = abs((int)a[i] - (int)b[i]);
+        largest = difference > largest ? difference : largest;
+    }
+    return largest;
+}
+
+int host_difference(const Host *host, uint32_t width, uint32_t height, const unsigned char *rgba, int tolerance) {
+    const size_t   bytes = (size_t)width * height * 4;
+    unsigned char *seen = malloc(bytes);
+    const double   end = seconds_now() + PATIENCE;
+    int            difference;
+    while ((difference = host_grab(host, width, height, seen) ? largest_difference(seen, rgba, bytes) : 999) > tolerance &&
+           seconds_now() < end) {
+        pause_ms(10);
+    }
+    free(seen);
+    return difference;
+}
+
+/* ---- bhr ---- */
+
+BhrSurface *check_surface(BhrContext *context, const Host *host, uint32_t width, uint32_t height, BhrPresentMode mode) {
+    const BhrWindow window = host_window(host);
+    BhrSurface     *surface = NULL;
+    CHECK_OK(bhr_surface_create(context, &window, width, height, mode, &surface));
+    if (surface == NULL) {
+        give_up("success without a surface");
+    }
+    return surface;
+}
+
+void run_threads(ThreadBody body, void *arguments, size_t argument_size, int count) {
+    pthread_t threads[8];
+    for (int i = 0; i < count; i++) {
+        if (i >= (int)COUNT_OF(threads) ||
+            pthread_create(&threads[i], NULL, body, (char *)arguments + (size_t)i * argument_size) != 0) {
+            give_up("cannot start a thread");
+    }
+    }
+    for (int i = 0; i < count; i++) {
+        pthread_join(threads[i], NULL);
+    }
+}
