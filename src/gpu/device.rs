@@ -34,6 +34,7 @@ pub struct Device {
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
     pub(super) modules: super::pipeline::Modules,
+    pub(super) bindings: super::bindings::Bindings,
 }
 
 /// What wgpu's callbacks, which come from any thread, say about a device.
@@ -76,7 +77,15 @@ impl Device {
         raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
-        Ok(Self { raw, queue: Some(queue), limits, health, bytes: Arc::default(), modules: Default::default() })
+        Ok(Self {
+            raw,
+            queue: Some(queue),
+            limits,
+            health,
+            bytes: Arc::default(),
+            modules: Default::default(),
+            bindings: Default::default(),
+        })
     }
 
     /// The limits the device was opened with.

@@ -41,11 +41,17 @@ pub struct FrameBuffers {
 }
 
 struct FixedBuffers {
-    frame: Buffer,
-    film: Buffer,
+    frame: Written,
+    film: Written,
     /// One `PassUniform` for each sample of a batch, `pass_stride` apart.
-    passes: Buffer,
+    passes: Written,
     step_sum: Buffer,
+}
+
+/// A buffer of uniforms, and what was written to its begin last.
+struct Written {
+    buffer: Buffer,
+    bytes: Vec<u8>,
 }
 
 struct SizedBuffers {
@@ -127,6 +133,8 @@ pub struct Submitted {
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
     copied: Copied,
     tick_bytes: u64,
+    /// Whether steps were counted: none are taken where rays are looked up and nothing else.
+    counts: bool,
     tile: Option<Tile>,
     row_bytes: usize,
 }
@@ -247,7 +255,7 @@ impl GpuTracer {
 
     /// After a frame that failed or was left before its first step, nobody knows what the tables of lenses hold.
     pub fn forget(&mut self) {
-        self.buffers.makers.forget();
+        self.buffers.forget();
     }
 
     fn set_up(&self, scene: &Scene, request: &FrameRequest, to_host: bool) -> Result<Setup> {
@@ -323,7 +331,7 @@ impl GpuTracer {
             .as_ref()
             .zip(buffers.sized.as_ref())
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
-        let (frame, pass) = (fixed.frame.as_entire_binding(), fixed.pass());
+        let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let footprints = setup.looks.look.footprints;
         let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
@@ -335,9 +343,10 @@ impl GpuTracer {
         let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.info.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
-        device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;
+        let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.passes.write(device, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;
         let mut encoder = device.encoder("records")?;
-        buffers.makers.reset(&mut encoder);
+        buffers.makers.reset(setup.making.source, &fixed.step_sum, &mut encoder);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             records.encode(&mut pass, true, 0, tile);
@@ -382,11 +391,27 @@ impl Size {
     }
 }
 
+impl Written {
+    fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
+        Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
+    }
+
+    /// Before the next submission runs, unless it is there already. Errors: as [`Device::write`].
+    fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
+        if self.bytes != bytes {
+            self.bytes.clear();
+            device.write(&self.buffer, 0, bytes)?;
+            self.bytes.extend_from_slice(bytes);
+        }
+        Ok(())
+    }
+}
+
 impl FixedBuffers {
     /// The `PassUniform` that a dispatch's offset chooses.
     fn pass(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &self.passes,
+            buffer: &self.passes.buffer,
             offset: 0,
             size: std::num::NonZeroU64::new(size_of::<PassUniform>() as u64),
         })
@@ -397,11 +422,10 @@ impl FrameBuffers {
     /// Makes room, and writes what all tiles share.
     fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
         if self.fixed.is_none() {
-            let uniform = Usage::UNIFORM | Usage::COPY_DST;
             self.fixed = Some(FixedBuffers {
-                frame: device.buffer("frame", size_of::<FrameUniform>() as u64, uniform)?,
-                film: device.buffer("film", size_of::<FilmParams>() as u64, uniform)?,
-                passes: device.buffer("passes", u64::from(MAX_BATCH) * pass_stride(device), uniform)?,
+                frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
+                film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
+                passes: Written::new(device, "passes", u64::from(MAX_BATCH) * pass_stride(device))?,
                 step_sum: step_sum(device)?,
             });
             // The clocks of software drivers tell nothing about their threads.
@@ -421,13 +445,19 @@ impl FrameBuffers {
             });
         }
         self.makers.prepare(device, &setup.making, size.tile)?;
-        let (fixed, _) = self.parts()?;
-        device.write(&fixed.frame, 0, bytemuck::bytes_of(&setup.uniform))?;
-        device.write(&fixed.film, 0, bytemuck::bytes_of(&setup.film))
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
+        fixed.film.write(device, bytemuck::bytes_of(&setup.film))
     }
 
-    fn parts(&self) -> Result<(&FixedBuffers, &SizedBuffers)> {
-        self.fixed.as_ref().zip(self.sized.as_ref()).ok_or_else(|| Error::internal("a frame without buffers"))
+    /// After a submission that failed, nobody knows what the buffers hold.
+    fn forget(&mut self) {
+        self.makers.forget();
+        if let Some(fixed) = &mut self.fixed {
+            for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.passes] {
+                written.bytes.clear();
+            }
+        }
     }
 
     fn stages(
@@ -443,7 +473,7 @@ impl FrameBuffers {
         let (fixed, sized) =
             self.fixed.as_ref().zip(self.sized.as_ref()).ok_or_else(|| Error::internal("a frame without buffers"))?;
         let pass = fixed.pass();
-        let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
+        let (frame, film) = (fixed.frame.buffer.as_entire_binding(), fixed.film.buffer.as_entire_binding());
         let step_sum = fixed.step_sum.as_entire_binding();
         let pixels = match target {
             FrameTarget::Host => sized.packed.as_entire_binding(),
@@ -536,10 +566,9 @@ impl FrameBuffers {
         check_groups(device, pixel_groups(size.map(|side| side + 2)))?;
         let last = range.end == frame.samples;
         let mut encoder = device.encoder("frame")?;
-        let fixed = self.fixed.as_ref().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        device.write(&fixed.passes, 0, &bytes)?;
-        encoder.clear_buffer(&fixed.step_sum, 0, None);
-        self.makers.reset(&mut encoder);
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.passes.write(device, &bytes)?;
+        let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
         {
             let timestamps = self.timer.as_mut().and_then(GpuTimer::next_pass);
             let descriptor = wgpu::ComputePassDescriptor { label: Some("frame"), timestamp_writes: timestamps };
@@ -561,7 +590,10 @@ impl FrameBuffers {
         let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
         let staging = self.readback.staging(device, size)?;
         let to = staging.buffer()?;
-        encoder.copy_buffer_to_buffer(self.makers.steps(frame.source, &fixed.step_sum), 0, to, STEPS, STEP_SUM);
+        let counts = steps.is_some();
+        if let Some(steps) = steps {
+            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
+        }
         let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
         if let (Some(sized), true) = (&self.sized, pixel_bytes > 0) {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
@@ -569,7 +601,14 @@ impl FrameBuffers {
         let copied = staging.filled(size);
         let submission = device.submit(encoder)?;
         frame.submitted += 1;
-        Ok(Some(Submitted { submission, copied, tick_bytes, tile: (pixel_bytes > 0).then_some(tile), row_bytes }))
+        Ok(Some(Submitted {
+            submission,
+            copied,
+            tick_bytes,
+            counts,
+            tile: (pixel_bytes > 0).then_some(tile),
+            row_bytes,
+        }))
     }
 }
 
@@ -583,8 +622,10 @@ impl Submitted {
     pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
         self.copied.read(device, &self.submission, |bytes| {
             let started = Instant::now();
-            let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
-            stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+            if self.counts {
+                let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
+                stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+            }
             stats.gpu_ns += timer::nanoseconds(device, part(bytes, TICKS, self.tick_bytes)?)?;
             if let (Some(tile), Some(pixels)) = (self.tile, bytes.get(PIXELS as usize..)) {
                 sink(tile, pixels, self.row_bytes)?;

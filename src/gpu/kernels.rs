@@ -107,6 +107,8 @@ enum Name {
 #[derive(Default)]
 pub struct Kernels {
     made: HashMap<Name, Compiled>,
+    /// Kernels that bind the same share the layout, so that they can share groups.
+    layouts: HashMap<Vec<Slot>, wgpu::BindGroupLayout>,
 }
 
 /// A pipeline and the layouts of its groups.
@@ -301,7 +303,7 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
 }
 
 /// What a binding is.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Slot {
     Uniform,
     /// A uniform of which each dispatch chooses a part.
@@ -313,7 +315,7 @@ enum Slot {
 }
 
 /// A texture as a kernel declares it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TextureKind {
     pub format: wgpu::TextureFormat,
     pub dimension: wgpu::TextureViewDimension,
@@ -476,7 +478,7 @@ impl Kernels {
         if let Some(compiled) = self.made.get(&name) {
             return Ok(compiled.clone());
         }
-        let layouts = groups.iter().map(|slots| layout(device, entry_point, slots)).collect::<Result<Vec<_>>>()?;
+        let layouts = groups.iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
         let constants = constants(name);
         let source = source();
         let pipeline = device.compute_pipeline(&Kernel {
@@ -491,6 +493,26 @@ impl Kernels {
         let compiled = Compiled { pipeline, layouts };
         self.made.insert(name, compiled.clone());
         Ok(compiled)
+    }
+
+    fn layout(&mut self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
+        if let Some(layout) = self.layouts.get(slots) {
+            return Ok(layout.clone());
+        }
+        let entries = slots
+            .iter()
+            .zip(0..)
+            .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: slot.binding_type(),
+                count: None,
+            })
+            .collect::<Vec<_>>();
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+        let layout = device.scoped("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
+        self.layouts.insert(slots.into(), layout.clone());
+        Ok(layout)
     }
 }
 
@@ -548,34 +570,11 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
     }
 }
 
-fn layout(device: &Device, label: &str, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
-    let entries = slots
-        .iter()
-        .zip(0..)
-        .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: slot.binding_type(),
-            count: None,
-        })
-        .collect::<Vec<_>>();
-    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
-    device.scoped(label, |d| d.create_bind_group_layout(&descriptor))
-}
-
 impl Compiled {
     /// The pipeline with `groups`: of each the resources in the order of its slots.
     pub fn stage(&self, device: &Device, groups: &[&[wgpu::BindingResource<'_>]]) -> Result<Stage> {
-        let bind = |(resources, layout): (&&[wgpu::BindingResource<'_>], &wgpu::BindGroupLayout)| {
-            let entries = resources
-                .iter()
-                .zip(0..)
-                .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-                .collect::<Vec<_>>();
-            let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
-            device.scoped("binding buffers", |d| d.create_bind_group(&descriptor))
-        };
-        let groups = groups.iter().zip(&self.layouts).map(bind).collect::<Result<Vec<_>>>()?;
+        let groups = groups.iter().zip(&self.layouts).map(|(resources, layout)| device.bind(layout, resources));
+        let groups = groups.collect::<Result<Vec<_>>>()?;
         Ok(Stage { pipeline: self.pipeline.clone(), groups })
     }
 }

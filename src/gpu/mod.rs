@@ -2,6 +2,7 @@
 //! shows; knows no host memory (tiles go to a sink) and nothing of C.
 
 mod adapter;
+mod bindings;
 mod buffer;
 mod device;
 mod export;

@@ -98,16 +98,9 @@ impl Presenter {
         size: [u32; 2],
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> Result<()> {
-        let group = device.scoped("present", |d| {
-            d.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("present"),
-                layout: &self.layout,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&screen.view) },
-                    wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-                ],
-            })
-        })?;
+        let resources =
+            [wgpu::BindingResource::TextureView(&screen.view), wgpu::BindingResource::Sampler(&self.sampler)];
+        let group = device.bind(&self.layout, &resources)?;
         let [same, stretched] = &self.pipelines;
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("present"),
