@@ -47,7 +47,7 @@ struct Health {
 }
 
 impl Device {
-    /// Opens a device with timestamps if the adapter has them, and no other feature.
+    /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
     ///
     /// A GL device leaves every thread that uses it without a current GL context: a host that draws with GL on the same
     /// thread has to make its own current again.
@@ -64,7 +64,8 @@ impl Device {
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("bhr"),
-            required_features: raw.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: raw.features()
+                & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS),
             required_limits: limits.clone(),
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
@@ -96,6 +97,11 @@ impl Device {
     /// Whether the device can time its passes.
     pub fn has_timestamps(&self) -> bool {
         self.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Whether kernels can write buffers that the host maps.
+    pub fn maps_storage(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS)
     }
 
     /// Nanoseconds per tick of a timestamp.
