@@ -76,19 +76,23 @@ fn presenting(spin: f64) {
         let mut frame = tracer.begin(&scene, &request(FULL_HD), FrameTarget::Screen(&screen)).expect("a frame");
         let mut of_screen = frame.stats();
         let mut steps = Vec::new();
-        while let Some(step) = tracer.submit(&mut frame).expect("a step") {
+        let mut time = None;
+        let mut present = |encoder: &mut wgpu::CommandEncoder| {
+            let pass = timer.next_pass().map(|pass| wgpu::RenderPassTimestampWrites {
+                query_set: pass.query_set,
+                beginning_of_pass_write_index: pass.beginning_of_pass_write_index,
+                end_of_pass_write_index: pass.end_of_pass_write_index,
+            });
+            presenter.draw(&device, encoder, &screen, &view, FULL_HD, pass)?;
+            time = timer.finish(&device, encoder)?;
+            Ok(())
+        };
+        while let Some(step) = tracer.submit_and(&mut frame, &mut present).expect("a step") {
             steps.push(step);
         }
-        let mut encoder = device.encoder("present").expect("an encoder");
-        let pass = timer.next_pass().map(|pass| wgpu::RenderPassTimestampWrites {
-            query_set: pass.query_set,
-            beginning_of_pass_write_index: pass.beginning_of_pass_write_index,
-            end_of_pass_write_index: pass.end_of_pass_write_index,
-        });
-        presenter.draw(&device, &mut encoder, &screen, &view, FULL_HD, pass).expect("a triangle");
-        let time = timer.finish(&device, &mut encoder).expect("a time").expect("a time");
-        let submission = device.submit(encoder).expect("a submission");
         let call = milliseconds(start);
+        let submission = steps.last().expect("a step").submission().clone();
+        let time = time.expect("a time");
         for step in steps {
             step.finish(&device, &mut of_screen, &mut |_, _, _| Ok(())).expect("a step");
         }

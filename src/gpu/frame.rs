@@ -149,6 +149,9 @@ pub struct BegunFrame {
     submitted: u64,
 }
 
+/// Records commands of its own.
+pub type Recording<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
+
 /// A submission that has not been read yet.
 pub struct Submitted {
     submission: wgpu::SubmissionIndex,
@@ -273,7 +276,12 @@ impl GpuTracer {
 
     /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are then forgotten.
     pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
-        let submitted = self.buffers.submit(&self.device, frame);
+        self.submit_and(frame, &mut |_| Ok(()))
+    }
+
+    /// [`Self::submit`]; the frame's last step ends with what `then` records. Errors: those of `then` as well.
+    pub fn submit_and(&mut self, frame: &mut BegunFrame, then: &mut Recording<'_>) -> Result<Option<Submitted>> {
+        let submitted = self.buffers.submit(&self.device, frame, then);
         if submitted.is_err() {
             self.forget();
         }
@@ -606,7 +614,12 @@ impl BegunFrame {
 
 impl FrameBuffers {
     /// Starts the frame's next step; the last samples of a tile are followed by development and the copy to the host.
-    fn submit(&mut self, device: &Device, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
+    fn submit(
+        &mut self,
+        device: &Device,
+        frame: &mut BegunFrame,
+        then: &mut Recording<'_>,
+    ) -> Result<Option<Submitted>> {
         let Some((tile, range)) = frame.next() else { return Ok(None) };
         let begins = frame.submitted == 0;
         let stages = &frame.stages;
@@ -667,6 +680,9 @@ impl FrameBuffers {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
         let copied = staging.filled(size);
+        if frame.submitted + 1 == frame.count() {
+            then(&mut encoder)?;
+        }
         let submission = device.submit(encoder)?;
         frame.submitted += 1;
         Ok(Some(Submitted {
@@ -681,6 +697,11 @@ impl FrameBuffers {
 }
 
 impl Submitted {
+    /// What to wait for.
+    pub fn submission(&self) -> &wgpu::SubmissionIndex {
+        &self.submission
+    }
+
     /// Whether it has run, so that [`Self::finish`] does not wait. Errors: as [`Device::wait`].
     pub fn is_done(&self, device: &Device) -> Result<bool> {
         device.is_done(&self.submission)

@@ -102,14 +102,15 @@ impl Presenter {
             [wgpu::BindingResource::TextureView(&screen.view), wgpu::BindingResource::Sampler(&self.sampler)];
         let group = device.bind(&self.layout, &resources)?;
         let [same, stretched] = &self.pipelines;
+        // SAFETY: the triangle covers the image (present.wgsl), and nothing discards a part of it.
+        let written = unsafe { wgpu::LoadOpDontCare::enabled() };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("present"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: image,
                 depth_slice: None,
                 resolve_target: None,
-                // Every pixel is written.
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations { load: wgpu::LoadOp::DontCare(written), store: wgpu::StoreOp::Store },
             })],
             timestamp_writes: timestamps,
             ..Default::default()
