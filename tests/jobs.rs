@@ -46,6 +46,7 @@ fn jobs_are_frames_of_the_scene_at_their_order_and_end_in_it() {
             .map(|i| {
                 renderer.scene.camera.forward.x = 0.02 * f64::from(i);
                 renderer.scene.hole.spin = if i % 4 == 3 { 0.7 } else { 0.0 };
+                renderer.scene.quality.mapped_pixels = Some(i % 3 == 0);
                 let (pixels, image) = target(SIZE);
                 (renderer.scene.clone(), pixels, order(&mut renderer, image))
             })

@@ -1,10 +1,11 @@
 //! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against theory.
 //! The GPU is whatever adapter comes first; without one the tests fail.
 
+use bhr::gpu::{Device, Search, adapters};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, Lensing, Motion, Region, Sky, View};
+use bhr::scene::{Camera, Effects, LensTables, Lensing, Motion, Region, Sky, View};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -263,6 +264,46 @@ fn tables_give_the_same_bytes() {
             assert!(*first == tiled(&mut renderer, format, size), "{name}: tiles at {eye:?}");
         }
     }
+}
+
+/// Kernels that put pixels into the host's memory row by row, against those that pack them on the device.
+#[test]
+fn pixels_put_by_rows_are_the_same_bytes() {
+    let set = |renderer: &mut Renderer, spin: f64, samples: u32, tables: LensTables, view: View| {
+        let scene = &mut renderer.scene;
+        (scene.hole.spin, scene.view) = (spin, view);
+        (scene.quality.samples_per_pixel, scene.quality.lens_tables) = (samples, tables);
+    };
+    let adapter = adapters(Search::Auto, false).remove(0);
+    assert!(Device::open(&adapter).unwrap().maps_storage(), "{}", adapter.info.name);
+    let mut renderer = gpu();
+    let mut deferred = 0;
+    // Rows of workgroups that the tile fills, and ones that it does not.
+    for size in [[128, 8], [101, 67], [1, 1], [33, 5]] {
+        for (spin, samples, tables) in [
+            (0.0, 1, LensTables::Never),
+            (0.0, 1, LensTables::Always),
+            (0.9, 1, LensTables::Always),
+            (0.9, 3, LensTables::Always),
+        ] {
+            let light = [PixelFormat::Rgba8Srgb, PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
+            for (format, view) in
+                light.map(|format| (format, View::Light)).into_iter().chain([(PixelFormat::R32F, View::Order)])
+            {
+                set(&mut renderer, spin, samples, tables, view);
+                let [packed, rows] = [false, true].map(|mapped| {
+                    renderer.scene.quality.mapped_pixels = Some(mapped);
+                    // A wide enough look at the shadow's edge, where pixels are deferred.
+                    renderer.scene.camera = camera(20.0, 75.0, 40.0, Motion::Static);
+                    picture(&mut renderer, format, size, None, false)
+                });
+                assert!(packed == rows, "{size:?}, spin {spin}, {samples} samples, {tables:?}, {format}");
+                deferred += if tables == LensTables::Always { renderer.stats().steps } else { 0 };
+                assert!(size == [1, 1] || packed.iter().any(|byte| *byte != packed[0]));
+            }
+        }
+    }
+    assert!(deferred > 0, "no pixel was put singly");
 }
 
 /// The smallest of some frames whose rays are looked up; the smallest of all where none is.

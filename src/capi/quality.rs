@@ -90,6 +90,7 @@ impl TryFrom<BhrQuality> for Quality {
             max_disk_order: given.max_disk_order,
             render_scale: given.render_scale,
             lens_tables: LensTables::Auto,
+            mapped_pixels: None,
         };
         quality.check()?;
         Ok(quality)

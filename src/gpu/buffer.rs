@@ -19,6 +19,7 @@ impl Device {
     /// size 0; `OutOfMemory`; `DeviceLost`.
     pub fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> Result<Buffer> {
         self.check_size(label, size, usage)?;
+        self.bindings.clear();
         let size = size.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT);
         let descriptor = wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false };
         let raw = self.scoped(label, |device| device.create_buffer(&descriptor))?;

@@ -34,6 +34,7 @@ pub struct Device {
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
     pub(super) modules: super::pipeline::Modules,
+    pub(super) bindings: super::bindings::Bindings,
 }
 
 /// What wgpu's callbacks, which come from any thread, say about a device.
@@ -46,7 +47,7 @@ struct Health {
 }
 
 impl Device {
-    /// Opens a device with timestamps if the adapter has them, and no other feature.
+    /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
     ///
     /// A GL device leaves every thread that uses it without a current GL context: a host that draws with GL on the same
     /// thread has to make its own current again.
@@ -63,7 +64,8 @@ impl Device {
         };
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("bhr"),
-            required_features: raw.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: raw.features()
+                & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS),
             required_limits: limits.clone(),
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
@@ -76,7 +78,15 @@ impl Device {
         raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
-        Ok(Self { raw, queue: Some(queue), limits, health, bytes: Arc::default(), modules: Default::default() })
+        Ok(Self {
+            raw,
+            queue: Some(queue),
+            limits,
+            health,
+            bytes: Arc::default(),
+            modules: Default::default(),
+            bindings: Default::default(),
+        })
     }
 
     /// The limits the device was opened with.
@@ -87,6 +97,11 @@ impl Device {
     /// Whether the device can time its passes.
     pub fn has_timestamps(&self) -> bool {
         self.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Whether kernels can write buffers that the host maps.
+    pub fn maps_storage(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS)
     }
 
     /// Nanoseconds per tick of a timestamp.

@@ -3,7 +3,7 @@
 //! of the next steps and frames. Knows no host memory: finished tiles go to the sink.
 
 use super::export::{EXPORT_BYTES, imported};
-use super::kernels::{FilmLook, Kernels, Look, Source, Stage, TextureKind, check_groups, pixel_groups};
+use super::kernels::{FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups};
 use super::lens_kerr::Wanted;
 use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
 use super::tables::Tables;
@@ -37,15 +37,32 @@ pub struct FrameBuffers {
     sized: Option<SizedBuffers>,
     makers: RecordMakers,
     readback: Readback,
+    /// Where kernels put pixels row by row.
+    mapped: Mapped,
     timer: Option<GpuTimer>,
 }
 
 struct FixedBuffers {
-    frame: Buffer,
-    film: Buffer,
+    frame: Written,
+    film: Written,
     /// One `PassUniform` for each sample of a batch, `pass_stride` apart.
-    passes: Buffer,
+    passes: Written,
     step_sum: Buffer,
+}
+
+/// Staging buffers that kernels write.
+struct Mapped(Readback);
+
+impl Default for Mapped {
+    fn default() -> Self {
+        Self(Readback::of_kernels())
+    }
+}
+
+/// A buffer of uniforms, and what was written to its begin last.
+struct Written {
+    buffer: Buffer,
+    bytes: Vec<u8>,
 }
 
 struct SizedBuffers {
@@ -55,7 +72,7 @@ struct SizedBuffers {
     packed: Buffer,
 }
 
-/// What the sized buffers serve: largest tile, bytes of a packed pixel.
+/// What the sized buffers serve: largest tile, bytes of a packed pixel (0: none are packed there).
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Size {
     tile: [u32; 2],
@@ -86,6 +103,15 @@ enum Shading {
 struct Stages {
     records: RecordStages,
     shading: Shading,
+    put: Put,
+}
+
+/// Group 2 of the kernel that puts pixels.
+enum Put {
+    /// In the same place in every submission.
+    Here(wgpu::BindGroup),
+    /// In the submission's staging buffer: the group's layout, and the film.
+    Staged(wgpu::BindGroupLayout, wgpu::Buffer),
 }
 
 /// How a frame's shading is compiled.
@@ -93,6 +119,8 @@ struct Looks {
     look: Look,
     film: FilmLook,
     several_samples: bool,
+    /// Whether pixels are put row by row into the host's memory.
+    rows: bool,
 }
 
 /// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where each costs its
@@ -113,7 +141,7 @@ pub enum FrameTarget<'a> {
 pub struct BegunFrame {
     stages: Stages,
     request: FrameRequest,
-    to_host: bool,
+    target: PixelTarget,
     samples: u32,
     source: Source,
     plan: Plan,
@@ -121,12 +149,17 @@ pub struct BegunFrame {
     submitted: u64,
 }
 
+/// Records commands of its own.
+pub type Recording<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
+
 /// A submission that has not been read yet.
 pub struct Submitted {
     submission: wgpu::SubmissionIndex,
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
     copied: Copied,
     tick_bytes: u64,
+    /// Whether steps were counted: none are taken where rays are looked up and nothing else.
+    counts: bool,
     tile: Option<Tile>,
     row_bytes: usize,
 }
@@ -206,10 +239,14 @@ impl GpuTracer {
     }
 
     fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
-        let to_host = matches!(target, FrameTarget::Host);
-        let setup = self.set_up(scene, request, to_host)?;
+        let kind = match target {
+            FrameTarget::Screen(_) => PixelTarget::Screen,
+            FrameTarget::Host if self.maps_pixels(scene) => PixelTarget::Rows,
+            FrameTarget::Host => PixelTarget::Packed,
+        };
+        let setup = self.set_up(scene, request, kind)?;
         let samples = setup.samples;
-        let pixel_bytes = if to_host { request.format.bytes_per_pixel() as u64 } else { 0 };
+        let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them in a view
         // of nothing but the shadow's edge.
@@ -228,17 +265,23 @@ impl GpuTracer {
         }
         let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
         tables.update(&self.device, scene)?;
-        let size = Size { tile: plan.largest(), pixel_bytes, several_samples: samples > 1 };
+        let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
+        let size = Size { tile: plan.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
         let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
-        Ok(BegunFrame { stages, request: *request, to_host, samples, source, plan, submitted: 0 })
+        Ok(BegunFrame { stages, request: *request, target: kind, samples, source, plan, submitted: 0 })
     }
 
     /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are then forgotten.
     pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
-        let submitted = self.buffers.submit(&self.device, frame);
+        self.submit_and(frame, &mut |_| Ok(()))
+    }
+
+    /// [`Self::submit`]; the frame's last step ends with what `then` records. Errors: those of `then` as well.
+    pub fn submit_and(&mut self, frame: &mut BegunFrame, then: &mut Recording<'_>) -> Result<Option<Submitted>> {
+        let submitted = self.buffers.submit(&self.device, frame, then);
         if submitted.is_err() {
             self.forget();
         }
@@ -247,10 +290,18 @@ impl GpuTracer {
 
     /// After a frame that failed or was left before its first step, nobody knows what the tables of lenses hold.
     pub fn forget(&mut self) {
-        self.buffers.makers.forget();
+        self.buffers.forget();
     }
 
-    fn set_up(&self, scene: &Scene, request: &FrameRequest, to_host: bool) -> Result<Setup> {
+    /// Whether kernels put pixels into the host's memory themselves, which hides the copy behind the tracing (a device of wgpu's runs one
+    /// thing after another). Other interfaces than Vulkan may keep such memory out of kernels' reach, or reach it slowly.
+    fn maps_pixels(&self, scene: &Scene) -> bool {
+        let info = &self.adapter.info;
+        let pays = info.backend == Backend::Vulkan && !info.software;
+        self.device.maps_storage() && scene.quality.mapped_pixels.unwrap_or(pays)
+    }
+
+    fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
@@ -264,8 +315,9 @@ impl GpuTracer {
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
             },
-            film: FilmLook::new(&film, to_host),
+            film: FilmLook::new(&film, target),
             several_samples: samples > 1,
+            rows: target == PixelTarget::Rows,
         };
         let making = self.making(scene, &lens, &settings, &request.region);
         let uniform = FrameUniform::new(scene, &lens, &settings)?;
@@ -312,7 +364,7 @@ impl GpuTracer {
     }
 
     fn try_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
-        let setup = self.set_up(scene, request, true)?;
+        let setup = self.set_up(scene, request, PixelTarget::Packed)?;
         let tile = [request.width, request.height];
         let device = &self.device;
         let size = Size { tile, pixel_bytes: EXPORT_BYTES, several_samples: false };
@@ -323,7 +375,7 @@ impl GpuTracer {
             .as_ref()
             .zip(buffers.sized.as_ref())
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
-        let (frame, pass) = (fixed.frame.as_entire_binding(), fixed.pass());
+        let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let footprints = setup.looks.look.footprints;
         let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
@@ -335,9 +387,10 @@ impl GpuTracer {
         let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.info.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
-        device.write(&fixed.passes, 0, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;
+        let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.passes.write(device, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;
         let mut encoder = device.encoder("records")?;
-        buffers.makers.reset(&mut encoder);
+        buffers.makers.reset(setup.making.source, &fixed.step_sum, &mut encoder);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             records.encode(&mut pass, true, 0, tile);
@@ -382,11 +435,27 @@ impl Size {
     }
 }
 
+impl Written {
+    fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
+        Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
+    }
+
+    /// Before the next submission runs, unless it is there already. Errors: as [`Device::write`].
+    fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
+        if self.bytes != bytes {
+            self.bytes.clear();
+            device.write(&self.buffer, 0, bytes)?;
+            self.bytes.extend_from_slice(bytes);
+        }
+        Ok(())
+    }
+}
+
 impl FixedBuffers {
     /// The `PassUniform` that a dispatch's offset chooses.
     fn pass(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &self.passes,
+            buffer: &self.passes.buffer,
             offset: 0,
             size: std::num::NonZeroU64::new(size_of::<PassUniform>() as u64),
         })
@@ -397,11 +466,10 @@ impl FrameBuffers {
     /// Makes room, and writes what all tiles share.
     fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
         if self.fixed.is_none() {
-            let uniform = Usage::UNIFORM | Usage::COPY_DST;
             self.fixed = Some(FixedBuffers {
-                frame: device.buffer("frame", size_of::<FrameUniform>() as u64, uniform)?,
-                film: device.buffer("film", size_of::<FilmParams>() as u64, uniform)?,
-                passes: device.buffer("passes", u64::from(MAX_BATCH) * pass_stride(device), uniform)?,
+                frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
+                film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
+                passes: Written::new(device, "passes", u64::from(MAX_BATCH) * pass_stride(device))?,
                 step_sum: step_sum(device)?,
             });
             // The clocks of software drivers tell nothing about their threads.
@@ -413,7 +481,7 @@ impl FrameBuffers {
             let TextureKind { format, dimension } = kernels::RADIANCE;
             let summed = if size.several_samples { size.tile } else { [1, 1] };
             let radiance = || device.texture("radiance", format, dimension, summed, 1);
-            let bytes = u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes.max(4);
+            let bytes = (u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes).max(4);
             self.sized = Some(SizedBuffers {
                 size,
                 radiance: [radiance()?, radiance()?],
@@ -421,13 +489,19 @@ impl FrameBuffers {
             });
         }
         self.makers.prepare(device, &setup.making, size.tile)?;
-        let (fixed, _) = self.parts()?;
-        device.write(&fixed.frame, 0, bytemuck::bytes_of(&setup.uniform))?;
-        device.write(&fixed.film, 0, bytemuck::bytes_of(&setup.film))
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
+        fixed.film.write(device, bytemuck::bytes_of(&setup.film))
     }
 
-    fn parts(&self) -> Result<(&FixedBuffers, &SizedBuffers)> {
-        self.fixed.as_ref().zip(self.sized.as_ref()).ok_or_else(|| Error::internal("a frame without buffers"))
+    /// After a submission that failed, nobody knows what the buffers hold.
+    fn forget(&mut self) {
+        self.makers.forget();
+        if let Some(fixed) = &mut self.fixed {
+            for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.passes] {
+                written.bytes.clear();
+            }
+        }
     }
 
     fn stages(
@@ -443,41 +517,60 @@ impl FrameBuffers {
         let (fixed, sized) =
             self.fixed.as_ref().zip(self.sized.as_ref()).ok_or_else(|| Error::internal("a frame without buffers"))?;
         let pass = fixed.pass();
-        let (frame, film) = (fixed.frame.as_entire_binding(), fixed.film.as_entire_binding());
+        let frame = fixed.frame.buffer.as_entire_binding();
         let step_sum = fixed.step_sum.as_entire_binding();
-        let pixels = match target {
-            FrameTarget::Host => sized.packed.as_entire_binding(),
-            FrameTarget::Screen(texture) => wgpu::BindingResource::TextureView(&texture.view),
-        };
-        let developed = [film, pixels];
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
         let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
         let records = self.makers.group(setup.making.source)?;
         let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let shared = [frame, pass.clone(), light, cells];
-        let shade = |kernels: &mut Kernels, target: [&wgpu::BindingResource<'_>; 2]| {
-            let target = target.map(Clone::clone);
+        let taking = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &mut Kernels, source| {
                 let compiled = match looks.several_samples {
                     true => kernels.shade_sample(device, source, looks.look)?,
                     false => kernels.shade_only(device, source, looks.look, looks.film)?,
                 };
-                compiled.stage(device, &[&shared, &records, &target])
+                let groups: [&[_]; 3] = [&shared, &records, target];
+                compiled.stage(device, if looks.several_samples { &groups } else { &groups[..2] })
             };
             Taking::new(kernels, &setup.making, software, take)
         };
-        let shading = if looks.several_samples {
-            let shade = [shade(kernels, [&odd, &even])?, shade(kernels, [&even, &odd])?];
-            let compiled = kernels.develop(device, looks.film)?;
-            let develop = |from: &wgpu::BindingResource<'_>| {
-                compiled.stage(device, &[slice::from_ref(&pass), slice::from_ref(from), &developed])
-            };
-            Shading::Samples { shade, develop: [develop(&even)?, develop(&odd)?] }
-        } else {
-            Shading::Only(shade(kernels, developed.each_ref())?)
+        let puts = match looks.several_samples {
+            true => kernels.develop(device, looks.film)?,
+            false => kernels.shade_only(device, setup.making.source, looks.look, looks.film)?,
         };
-        Ok(Stages { records: made, shading })
+        let shading = if looks.several_samples {
+            let develop =
+                |from: wgpu::BindingResource<'_>| puts.stage(device, &[slice::from_ref(&pass), slice::from_ref(&from)]);
+            Shading::Samples {
+                shade: [taking(kernels, &[odd.clone(), even.clone()])?, taking(kernels, &[even.clone(), odd.clone()])?],
+                develop: [develop(even)?, develop(odd)?],
+            }
+        } else {
+            Shading::Only(taking(kernels, &[])?)
+        };
+        let film = &fixed.film.buffer;
+        let here = |pixels| device.bind(puts.target()?, &[film.as_entire_binding(), pixels]).map(Put::Here);
+        let put = match target {
+            FrameTarget::Screen(texture) => here(wgpu::BindingResource::TextureView(&texture.view))?,
+            FrameTarget::Host if looks.rows => Put::Staged(puts.target()?.clone(), (**film).clone()),
+            FrameTarget::Host => here(sized.packed.as_entire_binding())?,
+        };
+        Ok(Stages { records: made, shading, put })
+    }
+}
+
+impl Put {
+    /// `staging`: the submission's.
+    fn group(&self, device: &Device, staging: &wgpu::Buffer) -> Result<wgpu::BindGroup> {
+        match self {
+            Self::Here(group) => Ok(group.clone()),
+            Self::Staged(layout, film) => {
+                let pixels = wgpu::BufferBinding { buffer: staging, offset: PIXELS, size: None };
+                device.bind(layout, &[film.as_entire_binding(), wgpu::BindingResource::Buffer(pixels)])
+            }
+        }
     }
 }
 
@@ -521,7 +614,12 @@ impl BegunFrame {
 
 impl FrameBuffers {
     /// Starts the frame's next step; the last samples of a tile are followed by development and the copy to the host.
-    fn submit(&mut self, device: &Device, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
+    fn submit(
+        &mut self,
+        device: &Device,
+        frame: &mut BegunFrame,
+        then: &mut Recording<'_>,
+    ) -> Result<Option<Submitted>> {
         let Some((tile, range)) = frame.next() else { return Ok(None) };
         let begins = frame.submitted == 0;
         let stages = &frame.stages;
@@ -532,48 +630,78 @@ impl FrameBuffers {
         for (slot, pass) in bytes.chunks_exact_mut(stride as usize).zip(passes) {
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
-        let size = [tile.width, tile.height];
-        check_groups(device, pixel_groups(size.map(|side| side + 2)))?;
+        let size_of_tile = [tile.width, tile.height];
+        check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
         let last = range.end == frame.samples;
+        let row_bytes = tile.width as usize * frame.request.format.bytes_per_pixel();
+        let pixel_bytes = match frame.target {
+            PixelTarget::Packed | PixelTarget::Rows if last => row_bytes as u64 * u64::from(tile.height),
+            _ => 0,
+        };
+        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
+        let staging = match frame.target {
+            PixelTarget::Rows if last => self.mapped.0.staging(device, size)?,
+            _ => self.readback.staging(device, size)?,
+        };
+        let to = staging.buffer()?;
+        let put = if last { Some(stages.put.group(device, to)?) } else { None };
         let mut encoder = device.encoder("frame")?;
-        let fixed = self.fixed.as_ref().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        device.write(&fixed.passes, 0, &bytes)?;
-        encoder.clear_buffer(&fixed.step_sum, 0, None);
-        self.makers.reset(&mut encoder);
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.passes.write(device, &bytes)?;
+        let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
         {
             let timestamps = self.timer.as_mut().and_then(GpuTimer::next_pass);
             let descriptor = wgpu::ComputePassDescriptor { label: Some("frame"), timestamp_writes: timestamps };
             let mut pass = encoder.begin_compute_pass(&descriptor);
             for (i, sample) in range.enumerate() {
                 let offset = i as u32 * stride as u32;
-                stages.records.encode(&mut pass, begins && i == 0, offset, size);
+                stages.records.encode(&mut pass, begins && i == 0, offset, size_of_tile);
                 match &stages.shading {
-                    Shading::Only(stage) => stage.dispatch(&mut pass, offset, size),
-                    Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(&mut pass, offset, size),
+                    Shading::Only(stage) => {
+                        pass.set_bind_group(2, put.as_ref(), &[]);
+                        stage.dispatch(&mut pass, offset, size_of_tile);
+                    }
+                    Shading::Samples { shade, .. } => {
+                        shade[sample as usize % 2].dispatch(&mut pass, offset, size_of_tile);
+                    }
                 }
             }
             if let (Shading::Samples { develop, .. }, true) = (&stages.shading, last) {
-                develop[(frame.samples as usize - 1) % 2].dispatch(&mut pass, 0, size);
+                pass.set_bind_group(2, put.as_ref(), &[]);
+                develop[(frame.samples as usize - 1) % 2].dispatch(&mut pass, 0, size_of_tile);
             }
         }
-        let row_bytes = tile.width as usize * frame.request.format.bytes_per_pixel();
-        let pixel_bytes = if last && frame.to_host { row_bytes as u64 * u64::from(tile.height) } else { 0 };
-        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
-        let staging = self.readback.staging(device, size)?;
-        let to = staging.buffer()?;
-        encoder.copy_buffer_to_buffer(self.makers.steps(frame.source, &fixed.step_sum), 0, to, STEPS, STEP_SUM);
+        let counts = steps.is_some();
+        if let Some(steps) = steps {
+            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
+        }
         let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
-        if let (Some(sized), true) = (&self.sized, pixel_bytes > 0) {
+        if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, last) {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
         let copied = staging.filled(size);
+        if frame.submitted + 1 == frame.count() {
+            then(&mut encoder)?;
+        }
         let submission = device.submit(encoder)?;
         frame.submitted += 1;
-        Ok(Some(Submitted { submission, copied, tick_bytes, tile: (pixel_bytes > 0).then_some(tile), row_bytes }))
+        Ok(Some(Submitted {
+            submission,
+            copied,
+            tick_bytes,
+            counts,
+            tile: (pixel_bytes > 0).then_some(tile),
+            row_bytes,
+        }))
     }
 }
 
 impl Submitted {
+    /// What to wait for.
+    pub fn submission(&self) -> &wgpu::SubmissionIndex {
+        &self.submission
+    }
+
     /// Whether it has run, so that [`Self::finish`] does not wait. Errors: as [`Device::wait`].
     pub fn is_done(&self, device: &Device) -> Result<bool> {
         device.is_done(&self.submission)
@@ -583,8 +711,10 @@ impl Submitted {
     pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
         self.copied.read(device, &self.submission, |bytes| {
             let started = Instant::now();
-            let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
-            stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+            if self.counts {
+                let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
+                stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+            }
             stats.gpu_ns += timer::nanoseconds(device, part(bytes, TICKS, self.tick_bytes)?)?;
             if let (Some(tile), Some(pixels)) = (self.tile, bytes.get(PIXELS as usize..)) {
                 sink(tile, pixels, self.row_bytes)?;

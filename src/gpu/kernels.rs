@@ -39,27 +39,58 @@ pub struct FilmLook {
     format: u32,
     tone_map: u32,
     false_colour: bool,
-    /// Packed for the host, not into a window's texture.
-    to_host: bool,
+    target: PixelTarget,
+}
+
+/// Where the last kernel of a frame puts pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PixelTarget {
+    /// Into a window's texture.
+    Screen,
+    /// Into a buffer on the device, packed.
+    Packed,
+    /// Into a buffer in the host's memory, packed, row by row.
+    Rows,
 }
 
 impl FilmLook {
-    pub fn new(film: &FilmParams, to_host: bool) -> Self {
-        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, to_host }
+    pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
+        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, target }
+    }
+
+    /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
+    fn over(self, source: Source) -> Self {
+        match (self.target, source) {
+            (PixelTarget::Rows, Source::Kerr { rest: true, .. }) => Self { target: PixelTarget::Packed, ..self },
+            _ => self,
+        }
     }
 
     /// The WGSL that takes radiance: film, and where its pixels go.
     fn parts(self) -> [&'static str; 2] {
-        let target = match self.to_host {
-            true => include_str!("../../shaders/packed.wgsl"),
-            false => include_str!("../../shaders/screen.wgsl"),
+        let target = match self.target {
+            PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
+            PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
+            PixelTarget::Rows => include_str!("../../shaders/packed_rows.wgsl"),
         };
         [include_str!("../../shaders/film.wgsl"), target]
     }
 
     /// The group of `parts`.
     fn slots(self) -> Vec<Slot> {
-        vec![Slot::Uniform, if self.to_host { Slot::Write } else { Slot::TextureWrite(SCREEN) }]
+        let pixels = match self.target {
+            PixelTarget::Screen => Slot::TextureWrite(SCREEN),
+            PixelTarget::Packed | PixelTarget::Rows => Slot::Write,
+        };
+        vec![Slot::Uniform, pixels]
+    }
+
+    /// Threads of a workgroup of the kernels that put pixels.
+    fn group(self) -> [u32; 2] {
+        match self.target {
+            PixelTarget::Screen | PixelTarget::Packed => GROUP,
+            PixelTarget::Rows => ROWS_GROUP,
+        }
     }
 }
 
@@ -107,6 +138,8 @@ enum Name {
 #[derive(Default)]
 pub struct Kernels {
     made: HashMap<Name, Compiled>,
+    /// Kernels that bind the same share the layout, so that they can share groups.
+    layouts: HashMap<Vec<Slot>, wgpu::BindGroupLayout>,
 }
 
 /// A pipeline and the layouts of its groups.
@@ -114,16 +147,21 @@ pub struct Kernels {
 pub struct Compiled {
     pipeline: wgpu::ComputePipeline,
     layouts: Vec<wgpu::BindGroupLayout>,
+    /// Threads of a workgroup that goes over pixels.
+    group: [u32; 2],
 }
 
 /// A pipeline with what it binds; its group 0 has one `UniformPart`.
 pub struct Stage {
     pipeline: wgpu::ComputePipeline,
     groups: Vec<wgpu::BindGroup>,
+    group: [u32; 2],
 }
 
 /// Threads of a workgroup of the kernels that go over pixels.
 const GROUP: [u32; 2] = [8, 16];
+/// The same of those that put them row by row.
+const ROWS_GROUP: [u32; 2] = [32, 4];
 
 const MATH: &str = include_str!("../../shaders/math.wgsl");
 const FATE: &str = include_str!("../../shaders/fate.wgsl");
@@ -182,9 +220,10 @@ impl Source {
     }
 
     /// What goes over the pixels: the entry point, and its WGSL.
-    fn driver(self) -> (&'static str, &'static str) {
-        match self {
-            Self::Kerr { rest: true, .. } => ("each_deferred", include_str!("../../shaders/each_deferred.wgsl")),
+    fn driver(self, target: Option<PixelTarget>) -> (&'static str, &'static str) {
+        match (self, target) {
+            (Self::Kerr { rest: true, .. }, _) => ("each_deferred", include_str!("../../shaders/each_deferred.wgsl")),
+            (_, Some(PixelTarget::Rows)) => ("each_pixel", include_str!("../../shaders/each_pixel_rows.wgsl")),
             _ => ("each_pixel", include_str!("../../shaders/each_pixel.wgsl")),
         }
     }
@@ -233,7 +272,7 @@ fn schwarzschild_columns_source() -> String {
     schwarzschild_build_source(include_str!("../../shaders/lens_schwarzschild_columns.wgsl"))
 }
 
-fn shade_source(source: Source, rest: &[&str]) -> String {
+fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> String {
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -242,32 +281,36 @@ fn shade_source(source: Source, rest: &[&str]) -> String {
         include_str!("../../shaders/shade.wgsl"),
     ];
     let constants = sky::StarIndex::shared().wgsl_constants();
-    let (_, driver) = source.driver();
+    let (_, driver) = source.driver(target);
     join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
-    shade_source(source, &[include_str!("../../shaders/shade_sample.wgsl")])
+    shade_source(source, None, &[include_str!("../../shaders/shade_sample.wgsl")])
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
-    let [film, target] = film.parts();
-    shade_source(source, &[film, target, include_str!("../../shaders/shade_only.wgsl")])
+    let [develop, put] = film.parts();
+    shade_source(source, Some(film.target), &[develop, put, include_str!("../../shaders/shade_only.wgsl")])
 }
 
 fn export_source(source: Source) -> String {
-    let (_, driver) = source.driver();
+    let (_, driver) = source.driver(None);
     let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
     join(&[&parts, &source.parts()])
 }
 
 fn develop_source(film: FilmLook) -> String {
-    join(&[&[PASS], &film.parts(), &[include_str!("../../shaders/develop.wgsl")]])
+    let driver = match film.target {
+        PixelTarget::Screen | PixelTarget::Packed => include_str!("../../shaders/develop.wgsl"),
+        PixelTarget::Rows => include_str!("../../shaders/develop_rows.wgsl"),
+    };
+    join(&[&[PASS], &film.parts(), &[driver]])
 }
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    let film = |to_host| FilmLook { format: 1, tone_map: 1, false_colour: false, to_host };
+    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: false, target };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
@@ -280,7 +323,7 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
     let of_sources = sources.flat_map(|([sample, only, export], source)| {
         [
             (sample, shade_sample_source(source)),
-            (only, shade_only_source(source, film(true))),
+            (only, shade_only_source(source, film(PixelTarget::Packed))),
             (export, export_source(source)),
         ]
     });
@@ -289,9 +332,11 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("pixels", pixels_source()),
         ("count", count_source()),
         ("present", super::present::present_source()),
-        ("develop", develop_source(film(true))),
-        ("develop for a window", develop_source(film(false))),
-        ("shade only for a window", shade_only_source(kerr(false), film(false))),
+        ("develop", develop_source(film(PixelTarget::Packed))),
+        ("develop for a window", develop_source(film(PixelTarget::Screen))),
+        ("develop by rows", develop_source(film(PixelTarget::Rows))),
+        ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
+        ("shade only by rows", shade_only_source(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
         ("spin-0 lens, columns", schwarzschild_columns_source()),
         ("Kerr lens, nodes", kerr_nodes_source()),
@@ -301,7 +346,7 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
 }
 
 /// What a binding is.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Slot {
     Uniform,
     /// A uniform of which each dispatch chooses a part.
@@ -313,7 +358,7 @@ enum Slot {
 }
 
 /// A texture as a kernel declares it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TextureKind {
     pub format: wgpu::TextureFormat,
     pub dimension: wgpu::TextureViewDimension,
@@ -421,15 +466,20 @@ impl Kernels {
     pub fn shade_sample(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let target = vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)];
         let groups = [shade_slots(), source.slots(), target];
-        self.get(device, Name::ShadeSample(source, look), &groups, source.driver().0, || shade_sample_source(source))
+        let (entry_point, _) = source.driver(None);
+        self.get(device, Name::ShadeSample(source, look), &groups, entry_point, || shade_sample_source(source))
     }
 
+    /// Group 2, which puts the pixels, is for the caller to set.
     pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
+        let film = film.over(source);
         let groups = [shade_slots(), source.slots(), film.slots()];
         let wgsl = || shade_only_source(source, film);
-        self.get(device, Name::ShadeOnly(source, look, film), &groups, source.driver().0, wgsl)
+        let (entry_point, _) = source.driver(Some(film.target));
+        self.get(device, Name::ShadeOnly(source, look, film), &groups, entry_point, wgsl)
     }
 
+    /// Group 2, which puts the pixels, is for the caller to set.
     pub fn develop(&mut self, device: &Device, film: FilmLook) -> Result<Compiled> {
         let groups = [vec![Slot::UniformPart], vec![Slot::Texture(RADIANCE)], film.slots()];
         self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
@@ -437,7 +487,8 @@ impl Kernels {
 
     pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
-        self.get(device, Name::Export(source, footprints), &groups, source.driver().0, || export_source(source))
+        let (entry_point, _) = source.driver(None);
+        self.get(device, Name::Export(source, footprints), &groups, entry_point, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -476,7 +527,7 @@ impl Kernels {
         if let Some(compiled) = self.made.get(&name) {
             return Ok(compiled.clone());
         }
-        let layouts = groups.iter().map(|slots| layout(device, entry_point, slots)).collect::<Result<Vec<_>>>()?;
+        let layouts = groups.iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
         let constants = constants(name);
         let source = source();
         let pipeline = device.compute_pipeline(&Kernel {
@@ -488,15 +539,39 @@ impl Kernels {
             zero_workgroup_memory: false,
             groups: &layouts.iter().collect::<Vec<_>>(),
         })?;
-        let compiled = Compiled { pipeline, layouts };
+        let group = match name {
+            Name::ShadeOnly(_, _, film) | Name::Develop(film) => film.group(),
+            _ => GROUP,
+        };
+        let compiled = Compiled { pipeline, layouts, group };
         self.made.insert(name, compiled.clone());
         Ok(compiled)
+    }
+
+    fn layout(&mut self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
+        if let Some(layout) = self.layouts.get(slots) {
+            return Ok(layout.clone());
+        }
+        let entries = slots
+            .iter()
+            .zip(0..)
+            .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: slot.binding_type(),
+                count: None,
+            })
+            .collect::<Vec<_>>();
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+        let layout = device.scoped("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
+        self.layouts.insert(slots.into(), layout.clone());
+        Ok(layout)
     }
 }
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants, over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
+/// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
 /// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
@@ -548,35 +623,17 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
     }
 }
 
-fn layout(device: &Device, label: &str, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
-    let entries = slots
-        .iter()
-        .zip(0..)
-        .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty: slot.binding_type(),
-            count: None,
-        })
-        .collect::<Vec<_>>();
-    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some(label), entries: &entries };
-    device.scoped(label, |d| d.create_bind_group_layout(&descriptor))
-}
-
 impl Compiled {
-    /// The pipeline with `groups`: of each the resources in the order of its slots.
+    /// The layout of group 2.
+    pub fn target(&self) -> Result<&wgpu::BindGroupLayout> {
+        self.layouts.get(2).ok_or_else(|| Error::internal("a kernel without a target"))
+    }
+
+    /// The pipeline with `groups`, the first of its groups: of each the resources in the order of its slots.
     pub fn stage(&self, device: &Device, groups: &[&[wgpu::BindingResource<'_>]]) -> Result<Stage> {
-        let bind = |(resources, layout): (&&[wgpu::BindingResource<'_>], &wgpu::BindGroupLayout)| {
-            let entries = resources
-                .iter()
-                .zip(0..)
-                .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-                .collect::<Vec<_>>();
-            let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
-            device.scoped("binding buffers", |d| d.create_bind_group(&descriptor))
-        };
-        let groups = groups.iter().zip(&self.layouts).map(bind).collect::<Result<Vec<_>>>()?;
-        Ok(Stage { pipeline: self.pipeline.clone(), groups })
+        let groups = groups.iter().zip(&self.layouts).map(|(resources, layout)| device.bind(layout, resources));
+        let groups = groups.collect::<Result<Vec<_>>>()?;
+        Ok(Stage { pipeline: self.pipeline.clone(), groups, group: self.group })
     }
 }
 
@@ -592,13 +649,17 @@ impl Stage {
 
     /// One thread for each pixel of a rectangle.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, size: [u32; 2]) {
-        self.run(pass, Some(offset), pixel_groups(size));
+        self.run(pass, Some(offset), groups_over(size, self.group));
     }
 }
 
+fn groups_over(size: [u32; 2], group: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|i| size[i].div_ceil(group[i]))
+}
+
 /// Workgroups over a rectangle of pixels.
-pub fn pixel_groups([width, height]: [u32; 2]) -> [u32; 2] {
-    [width.div_ceil(GROUP[0]), height.div_ceil(GROUP[1])]
+pub fn pixel_groups(size: [u32; 2]) -> [u32; 2] {
+    groups_over(size, GROUP)
 }
 
 /// Errors: INTERNAL if a count of workgroups exceeds what the device takes.

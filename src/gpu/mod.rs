@@ -2,6 +2,7 @@
 //! shows; knows no host memory (tiles go to a sink) and nothing of C.
 
 mod adapter;
+mod bindings;
 mod buffer;
 mod device;
 mod export;
@@ -24,7 +25,7 @@ mod uniforms;
 pub use adapter::{Adapter, Search, adapters, forget_drivers};
 pub use buffer::Buffer;
 pub use device::Device;
-pub use frame::{BegunFrame, FrameTarget, Submitted};
+pub use frame::{BegunFrame, FrameTarget, Recording, Submitted};
 #[doc(hidden)]
 pub use kernels::shader_sources;
 pub use pipeline::{Kernel, Loops, ProvenFinite};

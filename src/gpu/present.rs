@@ -98,25 +98,19 @@ impl Presenter {
         size: [u32; 2],
         timestamps: Option<wgpu::RenderPassTimestampWrites<'_>>,
     ) -> Result<()> {
-        let group = device.scoped("present", |d| {
-            d.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some("present"),
-                layout: &self.layout,
-                entries: &[
-                    wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&screen.view) },
-                    wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::Sampler(&self.sampler) },
-                ],
-            })
-        })?;
+        let resources =
+            [wgpu::BindingResource::TextureView(&screen.view), wgpu::BindingResource::Sampler(&self.sampler)];
+        let group = device.bind(&self.layout, &resources)?;
         let [same, stretched] = &self.pipelines;
+        // SAFETY: the triangle covers the image (present.wgsl), and nothing discards a part of it.
+        let written = unsafe { wgpu::LoadOpDontCare::enabled() };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("present"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
                 view: image,
                 depth_slice: None,
                 resolve_target: None,
-                // Every pixel is written.
-                ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::BLACK), store: wgpu::StoreOp::Store },
+                ops: wgpu::Operations { load: wgpu::LoadOp::DontCare(written), store: wgpu::StoreOp::Store },
             })],
             timestamp_writes: timestamps,
             ..Default::default()

@@ -41,6 +41,13 @@ impl Readback {
         Self::default()
     }
 
+    /// Of staging buffers that kernels can write and queries can be resolved to, for devices that map storage.
+    pub fn of_kernels() -> Self {
+        let more = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::QUERY_RESOLVE;
+        let plain = Self::default();
+        Self { usage: plain.usage | more, ..plain }
+    }
+
     /// A staging buffer of at least `size` bytes. Errors: as [`Device::buffer`].
     pub fn staging(&self, device: &Device, size: u64) -> Result<Staging> {
         let buffer = match self.take(size) {

@@ -101,16 +101,23 @@ impl RecordMakers {
         }
     }
 
-    /// Before a submission.
-    pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
-        self.kerr.reset(encoder);
-    }
-
-    /// What holds the steps of a submission's rays, `step_sum` or a buffer that begins with them.
-    pub fn steps<'a>(&'a self, source: Source, step_sum: &'a Buffer) -> &'a Buffer {
+    /// Before a submission. What will hold the steps of its rays, `step_sum` or a buffer that begins with them; `None`: they take none.
+    pub fn reset<'a>(
+        &'a self,
+        source: Source,
+        step_sum: &'a Buffer,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Option<&'a Buffer> {
         match source {
-            Source::Kerr { .. } => self.kerr.deferred().unwrap_or(step_sum),
-            _ => step_sum,
+            Source::Traced => {
+                encoder.clear_buffer(step_sum, 0, None);
+                Some(step_sum)
+            }
+            Source::Schwarzschild { .. } => None,
+            Source::Kerr { .. } => {
+                self.kerr.reset(encoder);
+                self.kerr.deferred()
+            }
         }
     }
 

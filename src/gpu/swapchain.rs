@@ -162,13 +162,20 @@ impl Swapchain {
         })
     }
 
-    /// Fills `image` with `screen`, stretched to it, and shows it. Errors: as [`Device::scoped`].
-    pub fn present(&mut self, image: wgpu::SurfaceTexture, screen: &Texture) -> Result<()> {
+    /// Records the filling of `image` with `screen`, stretched to it. Errors: as [`Device::scoped`].
+    pub fn fill(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        image: &wgpu::SurfaceTexture,
+        screen: &Texture,
+    ) -> Result<()> {
         let view = self.device.scoped("a window's image", |_| image.texture.create_view(&Default::default()))?;
-        let mut encoder = self.device.encoder("present")?;
         let size = [image.texture.width(), image.texture.height()];
-        self.presenter.draw(&self.device, &mut encoder, screen, &view, size, None)?;
-        self.device.submit(encoder)?;
+        self.presenter.draw(&self.device, encoder, screen, &view, size, None)
+    }
+
+    /// Shows an image whose filling has been submitted. Errors: as [`Device::scoped`].
+    pub fn show(&self, image: wgpu::SurfaceTexture) -> Result<()> {
         let queue = self.device.queue()?;
         self.device.guarded("presenting", |_| queue.present(image))
     }

@@ -52,6 +52,7 @@ impl Device {
         layers: u32,
         usage: wgpu::TextureUsages,
     ) -> Result<Texture> {
+        self.bindings.clear();
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
         let (raw, view) = self.scoped(label, |device| {
             let raw = device.create_texture(&wgpu::TextureDescriptor {

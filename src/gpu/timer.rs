@@ -51,7 +51,9 @@ impl GpuTimer {
     pub fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Buffer, offset: u64) -> u64 {
         let passes = std::mem::take(&mut self.passes);
         let bytes = u64::from(passes) * PASS_BYTES;
-        if passes > 0 {
+        if passes > 0 && target.usage().contains(wgpu::BufferUsages::QUERY_RESOLVE) {
+            encoder.resolve_query_set(&self.queries, 0..2 * passes, target, offset);
+        } else if passes > 0 {
             encoder.resolve_query_set(&self.queries, 0..2 * passes, &self.resolved, 0);
             encoder.copy_buffer_to_buffer(&self.resolved, 0, target, offset, bytes);
         }

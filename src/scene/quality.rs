@@ -32,6 +32,9 @@ pub struct Quality {
     /// Whether AUTO looks rays up; not the host's to choose.
     #[doc(hidden)]
     pub lens_tables: LensTables,
+    /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. Not the host's to choose.
+    #[doc(hidden)]
+    pub mapped_pixels: Option<bool>,
 }
 
 impl Default for Quality {
@@ -45,6 +48,7 @@ impl Default for Quality {
             max_disk_order: 3,
             render_scale: 1.0,
             lens_tables: LensTables::Auto,
+            mapped_pixels: None,
         }
     }
 }

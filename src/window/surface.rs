@@ -189,8 +189,8 @@ impl Inner {
                 let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
                     return Ok(Shown::Skipped);
                 };
-                let steps = screen.trace(showing, size)?;
-                screen.present(image)?;
+                let steps = screen.trace(showing, &image, size)?;
+                screen.swapchain.show(image)?;
                 Some(steps)
             }
             Way::Uploaded(screen, pixels) => {
@@ -387,15 +387,20 @@ impl Screen {
         self.texture.as_ref().ok_or_else(|| Error::internal("a screen without its texture"))
     }
 
-    /// Submits the frame for an image of `size`.
+    /// Submits the frame for an image of `size`, and the filling of the image with it.
     fn trace(
         &mut self,
         showing: &Showing<'_>,
+        image: &wgpu::SurfaceTexture,
         size: [u32; 2],
     ) -> Result<(Arc<Device>, VecDeque<Submitted>, FrameStats)> {
         let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
         let device = self.swapchain.device().clone();
-        let texture = self.texture(&request, false)?;
+        self.texture(&request, false)?;
+        let Self { swapchain, texture: Some(texture) } = self else {
+            return Err(Error::internal("a screen without its texture"));
+        };
+        let mut fill = |encoder: &mut wgpu::CommandEncoder| swapchain.fill(encoder, image, texture);
         let mut tracer = showing.tracer.lock();
         let Tracer::Gpu(tracer) = &mut *tracer else {
             return Err(Error::internal("a window of a GPU on another tracer"));
@@ -403,7 +408,7 @@ impl Screen {
         let mut frame = tracer.begin(showing.scene, &request, FrameTarget::Screen(texture))?;
         let mut stats = frame.stats();
         let mut steps = VecDeque::new();
-        while let Some(step) = tracer.submit(&mut frame)? {
+        while let Some(step) = tracer.submit_and(&mut frame, &mut fill)? {
             steps.push_back(step);
             if steps.len() > AHEAD
                 && let Some(first) = steps.pop_front()
@@ -420,8 +425,13 @@ impl Screen {
         device.write_rows(self.texture(request, true)?, 0, pixels)
     }
 
+    /// Fills the image with what was uploaded, and shows it.
     fn present(&mut self, image: wgpu::SurfaceTexture) -> Result<()> {
         let texture = self.texture.as_ref().ok_or_else(|| Error::internal("a screen without its texture"))?;
-        self.swapchain.present(image, texture)
+        let device = self.swapchain.device();
+        let mut encoder = device.encoder("present")?;
+        self.swapchain.fill(&mut encoder, &image, texture)?;
+        device.submit(encoder)?;
+        self.swapchain.show(image)
     }
 }
