@@ -160,7 +160,9 @@ fn jobs(
         }
         if i == warm {
             start = Instant::now();
-            [&mut calls, &mut latencies, &mut readbacks].map(Vec::clear);
+            for past in [&mut calls, &mut latencies, &mut readbacks] {
+                past.clear();
+            }
         }
         turn(&mut renderer.scene, i);
         let (pixels, length) = targets[i % in_flight];

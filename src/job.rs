@@ -10,8 +10,9 @@ use crate::image::ImageMut;
 use crate::renderer::{FrameRequest, FrameStats, Progress, SharedTracer, StatsBoard};
 use crate::scene::Scene;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
+use worker::Line;
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     // Nothing under these locks is left half done by a panic.
@@ -22,6 +23,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 #[derive(Clone)]
 pub struct Job {
     shared: Arc<Shared>,
+    /// Where it may still wait for its turn.
+    line: Weak<Line>,
 }
 
 #[derive(Default)]
@@ -40,9 +43,14 @@ impl Job {
         f64::from_bits(self.shared.fraction.load(Ordering::Relaxed))
     }
 
-    /// Asks it to stop: what is not yet begun is not done any more.
+    /// Asks it to stop: what is not yet begun is not done any more. It ends at once if its turn has not come.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
+        if let Some(order) = self.line.upgrade().and_then(|line| line.withdraw(&self.shared))
+            && let Err(cancelled) = self.shared.check_cancelled()
+        {
+            order.finish(Err(cancelled));
+        }
     }
 
     /// What it ended with; `None` while it runs.

@@ -46,7 +46,7 @@ struct Running {
 
 /// What host and threads share.
 #[derive(Default)]
-struct Line {
+pub(super) struct Line {
     state: Mutex<State>,
     /// An order came, or room for a step, or the end.
     to_submit: Condvar,
@@ -110,7 +110,7 @@ impl Worker {
 
     /// Errors: INVALID_STATE when too many are unfinished; INTERNAL when a job panicked before.
     pub fn order(&self, order: Order) -> Result<Job> {
-        let job = Job { shared: order.shared.clone() };
+        let job = Job { shared: order.shared.clone(), line: Arc::downgrade(&self.line) };
         let mut state = lock(&self.line.state);
         if state.closed {
             return Err(Error::internal("a thread that renders in the background failed before"));
@@ -138,6 +138,13 @@ impl Drop for Worker {
 }
 
 impl Line {
+    /// The order of a job whose turn has not come.
+    pub(super) fn withdraw(&self, job: &Arc<Shared>) -> Option<Order> {
+        let mut state = lock(&self.state);
+        let place = state.waiting.iter().position(|order| Arc::ptr_eq(&order.shared, job))?;
+        state.waiting.remove(place)
+    }
+
     /// The next order, once there is room for its first step; `None`: the end.
     fn take(&self) -> Option<Order> {
         let mut state = lock(&self.state);

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use raw_window_handle as rwh;
 use std::ffi::{CStr, CString, OsStr, c_char, c_int, c_void};
 use std::num::NonZeroU32;
-use std::os::fd::BorrowedFd;
+use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::ffi::OsStrExt;
 use std::ptr::NonNull;
 use x11rb::connection::Connection;
@@ -21,7 +21,8 @@ pub struct X11Window {
     connection: XCBConnection,
     screen: usize,
     id: NonZeroU32,
-    server: CString,
+    /// The one name that every connection to it gives.
+    server: String,
     pub depth: u8,
 }
 
@@ -43,6 +44,8 @@ impl X11Window {
             || Error::argument(format!("window id is {id:#x}; there is no such window on the X server {name}"));
         let id = u32::try_from(id).ok().and_then(NonZeroU32::new).ok_or_else(absent)?;
         let geometry = geometry(&connection, id).ok_or_else(absent)?;
+        // One server may go by several names: `:7`, `:7.0`, `host:7`.
+        let server = server_of(connection.as_fd()).unwrap_or(name);
         Ok(Some(Self { connection, screen, id, server, depth: geometry.depth }))
     }
 
@@ -67,7 +70,7 @@ impl X11Window {
     }
 
     pub fn claim_key(&self) -> claim::Key {
-        (self.server.to_string_lossy().into_owned(), self.id.get().into())
+        (self.server.clone(), self.id.get().into())
     }
 
     /// Drops what the server had against requests that nobody waited for.
@@ -132,11 +135,16 @@ fn server_of_xcb(connection: NonNull<c_void>) -> Result<CString> {
     }
     // SAFETY: the host's connection keeps its socket open during this call.
     let socket = unsafe { BorrowedFd::borrow_raw(socket) };
-    let name = rustix::net::getpeername(socket).ok().flatten().and_then(|address| server_at(&address));
+    let name = server_of(socket);
     // A socket of an unknown kind: the environment's server, as for a host that named none.
     let name = name.or_else(|| std::env::var("DISPLAY").ok());
     let name = name.ok_or_else(|| Error::unsupported("window display leads to an X server that has no name"))?;
     CString::new(name).map_err(|_| Error::unsupported("window display leads to an X server whose name holds a NUL"))
+}
+
+/// The name of the server that a socket leads to.
+fn server_of(socket: BorrowedFd<'_>) -> Option<String> {
+    rustix::net::getpeername(socket).ok().flatten().and_then(|address| server_at(&address))
 }
 
 /// The name of the server behind the far end of a socket: `:N` for the local socket `../X<N>`, `host:N` for port 6000 + N.
