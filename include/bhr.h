@@ -104,7 +104,7 @@ typedef int32_t BhrStatus;
 /** bhr_job_wait: the job was still running when the timeout ran out. */
 #define BHR_NOT_READY 1
 
-/** bhr_render_surface: the window is minimised, occluded or 0 x 0; nothing was presented. */
+/** bhr_render_surface: the window is 0 x 0 or hidden, or is being resized; nothing was presented. */
 #define BHR_FRAME_SKIPPED 2
 
 /**
@@ -131,16 +131,16 @@ typedef int32_t BhrStatus;
 /** The progress callback, or bhr_job_cancel, stopped the work. */
 #define BHR_ERROR_CANCELLED (0 - 7)
 
-/** The window behind a surface is gone. */
+/** The window behind a surface is gone, or its context was recovered: destroy the surface. */
 #define BHR_ERROR_SURFACE_LOST (0 - 8)
 
-/** The device is gone; bhr_context_recover brings the context back. */
+/** The GPU's device is gone; bhr_context_recover brings the context back. */
 #define BHR_ERROR_DEVICE_LOST (0 - 9)
 
 /** A file could not be read or written. */
 #define BHR_ERROR_IO (0 - 10)
 
-/** A bug in bhr was caught; only destroy calls are valid on this context from now on. */
+/** A bug in bhr was caught; only destroy calls are valid on this context, its jobs and surfaces from now on. */
 #define BHR_ERROR_INTERNAL (0 - 99)
 
 /**
@@ -247,11 +247,12 @@ BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
 
 /* ---- windows of the host ---- */
 
-/** What a BhrWindow holds. Fields that are not named for a kind are ignored. */
+/** Which kind a BhrWindow is of. Fields that the kind does not name are ignored. */
 typedef int32_t BhrWindowKind;
 
 /**
- * A window of the host's: not owned, it must outlive every surface made from it. Fields as in the
+ * A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
+ * Begin with all bytes 0, then set struct_size, kind, and what the kind names. Handles are those of the
  * raw-window-handle crate.
  */
 typedef struct BhrWindow {
@@ -259,17 +260,17 @@ typedef struct BhrWindow {
     uint32_t struct_size;
     /** BHR_WINDOW_*. */
     BhrWindowKind kind;
-    /** By kind. */
+    /** As the kind says. */
     void *display;
-    /** By kind. */
+    /** As the kind says. */
     void *handle;
-    /** By kind. */
+    /** As the kind says. */
     void *aux;
-    /** By kind: an X11 window id. */
+    /** As the kind says: the id of an X11 window. */
     uint64_t id;
-    /** X11: the visual's id; 0 when not known. */
+    /** X11: the id of the window's visual; may be 0. */
     uint64_t visual_id;
-    /** X11: the screen's number. */
+    /** X11: the number of the window's screen; may be 0. */
     int32_t screen;
     /** 0. */
     uint32_t reserved;
@@ -332,8 +333,10 @@ typedef struct BhrContextOptions {
     /** Handed to log_fn. */
     void *log_user;
     /**
-     * A window that the adapter must be able to present to; it is looked at during the call only. The CPU tracer is taken to be able
-     * to. NULL (default): any adapter; where it cannot present, surfaces work all the same, by way of the host's memory, slower.
+     * A window that the adapter must be able to present to; looked at during the call only. With AUTO adapters
+     * that cannot are passed over; the CPU tracer, whose frames reach windows in other ways, always serves. NULL
+     * (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
+     * present.
      */
     const BhrWindow *compatible_window;
 } BhrContextOptions;
@@ -346,7 +349,8 @@ BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_siz
  * 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
  * BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
  * why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
- * INVALID_ARGUMENT for a bad option; NO_ADAPTER when the backend or adapter asked for is not there.
+ * INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's; NO_ADAPTER when
+ * the backend or adapter asked for is not there, or cannot present to compatible_window.
  */
 BhrStatus bhr_context_create(uint32_t abi_version,
                              const BhrContextOptions *options,
@@ -356,16 +360,18 @@ BhrStatus bhr_context_create(uint32_t abi_version,
 BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 
 /**
- * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there; the scene stays, the sky's map included. Jobs begun before fail with
- * DEVICE_LOST; surfaces made before are lost: destroy them and make them again. Until this call every call that renders or
- * traces returns DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost.
+ * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays,
+ * the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs begun before fail
+ * with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
+ * Errors: as bhr_context_create; the context then stays lost, and the call may be tried again.
  */
 BhrStatus bhr_context_recover(BhrContext *context);
 
 /**
- * Ends a context: waits for a call that is running on it and until its jobs are done (bhr_job_cancel shortens that), then frees it. NULL is a no-op, and any
- * destroy order is safe. No callback runs after it has returned. No other thread may begin a call on it any more.
- * From inside a callback it does nothing, as the context is in use: bhr_error_message then says so.
+ * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then
+ * frees it. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
+ * no-op. No callback runs after it has returned. No other thread may begin a call on it any more. From inside a
+ * callback it does nothing, as the context is in use: bhr_error_message then says so.
  */
 void bhr_context_destroy(BhrContext *context);
 
@@ -969,66 +975,77 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /* ---- rendering in the background ---- */
 
-/** A frame that is being rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after its context. */
+/**
+ * A frame that is rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after
+ * its context.
+ */
 typedef struct BhrJob BhrJob;
 
 /**
- * Begins to render an image and returns at once: the scene and the region are taken as they are now, and the frame is
- * rendered by a thread of the library's. Frames of a context are made in the order in which they were begun, several under
- * way at a time, so that one is copied while the next is traced; setters never wait for them, other calls that render do for those under
- * way. At most 64 jobs of a context may be unfinished. target->pixels is written until the job is done or destroyed, and must
- * stay valid and be nobody else's so long. End *out_job with bhr_job_destroy. Errors: as bhr_render_image, which may also come from
- * bhr_job_wait; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
+ * Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
+ * as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
+ * order, by a thread of the library's, several under way at a time: one is copied to the host while the next is
+ * traced. Other calls that render wait for the job that is being traced. At most 64 jobs of a context may be
+ * unfinished. target itself is copied; target->pixels is written until the job is done or destroyed, and must stay
+ * valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of
+ * bhr_render_image, some of which come from bhr_job_wait instead; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_image_async(BhrContext *context,
-                                 const BhrImage *target,
-                                 BhrJob **out_job);
+BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, BhrJob **out_job);
 
 /**
- * Waits until the job is done, at most timeout_ns nanoseconds; 0 polls, UINT64_MAX waits for ever. *out_fraction, unless
- * NULL, becomes the part that is done, 0 .. 1. Meanwhile the progress callback that the context had when the job was begun is called on
- * this thread. NOT_READY: still running. A job's failure is returned, with its message, here, each time: CANCELLED after
- * bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as bhr_render_image; once the first pixels are
- * written the message says so. Errors otherwise: INVALID_ARGUMENT for NULL.
+ * Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
+ * it is still running. OK: the image is complete. *out_fraction, unless NULL, becomes the part that is done, 0 ..
+ * 1, and 0 after a failure. Meanwhile the progress callback that the context had when the job was begun is called,
+ * on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
+ * bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
+ * bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
  */
-BhrStatus bhr_job_wait(BhrJob *job,
-                       uint64_t timeout_ns,
-                       double *out_fraction);
+BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
 
-/** Asks a job to stop; bhr_job_wait then returns CANCELLED, or OK when it was done before. Does not wait. NULL is a no-op. Any thread, inside callbacks too. */
+/**
+ * Asks a job to stop, and does not wait: bhr_job_wait then returns CANCELLED, or OK when the job was done before.
+ * NULL is a no-op. Any thread, inside callbacks too.
+ */
 void bhr_job_cancel(BhrJob *job);
 
 /**
- * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it: the target is the host's again. NULL is a no-op. No
- * other thread may use it any more. From inside a callback it does nothing: bhr_error_message then says so.
+ * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
+ * host's again. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
+ * bhr_error_message then says so.
  */
 void bhr_job_destroy(BhrJob *job);
 
 /* ---- rendering into windows ---- */
 
-/** A window that a context renders into. */
+/**
+ * A window that a context renders into. It belongs to that context; end it with bhr_surface_destroy, before or
+ * after the context, before the window.
+ */
 typedef struct BhrSurface BhrSurface;
 
 /** How frames reach the screen. */
 typedef int32_t BhrPresentMode;
 
-/** At the display's rate, never torn. */
+/** At the display's rate, never torn: a frame waits for the display. Every window has it. */
 #define BHR_PRESENT_VSYNC 0
 
 /** At once; may tear. */
 #define BHR_PRESENT_IMMEDIATE 1
 
-/** The newest frame at the display's rate; older ones are dropped. */
+/** The newest frame at the display's rate, never torn; frames that are not the newest any more are dropped. */
 #define BHR_PRESENT_MAILBOX 2
 
 /**
- * Makes a surface of width x height pixels from a window, to be rendered into by this context; 0 x 0: a minimised one. The window, which
- * takes one surface at a time, must outlive it, and its display too. (X11: bhr presents through a connection of its own, so there the host may end its window and
- * display first.) Where the context's adapter cannot present to the window, or traces on the CPU, another adapter presents, or frames are put
- * into the window as memory; the log (info) says which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for NULL, a bad window or
- * one that does not exist (X11), a side beyond 2^20, an unknown mode; INVALID_STATE for a window that has a surface; UNSUPPORTED, with the
- * reasons, for a kind of window that this platform does not have, where nothing can present to it, or for a side that the device's images cannot have (mostly
- * 16384); DEVICE_LOST, OUT_OF_MEMORY.
+ * Makes a surface of a window, width x height pixels (0 x 0: minimised), for this context to render into. A window
+ * takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
+ * presents through a connection of its own, may they end first. On Wayland the driver crashes when a surface is
+ * destroyed after its display was closed.) Where the context's adapter cannot present to the window, or traces on
+ * the CPU, another adapter presents the frames, or they are put into the window as memory; the log (info) says
+ * which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for
+ * NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
+ * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
+ * have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
+ * beyond 16384); DEVICE_LOST, OUT_OF_MEMORY.
  */
 BhrStatus bhr_surface_create(BhrContext *context,
                              const BhrWindow *window,
@@ -1038,36 +1055,37 @@ BhrStatus bhr_surface_create(BhrContext *context,
                              BhrSurface **out_surface);
 
 /**
- * Follows a window's new size in pixels; 0 x 0: minimised. Cheap: the next frame makes new images. (X11: the window's own size counts,
- * and this call says that it has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's images
- * cannot have; SURFACE_LOST.
+ * Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
+ * size are made by the next frame. (X11: frames have the size that the window really has; this call says that it
+ * has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
+ * images cannot have; SURFACE_LOST.
  */
-BhrStatus bhr_surface_resize(BhrSurface *surface,
-                             uint32_t width,
-                             uint32_t height);
+BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
 
 /**
- * Changes how frames reach the screen, from the next on; a mode that the window does not have falls back to VSYNC. Errors:
- * INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
+ * Changes how frames reach the screen, from the next one on. A mode that the window does not have becomes VSYNC.
+ * Errors: INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
  */
-BhrStatus bhr_surface_set_present_mode(BhrSurface *surface,
-                                       BhrPresentMode mode);
+BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode);
 
 /**
- * Renders the scene into the surface's window and presents it, in sRGB, with the film; the region is not obeyed. BhrQuality.render_scale
- * says how large it is traced. Returns when the frame is on its way (with VSYNC it waits for the window to take another, at
- * most a second; frames that go through the host's memory are finished); bhr_frame_stats then tells of the last frame that is finished.
- * FRAME_SKIPPED: the window is 0 x 0, minimised or hidden, or is being resized; nothing was presented: wait for its next event. Any thread
- * (macOS: the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context;
- * INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST when the window is gone, or the context was recovered since: destroy the surface and make it again;
- * DEVICE_LOST, OUT_OF_MEMORY.
+ * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
+ * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
+ * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
+ * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
+ * takes another frame, at most a second (on Wayland some drivers wait for as long as the compositor does not show
+ * the window, and calls on the context with them). FRAME_SKIPPED: the window is 0 x 0, hidden as far as the
+ * platform tells, or is being resized; nothing was presented: wait for the window's next event. Any thread (macOS:
+ * the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of
+ * another context; INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST, from then on, when the window
+ * is gone or the context was recovered: destroy the surface, and make it again if there is a window; DEVICE_LOST:
+ * see bhr_context_recover; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_surface(BhrContext *context,
-                             BhrSurface *surface);
+BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
 
 /**
- * Ends a surface; the window stays the host's and is free for another. NULL is a no-op; its context may be gone. No other thread may use it any
- * more. From inside a callback it does nothing: bhr_error_message then says so.
+ * Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread
+ * may use the surface any more. From inside a callback it does nothing: bhr_error_message then says so.
  */
 void bhr_surface_destroy(BhrSurface *surface);
 
@@ -1196,16 +1214,17 @@ typedef struct BhrFrameStats {
     uint32_t struct_size;
     /** 0. */
     uint32_t reserved;
-    /** 1 for the first frame of a context. */
+    /** Counts the finished frames of a context from 1: images, jobs and windows. */
     uint64_t frame_index;
+    /** Pixels times samples. */
     uint64_t rays;
     /** Integration steps of all rays; rays that were looked up take none. */
     uint64_t steps;
-    /** From the call's begin to its end. */
+    /** From the call's begin to its end; of a job: from bhr_render_image_async until it was done. */
     uint64_t cpu_ns;
-    /** On the GPU; 0: the adapter has no timestamps. */
+    /** Time on the GPU; 0: the adapter has no timestamps, or traces on the CPU. */
     uint64_t gpu_ns;
-    /** From the GPU's memory to the host's. */
+    /** Copying pixels from the GPU's memory to the host's, without the wait for the GPU. */
     uint64_t readback_ns;
     /** Device memory that the context holds. */
     uint64_t device_bytes;
@@ -1215,11 +1234,10 @@ typedef struct BhrFrameStats {
 BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
 
 /**
- * Numbers about a finished job's frame: cpu_ns is from bhr_render_image_async to its end. Errors: INVALID_ARGUMENT for NULL or a wrong
- * struct_size; INVALID_STATE for a job that is not done, or that failed.
+ * Numbers about the frame of a job that is done. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size;
+ * INVALID_STATE for a job that is not done, or that failed.
  */
-BhrStatus bhr_job_stats(const BhrJob *job,
-                        BhrFrameStats *stats);
+BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
 
 #ifdef __cplusplus
 }
