@@ -2,10 +2,17 @@
  * names the value and the limit; nothing breaks, and the next good call works.
  *
  *     bad_window BACKEND xlib|xcb      environment: DISPLAY, and OTHER_DISPLAY, another X server */
+#define _POSIX_C_SOURCE 200809L
+
 #include "host.h"
 
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #define WIDTH 64u
 #define HEIGHT 48u
@@ -36,6 +43,7 @@ static void refuse(const Scene *scene, const BhrWindow *window, BhrStatus status
     CHECK_REFUSED(&scene->watch, status, words,
                   bhr_surface_create(scene->context, window, WIDTH, HEIGHT, BHR_PRESENT_VSYNC, &surface));
     CHECK(surface == NULL, "a refused surface is not NULL");
+    bhr_surface_destroy(surface); /* lest one wrong answer spoil the following */
     /* A context that is asked for such a window is refused for the same reason; the CPU tracer is not asked. */
     if (scene->backend != BHR_BACKEND_CPU) {
         BhrContextOptions options;
@@ -45,6 +53,7 @@ static void refuse(const Scene *scene, const BhrWindow *window, BhrStatus status
         options.compatible_window = window;
         CHECK_FAILS(status, words, bhr_context_create(BHR_ABI_VERSION, &options, &context));
         CHECK(context == NULL, "a refused context is not NULL");
+        bhr_context_destroy(context);
     }
 }
 
@@ -151,6 +160,21 @@ static void absent(const Scene *scene) {
     host_close(&host);
 }
 
+/* A window that takes input only, and shows nothing. */
+static void input_only(const Scene *scene, const Host *host) {
+    Display        *display = XOpenDisplay(NULL);
+    const BhrWindow good = host_window(host);
+    BhrWindow       window = good;
+    if (!CHECK(display != NULL, "no X server")) {
+        return;
+    }
+    window.id = XCreateWindow(display, DefaultRootWindow(display), 0, 0, WIDTH, HEIGHT, 0, 0, InputOnly, CopyFromParent, 0,
+                              NULL);
+    XSync(display, False);
+    refuse(scene, &window, BHR_ERROR_INVALID_ARGUMENT, "window");
+    XCloseDisplay(display);
+}
+
 /* ---- sizes and modes ---- */
 
 static void sizes(const Scene *scene, const Host *host) {
@@ -201,6 +225,28 @@ static void modes(const Scene *scene, const Host *host) {
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "surface", bhr_surface_set_present_mode(NULL, BHR_PRESENT_VSYNC));
     CHECK_OK(bhr_render_surface(scene->context, surface));
     bhr_surface_destroy(surface);
+}
+
+/* A window that is itself larger than the device's images: said, or shown where the host's memory is the way; and no more
+ * once it is small again. */
+static void large_window(const Scene *scene) {
+    Host        host = host_open(scene->kind, NULL, WIDTH, HEIGHT);
+    BhrSurface *surface = check_surface(scene->context, &host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
+    CHECK_OK(bhr_render_surface(scene->context, surface));
+    host_resize(&host, 32767, 3);
+    for (int i = 0; i < 3; i++) {
+        check_mark_message();
+        const BhrStatus status = bhr_render_surface(scene->context, surface);
+        if (status < 0) {
+            check_fails(status, BHR_ERROR_UNSUPPORTED, "32767", __FILE__, __LINE__, "a frame in a large window");
+        }
+    }
+    host_resize(&host, WIDTH, HEIGHT);
+    CHECK_OK(bhr_surface_resize(surface, WIDTH, HEIGHT));
+    CHECK_OK(bhr_render_surface(scene->context, surface));
+    bhr_surface_destroy(surface);
+    host_close(&host);
+    check_works(scene, "a large window");
 }
 
 /* ---- surfaces of others ---- */
@@ -266,6 +312,51 @@ static void window_goes_first(const Scene *scene, int connection_too, int render
     bhr_surface_destroy(surface);
     host_close(&host);
     check_works(scene, "a window that went first");
+}
+
+/* An X server of this program's, to be ended. Returns its process, and its name in `name`. */
+static pid_t start_server(char name[16]) {
+    int    ends[2];
+    char   descriptor[16];
+    size_t length = 1;
+    pid_t  process;
+    if (!CHECK(pipe(ends) == 0, "no pipe")) {
+        exit(check_end());
+    }
+    snprintf(descriptor, sizeof descriptor, "%d", ends[1]);
+    if ((process = fork()) == 0) {
+        dup2(open("/dev/null", O_WRONLY), 2);
+        execlp("Xvfb", "Xvfb", "-displayfd", descriptor, "-screen", "0", "640x480x24", "-noreset", (char *)NULL);
+        _exit(127);
+    }
+    close(ends[1]);
+    name[0] = ':';
+    while (length < 15 && read(ends[0], name + length, 1) == 1 && name[length] != '\n') {
+        length++;
+    }
+    name[length] = '\0';
+    close(ends[0]);
+    CHECK(process > 0 && length > 1, "Xvfb does not start");
+    return process;
+}
+
+/* The X server goes, and with it every window and connection: bhr's own, too. */
+static void server_goes_first(const Scene *scene) {
+    char        name[16];
+    const pid_t server = start_server(name);
+    Host        host = host_open(BHR_WINDOW_XCB, name, WIDTH, HEIGHT); /* Xlib would end this process */
+    BhrSurface *surface = check_surface(scene->context, &host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC), *second = NULL;
+    BhrWindow   window = host_window(&host);
+    CHECK_OK(bhr_render_surface(scene->context, surface));
+    kill(server, SIGKILL);
+    waitpid(server, NULL, 0);
+    CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "window", bhr_render_surface(scene->context, surface));
+    CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "window", bhr_surface_resize(surface, 20, 20));
+    bhr_surface_destroy(surface);
+    const BhrStatus status = bhr_surface_create(scene->context, &window, WIDTH, HEIGHT, BHR_PRESENT_VSYNC, &second);
+    CHECK(status == BHR_ERROR_INVALID_ARGUMENT || status == BHR_ERROR_UNSUPPORTED, "%s", bhr_status_name(status));
+    host_close(&host);
+    check_works(scene, "an X server that went first");
 }
 
 /* The window goes, and the host resizes the surface before it renders. */
@@ -380,8 +471,10 @@ int main(int argc, char **argv) {
     later_struct(&scene, &good);
     check_works(&scene, "bad structs");
     absent(&scene);
+    input_only(&scene, &host);
     check_works(&scene, "absent windows");
     sizes(&scene, &host);
+    large_window(&scene);
     modes(&scene, &host);
     two_surfaces(&scene, &host);
     two_roads(&scene, &host);
@@ -389,6 +482,7 @@ int main(int argc, char **argv) {
     for (int i = 0; i < 4; i++) {
         window_goes_first(&scene, i & 1, i >> 1);
     }
+    server_goes_first(&scene);
     resized_too_late(&scene);
     context_goes_first(&scene, &host);
     impossible_scene(&scene, &host);

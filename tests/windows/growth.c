@@ -1,4 +1,4 @@
-/* growth.c -- thousands of frames of a moving camera, into a window and into memory by jobs: after a warm-up the process
+/* growth.c -- thousands of frames of a moving camera, into a window and into memory by jobs, and many windows: after a warm-up the process
  * holds no more memory (to MAX_GROWTH), descriptors or threads than before. A device's driver counts, too: software drivers
  * once leaked with every submission (shaders/deciding.wgsl).
  *
@@ -18,6 +18,7 @@
 #define BYTES (WIDTH * HEIGHT * 4u)
 #define WARM_UP 500
 #define FLIGHT 3 /* jobs under way at once */
+#define SURFACES 100
 #define MAX_GROWTH (20L << 20)
 
 /* ---- what the process holds ---- */
@@ -104,6 +105,23 @@ static void run_jobs(BhrContext *context, int count) {
     }
 }
 
+/* Windows that come, change and go, each with a surface. */
+static void run_surfaces(BhrContext *context, BhrWindowKind kind, int count) {
+    for (int i = 0; i < count; i++) {
+        Host        host = host_open(kind, NULL, WIDTH, HEIGHT);
+        BhrSurface *surface = check_surface(context, &host, WIDTH, HEIGHT, (BhrPresentMode)(i % 3));
+        present(context, surface, i, 2);
+        host_resize(&host, WIDTH + 9, HEIGHT + 5);
+        CHECK_OK(bhr_surface_resize(surface, WIDTH + 9, HEIGHT + 5));
+        present(context, surface, i, 2);
+        if (i % 2 == 0) { /* either may go first */
+            host_close(&host);
+        }
+        bhr_surface_destroy(surface);
+        host_close(&host);
+    }
+}
+
 int main(int argc, char **argv) {
     const BhrBackend    backend = check_begin(argc, argv);
     const BhrWindowKind kind = host_kind(argc > 2 ? argv[2] : NULL);
@@ -120,6 +138,11 @@ int main(int argc, char **argv) {
     before = look();
     run_jobs(context, jobs);
     check_growth(before, "jobs", jobs);
+
+    run_surfaces(context, kind, SURFACES / 2);
+    before = look();
+    run_surfaces(context, kind, SURFACES);
+    check_growth(before, "surfaces", SURFACES);
 
     bhr_surface_destroy(surface);
     bhr_context_destroy(context);

@@ -87,6 +87,44 @@ Host host_open(BhrWindowKind kind, const char *server, uint32_t width, uint32_t 
     return host;
 }
 
+/* A visual of 32 bits; 0 when the screen has none. */
+static xcb_visualid_t visual_with_alpha(const xcb_screen_t *screen) {
+    for (xcb_depth_iterator_t depth = xcb_screen_allowed_depths_iterator(screen); depth.rem > 0; xcb_depth_next(&depth)) {
+        if (depth.data->depth == 32 && depth.data->visuals_len > 0) {
+            return xcb_depth_visuals(depth.data)->visual_id;
+        }
+    }
+    return 0;
+}
+
+Host host_open_with_alpha(uint32_t width, uint32_t height) {
+    Host                 host = host_open(BHR_WINDOW_XCB, NULL, width, height);
+    const xcb_screen_t  *root = xcb_setup_roots_iterator(xcb_get_setup(host.connection)).data;
+    const xcb_visualid_t visual = visual_with_alpha(root);
+    const xcb_colormap_t map = xcb_generate_id(host.connection);
+    const uint32_t       values[] = {0, map}; /* neither the parent's border nor its colours fit */
+    if (visual == 0) {
+        give_up("the X server has no visual with alpha");
+    }
+    host_destroy_window(&host);
+    xcb_create_colormap(host.connection, XCB_COLORMAP_ALLOC_NONE, map, root->root, visual);
+    host.id = xcb_generate_id(host.connection);
+    xcb_create_window(host.connection, 32, host.id, root->root, 0, 0, (uint16_t)width, (uint16_t)height, 0,
+                      XCB_WINDOW_CLASS_INPUT_OUTPUT, visual, XCB_CW_BORDER_PIXEL | XCB_CW_COLORMAP, values);
+    xcb_map_window(host.connection, host.id);
+    settle(&host);
+    return host;
+}
+
+void host_show(const Host *host, int shown) {
+    if (host->kind == BHR_WINDOW_XLIB) {
+        (shown ? XMapWindow : XUnmapWindow)(host->display, host->id);
+    } else {
+        (shown ? xcb_map_window : xcb_unmap_window)(host->connection, host->id);
+    }
+    settle(host);
+}
+
 BhrWindow host_window(const Host *host) {
     BhrWindow window;
     memset(&window, 0, sizeof window);
@@ -179,7 +217,7 @@ int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *
         to[0] = from[2];
         to[1] = from[1];
         to[2] = from[0];
-        to[3] = 255;
+        to[3] = image->depth == 32 ? from[3] : 255;
     }
     free(image);
     return is_there;

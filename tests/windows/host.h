@@ -23,6 +23,9 @@ BhrWindowKind host_kind(const char *name); /* of a program's argument: xlib, xcb
 Host      host_open(BhrWindowKind kind, const char *server, uint32_t width, uint32_t height);
 void      host_new_window(Host *host, uint32_t width, uint32_t height); /* instead of the one it has */
 BhrWindow host_window(const Host *host);
+/* A window whose pixels have an alpha channel, by XCB; else as host_open's. */
+Host      host_open_with_alpha(uint32_t width, uint32_t height);
+void      host_show(const Host *host, int shown);
 void      host_resize(const Host *host, uint32_t width, uint32_t height); /* returns when it has happened */
 void      host_move(const Host *host, uint32_t x, uint32_t y);            /* from under another */
 void      host_destroy_window(Host *host);

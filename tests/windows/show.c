@@ -23,13 +23,14 @@ static void remember(void *user, BhrLogLevel level, const char *message) {
     snprintf(said + used, sizeof said - used, "%s\n", message);
 }
 
-static BhrContext *open_context(BhrBackend backend) {
+static BhrContext *open_context(BhrBackend backend, const BhrWindow *compatible) {
     BhrContextOptions options;
     BhrContext       *context = NULL;
     CHECK_OK(bhr_context_options_init(&options, sizeof options));
     options.backend = backend;
     options.log_level = BHR_LOG_INFO;
     options.log_fn = remember;
+    options.compatible_window = compatible;
     if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
         exit(check_end());
     }
@@ -259,6 +260,45 @@ static void one_after_another(BhrContext *context, const Host *host) {
     }
 }
 
+/* A window with an alpha channel, which a desktop would show through: it is opaque all over. */
+static void with_alpha(BhrContext *context) {
+    Host        host = host_open_with_alpha(WIDTH, HEIGHT);
+    BhrSurface *surface = check_surface(context, &host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
+    check_shows(context, surface, &host, WIDTH, HEIGHT, "a window with alpha");
+    bhr_surface_destroy(surface);
+    host_close(&host);
+}
+
+/* A window that is hidden takes frames, or says that it takes none; shown again, it shows the next. */
+static void hidden(BhrContext *context, const Host *host) {
+    BhrSurface *surface = check_surface(context, host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
+    host_show(host, 0);
+    for (int i = 0; i < 5; i++) {
+        const BhrStatus status = bhr_render_surface(context, surface);
+        CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED, "hidden: %s: %s", bhr_status_name(status),
+              bhr_error_message());
+    }
+    host_show(host, 1);
+    check_shows(context, surface, host, WIDTH, HEIGHT, "hidden and shown");
+    bhr_surface_destroy(surface);
+}
+
+/* A context that was asked for this window presents to it; one that opens its device anew without need loses its surface. */
+static void compatible(BhrBackend backend, const Host *host) {
+    const BhrWindow window = host_window(host);
+    BhrContext     *context = open_context(backend, &window);
+    BhrSurface     *surface = check_surface(context, host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
+    check_shows(context, surface, host, WIDTH, HEIGHT, "a compatible window");
+    CHECK_OK(bhr_set_mass(context, 1.3));
+    CHECK_OK(bhr_context_recover(context));
+    CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "recovered", bhr_render_surface(context, surface));
+    bhr_surface_destroy(surface);
+    surface = check_surface(context, host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
+    check_shows(context, surface, host, WIDTH, HEIGHT, "recovered");
+    bhr_surface_destroy(surface);
+    bhr_context_destroy(context);
+}
+
 /* The frames went the way that this run is meant to test. */
 static void check_way(const char *way) {
     const int presented = strstr(said, "are presented by") != NULL, memory = strstr(said, "as memory") != NULL;
@@ -270,7 +310,7 @@ int main(int argc, char **argv) {
     const BhrBackend    backend = check_begin(argc, argv);
     const BhrWindowKind kind = host_kind(argc > 2 ? argv[2] : NULL);
     const char         *way = argc > 3 ? argv[3] : "direct";
-    BhrContext         *context = open_context(backend);
+    BhrContext         *context = open_context(backend, NULL);
     Host                host = host_open(kind, NULL, WIDTH, HEIGHT);
     BhrSurface         *surface = check_surface(context, &host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
     scenes(context, surface, &host);
@@ -285,6 +325,9 @@ int main(int argc, char **argv) {
     bhr_surface_destroy(surface);
     one_after_another(context, &host);
     two_windows(context, kind);
+    hidden(context, &host);
+    with_alpha(context);
+    compatible(backend, &host);
     check_way(way);
     bhr_context_destroy(context);
     host_close(&host);
