@@ -150,13 +150,17 @@ impl Device {
         }
     }
 
-    /// [`Self::scoped`] for calls that panic, about windows. A panic is `DeviceLost` if the device is gone, else `SurfaceLost`.
+    /// [`Self::scoped`] for calls about windows, some of which panic. What goes wrong in them is `SurfaceLost`, if the device is not gone: not
+    /// the device's fault, but the window's.
     pub(super) fn guarded<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         let done = self.scoped(what, |device| catch_unwind(AssertUnwindSafe(|| work(device))));
-        done?.or_else(|panic| {
-            self.check()?;
-            Err(Error::new(ErrorKind::SurfaceLost, format!("{what}: {}", panic_text(&*panic))))
-        })
+        let message = match done {
+            Ok(Ok(done)) => return Ok(done),
+            Ok(Err(panic)) => format!("{what}: {}", panic_text(&*panic)),
+            Err(error) if error.kind == ErrorKind::Internal => error.message,
+            Err(error) => return Err(error),
+        };
+        Err(self.explain(Error::new(ErrorKind::SurfaceLost, message)))
     }
 
     /// Begins recording. Mistakes in what is recorded are reported by [`Self::submit`].

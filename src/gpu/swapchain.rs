@@ -157,7 +157,7 @@ impl Swapchain {
             }
             Current::Validation => {
                 self.device.check_anew()?;
-                return Err(Error::new(ErrorKind::Internal, "the window's image was refused by validation"));
+                return Err(Error::new(ErrorKind::SurfaceLost, "the window's image was refused by validation"));
             }
         })
     }

@@ -147,7 +147,7 @@ impl Surface {
         let mut inner = self.inner.lock();
         let shown = inner.show(showing);
         if shown.as_ref().is_err_and(|error| error.kind == ErrorKind::SurfaceLost) {
-            inner.end("its window is gone");
+            inner.end("its window is gone, or took no frame");
         }
         shown
     }
@@ -195,6 +195,7 @@ impl Inner {
             }
             Way::Uploaded(screen, pixels) => {
                 let size = window.size().unwrap_or(given);
+                check_size(size, screen.max_side())?;
                 let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
                 let stats = render_to_memory(showing, &request, pixels)?;
                 let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
@@ -323,25 +324,35 @@ impl Way {
         }
     }
 
-    fn check_size(&self, [width, height]: [u32; 2]) -> Result<()> {
-        let limit = match self {
-            Self::Direct(screen, _) | Self::Uploaded(screen, _) => {
-                screen.swapchain.device().limits().max_texture_dimension_2d
-            }
+    fn check_size(&self, size: [u32; 2]) -> Result<()> {
+        check_size(size, self.max_side())
+    }
+
+    fn max_side(&self) -> u32 {
+        match self {
+            Self::Direct(screen, _) | Self::Uploaded(screen, _) => screen.max_side(),
             // Of an X11 window, and of the coordinates in its requests.
             Self::Memory(..) => i16::MAX as u32,
-        };
-        if width <= limit && height <= limit {
-            return Ok(());
         }
-        Err(Error::unsupported(format!("surface size is {width} x {height}; here each side can be {limit} at most")))
     }
+}
+
+/// Errors: UNSUPPORTED.
+fn check_size([width, height]: [u32; 2], limit: u32) -> Result<()> {
+    if width <= limit && height <= limit {
+        return Ok(());
+    }
+    Err(Error::unsupported(format!("surface size is {width} x {height}; here each side can be {limit} at most")))
 }
 
 /// A window's image, and its size.
 type Image = (wgpu::SurfaceTexture, [u32; 2]);
 
 impl Screen {
+    fn max_side(&self) -> u32 {
+        self.swapchain.device().limits().max_texture_dimension_2d
+    }
+
     /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors: SURFACE_LOST; as
     /// [`Swapchain::acquire`].
     fn acquire(
@@ -355,6 +366,7 @@ impl Screen {
             if !self.swapchain.is_configured(mode) {
                 // What X11 says; elsewhere, and if the window has just gone, what the host says.
                 let size = window.size().unwrap_or(given).map(|side| side.max(1));
+                check_size(size, self.max_side())?;
                 let _alone = tracer.map(|tracer| tracer.lock());
                 let configured = self.swapchain.configure(size, mode);
                 if configured.is_err() && !window.exists() {

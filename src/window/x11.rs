@@ -44,6 +44,11 @@ impl X11Window {
             || Error::argument(format!("window id is {id:#x}; there is no such window on the X server {name}"));
         let id = u32::try_from(id).ok().and_then(NonZeroU32::new).ok_or_else(absent)?;
         let geometry = geometry(&connection, id).ok_or_else(absent)?;
+        if geometry.depth == 0 {
+            return Err(Error::argument(format!(
+                "window id is {id:#x}; that is a window for input only, which shows nothing"
+            )));
+        }
         // One server may go by several names: `:7`, `:7.0`, `host:7`.
         let server = server_of(connection.as_fd()).unwrap_or(name);
         Ok(Some(Self { connection, screen, id, server, depth: geometry.depth }))
