@@ -10,7 +10,7 @@
 #define WIDTH 96u
 #define HEIGHT 64u
 #define BYTES (WIDTH * HEIGHT * 4u)
-#define ROUNDS 20
+#define ROUNDS 40
 
 static unsigned char expected[BYTES]; /* the scene that all of these render */
 
