@@ -143,8 +143,9 @@ impl Device {
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
         let done = work(&self.raw);
+        // What is missing for want of memory is not valid either: the cause first.
         let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
-        match errors.into_iter().flatten().next() {
+        match errors.into_iter().rev().flatten().next() {
             Some(error) => Err(self.explain(from_wgpu(what, &error))),
             None => self.check().map(|()| done),
         }

@@ -5,6 +5,10 @@ use super::buffer::Buffer;
 use super::device::Device;
 use crate::error::{Error, Result};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::time::Duration;
+
+/// How long the callback of a buffer whose copy is done may take: another thread has been chosen to call it, which need not be running.
+const CALLBACK_AFTER: Duration = Duration::from_secs(30);
 
 /// Staging buffers kept for the next pieces: as many as there are pieces under way at most times.
 const KEPT: usize = 5;
@@ -150,7 +154,8 @@ impl<'a> Mapping<'a> {
     /// Once the copy into the buffer is done.
     fn read<T>(self, device: &Device, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
         let failed = |why: &dyn std::fmt::Display| device.explain(Error::internal(format!("mapping a buffer: {why}")));
-        match self.outcome.try_recv() {
+        // Another thread's poll may have taken this buffer's callback, and be about to call it.
+        match self.outcome.recv_timeout(CALLBACK_AFTER) {
             Ok(Ok(())) => take(&self.buffer.get_mapped_range(0..self.size).map_err(|error| failed(&error))?),
             Ok(Err(error)) => Err(failed(&error)),
             Err(error) => Err(failed(&error)),

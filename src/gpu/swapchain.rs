@@ -37,6 +37,13 @@ fn surface_of(adapter: &Adapter, window: &Window) -> Result<wgpu::Surface<'stati
     let refused = |why: &dyn std::fmt::Display| {
         Error::unsupported(format!("{} cannot present to the window: {why}", adapter.info.name))
     };
+    // Mesa's software drivers put images of depth 24 into windows, which others refuse.
+    if let Some(depth) = window.depth()
+        && adapter.info.software
+        && depth != 24
+    {
+        return Err(refused(&format!("its depth is {depth}, not 24")));
+    }
     let target = match window.handles() {
         Handles::Raw(display, window) => {
             wgpu::SurfaceTargetUnsafe::RawHandle { raw_display_handle: Some(display), raw_window_handle: window }

@@ -55,6 +55,18 @@ impl Window {
         self.x11.as_ref().and_then(|window| window.size())
     }
 
+    /// Bits of a pixel that count, where the platform knows them: X11.
+    pub fn depth(&self) -> Option<u8> {
+        self.x11.as_ref().map(|window| window.depth)
+    }
+
+    /// What the window's server had against frames that nobody waited for.
+    fn drop_errors(&self) {
+        if let Some(window) = &self.x11 {
+            window.drop_errors();
+        }
+    }
+
     fn claim_key(&self) -> claim::Key {
         self.x11.as_ref().map_or_else(|| self.native.claim_key(), |window| window.claim_key())
     }
@@ -82,6 +94,14 @@ impl Window {
     pub fn size(&self) -> Option<[u32; 2]> {
         None
     }
+
+    /// Bits of a pixel that count, where the platform knows them: X11.
+    pub fn depth(&self) -> Option<u8> {
+        None
+    }
+
+    /// What the window's server had against frames that nobody waited for.
+    fn drop_errors(&self) {}
 
     fn claim_key(&self) -> claim::Key {
         self.native.claim_key()

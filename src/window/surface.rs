@@ -220,6 +220,7 @@ impl Inner {
                 None
             }
         };
+        window.drop_errors();
         if let Some((device, steps, stats)) = shown {
             self.untaken.push_back(Untaken { device, steps, stats, call: begun.elapsed() });
         }
