@@ -260,7 +260,7 @@ static void one_after_another(BhrContext *context, const Host *host) {
     }
 }
 
-/* A window with an alpha channel, which a desktop would show through: it is opaque all over. */
+/* A window with an alpha channel, which a desktop would show through: whatever the way, it is opaque all over. */
 static void with_alpha(BhrContext *context) {
     Host        host = host_open_with_alpha(WIDTH, HEIGHT);
     BhrSurface *surface = check_surface(context, &host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
@@ -326,9 +326,9 @@ int main(int argc, char **argv) {
     one_after_another(context, &host);
     two_windows(context, kind);
     hidden(context, &host);
+    check_way(way);
     with_alpha(context);
     compatible(backend, &host);
-    check_way(way);
     bhr_context_destroy(context);
     host_close(&host);
     return check_end();
