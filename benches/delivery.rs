@@ -9,7 +9,7 @@ use bhr::renderer::{FrameRequest, Renderer, RendererOptions};
 use bhr::scene::{Region, Scene};
 use std::collections::VecDeque;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 const FULL_HD: [u32; 2] = [1920, 1080];
 const ULTRA_HD: [u32; 2] = [3840, 2160];
@@ -185,6 +185,22 @@ fn jobs(
     (count as f64 / start.elapsed().as_secs_f64(), calls, latencies, readbacks)
 }
 
+/// GPU milliseconds of frames that are packed on the device.
+fn tracing_alone(renderer: &mut Renderer, count: usize) -> Vec<f64> {
+    let mapped = renderer.scene.quality.mapped_pixels.replace(false);
+    let mut pixels = vec![0; (FULL_HD[0] * FULL_HD[1] * 4) as usize];
+    let mut traced = Vec::new();
+    for i in 0..frames(renderer.adapter().software, count) {
+        turn(&mut renderer.scene, i);
+        let layout = Layout::packed(PixelFormat::Rgba8Srgb, FULL_HD[0], FULL_HD[1]);
+        let mut image = ImageMut::new(layout, &mut pixels).expect("an image");
+        renderer.render(&mut image, false, None, &mut |_| true).expect("a frame");
+        traced.push(1e-6 * renderer.stats().gpu_ns as f64);
+    }
+    renderer.scene.quality.mapped_pixels = mapped;
+    traced
+}
+
 fn main() {
     let mut renderer = Renderer::new(RendererOptions::default()).expect("a renderer");
     let adapter = renderer.adapter().clone();
@@ -199,17 +215,11 @@ fn main() {
         renderer.scene = Scene::default();
         renderer.scene.hole.spin = spin;
         println!("\njobs, 1920 x 1080 RGBA8, spin {spin}");
-        renderer.scene.quality.mapped_pixels = Some(false);
-        let mut pixels = vec![0; (FULL_HD[0] * FULL_HD[1] * 4) as usize];
-        let mut traced = Vec::new();
-        for i in 0..frames(adapter.software, 200) {
-            turn(&mut renderer.scene, i);
-            let layout = Layout::packed(PixelFormat::Rgba8Srgb, FULL_HD[0], FULL_HD[1]);
-            let mut image = ImageMut::new(layout, &mut pixels).expect("an image");
-            renderer.render(&mut image, false, None, &mut |_| true).expect("a frame");
-            traced.push(1e-6 * renderer.stats().gpu_ns as f64);
-        }
-        let traced = line("GPU: tracing alone", "ms", traced);
+        std::thread::sleep(Duration::from_secs(1));
+        line("GPU: tracing alone, after a second of idleness", "ms", tracing_alone(&mut renderer, 100));
+        // A GPU that was idle, or waited for the host at most times, has lowered its clocks.
+        jobs(&mut renderer, FULL_HD, 4, frames(adapter.software, 4000));
+        let traced = line("GPU: tracing alone", "ms", tracing_alone(&mut renderer, 200));
         for (in_flight, mapped) in [(4, Some(false)), (1, None), (3, None), (4, None), (8, None)] {
             renderer.scene.quality.mapped_pixels = mapped;
             let count = frames(adapter.software, 1000);

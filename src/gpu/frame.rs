@@ -679,11 +679,12 @@ impl FrameBuffers {
         if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, last) {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
-        let copied = staging.filled(size);
+        let mut copied = staging.filled(size);
         if frame.submitted + 1 == frame.count() {
             then(&mut encoder)?;
         }
         let submission = device.submit(encoder)?;
+        copied.request(device)?;
         frame.submitted += 1;
         Ok(Some(Submitted {
             submission,

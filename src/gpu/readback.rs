@@ -32,6 +32,8 @@ pub struct Staging {
 pub struct Copied {
     staging: Staging,
     size: u64,
+    /// Once its mapping is requested: what comes of that.
+    mapped: Option<mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>>,
 }
 
 impl Default for Readback {
@@ -103,7 +105,7 @@ impl Staging {
 
     /// Once the commands that fill its first `size` bytes are recorded.
     pub fn filled(self, size: u64) -> Copied {
-        Copied { staging: self, size }
+        Copied { staging: self, size, mapped: None }
     }
 }
 
@@ -116,55 +118,50 @@ impl Drop for Staging {
 }
 
 impl Copied {
+    /// Asks for the piece, after its submission, so that waiting for that is all that is left to do. Errors: as [`Device::scoped`].
+    pub fn request(&mut self, device: &Device) -> Result<()> {
+        let (sender, outcome) = mpsc::sync_channel(1);
+        let buffer = self.staging.buffer()?;
+        self.mapped = Some(outcome);
+        device.scoped("mapping a buffer", |_| {
+            buffer.map_async(wgpu::MapMode::Read, 0..self.size, move |result| {
+                // Nobody listens any more when the wait failed.
+                let _ = sender.try_send(result);
+            });
+        })
+    }
+
     /// Waits for `submission`, which fills the piece, and hands its bytes to `take`.
     ///
     /// Errors: those of `take` and of [`Device::wait`]; `Internal` when it was not submitted.
     pub fn read<T>(
-        self,
+        mut self,
         device: &Device,
         submission: &wgpu::SubmissionIndex,
         take: impl FnOnce(&[u8]) -> Result<T>,
     ) -> Result<T> {
-        let mapping = Mapping::request(device, self.staging.buffer()?, self.size)?;
+        if self.mapped.is_none() {
+            self.request(device)?;
+        }
         device.wait(submission)?;
-        mapping.read(device, take)
-    }
-}
-
-/// A buffer on its way to be read; unmapped at the end, whatever happens.
-struct Mapping<'a> {
-    buffer: &'a wgpu::Buffer,
-    size: u64,
-    outcome: mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
-}
-
-impl<'a> Mapping<'a> {
-    fn request(device: &Device, buffer: &'a wgpu::Buffer, size: u64) -> Result<Self> {
-        let (sender, outcome) = mpsc::sync_channel(1);
-        let mapping = Self { buffer, size, outcome };
-        device.scoped("mapping a buffer", |_| {
-            buffer.map_async(wgpu::MapMode::Read, 0..size, move |result| {
-                // Nobody listens any more when the wait failed.
-                let _ = sender.try_send(result);
-            });
-        })?;
-        Ok(mapping)
-    }
-
-    /// Once the copy into the buffer is done.
-    fn read<T>(self, device: &Device, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
         let failed = |why: &dyn std::fmt::Display| device.explain(Error::internal(format!("mapping a buffer: {why}")));
         // Another thread's poll may have taken this buffer's callback, and be about to call it.
-        match self.outcome.recv_timeout(CALLBACK_AFTER) {
-            Ok(Ok(())) => take(&self.buffer.get_mapped_range(0..self.size).map_err(|error| failed(&error))?),
+        let outcome = self.mapped.as_ref().map(|mapped| mapped.recv_timeout(CALLBACK_AFTER));
+        match outcome.unwrap_or(Err(mpsc::RecvTimeoutError::Disconnected)) {
+            Ok(Ok(())) => {
+                let range = self.staging.buffer()?.get_mapped_range(0..self.size);
+                take(&range.map_err(|error| failed(&error))?)
+            }
             Ok(Err(error)) => Err(failed(&error)),
             Err(error) => Err(failed(&error)),
         }
     }
 }
 
-impl Drop for Mapping<'_> {
+impl Drop for Copied {
     fn drop(&mut self) {
-        self.buffer.unmap();
+        if let (Some(_), Ok(buffer)) = (&self.mapped, self.staging.buffer()) {
+            buffer.unmap();
+        }
     }
 }
