@@ -3,7 +3,7 @@
 
 use super::claim::Claim;
 use super::memory::MemoryWindow;
-use super::{NativeWindow, PresentMode, Window};
+use super::{NativeWindow, Pacer, PresentMode, Window};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
 use crate::image::PixelFormat;
@@ -59,6 +59,8 @@ enum Way {
 struct Screen {
     swapchain: Swapchain,
     texture: Option<Texture>,
+    /// With one, VSYNC is MAILBOX underneath, each frame when the pacer says so.
+    pacer: Option<Box<dyn Pacer>>,
 }
 
 struct Untaken {
@@ -119,7 +121,7 @@ impl Surface {
         if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut inner.way
             && size != [0, 0]
         {
-            screen.swapchain.window_changed();
+            screen.window_changed();
         }
         inner.size = size;
         Ok(())
@@ -184,13 +186,18 @@ impl Inner {
         let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
         // X11 windows know their size better than a host whose events are still to come.
         let (given, mode) = (self.size, self.mode);
+        if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut self.way
+            && !screen.wait_for_turn(mode)?
+        {
+            return Ok(Shown::Skipped);
+        }
         let shown = match self.way.as_mut().ok_or_else(|| Error::internal("a surface without a way"))? {
             Way::Direct(screen, tracer) => {
                 let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
                     return Ok(Shown::Skipped);
                 };
                 let steps = screen.trace(showing, size)?;
-                screen.present(image)?;
+                screen.present(image, mode)?;
                 Some(steps)
             }
             Way::Uploaded(screen, pixels) => {
@@ -201,7 +208,7 @@ impl Inner {
                     return Ok(Shown::Skipped);
                 };
                 screen.upload(&request, pixels)?;
-                screen.present(image)?;
+                screen.present(image, mode)?;
                 showing.stats.publish(stats, begun.elapsed());
                 None
             }
@@ -296,7 +303,7 @@ impl Way {
         let mut reasons = Vec::new();
         if let Some(Tracing { adapter, device, tracer }) = tracing {
             match Swapchain::new(adapter, device, window) {
-                Ok(swapchain) => return Ok(Self::Direct(Screen { swapchain, texture: None }, tracer)),
+                Ok(swapchain) => return Ok(Self::Direct(Screen::new(swapchain, window), tracer)),
                 Err(error) if error.kind == ErrorKind::Unsupported => reasons.push(error.message),
                 Err(error) => return Err(error),
             }
@@ -306,7 +313,7 @@ impl Way {
             match opened.and_then(|device| Swapchain::new(&adapter, Arc::new(device), window)) {
                 Ok(swapchain) => {
                     log::info!("frames of this window are presented by {}", adapter.info.name);
-                    return Ok(Self::Uploaded(Screen { swapchain, texture: None }, Vec::new()));
+                    return Ok(Self::Uploaded(Screen::new(swapchain, window), Vec::new()));
                 }
                 Err(error) => reasons.push(error.message),
             }
@@ -342,6 +349,32 @@ impl Way {
 type Image = (wgpu::SurfaceTexture, [u32; 2]);
 
 impl Screen {
+    fn new(swapchain: Swapchain, window: &Window) -> Self {
+        let pacer = if swapchain.offers(PresentMode::Mailbox) { window.pacer() } else { Ok(None) };
+        let pacer = pacer.unwrap_or_else(|error| {
+            log::warn!("VSYNC is the driver's, and may wait for as long as the window is hidden: {}", error.message);
+            None
+        });
+        Self { swapchain, texture: None, pacer }
+    }
+
+    fn window_changed(&mut self) {
+        self.swapchain.window_changed();
+        // Of a window that changes, the driver may have dropped the last frame.
+        if let Some(pacer) = &mut self.pacer {
+            pacer.forget();
+        }
+    }
+
+    fn pacer(&mut self, mode: PresentMode) -> Option<&mut Box<dyn Pacer>> {
+        self.pacer.as_mut().filter(|_| mode == PresentMode::Vsync)
+    }
+
+    /// Whether the window takes a frame now, or within a second. Errors: SURFACE_LOST.
+    fn wait_for_turn(&mut self, mode: PresentMode) -> Result<bool> {
+        self.pacer(mode).map_or(Ok(true), |pacer| pacer.wait())
+    }
+
     /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors: SURFACE_LOST; as
     /// [`Swapchain::acquire`].
     fn acquire(
@@ -351,6 +384,7 @@ impl Screen {
         mode: PresentMode,
         tracer: Option<&SharedTracer>,
     ) -> Result<Option<Image>> {
+        let mode = if self.pacer(mode).is_some() { PresentMode::Mailbox } else { mode };
         for _ in 0..2 {
             if !self.swapchain.is_configured(mode) {
                 // What X11 says; elsewhere, and if the window has just gone, what the host says.
@@ -420,7 +454,10 @@ impl Screen {
         device.write_rows(self.texture(request, true)?, 0, pixels)
     }
 
-    fn present(&mut self, image: wgpu::SurfaceTexture) -> Result<()> {
+    fn present(&mut self, image: wgpu::SurfaceTexture, mode: PresentMode) -> Result<()> {
+        if let Some(pacer) = self.pacer(mode) {
+            pacer.ask()?;
+        }
         let texture = self.texture.as_ref().ok_or_else(|| Error::internal("a screen without its texture"))?;
         self.swapchain.present(image, texture)
     }
