@@ -360,7 +360,8 @@ impl Screen {
 
     fn window_changed(&mut self) {
         self.swapchain.window_changed();
-        // Of a window that changes, the driver may have dropped the last frame.
+        // The driver drops frames of a window that changes, and one that the host hid has nothing to show before its next frame:
+        // compositors may be silent then.
         if let Some(pacer) = &mut self.pacer {
             pacer.forget();
         }

@@ -167,12 +167,9 @@ fn is_readable(reading: &ReadEventsGuard, deadline: Instant) -> Result<bool> {
 }
 
 impl Pacer for FramePacer {
+    /// A callback that is late is waited for again: the compositor sends it when it shows the window.
     fn wait(&mut self) -> Result<bool> {
-        let free = guarded(lost, || self.wait_until(Instant::now() + PATIENCE))?;
-        // A callback that is late may never come: compositors drop those of windows that are hidden, and a window that is shown again
-        // may have nothing to show before its next frame. So that one is presented, and asks anew.
-        self.forget();
-        Ok(free)
+        guarded(lost, || self.wait_until(Instant::now() + PATIENCE))
     }
 
     fn ask(&mut self) -> Result<()> {

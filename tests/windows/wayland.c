@@ -1,6 +1,7 @@
 /* wayland.c -- frames into windows of Wayland, made by SDL2: in each way that they can get there, through ten sizes, in every
  * present mode, from other threads. The compositor, whose screen of WIDTH x HEIGHT is the top left of DISPLAY's, shows what
- * bhr_render_image gives, and ends no connection over what bhr sends. Wrong handles and states have their status.
+ * bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate and never hangs:
+ * not in a hidden window, not in one that is gone. Wrong handles and states have their status.
  *
  *     wayland BACKEND direct|uploaded|memory      environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY */
 #define _POSIX_C_SOURCE 200809L
@@ -18,6 +19,9 @@
 #define WIDTH 320
 #define HEIGHT 240
 #define ROUNDS 10
+#define PACED 40          /* frames that are timed */
+#define HIGHEST_RATE 120. /* frames a second; the compositor's screen has 60, and its timers are coarse */
+#define LONGEST 2.        /* seconds of a call that waits for the compositor: one, and what a busy machine adds */
 
 static char said[4096]; /* by the log at level INFO */
 static int  warnings;
@@ -171,6 +175,114 @@ static void threads(BhrContext *context, BhrSurface *surface) {
     check_connected("two threads");
 }
 
+/* The shortest of three measurements, as other programs run too: frames a second. */
+static double rate(BhrContext *context, BhrSurface *surface, BhrPresentMode mode) {
+    double shortest = 1e9;
+    CHECK_OK(bhr_surface_set_present_mode(surface, mode));
+    present(context, surface, 3);
+    for (int i = 0; i < 3; i++) {
+        const double begun = seconds_now();
+        present(context, surface, PACED);
+        const double time = seconds_now() - begun;
+        shortest = time < shortest ? time : shortest;
+    }
+    return PACED / shortest;
+}
+
+/* Small frames of VSYNC, which could be more than the display has, are not. */
+static void pace(BhrContext *context, BhrSurface *surface) {
+    BhrQuality before = {.struct_size = sizeof before};
+    CHECK_OK(bhr_get_quality(context, &before));
+    BhrQuality quality = before;
+    quality.render_scale = 0.1;
+    CHECK_OK(bhr_set_quality(context, &quality));
+    const double unpaced = rate(context, surface, BHR_PRESENT_MAILBOX);
+    const double paced = rate(context, surface, BHR_PRESENT_VSYNC);
+    printf("rates %.1f %.1f\n", unpaced, paced);
+    CHECK(paced < HIGHEST_RATE, "VSYNC has %.0f frames a second", paced);
+    CHECK(unpaced > paced, "MAILBOX has %.0f frames a second, VSYNC %.0f: nothing was held back", unpaced, paced);
+    CHECK_OK(bhr_set_quality(context, &before));
+}
+
+/* Calls that must return while a frame waits for the compositor. */
+typedef struct Setters {
+    const Task *task;
+    pthread_mutex_t lock;
+    int             ended;
+    double          longest; /* seconds of a call */
+    int             calls;
+} Setters;
+
+static int is_over(Setters *setters) {
+    pthread_mutex_lock(&setters->lock);
+    const int ended = setters->ended;
+    pthread_mutex_unlock(&setters->lock);
+    return ended;
+}
+
+static void *set_on_thread(void *argument) {
+    Setters *setters = argument;
+    while (!is_over(setters)) {
+        const double begun = seconds_now();
+        CHECK_OK(bhr_set_mass(setters->task->context, 1.0));
+        const double between = seconds_now();
+        CHECK_OK(bhr_surface_set_present_mode(setters->task->surface, BHR_PRESENT_VSYNC));
+        const double first = between - begun, second = seconds_now() - between;
+        setters->longest = first > setters->longest ? first : setters->longest;
+        setters->longest = second > setters->longest ? second : setters->longest;
+        setters->calls++;
+        pause_ms(20);
+    }
+    return NULL;
+}
+
+/* Frames in a window that the compositor does not show: none takes longer than it may, and some are skipped. */
+static void check_hidden(BhrContext *context, BhrSurface *surface, const char *what) {
+    int    skipped = 0;
+    double longest = 0;
+    for (int i = 0; i < 9; i++) {
+        const double    begun = seconds_now();
+        const BhrStatus status = bhr_render_surface(context, surface);
+        const double    time = seconds_now() - begun;
+        longest = time > longest ? time : longest;
+        CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED, "%s: status %d: %s", what, (int)status,
+              bhr_error_message());
+        printf("%d %.3f\n", (int)status, time);
+        skipped += status == BHR_FRAME_SKIPPED;
+        SDL_PumpEvents();
+    }
+    CHECK(skipped >= 2, "%s: of 5 frames %d were skipped", what, skipped);
+    CHECK(longest < LONGEST, "%s: a frame took %.1f s", what, longest);
+}
+
+/* A window that is hidden, and shown again. */
+static void hide(BhrContext *context, BhrSurface *surface, SDL_Window *window) {
+    const Task task = {context, surface};
+    Setters    setters = {.task = &task};
+    pthread_t  thread;
+    pthread_mutex_init(&setters.lock, NULL);
+    SDL_HideWindow(window);
+    SDL_PumpEvents();
+    if (!CHECK(pthread_create(&thread, NULL, set_on_thread, &setters) == 0, "cannot start a thread")) {
+        exit(check_end());
+    }
+    check_hidden(context, surface, "hidden");
+    pthread_mutex_lock(&setters.lock);
+    setters.ended = 1;
+    pthread_mutex_unlock(&setters.lock);
+    pthread_join(thread, NULL);
+    pthread_mutex_destroy(&setters.lock);
+    CHECK(setters.longest < 2 * LONGEST, "a setter took %.1f s while the window was hidden", setters.longest);
+    SDL_ShowWindow(window);
+    SDL_PumpEvents();
+    while (bhr_render_surface(context, surface) == BHR_FRAME_SKIPPED) { /* the last ones of the hidden window */
+        SDL_PumpEvents();
+    }
+    check_shows(context, surface, "shown again");
+    check_connected("hiding");
+    printf("calls %d longest %.2f\n", setters.calls, setters.longest);
+}
+
 static void bad_calls(BhrContext *context, SDL_Window *taken) {
     BhrWindow   window = handle_of(taken);
     BhrSurface *surface = NULL;
@@ -226,6 +338,7 @@ static void check_way(const char *way) {
 
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
+    const char      *way = argc > 2 ? argv[2] : "direct";
     SDL_SetMainReady();
     if (!CHECK(SDL_Init(SDL_INIT_VIDEO) == 0, "SDL does not start: %s", SDL_GetError())) {
         return check_end();
@@ -239,13 +352,17 @@ int main(int argc, char **argv) {
     sizes(context, surface, window);
     modes(context, surface);
     threads(context, surface);
+    if (strcmp(way, "memory") != 0) { /* where nothing is paced */
+        pace(context, surface);
+        hide(context, surface, window);
+    }
     bad_calls(context, window);
     check_shows(context, surface, "bad calls");
     bhr_surface_destroy(surface);
     bhr_context_destroy(context);
     SDL_DestroyWindow(window);
     more_windows(backend);
-    check_way(argc > 2 ? argv[2] : "direct");
+    check_way(way);
     SDL_Quit();
     return check_end();
 }
