@@ -3,7 +3,8 @@
  * bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate and never hangs:
  * not in a hidden window, not in one that is gone. Wrong handles and states have their status.
  *
- *     wayland BACKEND direct|uploaded|memory      environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY */
+ *     wayland BACKEND direct|uploaded|memory
+ *         environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY, COMPOSITOR (its process, which is stopped a while) */
 #define _POSIX_C_SOURCE 200809L
 
 #include "host.h"
@@ -12,9 +13,11 @@
 #include <SDL.h>
 #include <SDL_syswm.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 #define WIDTH 320
 #define HEIGHT 240
@@ -198,7 +201,6 @@ static void pace(BhrContext *context, BhrSurface *surface) {
     CHECK_OK(bhr_set_quality(context, &quality));
     const double unpaced = rate(context, surface, BHR_PRESENT_MAILBOX);
     const double paced = rate(context, surface, BHR_PRESENT_VSYNC);
-    printf("rates %.1f %.1f\n", unpaced, paced);
     CHECK(paced < HIGHEST_RATE, "VSYNC has %.0f frames a second", paced);
     CHECK(unpaced > paced, "MAILBOX has %.0f frames a second, VSYNC %.0f: nothing was held back", unpaced, paced);
     CHECK_OK(bhr_set_quality(context, &before));
@@ -236,51 +238,76 @@ static void *set_on_thread(void *argument) {
     return NULL;
 }
 
-/* Frames in a window that the compositor does not show: none takes longer than it may, and some are skipped. */
-static void check_hidden(BhrContext *context, BhrSurface *surface, const char *what) {
+/* Frames while the compositor may be silent: none takes longer than it may. How many were skipped. */
+static int skipped_of(BhrContext *context, BhrSurface *surface, int frames, const char *what) {
     int    skipped = 0;
     double longest = 0;
-    for (int i = 0; i < 9; i++) {
+    for (int i = 0; i < frames; i++) {
         const double    begun = seconds_now();
         const BhrStatus status = bhr_render_surface(context, surface);
         const double    time = seconds_now() - begun;
-        longest = time > longest ? time : longest;
         CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED, "%s: status %d: %s", what, (int)status,
               bhr_error_message());
-        printf("%d %.3f\n", (int)status, time);
+        longest = time > longest ? time : longest;
         skipped += status == BHR_FRAME_SKIPPED;
         SDL_PumpEvents();
     }
-    CHECK(skipped >= 2, "%s: of 5 frames %d were skipped", what, skipped);
     CHECK(longest < LONGEST, "%s: a frame took %.1f s", what, longest);
+    return skipped;
 }
 
-/* A window that is hidden, and shown again. */
-static void hide(BhrContext *context, BhrSurface *surface, SDL_Window *window) {
+/* A compositor says nothing to a window that it does not show; one that is stopped says nothing at all. */
+static void silence(BhrContext *context, BhrSurface *surface, pid_t compositor) {
     const Task task = {context, surface};
     Setters    setters = {.task = &task};
     pthread_t  thread;
     pthread_mutex_init(&setters.lock, NULL);
-    SDL_HideWindow(window);
-    SDL_PumpEvents();
-    if (!CHECK(pthread_create(&thread, NULL, set_on_thread, &setters) == 0, "cannot start a thread")) {
+    if (!CHECK(kill(compositor, SIGSTOP) == 0, "cannot stop the compositor") ||
+        !CHECK(pthread_create(&thread, NULL, set_on_thread, &setters) == 0, "cannot start a thread")) {
         exit(check_end());
     }
-    check_hidden(context, surface, "hidden");
+    const int skipped = skipped_of(context, surface, 4, "a silent compositor");
+    CHECK(skipped >= 3, "%d of 4 frames were skipped", skipped); /* the first one's word may have come before */
+    kill(compositor, SIGCONT);
     pthread_mutex_lock(&setters.lock);
     setters.ended = 1;
     pthread_mutex_unlock(&setters.lock);
     pthread_join(thread, NULL);
     pthread_mutex_destroy(&setters.lock);
-    CHECK(setters.longest < 2 * LONGEST, "a setter took %.1f s while the window was hidden", setters.longest);
+    CHECK(setters.calls > 0 && setters.longest < 2 * LONGEST, "of %d rounds of setters one call took %.1f s",
+          setters.calls, setters.longest);
+    CHECK(skipped_of(context, surface, 20, "a compositor that goes on") == 0, "frames are still skipped");
+    check_shows(context, surface, "after silence");
+}
+
+/* The host's own hiding takes away what the window shows; it tells when there is something to show again. */
+static void hide(BhrContext *context, BhrSurface *surface, SDL_Window *window) {
+    SDL_HideWindow(window);
+    SDL_PumpEvents();
+    skipped_of(context, surface, 3, "hidden");
     SDL_ShowWindow(window);
     SDL_PumpEvents();
-    while (bhr_render_surface(context, surface) == BHR_FRAME_SKIPPED) { /* the last ones of the hidden window */
-        SDL_PumpEvents();
-    }
+    CHECK_OK(bhr_surface_resize(surface, WIDTH, HEIGHT));
     check_shows(context, surface, "shown again");
     check_connected("hiding");
-    printf("calls %d longest %.2f\n", setters.calls, setters.longest);
+}
+
+/* Against the header: the wl_surface goes first. Last, as the compositor may end the connection over it. */
+static void window_first(BhrBackend backend) {
+    SDL_Window *window = open_window();
+    BhrContext *context = open_context(backend, NULL);
+    BhrSurface *surface = open_surface(context, window);
+    present(context, surface, 5);
+    SDL_DestroyWindow(window);
+    for (int i = 0; i < 3; i++) {
+        const double    begun = seconds_now();
+        const BhrStatus status = bhr_render_surface(context, surface);
+        CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED || status == BHR_ERROR_SURFACE_LOST,
+              "a window that is gone: status %d: %s", (int)status, bhr_error_message());
+        CHECK(seconds_now() - begun < LONGEST, "a frame of a window that is gone took %.1f s", seconds_now() - begun);
+    }
+    bhr_surface_destroy(surface);
+    bhr_context_destroy(context);
 }
 
 static void bad_calls(BhrContext *context, SDL_Window *taken) {
@@ -339,6 +366,10 @@ static void check_way(const char *way) {
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
     const char      *way = argc > 2 ? argv[2] : "direct";
+    const pid_t      compositor = (pid_t)strtol(getenv("COMPOSITOR") != NULL ? getenv("COMPOSITOR") : "0", NULL, 10);
+    if (!CHECK(compositor > 1, "COMPOSITOR is no process")) {
+        return check_end();
+    }
     SDL_SetMainReady();
     if (!CHECK(SDL_Init(SDL_INIT_VIDEO) == 0, "SDL does not start: %s", SDL_GetError())) {
         return check_end();
@@ -354,6 +385,7 @@ int main(int argc, char **argv) {
     threads(context, surface);
     if (strcmp(way, "memory") != 0) { /* where nothing is paced */
         pace(context, surface);
+        silence(context, surface, compositor);
         hide(context, surface, window);
     }
     bad_calls(context, window);
@@ -363,6 +395,9 @@ int main(int argc, char **argv) {
     SDL_DestroyWindow(window);
     more_windows(backend);
     check_way(way);
+    if (strcmp(way, "memory") != 0) {
+        window_first(backend);
+    }
     SDL_Quit();
     return check_end();
 }
