@@ -15,10 +15,11 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{Renderer, RendererOptions};
 use crate::scene::Region;
 use ::log::LevelFilter;
+use parking_lot::Mutex;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex, PoisonError};
 
 /// A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
 /// wait for each other.
@@ -246,7 +247,7 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     let context = unsafe { Box::from_raw(context) };
     let scope = log::Scope::enter(context.sink());
     // A running call holds the lock.
-    drop(context.state.lock().unwrap_or_else(PoisonError::into_inner));
+    drop(context.state.lock());
     let BhrContext { state, log, progress_gate, .. } = *context;
     let result = guarded(|| {
         drop(state);

@@ -7,6 +7,7 @@ use super::log;
 use super::pointer::is_null;
 use super::status::{self, BHR_OK, BhrStatus};
 use crate::error::{Error, ErrorKind, Result};
+use parking_lot::MutexGuard;
 use std::cell::{Cell, RefCell};
 use std::ffi::c_char;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -75,14 +76,15 @@ pub(super) unsafe fn on_context<T: Success>(
         return finish::<()>(function, Err(is_null("context")));
     };
     let _scope = log::Scope::enter(context.sink());
-    let mut state = context.state.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut state = context.state.lock();
     let result = if context.broken.load(Ordering::Relaxed) {
         Err(Error::internal("this context failed internally before; only bhr_context_destroy is valid"))
     } else {
         guarded(|| body(&mut state))
     };
     break_if_internal(&result, &context.broken);
-    drop(state);
+    // Whoever waits goes before a thread that calls again and again.
+    MutexGuard::unlock_fair(state);
     finish(function, result)
 }
 

@@ -82,6 +82,14 @@ fn rank(format: wgpu::TextureFormat) -> u32 {
     }
 }
 
+fn of_wgpu(mode: PresentMode) -> wgpu::PresentMode {
+    match mode {
+        PresentMode::Vsync => wgpu::PresentMode::Fifo,
+        PresentMode::Immediate => wgpu::PresentMode::Immediate,
+        PresentMode::Mailbox => wgpu::PresentMode::Mailbox,
+    }
+}
+
 impl Swapchain {
     /// For a device that was opened on `adapter`. Errors: UNSUPPORTED when it cannot present to the window.
     pub fn new(adapter: &Adapter, device: Arc<Device>, window: &Window) -> Result<Self> {
@@ -105,6 +113,11 @@ impl Swapchain {
         &self.device
     }
 
+    /// Whether the window has the mode itself, without falling back.
+    pub fn offers(&self, mode: PresentMode) -> bool {
+        self.modes.contains(&of_wgpu(mode))
+    }
+
     pub fn is_configured(&self, mode: PresentMode) -> bool {
         self.configured == Some(mode)
     }
@@ -118,18 +131,13 @@ impl Swapchain {
     /// submit any meanwhile. Errors: as [`Device::scoped`].
     pub fn configure(&mut self, size: [u32; 2], mode: PresentMode) -> Result<()> {
         self.configured = None;
-        let wanted = match mode {
-            PresentMode::Vsync => wgpu::PresentMode::Fifo,
-            PresentMode::Immediate => wgpu::PresentMode::Immediate,
-            PresentMode::Mailbox => wgpu::PresentMode::Mailbox,
-        };
         let configuration = wgpu::SurfaceConfiguration {
             usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
             format: self.format,
             color_space: wgpu::SurfaceColorSpace::Auto,
             width: size[0],
             height: size[1],
-            present_mode: if self.modes.contains(&wanted) { wanted } else { wgpu::PresentMode::Fifo },
+            present_mode: if self.offers(mode) { of_wgpu(mode) } else { wgpu::PresentMode::Fifo },
             desired_maximum_frame_latency: 2,
             alpha_mode: self.alpha,
             view_formats: Vec::new(),

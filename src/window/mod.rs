@@ -7,6 +7,8 @@ mod memory;
 mod native;
 mod surface;
 #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+mod wayland;
+#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod x11;
 
 pub use native::{Handles, NativeWindow};
@@ -23,6 +25,16 @@ pub enum PresentMode {
     Immediate,
     /// The newest at the display's rate.
     Mailbox,
+}
+
+/// What knows when a window takes its next frame, for windows whose VSYNC is not left to the driver.
+pub trait Pacer: Send {
+    /// Waits until the window takes a frame, a second at most; whether it does. Errors: SURFACE_LOST.
+    fn wait(&mut self) -> Result<bool>;
+    /// Asks to be told when the window takes the frame after the one that is presented next. Errors: SURFACE_LOST.
+    fn ask(&mut self) -> Result<()>;
+    /// What was asked may have been lost: the next frame need not wait.
+    fn forget(&mut self);
 }
 
 /// A window of the host's that was looked at and found there, with what it takes to present to it.
@@ -67,6 +79,16 @@ impl Window {
         }
     }
 
+    /// `None`: the driver's VSYNC is good enough. Errors: UNSUPPORTED when the window needs one and cannot have it.
+    pub fn pacer(&self) -> Result<Option<Box<dyn Pacer>>> {
+        match self.native {
+            NativeWindow::Wayland { display, surface } => {
+                wayland::FramePacer::new(display, surface).map(|pacer| Some(Box::new(pacer) as Box<dyn Pacer>))
+            }
+            _ => Ok(None),
+        }
+    }
+
     fn claim_key(&self) -> claim::Key {
         self.x11.as_ref().map_or_else(|| self.native.claim_key(), |window| window.claim_key())
     }
@@ -102,6 +124,11 @@ impl Window {
 
     /// What the window's server had against frames that nobody waited for.
     fn drop_errors(&self) {}
+
+    /// `None`: the driver's VSYNC is good enough.
+    pub fn pacer(&self) -> Result<Option<Box<dyn Pacer>>> {
+        Ok(None)
+    }
 
     fn claim_key(&self) -> claim::Key {
         self.native.claim_key()

@@ -3,7 +3,7 @@
 
 use super::claim::Claim;
 use super::memory::MemoryWindow;
-use super::{NativeWindow, PresentMode, Window};
+use super::{NativeWindow, Pacer, PresentMode, Window};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
 use crate::image::PixelFormat;
@@ -59,6 +59,8 @@ enum Way {
 struct Screen {
     swapchain: Swapchain,
     texture: Option<Texture>,
+    /// With one, VSYNC is MAILBOX underneath, each frame when the pacer says so.
+    pacer: Option<Box<dyn Pacer>>,
 }
 
 struct Untaken {
@@ -119,7 +121,7 @@ impl Surface {
         if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut inner.way
             && size != [0, 0]
         {
-            screen.swapchain.window_changed();
+            screen.window_changed();
         }
         inner.size = size;
         Ok(())
@@ -184,13 +186,18 @@ impl Inner {
         let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
         // X11 windows know their size better than a host whose events are still to come.
         let (given, mode) = (self.size, self.mode);
+        if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut self.way
+            && !screen.wait_for_turn(mode)?
+        {
+            return Ok(Shown::Skipped);
+        }
         let shown = match self.way.as_mut().ok_or_else(|| Error::internal("a surface without a way"))? {
             Way::Direct(screen, tracer) => {
                 let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
                     return Ok(Shown::Skipped);
                 };
                 let steps = screen.trace(showing, &image, size)?;
-                screen.swapchain.show(image)?;
+                screen.show(image, mode)?;
                 Some(steps)
             }
             Way::Uploaded(screen, pixels) => {
@@ -202,7 +209,7 @@ impl Inner {
                     return Ok(Shown::Skipped);
                 };
                 screen.upload(&request, pixels)?;
-                screen.present(image)?;
+                screen.present(image, mode)?;
                 showing.stats.publish(stats, begun.elapsed());
                 None
             }
@@ -282,15 +289,37 @@ fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut 
     showing.tracer.lock().render(showing.scene, request, &mut sink, &mut |_| true)
 }
 
-/// `pixels` in the window's size, if the frame has another.
+/// `pixels` in the window's size, if the frame has another; bilinear, as the sampler of present.wgsl. Errors: OUT_OF_MEMORY.
 fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Option<Vec<u8>>> {
-    if [request.width, request.height] == size {
+    let [width, height] = size.map(|side| side as usize);
+    let (from_width, from_height) = (request.width as usize, request.height as usize);
+    if [from_width, from_height] == [width, height] {
         return Ok(None);
     }
-    let frame = image::ImageBuffer::<image::Rgba<u8>, _>::from_raw(request.width, request.height, pixels)
-        .ok_or_else(|| Error::internal("a frame of another size"))?;
-    let filter = image::imageops::FilterType::Triangle;
-    Ok(Some(image::imageops::resize(&frame, size[0], size[1], filter).into_raw()))
+    let mut out = Vec::new();
+    out.try_reserve_exact(width * height * 4)
+        .map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("a window of {width} x {height}: {error}")))?;
+    // Of a place: the pixel before it, the one after, and how far it is from the first.
+    let place = |i: usize, to: usize, from: usize| {
+        let at = ((i as f32 + 0.5) * from as f32 / to as f32 - 0.5).clamp(0.0, (from - 1) as f32);
+        let before = at as usize;
+        (before, (before + 1).min(from - 1), at - before as f32)
+    };
+    let (texels, _) = pixels.as_chunks::<4>();
+    for y in 0..height {
+        let (above, below, down) = place(y, height, from_height);
+        for x in 0..width {
+            let (left, right, across) = place(x, width, from_width);
+            let texel = |row: usize, column: usize| texels.get(row * from_width + column).copied().unwrap_or_default();
+            let corners = [texel(above, left), texel(above, right), texel(below, left), texel(below, right)];
+            let mix = |a: f32, b: f32, share: f32| a + (b - a) * share;
+            out.extend((0..4).map(|c| {
+                let [a, b, c, d] = corners.map(|corner| f32::from(corner[c]));
+                (mix(mix(a, b, across), mix(c, d, across), down) + 0.5) as u8
+            }));
+        }
+    }
+    Ok(Some(out))
 }
 
 impl Way {
@@ -298,7 +327,7 @@ impl Way {
         let mut reasons = Vec::new();
         if let Some(Tracing { adapter, device, tracer }) = tracing {
             match Swapchain::new(adapter, device, window) {
-                Ok(swapchain) => return Ok(Self::Direct(Screen { swapchain, texture: None }, tracer)),
+                Ok(swapchain) => return Ok(Self::Direct(Screen::new(swapchain, window), tracer)),
                 Err(error) if error.kind == ErrorKind::Unsupported => reasons.push(error.message),
                 Err(error) => return Err(error),
             }
@@ -308,7 +337,7 @@ impl Way {
             match opened.and_then(|device| Swapchain::new(&adapter, Arc::new(device), window)) {
                 Ok(swapchain) => {
                     log::info!("frames of this window are presented by {}", adapter.info.name);
-                    return Ok(Self::Uploaded(Screen { swapchain, texture: None }, Vec::new()));
+                    return Ok(Self::Uploaded(Screen::new(swapchain, window), Vec::new()));
                 }
                 Err(error) => reasons.push(error.message),
             }
@@ -354,6 +383,33 @@ impl Screen {
         self.swapchain.device().limits().max_texture_dimension_2d
     }
 
+    fn new(swapchain: Swapchain, window: &Window) -> Self {
+        let pacer = if swapchain.offers(PresentMode::Mailbox) { window.pacer() } else { Ok(None) };
+        let pacer = pacer.unwrap_or_else(|error| {
+            log::warn!("VSYNC is the driver's, and may wait for as long as the window is hidden: {}", error.message);
+            None
+        });
+        Self { swapchain, texture: None, pacer }
+    }
+
+    fn window_changed(&mut self) {
+        self.swapchain.window_changed();
+        // The driver drops frames of a window that changes, and one that the host hid has nothing to show before its next frame:
+        // compositors may be silent then.
+        if let Some(pacer) = &mut self.pacer {
+            pacer.forget();
+        }
+    }
+
+    fn pacer(&mut self, mode: PresentMode) -> Option<&mut Box<dyn Pacer>> {
+        self.pacer.as_mut().filter(|_| mode == PresentMode::Vsync)
+    }
+
+    /// Whether the window takes a frame now, or within a second. Errors: SURFACE_LOST.
+    fn wait_for_turn(&mut self, mode: PresentMode) -> Result<bool> {
+        self.pacer(mode).map_or(Ok(true), |pacer| pacer.wait())
+    }
+
     /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors: SURFACE_LOST; as
     /// [`Swapchain::acquire`].
     fn acquire(
@@ -363,6 +419,7 @@ impl Screen {
         mode: PresentMode,
         tracer: Option<&SharedTracer>,
     ) -> Result<Option<Image>> {
+        let mode = if self.pacer(mode).is_some() { PresentMode::Mailbox } else { mode };
         for _ in 0..2 {
             if !self.swapchain.is_configured(mode) {
                 // What X11 says; elsewhere, and if the window has just gone, what the host says.
@@ -410,7 +467,7 @@ impl Screen {
         let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
         let device = self.swapchain.device().clone();
         self.texture(&request, false)?;
-        let Self { swapchain, texture: Some(texture) } = self else {
+        let Self { swapchain, texture: Some(texture), .. } = self else {
             return Err(Error::internal("a screen without its texture"));
         };
         let mut fill = |encoder: &mut wgpu::CommandEncoder| swapchain.fill(encoder, image, texture);
@@ -439,12 +496,20 @@ impl Screen {
     }
 
     /// Fills the image with what was uploaded, and shows it.
-    fn present(&mut self, image: wgpu::SurfaceTexture) -> Result<()> {
+    fn present(&mut self, image: wgpu::SurfaceTexture, mode: PresentMode) -> Result<()> {
         let texture = self.texture.as_ref().ok_or_else(|| Error::internal("a screen without its texture"))?;
         let device = self.swapchain.device();
         let mut encoder = device.encoder("present")?;
         self.swapchain.fill(&mut encoder, &image, texture)?;
         device.submit(encoder)?;
+        self.show(image, mode)
+    }
+
+    /// Shows an image that is being filled.
+    fn show(&mut self, image: wgpu::SurfaceTexture, mode: PresentMode) -> Result<()> {
+        if let Some(pacer) = self.pacer(mode) {
+            pacer.ask()?;
+        }
         self.swapchain.show(image)
     }
 }

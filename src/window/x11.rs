@@ -43,7 +43,14 @@ impl X11Window {
         let absent =
             || Error::argument(format!("window id is {id:#x}; there is no such window on the X server {name}"));
         let id = u32::try_from(id).ok().and_then(NonZeroU32::new).ok_or_else(absent)?;
-        let geometry = geometry(&connection, id).ok_or_else(absent)?;
+        // The host may just have asked for it: on a connection that is written out, and read by the server, later.
+        let geometry = match geometry(&connection, id) {
+            Some(geometry) => geometry,
+            None => {
+                sync(native)?;
+                geometry(&connection, id).ok_or_else(absent)?
+            }
+        };
         if geometry.depth == 0 {
             return Err(Error::argument(format!(
                 "window id is {id:#x}; that is a window for input only, which shows nothing"
@@ -111,6 +118,27 @@ unsafe fn function<F: Copy>(library: &CStr, name: &CStr) -> Result<F> {
     }
     // SAFETY: a function's address, of the size checked above, of this type by the contract.
     Ok(unsafe { std::mem::transmute_copy(&found) })
+}
+
+/// Waits until the server has read what the host has asked for.
+fn sync(native: &NativeWindow) -> Result<()> {
+    match *native {
+        NativeWindow::Xlib { display, .. } => {
+            type Sync = unsafe extern "C" fn(*mut c_void, c_int) -> c_int;
+            // SAFETY: Xlib's `int XSync(Display *, Bool)`, which keeps the host's events; the host vouches for its `Display *`, and by the
+            // header calls on the thread that uses it, unless it has called XInitThreads.
+            unsafe { function::<Sync>(c"libX11.so.6", c"XSync")?(display.as_ptr(), 0) };
+        }
+        NativeWindow::Xcb { connection, .. } => {
+            // SAFETY: the host vouches for its connection, which stays open: it is not dropped here.
+            let hosts = unsafe { XCBConnection::from_raw_xcb_connection(connection.as_ptr(), false) };
+            let asked = hosts.map_err(|error| Error::argument(format!("window display: {error}")))?;
+            // A round trip; what it says does not matter.
+            let _ = asked.get_input_focus().map(|cookie| cookie.reply());
+        }
+        _ => {}
+    }
+    Ok(())
 }
 
 /// The name of the server that an Xlib connection leads to.

@@ -1,8 +1,10 @@
 /* wayland.c -- frames into windows of Wayland, made by SDL2: in each way that they can get there, through ten sizes, in every
  * present mode, from other threads. The compositor, whose screen of WIDTH x HEIGHT is the top left of DISPLAY's, shows what
- * bhr_render_image gives, and ends no connection over what bhr sends. Wrong handles and states have their status.
+ * bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate and never hangs:
+ * not in a hidden window, not in one that is gone. Wrong handles and states have their status.
  *
- *     wayland BACKEND direct|uploaded|memory      environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY */
+ *     wayland BACKEND direct|uploaded|memory
+ *         environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY, COMPOSITOR (its process, which is stopped a while) */
 #define _POSIX_C_SOURCE 200809L
 
 #include "host.h"
@@ -11,13 +13,18 @@
 #include <SDL.h>
 #include <SDL_syswm.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/types.h>
 
 #define WIDTH 320
 #define HEIGHT 240
 #define ROUNDS 10
+#define PACED 40          /* frames that are timed */
+#define HIGHEST_RATE 120. /* frames a second; the compositor's screen has 60, and its timers are coarse */
+#define LONGEST 2.        /* seconds of a call that waits for the compositor: one, and what a busy machine adds */
 
 static char said[4096]; /* by the log at level INFO */
 static int  warnings;
@@ -171,6 +178,138 @@ static void threads(BhrContext *context, BhrSurface *surface) {
     check_connected("two threads");
 }
 
+/* The shortest of three measurements, as other programs run too: frames a second. */
+static double rate(BhrContext *context, BhrSurface *surface, BhrPresentMode mode) {
+    double shortest = 1e9;
+    CHECK_OK(bhr_surface_set_present_mode(surface, mode));
+    present(context, surface, 3);
+    for (int i = 0; i < 3; i++) {
+        const double begun = seconds_now();
+        present(context, surface, PACED);
+        const double time = seconds_now() - begun;
+        shortest = time < shortest ? time : shortest;
+    }
+    return PACED / shortest;
+}
+
+/* Small frames of VSYNC, which could be more than the display has, are not. */
+static void pace(BhrContext *context, BhrSurface *surface) {
+    BhrQuality before = {.struct_size = sizeof before};
+    CHECK_OK(bhr_get_quality(context, &before));
+    BhrQuality quality = before;
+    quality.render_scale = 0.1;
+    CHECK_OK(bhr_set_quality(context, &quality));
+    const double unpaced = rate(context, surface, BHR_PRESENT_MAILBOX);
+    const double paced = rate(context, surface, BHR_PRESENT_VSYNC);
+    CHECK(paced < HIGHEST_RATE, "VSYNC has %.0f frames a second", paced);
+    CHECK(unpaced > paced, "MAILBOX has %.0f frames a second, VSYNC %.0f: nothing was held back", unpaced, paced);
+    CHECK_OK(bhr_set_quality(context, &before));
+}
+
+/* Calls that must return while a frame waits for the compositor. */
+typedef struct Setters {
+    const Task *task;
+    pthread_mutex_t lock;
+    int             ended;
+    double          longest; /* seconds of a call */
+    int             calls;
+} Setters;
+
+static int is_over(Setters *setters) {
+    pthread_mutex_lock(&setters->lock);
+    const int ended = setters->ended;
+    pthread_mutex_unlock(&setters->lock);
+    return ended;
+}
+
+static void *set_on_thread(void *argument) {
+    Setters *setters = argument;
+    while (!is_over(setters)) {
+        const double begun = seconds_now();
+        CHECK_OK(bhr_set_mass(setters->task->context, 1.0));
+        const double between = seconds_now();
+        CHECK_OK(bhr_surface_set_present_mode(setters->task->surface, BHR_PRESENT_VSYNC));
+        const double first = between - begun, second = seconds_now() - between;
+        setters->longest = first > setters->longest ? first : setters->longest;
+        setters->longest = second > setters->longest ? second : setters->longest;
+        setters->calls++;
+        pause_ms(20);
+    }
+    return NULL;
+}
+
+/* Frames while the compositor may be silent: none takes longer than it may. How many were skipped. */
+static int skipped_of(BhrContext *context, BhrSurface *surface, int frames, const char *what) {
+    int    skipped = 0;
+    double longest = 0;
+    for (int i = 0; i < frames; i++) {
+        const double    begun = seconds_now();
+        const BhrStatus status = bhr_render_surface(context, surface);
+        const double    time = seconds_now() - begun;
+        CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED, "%s: status %d: %s", what, (int)status,
+              bhr_error_message());
+        longest = time > longest ? time : longest;
+        skipped += status == BHR_FRAME_SKIPPED;
+        SDL_PumpEvents();
+    }
+    CHECK(longest < LONGEST, "%s: a frame took %.1f s", what, longest);
+    return skipped;
+}
+
+/* A compositor says nothing to a window that it does not show; one that is stopped says nothing at all. */
+static void silence(BhrContext *context, BhrSurface *surface, pid_t compositor) {
+    const Task task = {context, surface};
+    Setters    setters = {.task = &task};
+    pthread_t  thread;
+    pthread_mutex_init(&setters.lock, NULL);
+    if (!CHECK(kill(compositor, SIGSTOP) == 0, "cannot stop the compositor") ||
+        !CHECK(pthread_create(&thread, NULL, set_on_thread, &setters) == 0, "cannot start a thread")) {
+        exit(check_end());
+    }
+    const int skipped = skipped_of(context, surface, 4, "a silent compositor");
+    CHECK(skipped >= 3, "%d of 4 frames were skipped", skipped); /* the first one's word may have come before */
+    kill(compositor, SIGCONT);
+    pthread_mutex_lock(&setters.lock);
+    setters.ended = 1;
+    pthread_mutex_unlock(&setters.lock);
+    pthread_join(thread, NULL);
+    pthread_mutex_destroy(&setters.lock);
+    CHECK(setters.calls > 0 && setters.longest < 2 * LONGEST, "of %d rounds of setters one call took %.1f s",
+          setters.calls, setters.longest);
+    CHECK(skipped_of(context, surface, 20, "a compositor that goes on") == 0, "frames are still skipped");
+    check_shows(context, surface, "after silence");
+}
+
+/* The host's own hiding takes away what the window shows; it tells when there is something to show again. */
+static void hide(BhrContext *context, BhrSurface *surface, SDL_Window *window) {
+    SDL_HideWindow(window);
+    SDL_PumpEvents();
+    skipped_of(context, surface, 3, "hidden");
+    SDL_ShowWindow(window);
+    SDL_PumpEvents();
+    CHECK_OK(bhr_surface_resize(surface, WIDTH, HEIGHT));
+    check_shows(context, surface, "shown again");
+    check_connected("hiding");
+}
+
+/* Against the header: the wl_surface goes first. Last, as the compositor may end the connection over it. */
+static void window_first(BhrBackend backend) {
+    SDL_Window *window = open_window();
+    BhrContext *context = open_context(backend, NULL);
+    BhrSurface *surface = open_surface(context, window);
+    present(context, surface, 5);
+    SDL_DestroyWindow(window);
+    for (int i = 0; i < 3; i++) {
+        const double    begun = seconds_now();
+        const BhrStatus status = bhr_render_surface(context, surface);
+        CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED || status == BHR_ERROR_SURFACE_LOST,
+              "a window that is gone: status %d: %s", (int)status, bhr_error_message());
+        CHECK(seconds_now() - begun < LONGEST, "a frame of a window that is gone took %.1f s", seconds_now() - begun);
+    }
+    bhr_surface_destroy(surface);
+    bhr_context_destroy(context);
+}
+
 static void bad_calls(BhrContext *context, SDL_Window *taken) {
     BhrWindow   window = handle_of(taken);
     BhrSurface *surface = NULL;
@@ -226,6 +365,11 @@ static void check_way(const char *way) {
 
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
+    const char      *way = argc > 2 ? argv[2] : "direct";
+    const pid_t      compositor = (pid_t)strtol(getenv("COMPOSITOR") != NULL ? getenv("COMPOSITOR") : "0", NULL, 10);
+    if (!CHECK(compositor > 1, "COMPOSITOR is no process")) {
+        return check_end();
+    }
     SDL_SetMainReady();
     if (!CHECK(SDL_Init(SDL_INIT_VIDEO) == 0, "SDL does not start: %s", SDL_GetError())) {
         return check_end();
@@ -239,13 +383,21 @@ int main(int argc, char **argv) {
     sizes(context, surface, window);
     modes(context, surface);
     threads(context, surface);
+    if (strcmp(way, "memory") != 0) { /* where nothing is paced */
+        pace(context, surface);
+        silence(context, surface, compositor);
+        hide(context, surface, window);
+    }
     bad_calls(context, window);
     check_shows(context, surface, "bad calls");
     bhr_surface_destroy(surface);
     bhr_context_destroy(context);
     SDL_DestroyWindow(window);
     more_windows(backend);
-    check_way(argc > 2 ? argv[2] : "direct");
+    check_way(way);
+    if (strcmp(way, "memory") != 0) {
+        window_first(backend);
+    }
     SDL_Quit();
     return check_end();
 }
