@@ -6,6 +6,12 @@ use super::{Window, native::NativeWindow};
 use crate::error::{Error, ErrorKind, Result};
 use raw_window_handle as rwh;
 use std::num::NonZeroU32;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Longest side of such a window, that of X11's: its requests' coordinates have 16 bits.
+pub const MAX_SIDE: u32 = i16::MAX as u32;
+/// Most pixels of one: softbuffer counts the bytes of two frames in an i32.
+pub const MAX_PIXELS: u64 = 1 << 28;
 
 /// A window that takes frames as memory.
 pub enum MemoryWindow {
@@ -60,8 +66,11 @@ impl MemoryWindow {
         }
         let Handles::Raw(display, window) = window.handles() else { return Err(unsupported("it is a bare layer")) };
         let shared = Shared { display, window };
-        let context = softbuffer::Context::new(shared).map_err(unsupported)?;
-        let surface = softbuffer::Surface::new(&context, shared).map_err(unsupported)?;
+        let made = catch_unwind(|| {
+            let context = softbuffer::Context::new(shared).map_err(unsupported)?;
+            softbuffer::Surface::new(&context, shared).map_err(unsupported)
+        });
+        let surface = made.map_err(|_| unsupported("the softbuffer crate gave up"))??;
         Ok(Self::Other(Box::new(surface)))
     }
 
@@ -75,13 +84,18 @@ impl MemoryWindow {
             },
             Self::Other(surface) => {
                 let [Some(width), Some(height)] = size.map(NonZeroU32::new) else { return Ok(()) };
-                surface.resize(width, height).map_err(lost)?;
-                let mut buffer = surface.buffer_mut().map_err(lost)?;
-                for (out, pixel) in buffer.iter_mut().zip(pixels.as_chunks::<4>().0) {
-                    // Blue, green, red, and a byte that is zero.
-                    *out = u32::from_le_bytes(*pixel) & 0xff_ffff;
-                }
-                buffer.present().map_err(lost)
+                // Unwind safe: what fails is not used again.
+                let put = catch_unwind(AssertUnwindSafe(|| {
+                    surface.resize(width, height).map_err(lost)?;
+                    let mut buffer = surface.buffer_mut().map_err(lost)?;
+                    for (out, pixel) in buffer.iter_mut().zip(pixels.as_chunks::<4>().0) {
+                        // Blue, green, red, and a byte that is zero.
+                        *out = u32::from_le_bytes(*pixel) & 0xff_ffff;
+                    }
+                    buffer.present().map_err(lost)
+                }));
+                // It panics without descriptors, memory, or a connection.
+                put.unwrap_or_else(|_| Err(lost("the softbuffer crate gave up")))
             }
         }
     }

@@ -2,7 +2,7 @@
 //! have run. Locks: its own before the tracer's.
 
 use super::claim::Claim;
-use super::memory::MemoryWindow;
+use super::memory::{self, MemoryWindow};
 use super::{NativeWindow, Pacer, PresentMode, Window};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
@@ -99,7 +99,10 @@ impl Surface {
     ) -> Result<Self> {
         let window = Window::open(native)?;
         let claim = Claim::new(window.claim_key())?;
-        let way = Way::find(&window, tracing, validation)?;
+        let way = Way::find(&window, tracing, validation).map_err(|error| match window.exists() {
+            true => error,
+            false => Error::argument("the window has gone while its surface was being made"),
+        })?;
         way.check_size(size)?;
         Ok(Self {
             inner: Mutex::new(Inner {
@@ -202,7 +205,7 @@ impl Inner {
             }
             Way::Uploaded(screen, pixels) => {
                 let size = window.size().unwrap_or(given);
-                check_size(size, screen.max_side())?;
+                screen.check_size(size)?;
                 let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
                 let stats = render_to_memory(showing, &request, pixels)?;
                 let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
@@ -219,6 +222,7 @@ impl Inner {
                     None if !window.exists() => return Err(window_gone()),
                     None => given,
                 };
+                check_memory_size(size)?;
                 let request = request(showing.scene, size, PixelFormat::Bgra8Srgb);
                 let stats = render_to_memory(showing, &request, pixels)?;
                 let stretched = stretched(&request, pixels, size)?;
@@ -355,14 +359,9 @@ impl Way {
     }
 
     fn check_size(&self, size: [u32; 2]) -> Result<()> {
-        check_size(size, self.max_side())
-    }
-
-    fn max_side(&self) -> u32 {
         match self {
-            Self::Direct(screen, _) | Self::Uploaded(screen, _) => screen.max_side(),
-            // Of an X11 window, and of the coordinates in its requests.
-            Self::Memory(..) => i16::MAX as u32,
+            Self::Direct(screen, _) | Self::Uploaded(screen, _) => screen.check_size(size),
+            Self::Memory(..) => check_memory_size(size),
         }
     }
 }
@@ -375,12 +374,24 @@ fn check_size([width, height]: [u32; 2], limit: u32) -> Result<()> {
     Err(Error::unsupported(format!("surface size is {width} x {height}; here each side can be {limit} at most")))
 }
 
+/// Errors: UNSUPPORTED.
+fn check_memory_size(size: [u32; 2]) -> Result<()> {
+    check_size(size, memory::MAX_SIDE)?;
+    let [width, height] = size;
+    if u64::from(width) * u64::from(height) <= memory::MAX_PIXELS {
+        return Ok(());
+    }
+    let most = memory::MAX_PIXELS;
+    Err(Error::unsupported(format!("surface size is {width} x {height}; here it can have {most} pixels at most")))
+}
+
 /// A window's image, and its size.
 type Image = (wgpu::SurfaceTexture, [u32; 2]);
 
 impl Screen {
-    fn max_side(&self) -> u32 {
-        self.swapchain.device().limits().max_texture_dimension_2d
+    /// Errors: UNSUPPORTED.
+    fn check_size(&self, size: [u32; 2]) -> Result<()> {
+        check_size(size, self.swapchain.device().limits().max_texture_dimension_2d)
     }
 
     fn new(swapchain: Swapchain, window: &Window) -> Self {
@@ -424,7 +435,7 @@ impl Screen {
             if !self.swapchain.is_configured(mode) {
                 // What X11 says; elsewhere, and if the window has just gone, what the host says.
                 let size = window.size().unwrap_or(given).map(|side| side.max(1));
-                check_size(size, self.max_side())?;
+                self.check_size(size)?;
                 let _alone = tracer.map(|tracer| tracer.lock());
                 let configured = self.swapchain.configure(size, mode);
                 if configured.is_err() && !window.exists() {
