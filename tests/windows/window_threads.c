@@ -2,15 +2,17 @@
  * surfaces of one context, jobs beside frames, sizes and modes changed meanwhile. Afterwards every window shows the picture
  * that it should, and every job has its own.
  *
- *     window_threads BACKEND xlib|xcb */
+ *     window_threads BACKEND xlib|xcb [ROUNDS, to 90] */
 #include "host.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #define WIDTH 96u
 #define HEIGHT 64u
 #define BYTES (WIDTH * HEIGHT * 4u)
-#define ROUNDS 40
+
+static uint32_t rounds = 40; /* frames of each thread in each test */
 
 static unsigned char expected[BYTES]; /* the scene that all of these render */
 
@@ -29,7 +31,7 @@ static void check_shows(const Host *host, const char *what) {
 
 static void *present(void *argument) {
     const Task *task = argument;
-    for (int round = 0; round < ROUNDS; round++) {
+    for (uint32_t round = 0; round < rounds; round++) {
         const BhrStatus status = bhr_render_surface(task->context, task->surface);
         CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED, "%s: %s", bhr_status_name(status), bhr_error_message());
     }
@@ -38,7 +40,7 @@ static void *present(void *argument) {
 
 static void *present_and_resize(void *argument) {
     const Task *task = argument;
-    for (uint32_t round = 0; round < ROUNDS; round++) {
+    for (uint32_t round = 0; round < rounds; round++) {
         CHECK_OK(bhr_surface_resize(task->surface, WIDTH - round, HEIGHT));
         const BhrStatus status = bhr_render_surface(task->context, task->surface);
         CHECK(status == BHR_OK || status == BHR_FRAME_SKIPPED, "%s: %s", bhr_status_name(status), bhr_error_message());
@@ -50,7 +52,7 @@ static void *present_and_resize(void *argument) {
 /* Changes the window itself, too: its connection is used by this thread only meanwhile. */
 static void *resize_window(void *argument) {
     const Task *task = argument;
-    for (uint32_t round = 0; round < ROUNDS; round++) {
+    for (uint32_t round = 0; round < rounds; round++) {
         host_resize(task->host, WIDTH + 3 * round, HEIGHT + round);
         CHECK_OK(bhr_surface_resize(task->surface, WIDTH + 3 * round, HEIGHT + round));
         pause_ms(3);
@@ -64,7 +66,7 @@ static void *render_jobs(void *argument) {
     const Task   *task = argument;
     unsigned char pixels[3][BYTES];
     BhrJob       *jobs[3];
-    for (int round = 0; round < ROUNDS / 2; round++) {
+    for (uint32_t round = 0; round < rounds / 2; round++) {
         for (int i = 0; i < 3; i++) {
             const BhrImage target = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels[i], BYTES);
             memset(pixels[i], UNTOUCHED, BYTES);
@@ -85,7 +87,7 @@ static void *render_images(void *argument) {
     const Task    *task = argument;
     unsigned char  pixels[BYTES];
     const BhrImage target = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, BYTES);
-    for (int round = 0; round < ROUNDS / 2; round++) {
+    for (uint32_t round = 0; round < rounds / 2; round++) {
         CHECK_OK(bhr_render_image(task->context, &target));
         CHECK(memcmp(pixels, expected, BYTES) == 0, "an image beside windows differs");
     }
@@ -166,6 +168,9 @@ static void two_contexts(Task *task, BhrBackend backend, BhrWindowKind kind) {
 int main(int argc, char **argv) {
     const BhrBackend    backend = check_begin(argc, argv);
     const BhrWindowKind kind = host_kind(argc > 2 ? argv[2] : NULL);
+    if (argc > 3) {
+        rounds = (uint32_t)atoi(argv[3]);
+    }
     BhrContext         *context = check_context(backend);
     Host                host = host_open(kind, NULL, WIDTH, HEIGHT);
     const BhrImage      image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, expected, BYTES);
