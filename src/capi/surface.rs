@@ -98,7 +98,8 @@ pub unsafe extern "C" fn bhr_surface_create(
 
 /// Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
 /// size are made by the next frame. (X11: frames have the size that the window really has; this call says that it
-/// has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
+/// has changed. Wayland: call it also when a window that the host has hidden is shown again; VSYNC frames are skipped
+/// until then.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
 /// images cannot have; SURFACE_LOST.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_resize(surface: *mut BhrSurface, width: u32, height: u32) -> BhrStatus {
@@ -120,13 +121,12 @@ pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, 
 /// The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
 /// frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
 /// earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
-/// takes another frame, at most a second (on Wayland some drivers wait for as long as the compositor does not show
-/// the window, and calls on the context with them). FRAME_SKIPPED: the window is 0 x 0, hidden as far as the
-/// platform tells, or is being resized; nothing was presented: wait for the window's next event. Any thread (macOS:
-/// the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of
-/// another context; INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST, from then on, when the window
-/// is gone or the context was recovered: destroy the surface, and make it again if there is a window; DEVICE_LOST:
-/// see bhr_context_recover; OUT_OF_MEMORY.
+/// takes another frame, at most a second, and so do calls on the context and the surface from other threads.
+/// FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or is being resized; nothing was
+/// presented: wait for the window's next event. Any thread (macOS: the main thread); two threads on one surface take
+/// turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as
+/// bhr_render_image; SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the
+/// surface, and make it again if there is a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *mut BhrSurface) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
