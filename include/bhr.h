@@ -1057,7 +1057,8 @@ BhrStatus bhr_surface_create(BhrContext *context,
 /**
  * Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
  * size are made by the next frame. (X11: frames have the size that the window really has; this call says that it
- * has changed.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
+ * has changed. Wayland: call it also when a window that the host has hidden is shown again; VSYNC frames are skipped
+ * until then.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
  * images cannot have; SURFACE_LOST.
  */
 BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
@@ -1073,13 +1074,12 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
  * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
  * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
  * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
- * takes another frame, at most a second (on Wayland some drivers wait for as long as the compositor does not show
- * the window, and calls on the context with them). FRAME_SKIPPED: the window is 0 x 0, hidden as far as the
- * platform tells, or is being resized; nothing was presented: wait for the window's next event. Any thread (macOS:
- * the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT for NULL or a surface of
- * another context; INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST, from then on, when the window
- * is gone or the context was recovered: destroy the surface, and make it again if there is a window; DEVICE_LOST:
- * see bhr_context_recover; OUT_OF_MEMORY.
+ * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
+ * FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or is being resized; nothing was
+ * presented: wait for the window's next event. Any thread (macOS: the main thread); two threads on one surface take
+ * turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as
+ * bhr_render_image; SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the
+ * surface, and make it again if there is a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
  */
 BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
 
