@@ -51,8 +51,8 @@ enum Way {
     Direct(Screen, SharedTracer),
     /// Traced elsewhere, and uploaded to a device that can present.
     Uploaded(Screen, Vec<u8>),
-    /// Traced, and put there as memory.
-    Memory(MemoryWindow, Vec<u8>),
+    /// Traced, and put there as memory, in every mode when the pacer says so: softbuffer waits for a silent compositor without a limit.
+    Memory(MemoryWindow, Vec<u8>, Option<Box<dyn Pacer>>),
 }
 
 /// A window's images, and the texture that they are filled from.
@@ -121,10 +121,10 @@ impl Surface {
     pub fn resize(&self, size: [u32; 2]) -> Result<()> {
         let mut inner = self.inner.lock();
         inner.way()?.check_size(size)?;
-        if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut inner.way
-            && size != [0, 0]
-        {
-            screen.window_changed();
+        match &mut inner.way {
+            Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) if size != [0, 0] => screen.window_changed(),
+            Some(Way::Memory(_, _, Some(pacer))) if size != [0, 0] => pacer.forget(),
+            _ => {}
         }
         inner.size = size;
         Ok(())
@@ -189,8 +189,8 @@ impl Inner {
         let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
         // X11 windows know their size better than a host whose events are still to come.
         let (given, mode) = (self.size, self.mode);
-        if let Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) = &mut self.way
-            && !screen.wait_for_turn(mode)?
+        if let Some(pacer) = self.way.as_mut().and_then(|way| way.pacer(mode))
+            && !pacer.wait()?
         {
             return Ok(Shown::Skipped);
         }
@@ -216,7 +216,7 @@ impl Inner {
                 showing.stats.publish(stats, begun.elapsed());
                 None
             }
-            Way::Memory(memory, pixels) => {
+            Way::Memory(memory, pixels, pacer) => {
                 let size = match window.size() {
                     Some(size) => size,
                     None if !window.exists() => return Err(window_gone()),
@@ -226,6 +226,9 @@ impl Inner {
                 let request = request(showing.scene, size, PixelFormat::Bgra8Srgb);
                 let stats = render_to_memory(showing, &request, pixels)?;
                 let stretched = stretched(&request, pixels, size)?;
+                if let Some(pacer) = pacer {
+                    pacer.ask()?;
+                }
                 memory.present(window, size, stretched.as_deref().unwrap_or(pixels))?;
                 showing.stats.publish(stats, begun.elapsed());
                 None
@@ -326,7 +329,22 @@ fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Op
     Ok(Some(out))
 }
 
+fn pacer_of(window: &Window) -> Option<Box<dyn Pacer>> {
+    window.pacer().unwrap_or_else(|error| {
+        log::warn!("frames may wait for as long as their window is hidden: {}", error.message);
+        None
+    })
+}
+
 impl Way {
+    /// What says when frames of the mode are shown, if not the driver.
+    fn pacer(&mut self, mode: PresentMode) -> Option<&mut Box<dyn Pacer>> {
+        match self {
+            Self::Direct(screen, _) | Self::Uploaded(screen, _) => screen.pacer(mode),
+            Self::Memory(_, _, pacer) => pacer.as_mut(),
+        }
+    }
+
     fn find(window: &Window, tracing: Option<Tracing<'_>>, validation: bool) -> Result<Self> {
         let mut reasons = Vec::new();
         if let Some(Tracing { adapter, device, tracer }) = tracing {
@@ -349,7 +367,7 @@ impl Way {
         match MemoryWindow::new(window) {
             Ok(memory) => {
                 log::info!("frames of this window are put there as memory ({})", reasons.join("; "));
-                Ok(Self::Memory(memory, Vec::new()))
+                Ok(Self::Memory(memory, Vec::new(), pacer_of(window)))
             }
             Err(error) => {
                 reasons.push(error.message);
@@ -395,11 +413,7 @@ impl Screen {
     }
 
     fn new(swapchain: Swapchain, window: &Window) -> Self {
-        let pacer = if swapchain.offers(PresentMode::Mailbox) { window.pacer() } else { Ok(None) };
-        let pacer = pacer.unwrap_or_else(|error| {
-            log::warn!("VSYNC is the driver's, and may wait for as long as the window is hidden: {}", error.message);
-            None
-        });
+        let pacer = if swapchain.offers(PresentMode::Mailbox) { pacer_of(window) } else { None };
         Self { swapchain, texture: None, pacer }
     }
 
@@ -414,11 +428,6 @@ impl Screen {
 
     fn pacer(&mut self, mode: PresentMode) -> Option<&mut Box<dyn Pacer>> {
         self.pacer.as_mut().filter(|_| mode == PresentMode::Vsync)
-    }
-
-    /// Whether the window takes a frame now, or within a second. Errors: SURFACE_LOST.
-    fn wait_for_turn(&mut self, mode: PresentMode) -> Result<bool> {
-        self.pacer(mode).map_or(Ok(true), |pacer| pacer.wait())
     }
 
     /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors: SURFACE_LOST; as
