@@ -361,8 +361,8 @@ BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 
 /**
  * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays,
- * the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs begun before fail
- * with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
+ * the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
+ * device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
  * Errors: as bhr_context_create; the context then stays lost, and the call may be tried again.
  */
 BhrStatus bhr_context_recover(BhrContext *context);
@@ -1036,8 +1036,8 @@ typedef int32_t BhrPresentMode;
 #define BHR_PRESENT_MAILBOX 2
 
 /**
- * Makes a surface of a window, width x height pixels (0 x 0: minimised), for this context to render into. A window
- * takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
+ * Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
+ * this context to render into. Call it on the thread that uses the display. A window takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
  * presents through a connection of its own, may they end first. On Wayland the driver crashes when a surface is
  * destroyed after its display was closed.) Where the context's adapter cannot present to the window, or traces on
  * the CPU, another adapter presents the frames, or they are put into the window as memory; the log (info) says
@@ -1045,7 +1045,8 @@ typedef int32_t BhrPresentMode;
  * NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
  * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
  * have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
- * beyond 16384); DEVICE_LOST, OUT_OF_MEMORY.
+ * beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory), OUT_OF_MEMORY. A host that
+ * holds XGrabServer must not call on surfaces: it would wait for itself.
  */
 BhrStatus bhr_surface_create(BhrContext *context,
                              const BhrWindow *window,
@@ -1076,12 +1077,13 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
  * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
  * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
  * FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or is being resized; nothing was
- * presented: wait for the window's next event. Any thread (macOS: the main thread); two threads on one surface take
+ * presented: wait for the window's next event, or try again a little later. Any thread (macOS: the main thread); two threads on one surface take
  * turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as
  * bhr_render_image; SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the
  * surface, and make it again if there is a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
+BhrStatus bhr_render_surface(BhrContext *context,
+                             BhrSurface *surface);
 
 /**
  * Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread

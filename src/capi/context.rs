@@ -210,8 +210,8 @@ pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *
 }
 
 /// Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays,
-/// the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs begun before fail
-/// with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
+/// the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
+/// device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
 /// Errors: as bhr_context_create; the context then stays lost, and the call may be tried again.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrStatus {

@@ -61,8 +61,8 @@ unsafe fn on_surface(
     outside_callbacks(function, || body(&surface.surface))
 }
 
-/// Makes a surface of a window, width x height pixels (0 x 0: minimised), for this context to render into. A window
-/// takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
+/// Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
+/// this context to render into. Call it on the thread that uses the display. A window takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
 /// presents through a connection of its own, may they end first. On Wayland the driver crashes when a surface is
 /// destroyed after its display was closed.) Where the context's adapter cannot present to the window, or traces on
 /// the CPU, another adapter presents the frames, or they are put into the window as memory; the log (info) says
@@ -70,7 +70,8 @@ unsafe fn on_surface(
 /// NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
 /// window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
 /// have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
-/// beyond 16384); DEVICE_LOST, OUT_OF_MEMORY.
+/// beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory), OUT_OF_MEMORY. A host that
+/// holds XGrabServer must not call on surfaces: it would wait for itself.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_create(
     context: *mut BhrContext,
@@ -123,7 +124,7 @@ pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, 
 /// earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
 /// takes another frame, at most a second, and so do calls on the context and the surface from other threads.
 /// FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or is being resized; nothing was
-/// presented: wait for the window's next event. Any thread (macOS: the main thread); two threads on one surface take
+/// presented: wait for the window's next event, or try again a little later. Any thread (macOS: the main thread); two threads on one surface take
 /// turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as
 /// bhr_render_image; SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the
 /// surface, and make it again if there is a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.

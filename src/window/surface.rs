@@ -199,9 +199,9 @@ impl Inner {
                 let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
                     return Ok(Shown::Skipped);
                 };
-                let steps = screen.trace(showing, &image, size)?;
-                screen.show(image, mode)?;
-                Some(steps)
+                let traced = screen.trace(showing, &image, size);
+                let shown = traced.and_then(|steps| screen.show(image, mode).map(|()| steps));
+                Some(screen.or_anew(shown)?)
             }
             Way::Uploaded(screen, pixels) => {
                 let size = window.size().unwrap_or(given);
@@ -211,8 +211,9 @@ impl Inner {
                 let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
                     return Ok(Shown::Skipped);
                 };
-                screen.upload(&request, pixels)?;
-                screen.present(image, mode)?;
+                let uploaded = screen.upload(&request, pixels);
+                let shown = uploaded.and_then(|()| screen.present(image, mode));
+                screen.or_anew(shown)?;
                 showing.stats.publish(stats, begun.elapsed());
                 None
             }
@@ -523,6 +524,14 @@ impl Screen {
         self.swapchain.fill(&mut encoder, &image, texture)?;
         device.submit(encoder)?;
         self.show(image, mode)
+    }
+
+    /// After a failure the image that was taken and not shown is lost to its window: images are made anew.
+    fn or_anew<T>(&mut self, shown: Result<T>) -> Result<T> {
+        if shown.is_err() {
+            self.swapchain.window_changed();
+        }
+        shown
     }
 
     /// Shows an image that is being filled.

@@ -6,6 +6,7 @@ use super::claim;
 use super::native::{Handles, NativeWindow};
 use crate::error::{Error, Result};
 use raw_window_handle as rwh;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use std::ffi::{CStr, CString, OsStr, c_char, c_int, c_void};
 use std::num::NonZeroU32;
 use std::os::fd::{AsFd, BorrowedFd};
@@ -120,11 +121,29 @@ unsafe fn function<F: Copy>(library: &CStr, name: &CStr) -> Result<F> {
     Ok(unsafe { std::mem::transmute_copy(&found) })
 }
 
+type ConnectionNumber = unsafe extern "C" fn(*mut c_void) -> c_int;
+
+/// Whether the other end of a socket has gone.
+fn is_closed(socket: BorrowedFd<'_>) -> bool {
+    let mut polled = [PollFd::from_borrowed_fd(socket, PollFlags::IN)];
+    let gone = PollFlags::HUP | PollFlags::ERR | PollFlags::NVAL;
+    poll(&mut polled, Some(&Timespec::default())).is_err() || polled[0].revents().intersects(gone)
+}
+
 /// Waits until the server has read what the host has asked for.
 fn sync(native: &NativeWindow) -> Result<()> {
     match *native {
         NativeWindow::Xlib { display, .. } => {
             type Sync = unsafe extern "C" fn(*mut c_void, c_int) -> c_int;
+            // On a connection that the server has closed it would end the process.
+            // SAFETY: Xlib's `int XConnectionNumber(Display *)`, which reads a field; the display keeps its socket open during this call.
+            let socket = unsafe {
+                let number = function::<ConnectionNumber>(c"libX11.so.6", c"XConnectionNumber")?;
+                BorrowedFd::borrow_raw(number(display.as_ptr()))
+            };
+            if is_closed(socket) {
+                return Ok(());
+            }
             // SAFETY: Xlib's `int XSync(Display *, Bool)`, which keeps the host's events; the host vouches for its `Display *`, and by the
             // header calls on the thread that uses it, unless it has called XInitThreads.
             unsafe { function::<Sync>(c"libX11.so.6", c"XSync")?(display.as_ptr(), 0) };
