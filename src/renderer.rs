@@ -213,11 +213,11 @@ impl Renderer {
     }
 
     fn open(options: &RendererOptions) -> Result<Tracer> {
+        let window = options.compatible_window.map(Window::open).transpose()?;
         let cpu = || CpuTracer::new(options.cpu_threads).map(Tracer::Cpu);
         if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {
             return cpu();
         }
-        let window = options.compatible_window.map(Window::open).transpose()?;
         let check = |adapter: &Adapter| window.as_ref().map_or(Ok(()), |window| adapter.check_presents(window));
         let search = match (options.adapter_index, options.backend) {
             (Some(_), _) => Search::All,

@@ -348,6 +348,7 @@ impl Way {
 
     fn find(window: &Window, tracing: Option<Tracing<'_>>, validation: bool) -> Result<Self> {
         let mut reasons = Vec::new();
+        let tried = tracing.as_ref().map(|tracing| tracing.adapter.info.clone());
         if let Some(Tracing { adapter, device, tracer }) = tracing {
             match Swapchain::new(adapter, device, window) {
                 Ok(swapchain) => return Ok(Self::Direct(Screen::new(swapchain, window), tracer)),
@@ -355,7 +356,8 @@ impl Way {
                 Err(error) => return Err(error),
             }
         }
-        for adapter in gpu::adapters(Search::Native, validation) {
+        let others = gpu::adapters(Search::Native, validation).into_iter();
+        for adapter in others.filter(|adapter| tried.as_ref() != Some(&adapter.info)) {
             let opened = adapter.check_presents(window).and_then(|()| Device::open(&adapter));
             match opened.and_then(|device| Swapchain::new(&adapter, Arc::new(device), window)) {
                 Ok(swapchain) => {
