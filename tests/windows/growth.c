@@ -24,7 +24,7 @@
 /* ---- what the process holds ---- */
 
 typedef struct Holding {
-    long bytes; /* resident */
+    long bytes; /* of memory of its own, resident */
     int  descriptors, threads;
 } Holding;
 
@@ -43,11 +43,12 @@ static int entries(const char *path) {
 
 static Holding look(void) {
     Holding holding = {0, entries("/proc/self/fd"), entries("/proc/self/task")};
-    long    total = 0, resident = 0;
+    long    total = 0, resident = 0, of_files = 0;
     FILE   *file = fopen("/proc/self/statm", "r");
     if (file != NULL) {
-        if (fscanf(file, "%ld %ld", &total, &resident) == 2) {
-            holding.bytes = resident * sysconf(_SC_PAGESIZE);
+        /* Pages of files, such as those of the driver's compiler, come and go as the kernel likes. */
+        if (fscanf(file, "%ld %ld %ld", &total, &resident, &of_files) == 3) {
+            holding.bytes = (resident - of_files) * sysconf(_SC_PAGESIZE);
         }
         fclose(file);
     }
