@@ -339,8 +339,7 @@ impl Renderer {
     /// DEVICE_LOST.
     pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<Shown> {
         self.check_device()?;
-        let whole = Region { full_width: 1, full_height: 1, x: 0, y: 0 };
-        self.scene.lens(&whole)?;
+        self.scene.observer()?;
         if !surface.has_ended() && !self.surfaces.iter().any(|ours| std::ptr::eq(ours.as_ptr(), Arc::as_ptr(surface))) {
             return Err(Error::argument("surface was made by another context"));
         }
