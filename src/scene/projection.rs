@@ -16,7 +16,7 @@ pub struct Mapping {
     pub height: f64,
     /// Halves of the perspective image plane's sides at distance 1; else 1.
     pub plane: DVec2,
-    /// Of a fisheye's pixel along the radius, radians.
+    /// Of a fisheye's pixel along the radius, radians; else 0.
     pub pixel_angle: f64,
 }
 
@@ -36,7 +36,8 @@ impl Mapping {
         let tan = (0.5 * camera.fov_y).tan();
         let plane =
             if projection == Projection::Perspective { DVec2::new(tan * width / height, tan) } else { DVec2::ONE };
-        Ok(Self { projection, width, height, plane, pixel_angle: camera.fov_y / width.min(height) })
+        let pixel_angle = if projection == Projection::Fisheye { camera.fov_y / width.min(height) } else { 0.0 };
+        Ok(Self { projection, width, height, plane, pixel_angle })
     }
 
     /// Whether something is seen at (x, y): all but what lies outside a fisheye's circle.
