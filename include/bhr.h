@@ -507,6 +507,7 @@ typedef struct BhrCamera {
  * 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
  * forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
  * ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
+ * Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
  */
 #define BHR_PROJECTION_CUBE 3
 
@@ -975,9 +976,10 @@ BhrStatus bhr_set_progress(BhrContext *context,
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
  * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by
- * the progress callback; DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target
- * alone; after that the message says so, and what is not yet rendered is untouched.
+ * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
+ * UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST, OUT_OF_MEMORY.
+ * Until the first pixels are written an error leaves the target alone; after that the message says so, and what is
+ * not yet rendered is untouched.
  */
 BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
@@ -1080,7 +1082,8 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
 
 /**
  * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
- * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
+ * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
+ * the window is not 6 times as wide as high. Returns when the
  * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
  * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
  * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
@@ -1180,7 +1183,8 @@ BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t he
 
 /**
  * One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
- * image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+ * image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
+ * bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
  */
 BhrStatus bhr_camera_ray(const BhrContext *context,
                          uint32_t width,

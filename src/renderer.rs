@@ -383,7 +383,7 @@ impl Renderer {
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
-    /// INVALID_STATE where the camera's motion cannot be; CANCELLED when `progress` returns false (tiles not yet begun are
+    /// INVALID_STATE where the camera's motion cannot be, or for a cube of another shape; CANCELLED when `progress` returns false (tiles not yet begun are
     /// untouched); whatever the device reports.
     pub fn render(
         &mut self,

@@ -168,7 +168,8 @@ pub unsafe extern "C" fn bhr_camera_rays(
 }
 
 /// One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
-/// image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+/// image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
+/// bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_ray(
     context: *const BhrContext,
