@@ -911,7 +911,8 @@ typedef int32_t BhrView;
 
 /**
  * g of the first crossing within the disk's radii, else the sky's redshift; NaN captured without such a crossing.
- * Diverging map, s = 1/2 + log2(g) / 4: g = 1/4 .. 4, light grey where nothing is shifted, blue above 1, red below.
+ * Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is shifted, blue above 1, red
+ * below.
  */
 #define BHR_VIEW_REDSHIFT 1
 

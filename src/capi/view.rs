@@ -19,7 +19,8 @@ pub type BhrView = i32;
 /// The picture. The default.
 pub const BHR_VIEW_LIGHT: BhrView = 0;
 /// g of the first crossing within the disk's radii, else the sky's redshift; NaN captured without such a crossing.
-/// Diverging map, s = 1/2 + log2(g) / 4: g = 1/4 .. 4, light grey where nothing is shifted, blue above 1, red below.
+/// Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is shifted, blue above 1, red
+/// below.
 pub const BHR_VIEW_REDSHIFT: BhrView = 1;
 /// 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential map, s = (order + 2) / 5:
 /// order 3 and above are one colour.

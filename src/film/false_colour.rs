@@ -25,8 +25,8 @@ const LEAST: f32 = 1e-9;
 pub fn range(view: View) -> (f32, f32) {
     use std::f32::consts::PI;
     match view {
-        // No shift in the middle.
-        View::Redshift => (0.25, 4.0),
+        // No shift in the middle. Disks without spin have 0.45 .. 1.5.
+        View::Redshift => (1.0 / 3.0, 3.0),
         // Captured, sky, the direct image and the next two; all further images look like the last.
         View::Order => (-2.0, 3.0),
         View::Deflection => (PI / 64.0, PI),
@@ -154,7 +154,7 @@ mod tests {
     fn maps_end_and_pass_where_they_should() {
         let hue = |[_, a, b]: [f64; 3]| b.atan2(a).to_degrees().rem_euclid(360.0);
         let chroma = |[_, a, b]: [f64; 3]| a.hypot(b);
-        let [red, none, blue] = [0.25, 1.0, 4.0].map(|g| lab(shown(View::Redshift, g)));
+        let [red, none, blue] = [1.0 / 3.0, 1.0, 3.0].map(|g| lab(shown(View::Redshift, g)));
         assert!((none[0] - 95.0).abs() < 0.1 && chroma(none) < 0.1, "g = 1: {none:?}");
         assert!((20.0..45.0).contains(&hue(red)) && (280.0..300.0).contains(&hue(blue)), "{red:?} {blue:?}");
         assert!(chroma(red) > 60.0 && chroma(blue) > 60.0);
