@@ -48,7 +48,7 @@ pub fn false_colour(view: View, (low, scale): (f32, f32), value: f32) -> [f32; 3
         return NO_VALUE;
     }
     let share = ((scaled(view, value) - low) * scale).clamp(0.0, 1.0);
-    encoded(if view == View::Redshift { diverging(share) } else { sequential(share) })
+    lab_encoded(if view == View::Redshift { diverging(share) } else { sequential(share) })
 }
 
 /// CIELAB from dark blue over purple, red and orange to light yellow: a helix about an axis beside the grey one (after Green 2011, whose
@@ -68,7 +68,7 @@ fn diverging(share: f32) -> [f32; 3] {
 }
 
 /// CIELAB (white: Rec. 709's) to sRGB codes, 0 .. 1.
-fn encoded([lightness, a, b]: [f32; 3]) -> [f32; 3] {
+fn lab_encoded([lightness, a, b]: [f32; 3]) -> [f32; 3] {
     let y = (lightness + 16.0) / 116.0;
     let [x, y, z] = [y + a / 500.0, y, y - b / 200.0].map(|t| {
         let linear = (t - 16.0 / 116.0) * (108.0 / 841.0);

@@ -89,7 +89,7 @@ fn summed_light_is_the_integral_over_the_isoradials() {
     }
 }
 
-/// In every pixel of the disk, of all images in the opaque one's front: light = B(g T(r)) over the luminance of the hottest ring at rest, g being what the
+/// In every pixel of the opaque disk's first two images: light = B(g T(r)) over the luminance of the hottest ring at rest, g being what the
 /// REDSHIFT view shows and r what the tracer says of that pixel's ray: I_nu / nu^3 is the same at the disk and at the eye.
 #[test]
 fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
@@ -112,9 +112,10 @@ fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
             let hits = hits(&mut renderer, size, whole(size));
             let mut judged = 0;
             for (k, hit) in hits.iter().enumerate() {
-                // Edges are another matter.
-                let inside = neighbours(k, size).is_some_and(|near| near.iter().all(|n| orders[*n] == orders[k]));
-                if orders[k] < 0.0 || !inside {
+                // Edges, whose pixels show some of what is beside them, are another matter.
+                let alike = |k: usize| neighbours(k, size).filter(|near| near.iter().all(|n| orders[*n] == orders[k]));
+                let inside = alike(k).is_some_and(|near| near.iter().all(|n| alike(*n).is_some()));
+                if !inside || !(0.0..=1.0).contains(&orders[k]) {
                     continue;
                 }
                 let r = hit.crossings[orders[k] as usize].radius;
@@ -125,9 +126,11 @@ fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
                 let y = radiance_xyz(seen)[1];
                 let scale = disk.brightness * y / radiance_xyz(disk.temperature)[1];
                 let expected = into_gamut(linear_rgb(seen).map(|v| v / y)).map(|v| v * scale);
+                // The mean over a pixel of the secondary image, which is narrow, need not be the light of its middle.
+                let bar = if orders[k] == 0.0 { 1e-3 } else { 1e-2 };
                 for (found, expected) in light[k].iter().zip(expected) {
                     let error = (found - expected).abs() / scale;
-                    assert!(error < 1e-3, "{tracer}: spin {spin}, pixel {k}: {:?}, not {expected:?}", light[k]);
+                    assert!(error < bar, "{tracer}: spin {spin}, pixel {k}: {:?}, not {expected:?}", light[k]);
                 }
                 judged += 1;
             }
