@@ -32,7 +32,6 @@ struct Frame<'a> {
     film: FilmParams,
     request: &'a FrameRequest,
     samples: u32,
-    light: bool,
 }
 
 impl CpuTracer {
@@ -115,7 +114,6 @@ impl<'a> Frame<'a> {
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
             samples: if light { scene.quality.samples_per_pixel } else { 1 },
-            light,
         }
     }
 
@@ -134,11 +132,7 @@ impl<'a> Frame<'a> {
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
-            let value = if self.light {
-                self.shader.pixel_light(record)
-            } else {
-                [self.shader.view_value(record, x, y), 0.0, 0.0, 1.0]
-            };
+            let value = self.shader.shade_record(record, x, y);
             (0..4).for_each(|c| pixel[c] += weight * value[c]);
         })
     }
@@ -183,6 +177,7 @@ fn trace_records<T: Send>(
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
     let stride = width as usize;
+    let stranger = Record::captured();
     // In one piece: rows made and freed by many threads leave their allocators in shreds.
     let mut records = vec![Record::captured(); stride * height as usize];
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
@@ -199,7 +194,8 @@ fn trace_records<T: Send>(
             for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
                 let [left, here, right] = across else { continue };
                 let (x, y) = place(column, row);
-                take(&Neighbours { left, right, above, below }.complete(here), x, y, item);
+                let neighbours = Neighbours { left, right, above, below }.apart(&recorder.lens.mapping, x, &stranger);
+                take(&neighbours.complete(here), x, y, item);
             }
         },
     );

@@ -49,8 +49,18 @@ impl<'a> Shader<'a> {
         }
     }
 
+    /// Of the record at (x, y): light and alpha, or the view's value first; nothing where the projection shows nothing.
+    pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
+        match (self.scene.view, self.lens.mapping.has_look(x, y)) {
+            (View::Light, true) => self.pixel_light(here),
+            (View::Light, false) => [0.0; 4],
+            (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
+            (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
+        }
+    }
+
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
-    pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
+    fn pixel_light(&self, here: &Record) -> [f64; 4] {
         let mut light = [0.0; 3];
         let mut open = 1.0;
         if let Some(disk) = &self.scene.disk {
@@ -113,7 +123,7 @@ impl<'a> Shader<'a> {
     }
 
     /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.
-    pub fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
+    fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
         let first = here.crossings.first();
         match (self.scene.view, here.fate) {
             (View::Redshift, fate) => match first {

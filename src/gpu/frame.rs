@@ -314,6 +314,7 @@ impl GpuTracer {
                 disk: scene.disk_u().is_some(),
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
+                projection: scene.camera.projection,
             },
             film: FilmLook::new(&film, target),
             several_samples: samples > 1,
@@ -341,7 +342,11 @@ impl GpuTracer {
         let disk_u = scene.disk_u();
         Making {
             source,
-            variant: kernels::Variant { azimuth: pattern, ..variant(scene, settings, inside) },
+            variant: kernels::Variant {
+                azimuth: pattern,
+                projection: scene.camera.projection,
+                ..variant(scene, settings, inside)
+            },
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             eye,
@@ -376,13 +381,12 @@ impl GpuTracer {
             .zip(buffers.sized.as_ref())
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
-        let footprints = setup.looks.look.footprints;
         let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
         let records = buffers.makers.stages(device, &mut self.kernels, &setup.making, &shared)?;
         let group = buffers.makers.group(setup.making.source)?;
         let take = |kernels: &mut Kernels, source| {
-            kernels.export(device, source, footprints)?.stage(device, &[&scene, &group, &exported])
+            kernels.export(device, source, setup.looks.look)?.stage(device, &[&scene, &group, &exported])
         };
         let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.info.software, take)?;
 

@@ -4,6 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
+use crate::scene::Projection;
 use crate::sky;
 use std::collections::HashMap;
 
@@ -16,6 +17,8 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
+    /// Of pixels; given rays have none.
+    pub projection: Projection,
 }
 
 /// Everything that decides how shading is compiled.
@@ -31,6 +34,7 @@ pub struct Look {
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
+    pub projection: Projection,
 }
 
 /// Everything that decides how development is compiled.
@@ -128,7 +132,7 @@ enum Name {
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
     Develop(FilmLook),
-    Export(Source, bool),
+    Export(Source, bool, Projection),
     SchwarzschildEnds,
     SchwarzschildColumns { delay: bool },
     KerrNodes { delay: bool, pattern: bool },
@@ -177,6 +181,7 @@ const INTEGRATION: [&str; 3] =
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
+const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 
@@ -189,7 +194,7 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let pixels = [PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")];
+    let pixels = [PASS, TRACED_LAYOUT, FRAME, PROJECTION, CAMERA, include_str!("../../shaders/pixels.wgsl")];
     join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &pixels])
 }
 
@@ -283,7 +288,7 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
     ];
     let constants = sky::StarIndex::shared().wgsl_constants();
     let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
@@ -297,7 +302,7 @@ fn shade_only_source(source: Source, film: FilmLook) -> String {
 
 fn export_source(source: Source) -> String {
     let (_, driver) = source.driver(None);
-    let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
+    let parts = [MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver, include_str!("../../shaders/export.wgsl")];
     join(&[&parts, &source.parts()])
 }
 
@@ -486,10 +491,11 @@ impl Kernels {
         self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
     }
 
-    pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
+    pub fn export(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
         let (entry_point, _) = source.driver(None);
-        self.get(device, Name::Export(source, footprints), &groups, entry_point, || export_source(source))
+        let name = Name::Export(source, look.footprints, look.projection);
+        self.get(device, name, &groups, entry_point, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -590,6 +596,10 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
+fn projection_constant(projection: Projection) -> (&'static str, f64) {
+    ("PROJECTION", f64::from(projection as i32))
+}
+
 fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
     vec![
         ("SHOWS_LIGHT", flag(look.light)),
@@ -598,6 +608,7 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
         ("DISK", flag(look.disk)),
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
+        projection_constant(look.projection),
     ]
 }
 
@@ -608,14 +619,20 @@ fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
-        Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
+        Name::Pixels(variant) => {
+            let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
+            [trace_constants(variant), pixels].concat()
+        }
         Name::Rays(variant) => trace_constants(variant),
         Name::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
         Name::Develop(film) => film_constants(film),
-        Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
+        Name::Export(source, footprints, projection) => {
+            let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
+            [source.constants(), export].concat()
+        }
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
         Name::KerrNodes { delay, pattern } => vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern))],

@@ -90,7 +90,7 @@ impl FrameUniform {
         let turbulence = scene.turbulence();
         let u = 1.0 / frame.r;
         Ok(Self {
-            right: with(lens.axes.x_axis, 0.0),
+            right: with(lens.axes.x_axis, lens.mapping.pixel_angle),
             up: with(lens.axes.y_axis, 0.0),
             forward: with(lens.axes.z_axis, 0.0),
             beta: with(lens.observer.beta, lens.observer.gamma),
@@ -109,7 +109,7 @@ impl FrameUniform {
                 disk.opacity,
                 disk.brightness,
             ),
-            size: four(lens.width, lens.height, settings.step, settings.tolerance),
+            size: four(lens.mapping.width, lens.mapping.height, settings.step, settings.tolerance),
             turbulence: turbulence.map_or(Vec4::ZERO, |t| four(t.strength, t.age, t.reference_delay, 0.0)),
             disk_u: range(scene.disk_u()),
             opaque_u: range(settings.opaque_u),

@@ -8,6 +8,7 @@ pub mod frame;
 pub mod hole;
 pub mod lensing;
 pub mod observer;
+pub mod projection;
 pub mod quality;
 pub mod query;
 pub mod rays;

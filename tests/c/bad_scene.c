@@ -166,6 +166,14 @@ static void camera_numbers(Watch *watch, BhrContext *context) {
         camera.fov_y = bad_fov[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "fov_y", bhr_set_camera(context, &camera));
     }
+    /* Of a fisheye the whole sphere is the limit; the others have no such angle. */
+    static const double bad_circle[] = {0.0, -0.5, 2.0 * PI + 1e-9, 7.0, NAN, INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad_circle); i++) {
+        BhrCamera camera = default_camera();
+        camera.projection = BHR_PROJECTION_FISHEYE;
+        camera.fov_y = bad_circle[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "fov_y", bhr_set_camera(context, &camera));
+    }
     static const double fast[][3] = {{1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, {0.6, 0.6, 0.6}, {0.0, 0.0, 1e300}};
     for (size_t i = 0; i < COUNT_OF(fast); i++) {
         BhrCamera camera = default_camera();
@@ -202,6 +210,15 @@ static void camera(Watch *watch, BhrContext *context) {
     good.motion = BHR_MOTION_VELOCITY;
     good.velocity[0] = 1.0 - 1e-9;
     CHECK_OK(bhr_set_camera(context, &good));
+    for (BhrProjection projection = BHR_PROJECTION_PERSPECTIVE; projection <= BHR_PROJECTION_CUBE; projection++) {
+        BhrCamera kept = {.struct_size = sizeof kept};
+        good = default_camera();
+        good.projection = projection;
+        good.fov_y = projection == BHR_PROJECTION_FISHEYE ? 2.0 * PI : projection == BHR_PROJECTION_PERSPECTIVE ? 1.0 : -9.0;
+        CHECK_OK(bhr_set_camera(context, &good));
+        CHECK_OK(bhr_get_camera(context, &kept));
+        CHECK(memcmp(&kept, &good, sizeof kept) == 0, "projection %d is not kept", (int)projection);
+    }
     good = default_camera();
     CHECK_OK(bhr_set_camera(context, &good));
 
