@@ -51,8 +51,7 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    [BINDINGS, ENTRIES, &StarIndex::shared().wgsl_constants(), SNIPPETS[0], SNIPPETS[1], SNIPPETS[2], SNIPPETS[3]]
-        .concat()
+    [BINDINGS, ENTRIES, &StarIndex::wgsl_constants(), SNIPPETS[0], SNIPPETS[1], SNIPPETS[2], SNIPPETS[3]].concat()
 }
 
 #[test]
@@ -122,8 +121,8 @@ impl Gpu {
             mapped_at_creation: false,
         });
         let buffers = [
-            storage(bytemuck::cast_slice(&index.light_tables()), wgpu::BufferUsages::STORAGE),
-            storage(bytemuck::cast_slice(&index.star_cells), wgpu::BufferUsages::STORAGE),
+            storage(bytemuck::cast_slice(&index.light_tables().collect::<Vec<_>>()), wgpu::BufferUsages::STORAGE),
+            storage(bytemuck::cast_slice(&index.cell_tables().collect::<Vec<_>>()), wgpu::BufferUsages::STORAGE),
             storage(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE),
             output.clone(),
             storage(bytemuck::bytes_of(&film), wgpu::BufferUsages::UNIFORM),

@@ -94,7 +94,7 @@ impl StarIndex {
         }
         for (share, mean) in [(fade, mean), (1.0 - fade, next)] {
             if share > 0.0 && !mean.is_dark() {
-                add(share, mean.light(g_colour, g_beaming));
+                add(share * self.mean_sky_density(d), mean.light(g_colour, g_beaming));
             }
         }
         light.map(|v| v.min(MAX_STAR_LIGHT))
@@ -209,7 +209,7 @@ mod tests {
     #[test]
     fn wide_pixels_blend_into_the_mean() {
         let index = StarIndex::shared();
-        let mean = index.mean_sky[STAR_LEVELS as usize].radiance;
+        let mean = index.mean_sky[STAR_LEVELS as usize].radiance * index.mean_sky_density(DVec3::Z);
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
         assert!((luminance(index.star_light(d, dx, dy, 1.0, 1.0)) / mean - 1.0).abs() < 1e-3);
         let mut before: Option<f64> = None;
