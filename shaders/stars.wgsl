@@ -1,8 +1,7 @@
 // The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule), where the reasons are.
-// Reads light_table(i), star_cell(i) and to_sky(d), defined where the bindings are; the constants in capitals that are not here come from
+// Reads light_table(i), star_cell(i), to_sky(d) and least_patch(), defined where the bindings are; the constants in capitals that are not here come from
 // StarIndex::wgsl_constants.
 
-const STAR_MIN_AREA: f32 = 1e-3;
 const STAR_TINY_AREA: f32 = 1e-30;
 const MAX_STAR_LIGHT: f32 = 1e9;
 
@@ -89,7 +88,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
     let down = q_axis * dx.x - p_axis * dx.y;
     let area = abs(dx.x * dy.y - dx.y * dy.x);
     let density = mean_sky_density(mean.w, d);
-    let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
+    let magnification = 1.0 / max(max(area, least_patch() * stretch2), STAR_TINY_AREA);
     // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe runs whatever
     // stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break; }` finds no star there, Mesa 22.3.)
     loop {

@@ -9,7 +9,7 @@ use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::turbulence::Turbulence;
 use crate::scene::{Disk, Effects, Scene, View};
-use crate::sky::StarIndex;
+use crate::sky::{StarIndex, least_patch};
 use glam::DMat3;
 use std::sync::Arc;
 
@@ -31,6 +31,7 @@ pub struct Shader<'a> {
     turbulence: Option<Turbulence>,
     /// `None`: no stars.
     stars: Option<Arc<StarIndex>>,
+    least_patch: f64,
     chart_to_sky: DMat3,
     transparent: bool,
 }
@@ -45,6 +46,7 @@ impl<'a> Shader<'a> {
             profile: TemperatureProfile::new(scene.matter_spin()),
             turbulence: scene.turbulence(),
             stars: scene.shows_stars().then_some(stars),
+            least_patch: least_patch(scene.pixel_angle(lens.height)),
             chart_to_sky: scene.chart_to_sky(),
             transparent,
         }
@@ -110,7 +112,9 @@ impl<'a> Shader<'a> {
         let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
         let [dx, dy] = here.footprint.map(|change| self.chart_to_sky * change);
-        stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * self.scene.sky.stars_brightness)
+        stars
+            .star_light(d, [dx, dy], shift.colour, shift.beaming, self.least_patch)
+            .map(|v| v * self.scene.sky.stars_brightness)
     }
 
     /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.

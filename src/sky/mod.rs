@@ -10,3 +10,4 @@ mod stars;
 
 pub use field::StarField;
 pub use index::StarIndex;
+pub use stars::least_patch;

@@ -144,6 +144,6 @@ mod tests {
                 + (star.colour * 1e3).round() as i64
                 + (star.direction.x * 1e6) as i64
         });
-        assert_eq!(sum, 26417580);
+        assert_eq!(sum, 26_696_065);
     }
 }
