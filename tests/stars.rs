@@ -312,12 +312,14 @@ fn higher_images_have_the_flux_that_the_lens_equation_gives() {
         renderer.scene.given_stars = given(&stars);
         for (image, d) in &stars[0].images[2..] {
             renderer.scene.camera =
-                Camera { forward: *d, ..looking_at_the_hole(1e-2 * f64::from(size[1]) * image.magnification) };
+                Camera { forward: *d, ..looking_at_the_hole(2e-2 * f64::from(size[1]) * image.magnification) };
             let light = Light::new(&mut renderer, size);
             let found = light.near(light.screen.place(*d).unwrap(), 20);
             let expected = stars[0].flux() * image.magnification * stars[0].gain();
             println!("{name} {image:?}: {}", found / expected);
-            assert!((found / expected - 1.0).abs() < 0.01, "{name} {image:?}: {}", found / expected);
+            // An f32 knows directions to some hundredths of such small pixels.
+            let tolerance = if name == "cpu" { 0.01 } else { 0.03 };
+            assert!((found / expected - 1.0).abs() < tolerance, "{name} {image:?}: {}", found / expected);
         }
     }
 }
