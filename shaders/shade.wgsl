@@ -39,6 +39,11 @@ fn to_sky(d: vec3<f32>) -> vec3<f32> {
     return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
 }
 
+// Of stars.rs.
+fn least_patch() -> f32 {
+    return frame.sky_z.w;
+}
+
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;

@@ -9,8 +9,9 @@ use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::turbulence::Turbulence;
 use crate::scene::{Disk, Effects, Scene, View};
-use crate::sky::StarIndex;
+use crate::sky::{StarIndex, least_patch};
 use glam::DMat3;
+use std::sync::Arc;
 
 /// How the effects let frequency shifts show: the shift that colours, and the one that beams.
 #[derive(Clone, Copy)]
@@ -29,13 +30,14 @@ pub struct Shader<'a> {
     profile: TemperatureProfile,
     turbulence: Option<Turbulence>,
     /// `None`: no stars.
-    stars: Option<&'static StarIndex>,
+    stars: Option<Arc<StarIndex>>,
+    least_patch: f64,
     chart_to_sky: DMat3,
     transparent: bool,
 }
 
 impl<'a> Shader<'a> {
-    pub fn new(scene: &'a Scene, lens: &'a Lens, transparent: bool) -> Self {
+    pub fn new(scene: &'a Scene, lens: &'a Lens, stars: Arc<StarIndex>, transparent: bool) -> Self {
         Self {
             scene,
             lens,
@@ -43,7 +45,8 @@ impl<'a> Shader<'a> {
             log_reference: scene.disk.map_or(0.0, |d| BlackbodyTable::shared().ln_luminance(d.temperature)),
             profile: TemperatureProfile::new(scene.matter_spin()),
             turbulence: scene.turbulence(),
-            stars: scene.shows_stars().then(StarIndex::shared),
+            stars: scene.shows_stars().then_some(stars),
+            least_patch: least_patch(scene.pixel_angle(lens.height)),
             chart_to_sky: scene.chart_to_sky(),
             transparent,
         }
@@ -78,7 +81,7 @@ impl<'a> Shader<'a> {
         if here.fate != Fate::Escaped {
             return [light[0], light[1], light[2], 1.0];
         }
-        if let Some(stars) = self.stars.filter(|_| !self.transparent && open > 0.0) {
+        if let Some(stars) = self.stars.as_deref().filter(|_| !self.transparent && open > 0.0) {
             let rgb = self.sky_light(stars, here);
             (0..3).for_each(|c| light[c] += open * rgb[c]);
         }
@@ -119,7 +122,9 @@ impl<'a> Shader<'a> {
         let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
         let [dx, dy] = here.footprint.map(|change| self.chart_to_sky * change);
-        stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * self.scene.sky.stars_brightness)
+        stars
+            .star_light(d, [dx, dy], shift.colour, shift.beaming, self.least_patch)
+            .map(|v| v * self.scene.sky.stars_brightness)
     }
 
     /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.

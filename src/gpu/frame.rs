@@ -260,11 +260,7 @@ impl GpuTracer {
         let max_side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
         let plan = Plan::new(request, bytes, max_side, steps, samples);
 
-        if self.tables.is_none() {
-            self.tables = Some(Tables::new(&self.device)?);
-        }
-        let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
-        tables.update(&self.device, scene)?;
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
         let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
         let size = Size { tile: plan.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;

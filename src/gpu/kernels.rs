@@ -286,7 +286,7 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
     ];
-    let constants = sky::StarIndex::shared().wgsl_constants();
+    let constants = sky::StarIndex::wgsl_constants();
     let (_, driver) = source.driver(target);
     join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
 }

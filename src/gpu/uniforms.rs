@@ -8,6 +8,7 @@ use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
+use crate::sky::least_patch;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 
@@ -102,7 +103,7 @@ impl FrameUniform {
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
             sky_x: with(sky.x_axis, scene.sky.stars_brightness),
             sky_y: with(sky.y_axis, 0.0),
-            sky_z: with(sky.z_axis, 0.0),
+            sky_z: with(sky.z_axis, least_patch(scene.pixel_angle(lens.height))),
             disk: four(
                 disk.temperature,
                 BlackbodyTable::shared().ln_luminance(disk.temperature),

@@ -389,6 +389,8 @@ static void sky(Watch *watch, BhrContext *context) {
     CHECK(value.flags == (BHR_SKY_STARS | BHR_SKY_MILKY_WAY), "the default sky's flags are %#x", (unsigned)value.flags);
     value.flags = 0x1000;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_sky(context, &value));
+    value.flags = BHR_SKY_PROCEDURAL | 0x80000000u;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "0x80000002", bhr_set_sky(context, &value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "sky", bhr_sky_init(NULL, sizeof value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_sky_init(&value, sizeof value - 1));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_sky(NULL, NULL));
@@ -405,6 +407,16 @@ static void sky(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_sky_init(&value, sizeof value));
     CHECK_OK(bhr_get_sky(context, &value));
     CHECK(value.flags == 0, "a black sky has flags %#x", (unsigned)value.flags);
+    static const uint64_t seeds[] = {0, 1, UINT64_MAX};
+    for (size_t i = 0; i < COUNT_OF(seeds); i++) {
+        CHECK_OK(bhr_sky_init(&value, sizeof value));
+        value.flags = BHR_SKY_PROCEDURAL | (i % 2 ? BHR_SKY_STARS : 0), value.seed = seeds[i];
+        CHECK_OK(bhr_set_sky(context, &value));
+        BhrSky back;
+        CHECK_OK(bhr_sky_init(&back, sizeof back));
+        CHECK_OK(bhr_get_sky(context, &back));
+        CHECK(back.flags == value.flags && back.seed == seeds[i], "the procedural sky %zu has flags %#x", i, (unsigned)back.flags);
+    }
     CHECK_OK(bhr_sky_init(&value, sizeof value));
     CHECK_OK(bhr_set_sky(context, &value));
     watch_begin(watch, context);
