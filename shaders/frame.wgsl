@@ -18,7 +18,7 @@ struct Frame {
     zamo: vec4<f32>,
     // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
-    // Columns that take chart directions to sky axes; w of the first: brightness of the stars.
+    // Columns that take chart directions to sky axes; w of the first: brightness of the stars, of the second: of the maps.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,

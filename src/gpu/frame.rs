@@ -310,6 +310,9 @@ impl GpuTracer {
             look: Look {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
+                milky_way: scene.shows_milky_way() && !request.transparent,
+                map: scene.shown_map().is_some() && !request.transparent,
+                grid: scene.shows_grid() && !request.transparent,
                 all_effects: scene.effects.all_light(),
                 disk: scene.disk_u().is_some(),
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
@@ -522,9 +525,9 @@ impl FrameBuffers {
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
         let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
         let records = self.makers.group(setup.making.source)?;
-        let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let shared = [frame, pass.clone(), light, cells];
+        let shared = [frame, pass.clone(), light, cells, milky_way, map];
         let taking = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &mut Kernels, source| {
                 let compiled = match looks.several_samples {

@@ -1,6 +1,7 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made once), and the disk's temperature profile
 //! (made anew when the matter's spin changes). Textures of TABLE_WIDTH entries a row (shade.wgsl says why).
 
+use super::sky_maps::SkyMaps;
 use super::{Device, Texture};
 use crate::error::Result;
 use crate::physics::disk_flux::TemperatureProfile;
@@ -12,8 +13,9 @@ const TABLE_WIDTH: usize = 2048;
 
 pub struct Tables {
     /// Blackbodies, stars, mean sky, and in its last row the profile: `light_tables` of the shaders.
-    pub light: Texture,
-    pub star_cells: Texture,
+    light: Texture,
+    star_cells: Texture,
+    sky_maps: SkyMaps,
     profile_row: u32,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
@@ -40,11 +42,18 @@ impl Tables {
         let star_cells = table("star cells", wgpu::TextureFormat::R32Uint, cell_rows)?;
         device.write_rows(&light, 0, bytemuck::cast_slice(&fixed))?;
         device.write_rows(&star_cells, 0, bytemuck::cast_slice(&cells))?;
-        Ok(Self { light, star_cells, profile_row, profile_spin: None })
+        let sky_maps = SkyMaps::new(device)?;
+        Ok(Self { light, star_cells, sky_maps, profile_row, profile_spin: None })
     }
 
-    /// Brings the profile up to the scene's disk.
+    /// In the order of group 0 of shade.wgsl.
+    pub fn textures(&self) -> [&Texture; 4] {
+        [&self.light, &self.star_cells, self.sky_maps.milky_way(), self.sky_maps.map()]
+    }
+
+    /// Brings the profile up to the scene's disk, and the maps up to its sky.
     pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+        self.sky_maps.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());

@@ -101,7 +101,7 @@ impl FrameUniform {
             zamo: zamo(frame),
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
             sky_x: with(sky.x_axis, scene.sky.stars_brightness),
-            sky_y: with(sky.y_axis, 0.0),
+            sky_y: with(sky.y_axis, scene.sky.map_brightness),
             sky_z: with(sky.z_axis, 0.0),
             disk: four(
                 disk.temperature,

@@ -32,9 +32,11 @@ impl Sky {
     /// The real sky: the embedded star catalogue.
     pub const STARS: u32 = 1;
     pub const PROCEDURAL: u32 = 2;
-    /// The embedded Milky Way glow. Accepted, being the default; not drawn by this version.
+    /// The embedded Milky Way glow.
     pub const MILKY_WAY: u32 = 4;
+    /// The host's picture: `Scene::sky_map`.
     pub const MAP: u32 = 8;
+    /// The coordinate grid.
     pub const GRID: u32 = 16;
     pub const MAX_BRIGHTNESS: f64 = 1e6;
 
@@ -62,10 +64,10 @@ impl Sky {
         if !length.is_finite() || (length - 1.0).abs() > 1e-3 {
             return Err(Error::argument(format!("sky orientation has length {length}; it must be a unit quaternion")));
         }
-        let later = self.flags & (Self::PROCEDURAL | Self::MAP | Self::GRID);
+        let later = self.flags & Self::PROCEDURAL;
         if later != 0 {
             return Err(Error::unsupported(format!(
-                "sky flags {later:#x} (PROCEDURAL, MAP, GRID) are not drawn by this version; STARS, MILKY_WAY and 0 are accepted"
+                "sky flags {later:#x} (PROCEDURAL) are not drawn by this version; STARS, MILKY_WAY, MAP, GRID and 0 are accepted"
             )));
         }
         Ok(())

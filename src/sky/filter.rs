@@ -1,0 +1,148 @@
+//! The light of a sky map in a pixel, filtered over the pixel's patch of sky, and what frequency shifts make of it. The same in both
+//! tracers: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no holes.
+//!
+//! The patch is taken for an ellipse, whose axes are the singular values of the pixel's derivatives. Trilinear taps, each about as wide as
+//! the minor axis, stand along the major one: a tap blurs by its own width already, so they are spread over
+//! sqrt(major^2 - minor^2), which gives the variance of the whole (P. Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping", on
+//! elliptical filters). A tap's weight is the length of that line that lies nearer to it than to its neighbours, so the
+//! sum changes without steps from pixel to pixel. Longer ellipses than MAX_SPREAD allows are taken for wider ones.
+
+use super::map::{Level, SkyMap, unpack};
+use crate::physics::blackbody::BlackbodyTable;
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Longest line that taps stand on, in minor axes; so there are at most 7, the outer ones at half weight and more.
+const MAX_SPREAD: f64 = 6.0;
+/// sr. A pixel that sees more of the sky than this, or of whose patch nothing is known, gets the mean of all.
+const WHOLE_SKY: f64 = 100.0;
+/// rad. Keeps divisions finite for cameras of no field of view at all.
+const TINY_AXIS: f64 = 1e-12;
+/// Brightest light: finite in f32, whatever the host multiplies it by.
+const MAX_MAP_LIGHT: f64 = 1e9;
+
+// Colours are taken for temperatures from 2500 K to 25000 K: those of the reddest and the bluest stars.
+/// ln(blue / red) of such blackbodies, linear Rec. 709.
+const COOLEST_RATIO: f64 = -2.696;
+const HOTTEST_RATIO: f64 = 0.973;
+/// Coefficients of 1000 K / T in powers of ln(blue / red), between those: least squares, at most 0.15 % off.
+const INVERSE_TEMPERATURE: [f64; 6] =
+    [0.152_906_4, -0.102_254_5, -0.005_097_082, -0.005_358_591, -0.003_424_309, -0.000_596_459_5];
+/// Least blue and red that have a colour: that of darker light is not looked at.
+const TINY_LIGHT: f64 = 1e-9;
+
+/// A line of taps.
+struct Taps {
+    level: f64,
+    /// From each to the next; 0 along with a `spread` of 0.
+    step: DVec3,
+    /// Length of the line, in steps.
+    spread: f64,
+}
+
+impl SkyMap {
+    /// Linear Rec. 709 radiance of the map in a pixel at rest. `d`: unit direction in sky axes; `dx`, `dy`: its derivatives by pixel.
+    pub fn light(&self, d: DVec3, dx: DVec3, dy: DVec3) -> [f64; 3] {
+        let taps = self.taps(d, dx, dy);
+        let reach = 0.5 * taps.spread + 0.5;
+        // The neighbours that get any weight.
+        let most = reach.ceil() as i32 - 1;
+        let mut sum = [0.0; 3];
+        let mut total = 0.0;
+        for i in -most..=most {
+            let i = f64::from(i);
+            let weight = (reach - i.abs()).min(1.0);
+            let rgb = self.trilinear(d + taps.step * i, taps.level);
+            (0..3).for_each(|c| sum[c] += weight * rgb[c]);
+            total += weight;
+        }
+        sum.map(|v| v / total)
+    }
+
+    fn taps(&self, d: DVec3, dx: DVec3, dy: DVec3) -> Taps {
+        let last = self.levels().len() as f64 - 1.0;
+        let stretch2 = dx.length_squared() + dy.length_squared();
+        // As a negated condition: for NaN too.
+        if !(stretch2 < WHOLE_SKY) {
+            return Taps { level: last, step: DVec3::ZERO, spread: 0.0 };
+        }
+        // Singular values of (dx, dy) from those of its square: s1^2 + s2^2 and s1^2 - s2^2.
+        let p = d.any_orthonormal_vector();
+        let q = d.cross(p);
+        let (ax, ay, bx, by) = (dx.dot(p), dx.dot(q), dy.dot(p), dy.dot(q));
+        let cross = ax * ay + bx * by;
+        let half_difference = 0.5 * (ax * ax + bx * bx - ay * ay - by * by);
+        let half_split = half_difference.hypot(cross);
+        let major = (0.5 * stretch2 + half_split).sqrt().max(TINY_AXIS);
+        let minor = ((ax * by - ay * bx).abs() / major).max(major / (1.0 + MAX_SPREAD * MAX_SPREAD).sqrt());
+        let ratio = major / minor;
+        // Of the major axis, by the half-angle formula that does not cancel; any for a circle, which has no spread.
+        let (x, y) = match half_difference >= 0.0 {
+            true => (half_split + half_difference, cross),
+            false => (cross, half_split - half_difference),
+        };
+        let axis = (p * x + q * y).normalize_or_zero();
+        Taps {
+            level: (minor / self.texel_angle()).log2().clamp(0.0, last),
+            step: axis * minor,
+            spread: (ratio * ratio - 1.0).max(0.0).sqrt(),
+        }
+    }
+
+    /// rad. The smaller side of a texel of the finest level at the equator.
+    fn texel_angle(&self) -> f64 {
+        let [width, height] = self.levels().first().map_or([1, 1], |level| level.size);
+        (PI / f64::from(height)).min(TAU / f64::from(width))
+    }
+
+    /// Between levels and texels. `towards`: not 0; of any length.
+    fn trilinear(&self, towards: DVec3, level: f64) -> [f64; 3] {
+        let u = 0.5 - towards.y.atan2(towards.x) / TAU;
+        let v = 0.5 - towards.z.atan2(towards.x.hypot(towards.y)) / PI;
+        let finer = level as usize;
+        let share = level - finer as f64;
+        let levels = self.levels();
+        let [low, high] = [finer, finer + 1]
+            .map(|i| levels.get(i.min(levels.len() - 1)).map_or([0.0; 3], |level| level.bilinear(u, v)));
+        std::array::from_fn(|c| low[c] + (high[c] - low[c]) * share)
+    }
+}
+
+impl Level {
+    /// Around the sky in u; at the poles the outermost rows, which are constant, go on.
+    fn bilinear(&self, u: f64, v: f64) -> [f64; 3] {
+        let [width, height] = self.size.map(f64::from);
+        let (x, y) = (u * width - 0.5, v * height - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let (sx, sy) = (x - left, y - top);
+        let column = |x: f64| if x < 0.0 { self.size[0] - 1 } else { x as u32 % self.size[0] };
+        let row = |y: f64| self.row((y.max(0.0) as u32).min(self.size[1] - 1));
+        let texel =
+            |x: f64, y: f64| row(y).get(column(x) as usize).map_or([0.0; 3], |texel| unpack(*texel).map(f64::from));
+        let [a, b, c, d] =
+            [(left, top), (left + 1.0, top), (left, top + 1.0), (left + 1.0, top + 1.0)].map(|(x, y)| texel(x, y));
+        std::array::from_fn(|i| {
+            let (above, below) = (a[i] + (b[i] - a[i]) * sx, c[i] + (d[i] - c[i]) * sx);
+            above + (below - above) * sy
+        })
+    }
+}
+
+/// Light of a map under a shift; shifts as for `BlackbodyTable::shifted_blackbody`. What a picture says of light is three numbers, not its
+/// spectrum; so it is taken for light that shifts as a blackbody of its blue-to-red ratio does, of 2500 K to 25000 K: each channel
+/// is multiplied by what that blackbody's is. Exact for the light of stars and dust; unshifted light stays as it is.
+pub fn shifted_map_light(rgb: [f64; 3], g_colour: f64, g_beaming: f64) -> [f64; 3] {
+    let ratio = rgb[2].max(TINY_LIGHT) / rgb[0].max(TINY_LIGHT);
+    let temperature = colour_temperature(ratio.ln());
+    let table = BlackbodyTable::shared();
+    let log_reference = table.ln_luminance(temperature);
+    let rest = table.shifted_blackbody(temperature, log_reference, 1.0, 1.0);
+    let seen = table.shifted_blackbody(temperature, log_reference, g_colour, g_beaming);
+    std::array::from_fn(|c| (rgb[c] * (seen[c] / rest[c])).min(MAX_MAP_LIGHT))
+}
+
+/// K, of the blackbody of this ln(blue / red).
+fn colour_temperature(ln_ratio: f64) -> f64 {
+    let x = ln_ratio.clamp(COOLEST_RATIO, HOTTEST_RATIO);
+    1000.0 / INVERSE_TEMPERATURE.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
+}
