@@ -40,6 +40,8 @@ struct Frame {
     view: u32,
     // Seed of the turbulence, and its generation at the reference time.
     pattern: vec2<u32>,
+    // Columns and rows of the finest levels of the Milky Way and of the host's map.
+    map_sizes: vec4<u32>,
 }
 
 const VIEW_REDSHIFT: u32 = 1u;

@@ -90,10 +90,10 @@ fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
     let taps = map_taps(here.footprint);
     var light = vec3<f32>(0.0);
     if SHOWS_MILKY_WAY {
-        light = shifted_map_light(map_light(milky_way, d, taps), shift.colour, shift.beaming);
+        light = shifted_map_light(map_light(milky_way, frame.map_sizes.xy, d, taps), shift.colour, shift.beaming);
     }
     if SHOWS_MAP {
-        light += shifted_map_light(map_light(sky_map, d, taps), shift.colour, shift.beaming);
+        light += shifted_map_light(map_light(sky_map, frame.map_sizes.zw, d, taps), shift.colour, shift.beaming);
     }
     return light;
 }

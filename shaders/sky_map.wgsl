@@ -34,38 +34,45 @@ fn map_taps(footprint: Footprint) -> Taps {
     return Taps(1e3, vec3<f32>(0.0), 0.0);
 }
 
-// Linear Rec. 709 radiance of a map in a pixel at rest. `d`: sky axes.
-fn map_light(map: texture_2d<f32>, d: vec3<f32>, taps: Taps) -> vec3<f32> {
-    let size = textureDimensions(map);
+// Linear Rec. 709 radiance of a map, whose finest level is of `size`, in a pixel at rest. `d`: sky axes.
+fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, taps: Taps) -> vec3<f32> {
     let texel_angle = min(PI / f32(size.y), TAU / f32(size.x));
-    let last = firstLeadingBit(max(size.x, size.y));
+    let last = firstLeadingBit(size.x);
     let level = clamp(taps.level - log2(texel_angle), 0.0, f32(last));
     let reach = 0.5 * taps.spread + 0.5;
     let most = ceil(reach) - 1.0;
+    let count = 1u + 2u * u32(most);
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    // At most 7 turns.
-    for (var i = -most; i <= most; i += 1.0) {
+    for (var k = 0u; k < count; k += 1u) {
+        let i = f32(k) - most;
         let weight = clamp(reach - abs(i), 0.0, 1.0);
-        sum += weight * map_trilinear(map, d + taps.step * i, level, last);
+        sum += weight * map_trilinear(map, size, d + taps.step * i, level, last);
         total += weight;
     }
     return sum / total;
 }
 
-fn map_trilinear(map: texture_2d<f32>, towards: vec3<f32>, level: f32, last: u32) -> vec3<f32> {
+fn map_trilinear(map: texture_2d<f32>, finest: vec2<u32>, towards: vec3<f32>, level: f32, last: u32) -> vec3<f32> {
     let uv = vec2<f32>(
         0.5 - arctan2(towards.y, towards.x) / TAU,
         0.5 - arctan2(towards.z, sqrt(towards.x * towards.x + towards.y * towards.y)) / PI,
     );
     let finer = min(u32(level), last);
-    let low = map_bilinear(map, uv, finer);
-    let high = map_bilinear(map, uv, min(finer + 1u, last));
+    let low = map_bilinear(map, finest, uv, finer);
+    let high = map_bilinear(map, finest, uv, min(finer + 1u, last));
     return low + (high - low) * (level - f32(finer));
 }
 
-fn map_bilinear(map: texture_2d<f32>, uv: vec2<f32>, level: u32) -> vec3<f32> {
-    let size = vec2<i32>(textureDimensions(map, level));
+// Where a level begins in the texture (level_place of src/gpu/sky_maps.rs).
+fn level_place(finest: vec2<u32>, level: u32) -> vec2<i32> {
+    let below = vec2<u32>(finest.x - (finest.x >> (max(level, 1u) - 1u)), finest.y);
+    return vec2<i32>(select(below, vec2<u32>(0u), level == 0u));
+}
+
+fn map_bilinear(map: texture_2d<f32>, finest: vec2<u32>, uv: vec2<f32>, level: u32) -> vec3<f32> {
+    let size = vec2<i32>(max(finest >> vec2<u32>(level), vec2<u32>(1u)));
+    let begin = level_place(finest, level);
     let place = uv * vec2<f32>(size) - 0.5;
     let corner = floor(place);
     let share = place - corner;
@@ -73,10 +80,10 @@ fn map_bilinear(map: texture_2d<f32>, uv: vec2<f32>, level: u32) -> vec3<f32> {
     let right = i32(corner.x) + 1;
     let columns = vec2<i32>(min(left, size.x - 1), select(right, 0, right >= size.x));
     let rows = clamp(vec2<i32>(i32(corner.y), i32(corner.y) + 1), vec2<i32>(0), vec2<i32>(size.y - 1));
-    let a = textureLoad(map, vec2<i32>(columns.x, rows.x), level).xyz;
-    let b = textureLoad(map, vec2<i32>(columns.y, rows.x), level).xyz;
-    let c = textureLoad(map, vec2<i32>(columns.x, rows.y), level).xyz;
-    let d = textureLoad(map, vec2<i32>(columns.y, rows.y), level).xyz;
+    let a = textureLoad(map, begin + vec2<i32>(columns.x, rows.x), 0).xyz;
+    let b = textureLoad(map, begin + vec2<i32>(columns.y, rows.x), 0).xyz;
+    let c = textureLoad(map, begin + vec2<i32>(columns.x, rows.y), 0).xyz;
+    let d = textureLoad(map, begin + vec2<i32>(columns.y, rows.y), 0).xyz;
     let above = a + (b - a) * share.x;
     let below = c + (d - c) * share.x;
     return above + (below - above) * share.y;

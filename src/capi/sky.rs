@@ -16,7 +16,7 @@ pub const BHR_SKY_STARS: u32 = 1u32;
 /// BhrSky.flags: a random star field. UNSUPPORTED in this version.
 pub const BHR_SKY_PROCEDURAL: u32 = 2u32;
 /// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (a tenth of a second): true to
-/// about a degree, six times as bright next to the stars as it is to the eye.
+/// about a degree, eight times as bright next to the stars as it is to the eye.
 pub const BHR_SKY_MILKY_WAY: u32 = 4u32;
 /// BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one.
 pub const BHR_SKY_MAP: u32 = 8u32;
@@ -127,7 +127,7 @@ pub unsafe extern "C" fn bhr_get_sky(context: *const BhrContext, sky: *mut BhrSk
 /// that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
 /// Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
 /// Pictures of more than 16384 x 8192 are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
-/// a texel in the context and as much on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
+/// a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

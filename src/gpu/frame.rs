@@ -244,7 +244,7 @@ impl GpuTracer {
             FrameTarget::Host if self.maps_pixels(scene) => PixelTarget::Rows,
             FrameTarget::Host => PixelTarget::Packed,
         };
-        let setup = self.set_up(scene, request, kind)?;
+        let mut setup = self.set_up(scene, request, kind)?;
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
@@ -265,6 +265,7 @@ impl GpuTracer {
         }
         let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
         tables.update(&self.device, scene)?;
+        setup.uniform.map_sizes = tables.map_sizes();
         let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
         let size = Size { tile: plan.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;

@@ -48,7 +48,13 @@ impl Tables {
 
     /// In the order of group 0 of shade.wgsl.
     pub fn textures(&self) -> [&Texture; 4] {
-        [&self.light, &self.star_cells, self.sky_maps.milky_way(), self.sky_maps.map()]
+        let [milky_way, map] = self.sky_maps.textures();
+        [&self.light, &self.star_cells, milky_way, map]
+    }
+
+    /// `Frame::map_sizes` of frame.wgsl.
+    pub fn map_sizes(&self) -> [u32; 4] {
+        self.sky_maps.sizes()
     }
 
     /// Brings the profile up to the scene's disk, and the maps up to its sky.

@@ -25,7 +25,7 @@ impl Device {
         layers: u32,
     ) -> Result<Texture> {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        self.any_texture(label, format, dimension, [size[0], size[1], layers], 1, usage)
+        self.any_texture(label, format, dimension, size, layers, usage)
     }
 
     /// What a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as [`Device::scoped`].
@@ -40,13 +40,7 @@ impl Device {
     /// A texture that the host fills ([`Device::write_rows`]) and kernels read. Errors: as [`Device::scoped`].
     pub fn table(&self, label: &str, format: wgpu::TextureFormat, size: [u32; 2]) -> Result<Texture> {
         let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
-        self.any_texture(label, format, wgpu::TextureViewDimension::D2, [size[0], size[1], 1], 1, usage)
-    }
-
-    /// The same with `levels`, of which each has half the columns and rows of the one before ([`Device::write_level`]).
-    pub fn pyramid(&self, label: &str, format: wgpu::TextureFormat, size: [u32; 2], levels: u32) -> Result<Texture> {
-        let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
-        self.any_texture(label, format, wgpu::TextureViewDimension::D2, [size[0], size[1], 1], levels, usage)
+        self.any_texture(label, format, wgpu::TextureViewDimension::D2, size, 1, usage)
     }
 
     fn any_texture(
@@ -54,8 +48,8 @@ impl Device {
         label: &str,
         format: wgpu::TextureFormat,
         dimension: wgpu::TextureViewDimension,
-        [width, height, layers]: [u32; 3],
-        levels: u32,
+        [width, height]: [u32; 2],
+        layers: u32,
         usage: wgpu::TextureUsages,
     ) -> Result<Texture> {
         self.bindings.clear();
@@ -64,7 +58,7 @@ impl Device {
             let raw = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size,
-                mip_level_count: levels,
+                mip_level_count: 1,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format,
@@ -74,8 +68,7 @@ impl Device {
             let view = wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() };
             (raw.clone(), raw.create_view(&view))
         })?;
-        let of_level = |level: u32| u64::from((width >> level).max(1)) * u64::from((height >> level).max(1));
-        let bytes = texel_bytes(format) * u64::from(layers) * (0..levels).map(of_level).sum::<u64>();
+        let bytes = texel_bytes(format) * u64::from(width) * u64::from(height) * u64::from(layers);
         let total = self.byte_count();
         total.fetch_add(bytes, Ordering::Relaxed);
         Ok(Texture { view, raw, bytes, total })
@@ -84,12 +77,11 @@ impl Device {
     /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no whole number
     /// of rows; as [`Device::scoped`].
     pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
-        self.write_level(texture, 0, first_row, data)
+        self.write_part(texture, [0, first_row], texture.raw.width(), data)
     }
 
-    /// The same in another level than the finest, 0.
-    pub fn write_level(&self, texture: &Texture, level: u32, first_row: u32, data: &[u8]) -> Result<()> {
-        let width = (texture.raw.width() >> level).max(1);
+    /// The same of `width` columns, from the place `first` on.
+    pub fn write_part(&self, texture: &Texture, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
         let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
         if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
             return Err(Error::internal(format!("{} bytes are no rows of {row_bytes}", data.len())));
@@ -97,8 +89,8 @@ impl Device {
         let height = (data.len() / row_bytes as usize) as u32;
         let target = wgpu::TexelCopyTextureInfo {
             texture: &texture.raw,
-            mip_level: level,
-            origin: wgpu::Origin3d { x: 0, y: first_row, z: 0 },
+            mip_level: 0,
+            origin: wgpu::Origin3d { x: first[0], y: first[1], z: 0 },
             aspect: wgpu::TextureAspect::All,
         };
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None };

@@ -39,6 +39,8 @@ pub struct FrameUniform {
     effects: u32,
     view: u32,
     pattern: [u32; 2],
+    /// Known once the textures are there (`Tables::map_sizes`).
+    pub map_sizes: [u32; 4],
 }
 
 #[repr(C)]
@@ -120,6 +122,7 @@ impl FrameUniform {
             effects: scene.effects.light(),
             view: scene.view as u32,
             pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
+            map_sizes: [1; 4],
         })
     }
 }

@@ -67,3 +67,76 @@ pub fn under_grid(light: [f64; 3], d: DVec3, dx: DVec3, dy: DVec3) -> [f64; 3] {
         })
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn towards(ra: f64, dec: f64) -> DVec3 {
+        let (ra, dec) = (ra.to_radians(), dec.to_radians());
+        DVec3::new(dec.cos() * ra.cos(), dec.cos() * ra.sin(), dec.sin())
+    }
+
+    /// Square pixels of `scale` rad, north up.
+    fn over_black(d: DVec3, scale: f64) -> [f64; 3] {
+        let east = DVec3::new(-d.y, d.x, 0.0).normalize();
+        under_grid([0.0; 3], d, east * -scale, d.cross(east) * -scale)
+    }
+
+    /// The light along a path, in units of a line's, times pixels: the width of the line that it crosses.
+    fn width(path: impl Fn(f64) -> DVec3, scale: f64) -> f64 {
+        const STEPS: i32 = 4000;
+        let reach = 5.0;
+        let sample =
+            |i: i32| over_black(path(scale * reach * f64::from(i) / f64::from(STEPS)), scale)[1] / GRID_COLOUR[1];
+        (-STEPS..=STEPS).map(sample).sum::<f64>() * reach / f64::from(STEPS)
+    }
+
+    #[test]
+    fn lines_are_as_wide_everywhere_and_at_any_scale() {
+        for scale in [1e-5, 1e-3, 4e-3] {
+            for dec in [0.0_f64, 20.0, -50.0, 70.0] {
+                let step = |t: f64| t.to_degrees() / (dec + 3.1).to_radians().cos();
+                let meridian = width(|t| towards(15.0 + step(t), dec + 3.1), scale);
+                let parallel = width(|t| towards(22.0, 30.0_f64.copysign(dec) + t.to_degrees()), scale);
+                assert!((meridian - GRID_WIDTH).abs() < 0.02, "{scale} {dec}: {meridian}");
+                assert!((parallel - GRID_WIDTH).abs() < 0.02, "{scale} {dec}: {parallel}");
+            }
+        }
+    }
+
+    #[test]
+    fn lines_are_where_they_belong() {
+        let scale = 1e-3;
+        for hour in 0..24 {
+            let ra = 15.0 * f64::from(hour);
+            let on = over_black(towards(ra, 7.0), scale);
+            assert_eq!(on, if hour == 0 { GRID_ORIGIN_COLOUR } else { GRID_COLOUR }, "hour {hour}");
+            assert_eq!(over_black(towards(ra + 7.0, 7.0), scale), [0.0; 3]);
+            // Near the poles every sixth goes on.
+            let cap = over_black(towards(ra, 80.0), scale);
+            assert_eq!(cap != [0.0; 3], hour % 6 == 0, "hour {hour} near the pole");
+        }
+        for dec in [-75.0, -30.0, 15.0, 60.0] {
+            assert_eq!(over_black(towards(7.0, dec), scale), GRID_COLOUR, "declination {dec}");
+        }
+        assert_eq!(over_black(towards(7.0, 0.0), scale), GRID_ORIGIN_COLOUR);
+    }
+
+    #[test]
+    fn dense_lines_become_a_tint_and_nothing_is_odd() {
+        let tint = under_grid([0.0; 3], DVec3::X, DVec3::splat(1e30), DVec3::splat(1e30));
+        let wanted = GRID_COLOUR.map(|c| c * (1.0 - (1.0 - GRID_TINT) * (1.0 - GRID_TINT)));
+        assert!((0..3).all(|c| (tint[c] - wanted[c]).abs() < 1e-12), "{tint:?}");
+        // As coverage of both families.
+        let dense = under_grid([0.0; 3], towards(7.0, 50.0), DVec3::Y * 1.0, DVec3::Z * 1.0);
+        assert!((0..3).all(|c| (dense[c] - wanted[c]).abs() < 1e-12), "{dense:?}");
+        let light = [1e9, 0.0, 3.0];
+        for d in [DVec3::Z, DVec3::NEG_Z, DVec3::X, DVec3::NEG_X] {
+            for dx in [DVec3::ZERO, DVec3::X, DVec3::NAN, DVec3::Y * 1e-300, DVec3::splat(f64::INFINITY)] {
+                let seen = under_grid(light, d, dx, DVec3::Y * 1e-3);
+                assert!(seen.iter().all(|v| (0.0..=1e9).contains(v)), "{d} {dx}: {seen:?}");
+            }
+        }
+    }
+}

@@ -19,7 +19,8 @@ pub const MAX_MAP_SIZE: [u32; 2] = [16384, 8192];
 
 /// A picture of the whole sky.
 pub struct SkyMap {
-    /// Finest first; each has half the columns and rows of the one before, rounded down, and the last is one texel: the mean.
+    /// Finest first, at least as wide as high; each has half the columns and rows of the one before, rounded down, and the last is one
+    /// texel: the mean.
     levels: Vec<Level>,
 }
 
@@ -80,7 +81,8 @@ impl SkyMap {
 
     /// Of `size`, not 0, and its rows. Errors: OUT_OF_MEMORY.
     pub fn of_rows(size: [u32; 2], row: &RowReader<'_>) -> Result<Self> {
-        let finest = [0, 1].map(|i| size[i].min(MAX_MAP_SIZE[i]));
+        let height = size[1].min(MAX_MAP_SIZE[1]);
+        let finest = [size[0].clamp(height, MAX_MAP_SIZE[0]), height];
         let mut levels = vec![Level::new(&Source { size, row }, finest)?];
         while let Some(last) = levels.last().filter(|level| level.size != [1, 1]) {
             let read = |y: u32, out: &mut [[f32; 3]]| {
@@ -98,7 +100,7 @@ impl SkyMap {
 }
 
 impl Level {
-    /// The source's light, averaged over the solid angle of each texel of `size`, which is at most the source's.
+    /// The source's light, averaged over the solid angle of each texel.
     fn new(source: &Source<'_>, size: [u32; 2]) -> Result<Self> {
         let [width, height] = size.map(|side| side as usize);
         let mut texels = Vec::new();
@@ -287,4 +289,186 @@ pub fn unpack(texel: u32) -> [f32; 3] {
     // 2^(exponent - 24), from its bits.
     let scale = f32::from_bits(((texel >> 27) + 103) << 23);
     [0, 9, 18].map(|shift| ((texel >> shift) & 511) as f32 * scale)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::Layout;
+
+    const FORMATS: [PixelFormat; 4] =
+        [PixelFormat::Rgba8Srgb, PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
+
+    /// Light that differs in every channel, by column and row.
+    fn pattern(x: u32, y: u32) -> [f32; 3] {
+        let v = |k: u32| ((x * 37 + y * 101 + k * 59) % 97) as f32 / 97.0;
+        [0.1 + v(0), v(1) * 3.0 + 0.2, v(2) + 0.3]
+    }
+
+    fn of_pattern(size: [u32; 2]) -> SkyMap {
+        SkyMap::of_rows(size, &|y, out| (0..).zip(out).for_each(|(x, out)| *out = pattern(x, y))).unwrap()
+    }
+
+    /// Of a level: light times solid angle, over 4 pi.
+    fn mean(level: &Level) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        let step = PI / f64::from(level.size[1]);
+        for y in 0..level.size[1] {
+            let weight = ((f64::from(y) * step).cos() - (f64::from(y + 1) * step).cos()) / 2.0;
+            for texel in level.row(y) {
+                add(&mut sum, weight / f64::from(level.size[0]), unpack(*texel).map(f64::from));
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn packing_is_exact_to_nine_bits_and_takes_anything() {
+        let mut largest = 0.0_f32;
+        for i in 0..200_000_u32 {
+            let top = 2.0_f32.powf(i as f32 / 200_000.0 * 40.0 - 24.0).min(MAX_LIGHT);
+            let rgb = [top, top * 0.37, top * (i % 7) as f32 / 7.0];
+            let back = unpack(pack(rgb));
+            for c in 0..3 {
+                largest = largest.max((back[c] - rgb[c]).abs() / top.max(2.0_f32.powi(-16)));
+            }
+        }
+        assert!(largest <= 1.0 / 512.0, "{largest}");
+        for exact in [0.0, 1.0, 0.5, 65408.0, 2.0_f32.powi(-24), 511.0 / 512.0] {
+            assert_eq!(unpack(pack([exact; 3])), [exact; 3]);
+        }
+        let odd = unpack(pack([f32::NAN, -1.0, f32::INFINITY]));
+        assert_eq!(odd, [0.0, 0.0, 65408.0]);
+        // A mantissa that rounds up to 512 goes over into the next exponent.
+        assert_eq!(unpack(pack([0.9999, 0.0, 0.0])), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn levels_halve_down_to_one_texel_and_keep_the_mean() {
+        for size in [[1, 1], [2, 1], [1, 7], [64, 32], [37, 53], [300, 11]] {
+            let map = of_pattern(size);
+            let levels = map.levels();
+            assert_eq!(levels[0].size, [size[0].max(size[1]), size[1]]);
+            assert!(levels.windows(2).all(|pair| pair[1].size == pair[0].size.map(|side| (side / 2).max(1))));
+            assert_eq!(levels.last().unwrap().size, [1, 1]);
+            let wanted = mean(&levels[0]);
+            for level in levels {
+                let found = mean(level);
+                for c in 0..3 {
+                    assert!(
+                        (found[c] - wanted[c]).abs() < 3e-3 * wanted[1],
+                        "{size:?} {:?}: {found:?} {wanted:?}",
+                        level.size
+                    );
+                }
+            }
+        }
+    }
+
+    /// The equator's rows of a map twice as wide as high are the picture's, to a texel that is hardly wider than high.
+    #[test]
+    fn rows_are_as_wide_as_high_and_constant_at_the_poles() {
+        let size = [64, 32];
+        let spike = |x: u32, row: u32| {
+            SkyMap::of_rows(size, &move |y, out| out[x as usize] = [f32::from(u8::from(y == row)); 3]).unwrap()
+        };
+        for row in [0, 31] {
+            let map = spike(40, row);
+            let texels = map.levels()[0].row(row);
+            assert!(texels.iter().all(|texel| *texel == texels[0] && *texel != 0), "row {row}");
+        }
+        for row in [1, 5, 15, 16, 30] {
+            // Across the seam too.
+            for x in [0, 20, 63] {
+                let map = spike(x, row);
+                let values = map.levels()[0].row(row).iter().map(|t| f64::from(unpack(*t)[0])).collect::<Vec<_>>();
+                let sum = values.iter().sum::<f64>();
+                assert!((sum - 1.0).abs() < 0.02, "row {row} x {x}: {sum}");
+                let width = sum / values[x as usize];
+                let wanted = 1.0 / (PI * (f64::from(row) + 0.5) / 32.0).sin();
+                assert!((width / wanted - 1.0).abs() < 0.02, "row {row}: {width}, wanted {wanted}");
+            }
+        }
+    }
+
+    /// Every format says the same; alpha and what lies between rows do not matter; bottom-up images neither.
+    #[test]
+    fn formats_and_strides() {
+        let codes = |x: u32, y: u32| [(x * 50 + y) as u8, (y * 60) as u8, 200 - (x * 30) as u8];
+        let mut maps = Vec::new();
+        for format in FORMATS {
+            for stride in [0_i64, 80, -96] {
+                let (width, height) = (5, 4);
+                let step = if stride == 0 { 5 * format.bytes_per_pixel() } else { stride.unsigned_abs() as usize };
+                let mut block = vec![0xff; 4 * step];
+                for y in 0..height {
+                    for x in 0..width {
+                        let rgb = codes(x, y);
+                        let linear = rgb.map(|code| srgb_to_linear(f32::from(code) / 255.0));
+                        let bytes = match format {
+                            PixelFormat::Rgba8Srgb => vec![rgb[0], rgb[1], rgb[2], 7],
+                            PixelFormat::Bgra8Srgb => vec![rgb[2], rgb[1], rgb[0], 9],
+                            PixelFormat::Rgba16F => linear
+                                .iter()
+                                .chain(&[0.25])
+                                .flat_map(|v| half::f16::from_f32(*v).to_ne_bytes())
+                                .collect(),
+                            _ => linear.iter().chain(&[f32::NAN]).flat_map(|v| v.to_ne_bytes()).collect(),
+                        };
+                        let line = if stride < 0 { height - 1 - y } else { y } as usize;
+                        block[line * step + x as usize * bytes.len()..][..bytes.len()].copy_from_slice(&bytes);
+                    }
+                }
+                if (stride.unsigned_abs() as usize) < 5 * format.bytes_per_pixel() && stride != 0 {
+                    continue;
+                }
+                let image = ImageRef::new(Layout { format, width, height, row_stride: stride }, &block).unwrap();
+                maps.push(SkyMap::new(&image).unwrap());
+            }
+        }
+        for map in &maps {
+            for (a, b) in map.levels()[0].texels.iter().zip(&maps[0].levels()[0].texels) {
+                let (a, b) = (unpack(*a), unpack(*b));
+                let top = b[0].max(b[1]).max(b[2]);
+                // Halves have 11 bits.
+                assert!((0..3).all(|c| (a[c] - b[c]).abs() <= top / 250.0), "{a:?} {b:?}");
+            }
+        }
+        let block = [0; 16];
+        let values = ImageRef::new(Layout::packed(PixelFormat::R32F, 2, 2), &block).unwrap();
+        let error = SkyMap::new(&values).unwrap_err();
+        assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("R32F"));
+    }
+
+    #[test]
+    fn content_of_any_kind_is_finite_light() {
+        for odd in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, -1.0, 1e-40, 0.0] {
+            let map = SkyMap::of_rows([31, 17], &|_, out| out.fill([odd, 1.0, odd])).unwrap();
+            for level in map.levels() {
+                for texel in &level.texels {
+                    let [r, g, b] = unpack(*texel);
+                    let wanted = if odd > 1.0 { MAX_LIGHT } else { 0.0 };
+                    assert!(
+                        (r / wanted.max(1e-9) - f32::from(u8::from(wanted > 0.0))).abs() < 1e-2 && r == b,
+                        "{odd}: {r}"
+                    );
+                    assert!((g - 1.0).abs() < if odd > 1.0 { 64.1 } else { 2e-3 }, "{odd}: {g}");
+                }
+            }
+        }
+    }
+
+    /// Larger pictures than a map may be are averaged, not picked from.
+    #[test]
+    fn large_pictures_are_reduced() {
+        let size = [MAX_MAP_SIZE[0] * 2 + 2, 3];
+        let map =
+            SkyMap::of_rows(size, &|_, out| (0..).zip(out).for_each(|(x, out)| *out = [(x % 2) as f32; 3])).unwrap();
+        assert_eq!(map.levels()[0].size, [MAX_MAP_SIZE[0], 3]);
+        assert!(map.levels()[0].row(1).iter().all(|texel| (unpack(*texel)[0] - 0.5).abs() < 2e-3));
+        let level = Level::new(&Source { size: [7, 5], row: &|y, out| out.fill([y as f32; 3]) }, [3, 2]).unwrap();
+        let edge = |y: f64| (PI * y / 5.0).cos();
+        let upper = (1.0 * (edge(1.0) - edge(2.0)) + 2.0 * (edge(2.0) - edge(2.5))) / (1.0 - edge(2.5));
+        assert!((f64::from(unpack(level.row(0)[1])[0]) / upper - 1.0).abs() < 2e-3);
+    }
 }

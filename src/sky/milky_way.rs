@@ -20,10 +20,10 @@ const MAP_SIZE: [u32; 2] = [2048, 1024];
 /// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al. 1998, A&AS 127, 1, section 10:
 /// 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the next, and in the end nothing.
 const BRIGHTEST: f64 = 20.6;
-const MAGNITUDES_A_HEIGHT: f64 = 0.35;
+const MAGNITUDES_A_HEIGHT: f64 = 0.3;
 /// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer steps between its white and
 /// its black than a dark-adapted eye sees in the sky.
-const MILKY_WAY_GAIN: f64 = 6.0;
+const MILKY_WAY_GAIN: f64 = 8.0;
 /// sr.
 const SQUARE_ARC_SECOND: f64 = (PI / 648_000.0) * (PI / 648_000.0);
 
@@ -42,7 +42,7 @@ const BULGE_RADIUS: f64 = 0.45;
 const DUST_OCTAVES: u32 = 6;
 const DUST_CELLS: f64 = 7.0;
 const DUST_FINER: f64 = 2.03;
-const DUST_FAINTER: f64 = 0.62;
+const DUST_FAINTER: f64 = 0.7;
 /// Magnitudes of extinction in the plane where the noise is 1 above DUST_CLEAR; rad: the layer's height. (The true layer is half as high
 /// in the distance; what is near us reaches to 10 degrees.)
 const DUST_DEPTH: f64 = 1.3;
@@ -188,4 +188,70 @@ fn value_noise(at: DVec3, key: u32) -> f64 {
     let along_x = |j, k| between(corner(0, j, k), corner(1, j, k), s.x);
     let along_y = |k| between(along_x(0, k), along_x(1, k), s.y);
     between(along_y(0), along_y(1), s.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::blackbody::LUMINANCE;
+
+    fn towards(ra: f64, dec: f64) -> DVec3 {
+        let (ra, dec) = (ra.to_radians(), dec.to_radians());
+        DVec3::new(dec.cos() * ra.cos(), dec.cos() * ra.sin(), dec.sin())
+    }
+
+    fn seen(ra: f64, dec: f64) -> f64 {
+        let d = towards(ra, dec);
+        let patch = d.any_orthonormal_vector() * 0.03;
+        let rgb = SkyMap::milky_way().unwrap().light(d, patch, d.cross(patch));
+        (0..3).map(|c| LUMINANCE[c] * rgb[c]).sum()
+    }
+
+    /// J2000: the galactic centre, and Vega (l 67.4482, b 19.2372: SIMBAD).
+    #[test]
+    fn galactic_coordinates_are_right() {
+        let galactic = equatorial_to_galactic();
+        assert!((galactic * towards(266.404_996, -28.936_172) - DVec3::X).length() < 1e-5);
+        let vega = galactic * towards(279.234_735, 38.783_689);
+        assert!((vega - towards(67.4482, 19.2372)).length() < 1e-5, "{vega}");
+        assert!((galactic.determinant() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_glow_is_where_it_belongs() {
+        let (cloud, cygnus, anticentre) = (seen(271.0, -28.0), seen(299.0, 35.5), seen(86.0, 28.9));
+        assert!(cloud > cygnus && cygnus > anticentre && anticentre > 0.0, "{cloud} {cygnus} {anticentre}");
+        // The Coalsack and the Great Rift beside bright clouds.
+        assert!(seen(192.0, -62.7) < 0.4 * seen(160.0, -59.7), "Coalsack");
+        assert!(seen(270.0, -6.0) < 0.5 * seen(281.0, -6.0), "Rift");
+        // The galactic poles are dark.
+        assert!(seen(192.86, 27.13) < 0.01 * anticentre && seen(12.86, -27.13) < 0.01 * anticentre);
+    }
+
+    #[test]
+    fn brightness_is_on_the_stars_scale() {
+        // A square degree of height 5 is as bright as a star of 20.6 - 2.5 log10(3600^2) magnitudes, times the gain.
+        let degree = (PI / 180.0) * (PI / 180.0);
+        let star = 10.0_f64.powf(-0.4 * (BRIGHTEST - 5.0 * 3600.0_f64.log10()));
+        let flux = surface_radiance(5.0) * degree / (STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE);
+        assert!((flux / (MILKY_WAY_GAIN * star) - 1.0).abs() < 1e-9);
+        assert_eq!(surface_radiance(0.0), 0.0);
+    }
+
+    /// Nested outlines leave no steps: along the galactic equator and across it the glow changes smoothly.
+    #[test]
+    fn there_are_no_contours() {
+        let map = MilkyWay::decode().unwrap();
+        let mut steepest = 0.0_f64;
+        for y in 0..400 {
+            for x in 0..800 {
+                let (u, v) = (f64::from(x) / 800.0, f64::from(y) / 400.0);
+                let here = map.outline_height(u, v);
+                // 0.1 degrees on.
+                let there = map.outline_height(u, v + 0.1 / 180.0);
+                steepest = steepest.max((here - there).abs());
+            }
+        }
+        assert!(steepest < 0.35, "{steepest} heights in 0.1 degrees");
+    }
 }

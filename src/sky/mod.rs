@@ -13,4 +13,4 @@ mod stars;
 pub use filter::shifted_map_light;
 pub use grid::under_grid;
 pub use index::StarIndex;
-pub use map::{MAX_MAP_SIZE, SkyMap};
+pub use map::{Level, MAX_MAP_SIZE, SkyMap};
