@@ -39,29 +39,32 @@ fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, taps: Taps) ->
     let texel_angle = min(PI / f32(size.y), TAU / f32(size.x));
     let last = firstLeadingBit(size.x);
     let level = clamp(taps.level - log2(texel_angle), 0.0, f32(last));
+    let finer = min(u32(level), last);
+    let share = level - f32(finer);
+    // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that lavapipe, which runs
+    // whatever an `if` leaves out, does not read it for nothing.
+    let double = select(0u, 1u, share > 0.0);
     let reach = 0.5 * taps.spread + 0.5;
     let most = ceil(reach) - 1.0;
-    let count = 1u + 2u * u32(most);
+    let count = (1u + 2u * u32(most)) << double;
     var sum = vec3<f32>(0.0);
     var total = 0.0;
     for (var k = 0u; k < count; k += 1u) {
-        let i = f32(k) - most;
-        let weight = clamp(reach - abs(i), 0.0, 1.0);
-        sum += weight * map_trilinear(map, size, d + taps.step * i, level, last);
+        let coarser = k & double;
+        let i = f32(k >> double) - most;
+        let weight = clamp(reach - abs(i), 0.0, 1.0) * select(1.0 - share, share, coarser == 1u);
+        sum += weight * map_bilinear(map, size, map_place(d + taps.step * i), min(finer + coarser, last));
         total += weight;
     }
     return sum / total;
 }
 
-fn map_trilinear(map: texture_2d<f32>, finest: vec2<u32>, towards: vec3<f32>, level: f32, last: u32) -> vec3<f32> {
-    let uv = vec2<f32>(
+// (u, v) of a map, from a vector of any length but 0.
+fn map_place(towards: vec3<f32>) -> vec2<f32> {
+    return vec2<f32>(
         0.5 - arctan2(towards.y, towards.x) / TAU,
         0.5 - arctan2(towards.z, sqrt(towards.x * towards.x + towards.y * towards.y)) / PI,
     );
-    let finer = min(u32(level), last);
-    let low = map_bilinear(map, finest, uv, finer);
-    let high = map_bilinear(map, finest, uv, min(finer + 1u, last));
-    return low + (high - low) * (level - f32(finer));
 }
 
 // Where a level begins in the texture (level_place of src/gpu/sky_maps.rs).

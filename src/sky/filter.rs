@@ -102,6 +102,9 @@ impl SkyMap {
         let finer = level as usize;
         let share = level - finer as f64;
         let levels = self.levels();
+        if share == 0.0 {
+            return levels.get(finer).map_or([0.0; 3], |level| level.bilinear(u, v));
+        }
         let [low, high] = [finer, finer + 1]
             .map(|i| levels.get(i.min(levels.len() - 1)).map_or([0.0; 3], |level| level.bilinear(u, v)));
         std::array::from_fn(|c| low[c] + (high[c] - low[c]) * share)
