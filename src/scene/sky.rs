@@ -1,10 +1,9 @@
 //! What lies at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
-use super::{Projection, Scene, View};
+use super::{Scene, View};
 use crate::error::{Error, Result};
 use crate::sky::{StarField, StarIndex};
 use glam::DQuat;
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,9 +37,11 @@ impl Sky {
     pub const STARS: u32 = 1;
     /// A random sky of a million stars; with STARS, only those that are fainter than the catalogue's.
     pub const PROCEDURAL: u32 = 2;
-    /// The embedded Milky Way glow. Accepted, being the default; not drawn by this version.
+    /// The embedded Milky Way glow.
     pub const MILKY_WAY: u32 = 4;
+    /// The host's picture: `Scene::sky_map`.
     pub const MAP: u32 = 8;
+    /// The coordinate grid.
     pub const GRID: u32 = 16;
     pub const MAX_BRIGHTNESS: f64 = 1e6;
 
@@ -68,12 +69,6 @@ impl Sky {
         if !length.is_finite() || (length - 1.0).abs() > 1e-3 {
             return Err(Error::argument(format!("sky orientation has length {length}; it must be a unit quaternion")));
         }
-        let later = self.flags & (Self::MAP | Self::GRID);
-        if later != 0 {
-            return Err(Error::unsupported(format!(
-                "sky flags {later:#x} (MAP, GRID) are not drawn by this version; STARS, PROCEDURAL, MILKY_WAY and 0 are accepted"
-            )));
-        }
         Ok(())
     }
 
@@ -89,17 +84,6 @@ impl Sky {
 }
 
 impl Scene {
-    /// Of a pixel in the middle of a frame of `height` rows, radians; of a cube's faces as if one filled the frame.
-    pub fn pixel_angle(&self, height: f64) -> f64 {
-        let angle = match self.camera.projection {
-            Projection::Perspective => 2.0 * (0.5 * self.camera.fov_y).tan(),
-            Projection::Fisheye => self.camera.fov_y,
-            Projection::Equirect => PI,
-            Projection::Cube => FRAC_PI_2,
-        };
-        angle / height
-    }
-
     /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as `StarField::index`.
     pub fn stars(&self) -> Result<Arc<StarIndex>> {
         if let Some(stars) = &self.given_stars {
