@@ -12,7 +12,9 @@ use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{Scene, View};
+use crate::sky::StarIndex;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for prompt
 /// progress, large enough to keep every core busy.
@@ -44,7 +46,8 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
-        let frame = self.pool.install(|| Frame::new(scene, &lens, &mut self.lenses, request));
+        let stars = self.stars.insert(scene.stars()?).clone();
+        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tiles = tiles(request, frame.expected_steps(scene));
         let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
         let mut stats = FrameStats {
@@ -76,7 +79,8 @@ impl CpuTracer {
     /// The records of a frame, row by row. Errors: as `Scene::lens`.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let lens = scene.lens(&request.region)?;
-        let frame = self.pool.install(|| Frame::new(scene, &lens, &mut self.lenses, request));
+        let stars = self.stars.insert(scene.stars()?).clone();
+        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
         let mut records = vec![Record::captured(); request.width as usize * request.height as usize];
@@ -98,23 +102,29 @@ fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
 }
 
 impl<'a> Frame<'a> {
-    /// On the current pool.
-    fn new(scene: &'a Scene, lens: &'a Lens, cache: &'a mut LensCache, request: &'a FrameRequest) -> Self {
+    /// On the current pool. Errors: OUT_OF_MEMORY.
+    fn new(
+        scene: &'a Scene,
+        lens: &'a Lens,
+        stars: Arc<StarIndex>,
+        cache: &'a mut LensCache,
+        request: &'a FrameRequest,
+    ) -> Result<Self> {
         let light = scene.view == View::Light;
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
         let recorder = Recorder::new(scene, lens);
-        Self {
+        Ok(Self {
             source: match cache.tables(scene, eye, scene.lensing(eye, pixels)) {
                 Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
                 None => Source::Traced(recorder),
             },
-            shader: Shader::new(scene, lens, request.transparent),
+            shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
             samples: if light { scene.quality.samples_per_pixel } else { 1 },
-        }
+        })
     }
 
     /// Of a ray, on average; looking one up takes as long as one.

@@ -16,7 +16,7 @@ pub struct Mapping {
     pub height: f64,
     /// Halves of the perspective image plane's sides at distance 1; else 1.
     pub plane: DVec2,
-    /// Of a fisheye's pixel along the radius, radians; else 0.
+    /// Of a pixel in the middle of the frame (of a cube's faces as if one filled its side), radians.
     pub pixel_angle: f64,
 }
 
@@ -36,7 +36,12 @@ impl Mapping {
         let tan = (0.5 * camera.fov_y).tan();
         let plane =
             if projection == Projection::Perspective { DVec2::new(tan * width / height, tan) } else { DVec2::ONE };
-        let pixel_angle = if projection == Projection::Fisheye { camera.fov_y / width.min(height) } else { 0.0 };
+        let pixel_angle = match projection {
+            Projection::Perspective => 2.0 * tan / height,
+            Projection::Fisheye => camera.fov_y / width.min(height),
+            Projection::Equirect => PI / height,
+            Projection::Cube => FRAC_PI_2 / height,
+        };
         Ok(Self { projection, width, height, plane, pixel_angle })
     }
 
