@@ -46,7 +46,7 @@ impl<'a> Shader<'a> {
             profile: TemperatureProfile::new(scene.matter_spin()),
             turbulence: scene.turbulence(),
             stars: scene.shows_stars().then_some(stars),
-            least_patch: least_patch(scene.pixel_angle(lens.height)),
+            least_patch: least_patch(lens.mapping.middle_pixel()),
             chart_to_sky: scene.chart_to_sky(),
             transparent,
         }

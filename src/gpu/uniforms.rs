@@ -103,7 +103,7 @@ impl FrameUniform {
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
             sky_x: with(sky.x_axis, scene.sky.stars_brightness),
             sky_y: with(sky.y_axis, 0.0),
-            sky_z: with(sky.z_axis, least_patch(scene.pixel_angle(lens.height))),
+            sky_z: with(sky.z_axis, least_patch(lens.mapping.middle_pixel())),
             disk: four(
                 disk.temperature,
                 BlackbodyTable::shared().ln_luminance(disk.temperature),

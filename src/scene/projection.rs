@@ -102,6 +102,12 @@ impl Mapping {
         }
     }
 
+    /// Angle from one row to the next in the middle of the frame or of a cube's faces, radians.
+    pub fn middle_pixel(&self) -> f64 {
+        let [_, down] = self.changes(0.5 * self.width, 0.5 * self.height);
+        (down * self.plane.extend(1.0)).length()
+    }
+
     /// Pixels to the right and up.
     fn from_centre(&self, x: f64, y: f64) -> DVec2 {
         DVec2::new(x - 0.5 * self.width, 0.5 * self.height - y)
@@ -218,6 +224,19 @@ mod tests {
             assert!(cube.same_face(x - 50.0, x + 49.999));
         }
         assert!(cube.same_face(-1.0, 0.0));
+    }
+
+    #[test]
+    fn the_middle_pixel_has_its_angle() {
+        for (projection, size, angle) in [
+            (Projection::Perspective, [640, 360], 2.0 * 0.5_f64.tan() / 360.0),
+            (Projection::Fisheye, [300, 200], 1.0 / 200.0),
+            (Projection::Equirect, [300, 200], PI / 200.0),
+            (Projection::Cube, [600, 100], 2.0 / 100.0),
+        ] {
+            let found = mapping(projection, size, 1.0).middle_pixel();
+            assert!((found / angle - 1.0).abs() < 1e-12, "{projection:?}: {found}, not {angle}");
+        }
     }
 
     #[test]

@@ -1,10 +1,9 @@
 //! What lies at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
-use super::{Projection, Scene, View};
+use super::{Scene, View};
 use crate::error::{Error, Result};
 use crate::sky::{StarField, StarIndex};
 use glam::DQuat;
-use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,17 +88,6 @@ impl Sky {
 }
 
 impl Scene {
-    /// Of a pixel in the middle of a frame of `height` rows, radians; of a cube's faces as if one filled the frame.
-    pub fn pixel_angle(&self, height: f64) -> f64 {
-        let angle = match self.camera.projection {
-            Projection::Perspective => 2.0 * (0.5 * self.camera.fov_y).tan(),
-            Projection::Fisheye => self.camera.fov_y,
-            Projection::Equirect => PI,
-            Projection::Cube => FRAC_PI_2,
-        };
-        angle / height
-    }
-
     /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as `StarField::index`.
     pub fn stars(&self) -> Result<Arc<StarIndex>> {
         if let Some(stars) = &self.given_stars {
