@@ -724,15 +724,20 @@ BhrStatus bhr_image_release(BhrImage *image);
 #define BHR_SKY_PROCEDURAL 2u
 
 /**
- * BhrSky.flags: the embedded glow of the Milky Way. Accepted, being part of the default, but not drawn by this
- * version.
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (a tenth of a second): true to
+ * about a degree, eight times as bright next to the stars as it is to the eye.
  */
 #define BHR_SKY_MILKY_WAY 4u
 
-/** BhrSky.flags: the map that bhr_set_sky_map was given. UNSUPPORTED in this version. */
+/** BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one. */
 #define BHR_SKY_MAP 8u
 
-/** BhrSky.flags: a coordinate grid, which shows the lensing. UNSUPPORTED in this version. */
+/**
+ * BhrSky.flags: a grid in sky axes, which shows the lensing: right ascension every hour (15 degrees; every 6 hours
+ * within 15 degrees of the poles), declination every 15 degrees, the equator and right ascension 0 in another
+ * colour. Lines are 1.3 pixels wide and laid over the sky, whatever its brightness and the shift of its light; where
+ * less than 10 pixels apart they fade into an even tint.
+ */
 #define BHR_SKY_GRID 16u
 
 /** What lies at infinity. */
@@ -743,7 +748,7 @@ typedef struct BhrSky {
     uint32_t flags;
     /** 0 .. 1e6. Default 1. */
     double stars_brightness;
-    /** Of the Milky Way and the map, 0 .. 1e6. Default 1. */
+    /** Of the Milky Way and the map: a factor on their light, 0 .. 1e6. Default 1. */
     double map_brightness;
     /**
      * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
@@ -770,8 +775,18 @@ BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
 BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
 
 /**
- * Gives BHR_SKY_MAP its picture, copied before return; NULL removes it. Errors: INVALID_ARGUMENT for a bad image;
- * UNSUPPORTED for every other image in this version.
+ * Gives BHR_SKY_MAP its picture, copied before return (a second or two for 16384 x 8192); NULL removes it. The next
+ * frames that are asked for show it. It covers the whole sky whatever its aspect: at x of width and y of height, from
+ * the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). So the north
+ * pole is at the top, right ascension 0 (+x of the sky axes) in the middle, and +y at a quarter of the width: the
+ * picture looks as the sky does from inside, as astronomers' maps do.
+ *
+ * Light at rest is what the picture holds, linear Rec. 709, 8-bit formats decoded, to within 0.2 % of the brightest
+ * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
+ * that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
+ * Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
+ * Pictures of more than 16384 x 8192 are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
+ * a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
  */
 BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 

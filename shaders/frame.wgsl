@@ -19,7 +19,8 @@ struct Frame {
     zamo: vec4<f32>,
     // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
-    // Columns that take chart directions to sky axes; w of the first: brightness of the stars; of the third: least_patch of stars.rs.
+    // Columns that take chart directions to sky axes; w of the first: brightness of the stars, of the second: of the maps, of the third:
+    // least_patch of stars.rs.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,
@@ -41,6 +42,8 @@ struct Frame {
     view: u32,
     // Seed of the turbulence, and its generation at the reference time.
     pattern: vec2<u32>,
+    // Columns and rows of the finest levels of the Milky Way and of the host's map.
+    map_sizes: vec4<u32>,
 }
 
 const VIEW_REDSHIFT: u32 = 1u;

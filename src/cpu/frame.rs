@@ -47,7 +47,7 @@ impl CpuTracer {
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();
-        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request));
+        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tiles = tiles(request, frame.expected_steps(scene));
         let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
         let mut stats = FrameStats {
@@ -80,7 +80,7 @@ impl CpuTracer {
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();
-        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request));
+        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
         let mut records = vec![Record::captured(); request.width as usize * request.height as usize];
@@ -102,29 +102,29 @@ fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
 }
 
 impl<'a> Frame<'a> {
-    /// On the current pool.
+    /// On the current pool. Errors: OUT_OF_MEMORY.
     fn new(
         scene: &'a Scene,
         lens: &'a Lens,
         stars: Arc<StarIndex>,
         cache: &'a mut LensCache,
         request: &'a FrameRequest,
-    ) -> Self {
+    ) -> Result<Self> {
         let light = scene.view == View::Light;
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
         let recorder = Recorder::new(scene, lens);
-        Self {
+        Ok(Self {
             source: match cache.tables(scene, eye, scene.lensing(eye, pixels)) {
                 Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
                 None => Source::Traced(recorder),
             },
-            shader: Shader::new(scene, lens, stars, request.transparent),
+            shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
             samples: if light { scene.quality.samples_per_pixel } else { 1 },
-        }
+        })
     }
 
     /// Of a ray, on average; looking one up takes as long as one.

@@ -244,7 +244,7 @@ impl GpuTracer {
             FrameTarget::Host if self.maps_pixels(scene) => PixelTarget::Rows,
             FrameTarget::Host => PixelTarget::Packed,
         };
-        let setup = self.set_up(scene, request, kind)?;
+        let mut setup = self.set_up(scene, request, kind)?;
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
@@ -261,6 +261,7 @@ impl GpuTracer {
         let plan = Plan::new(request, bytes, max_side, steps, samples);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
+        setup.uniform.map_sizes = tables.map_sizes();
         let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
         let size = Size { tile: plan.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
@@ -306,6 +307,9 @@ impl GpuTracer {
             look: Look {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
+                milky_way: scene.shows_milky_way() && !request.transparent,
+                map: scene.shown_map().is_some() && !request.transparent,
+                grid: scene.shows_grid() && !request.transparent,
                 all_effects: scene.effects.all_light(),
                 disk: scene.disk_u().is_some(),
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
@@ -522,9 +526,9 @@ impl FrameBuffers {
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
         let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
         let records = self.makers.group(setup.making.source)?;
-        let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let shared = [frame, pass.clone(), light, cells];
+        let shared = [frame, pass.clone(), light, cells, milky_way, map];
         let taking = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &mut Kernels, source| {
                 let compiled = match looks.several_samples {

@@ -27,6 +27,9 @@ pub struct Look {
     /// Light, not another view.
     pub light: bool,
     pub stars: bool,
+    pub milky_way: bool,
+    pub map: bool,
+    pub grid: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
     pub disk: bool,
@@ -282,6 +285,8 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
+        include_str!("../../shaders/sky_map.wgsl"),
+        include_str!("../../shaders/sky_grid.wgsl"),
         include_str!("../../shaders/disk.wgsl"),
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
@@ -396,11 +401,17 @@ pub const LENS_FLAGS: TextureKind =
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
-/// `light_tables` and `star_cells` of shade.wgsl.
-const TABLES: [TextureKind; 2] = [
+/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade.wgsl.
+const TABLES: [TextureKind; 4] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    SKY_MAP,
+    SKY_MAP,
 ];
+
+/// Pyramids of sky_map.wgsl.
+pub const SKY_MAP: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
 
 impl Slot {
     fn binding_type(self) -> wgpu::BindingType {
@@ -448,8 +459,8 @@ impl Source {
 
 /// Group 0 of shade.wgsl.
 fn shade_slots() -> Vec<Slot> {
-    let [light, cells] = TABLES.map(Slot::Texture);
-    vec![Slot::Uniform, Slot::UniformPart, light, cells]
+    let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
 impl Kernels {
@@ -579,7 +590,7 @@ impl Kernels {
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
 /// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
-/// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
+/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
@@ -604,6 +615,9 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
     vec![
         ("SHOWS_LIGHT", flag(look.light)),
         ("SHOWS_STARS", flag(look.stars)),
+        ("SHOWS_MILKY_WAY", flag(look.milky_way)),
+        ("SHOWS_MAP", flag(look.map)),
+        ("SHOWS_GRID", flag(look.grid)),
         ("ALL_EFFECTS", flag(look.all_effects)),
         ("DISK", flag(look.disk)),
         ("OPAQUE", flag(look.opaque)),

@@ -1,6 +1,7 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other stars), and the disk's temperature
 //! profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH entries a row (shade.wgsl says why).
 
+use super::sky_maps::SkyMaps;
 use super::{Device, Texture};
 use crate::error::{Error, Result};
 use crate::physics::disk_flux::TemperatureProfile;
@@ -22,8 +23,9 @@ pub struct Tables {
     /// What the textures hold.
     stars: Arc<StarIndex>,
     /// Blackbodies, mean sky, profile, stars: `light_tables` of the shaders.
-    pub light: Texture,
-    pub star_cells: Texture,
+    light: Texture,
+    star_cells: Texture,
+    sky_maps: SkyMaps,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
 }
@@ -52,31 +54,50 @@ fn table<T: bytemuck::Pod>(
 }
 
 impl Tables {
-    fn new(device: &Device, stars: Arc<StarIndex>) -> Result<Self> {
+    fn new(device: &Device, stars: Arc<StarIndex>, sky_maps: SkyMaps) -> Result<Self> {
         let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
-        Ok(Self { stars, light, star_cells, profile_spin: None })
+        Ok(Self { stars, light, star_cells, sky_maps, profile_spin: None })
     }
 
-    /// Brings the tables up to the scene's stars and disk. Errors: UNSUPPORTED where the device's textures are too small; OUT_OF_MEMORY.
+    /// Brings the tables up to the scene's stars, maps and disk. Errors: UNSUPPORTED where the device's textures are too small; OUT_OF_MEMORY.
     pub fn prepare<'a>(tables: &'a mut Option<Self>, device: &Device, scene: &Scene) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
-        if tables.as_ref().is_some_and(|tables| !Arc::ptr_eq(&tables.stars, &stars)) {
-            // The old ones go first: both together need not fit.
-            *tables = None;
-        }
-        let tables = match tables {
-            Some(tables) => tables,
-            None => tables.insert(Self::new(device, stars)?),
+        let made = match tables.take() {
+            Some(held) if Arc::ptr_eq(&held.stars, &stars) => held,
+            // The old stars go first: both together need not fit.
+            Some(held) => {
+                let maps = held.into_maps();
+                Self::new(device, stars, maps)?
+            }
+            None => Self::new(device, stars, SkyMaps::new(device)?)?,
         };
+        let tables = tables.insert(made);
         tables.update(device, scene)?;
         Ok(tables)
     }
 
-    /// Brings the profile up to the scene's disk.
+    /// The maps; all else is let go.
+    fn into_maps(self) -> SkyMaps {
+        self.sky_maps
+    }
+
+    /// In the order of group 0 of shade.wgsl.
+    pub fn textures(&self) -> [&Texture; 4] {
+        let [milky_way, map] = self.sky_maps.textures();
+        [&self.light, &self.star_cells, milky_way, map]
+    }
+
+    /// `Frame::map_sizes` of frame.wgsl.
+    pub fn map_sizes(&self) -> [u32; 4] {
+        self.sky_maps.sizes()
+    }
+
+    /// Brings the profile up to the scene's disk, and the maps up to its sky.
     fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+        self.sky_maps.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());

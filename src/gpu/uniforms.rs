@@ -40,6 +40,8 @@ pub struct FrameUniform {
     effects: u32,
     view: u32,
     pattern: [u32; 2],
+    /// Known once the textures are there (`Tables::map_sizes`).
+    pub map_sizes: [u32; 4],
 }
 
 #[repr(C)]
@@ -102,8 +104,8 @@ impl FrameUniform {
             zamo: zamo(frame),
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
             sky_x: with(sky.x_axis, scene.sky.stars_brightness),
-            sky_y: with(sky.y_axis, 0.0),
-            sky_z: with(sky.z_axis, least_patch(lens.mapping.middle_pixel())),
+            sky_y: with(sky.y_axis, scene.sky.map_brightness),
+            sky_z: with(sky.z_axis, least_patch(lens.mapping.pixel_angle)),
             disk: four(
                 disk.temperature,
                 BlackbodyTable::shared().ln_luminance(disk.temperature),
@@ -121,6 +123,7 @@ impl FrameUniform {
             effects: scene.effects.light(),
             view: scene.view as u32,
             pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
+            map_sizes: [1; 4],
         })
     }
 }

@@ -27,7 +27,7 @@ pub use quality::{Method, Quality};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 pub use sky::Sky;
 
-use crate::sky::StarIndex;
+use crate::sky::{SkyMap, StarIndex};
 use std::sync::Arc;
 
 /// Which relativistic effects colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored.
@@ -86,6 +86,8 @@ pub struct Scene {
     /// `None`: no disk.
     pub disk: Option<Disk>,
     pub sky: Sky,
+    /// What `Sky::MAP` shows; `None`: nothing.
+    pub sky_map: Option<Arc<SkyMap>>,
     pub film: Film,
     pub effects: Effects,
     /// Scene time, in scene lengths; turns the disk.
@@ -104,6 +106,7 @@ impl Default for Scene {
             camera: Camera::default(),
             disk: Some(Disk::default()),
             sky: Sky::default(),
+            sky_map: None,
             film: Film::default(),
             effects: Effects(Effects::ALL),
             time: 0.0,

@@ -37,9 +37,11 @@ impl Sky {
     pub const STARS: u32 = 1;
     /// A random sky of a million stars; with STARS, only those that are fainter than the catalogue's.
     pub const PROCEDURAL: u32 = 2;
-    /// The embedded Milky Way glow. Accepted, being the default; not drawn by this version.
+    /// The embedded Milky Way glow.
     pub const MILKY_WAY: u32 = 4;
+    /// The host's picture: `Scene::sky_map`.
     pub const MAP: u32 = 8;
+    /// The coordinate grid.
     pub const GRID: u32 = 16;
     pub const MAX_BRIGHTNESS: f64 = 1e6;
 
@@ -48,7 +50,7 @@ impl Sky {
         Self { flags: 0, ..Self::default() }
     }
 
-    /// Errors: unknown flags; flags of a later version (UNSUPPORTED); brightness out of range; orientation not of unit length
+    /// Errors: unknown flags; brightness out of range; orientation not of unit length
     /// to within 1e-3.
     pub fn check(&self) -> Result<()> {
         let known = Self::STARS | Self::PROCEDURAL | Self::MILKY_WAY | Self::MAP | Self::GRID;
@@ -66,12 +68,6 @@ impl Sky {
         let length = self.orientation.length();
         if !length.is_finite() || (length - 1.0).abs() > 1e-3 {
             return Err(Error::argument(format!("sky orientation has length {length}; it must be a unit quaternion")));
-        }
-        let later = self.flags & (Self::MAP | Self::GRID);
-        if later != 0 {
-            return Err(Error::unsupported(format!(
-                "sky flags {later:#x} (MAP, GRID) are not drawn by this version; STARS, PROCEDURAL, MILKY_WAY and 0 are accepted"
-            )));
         }
         Ok(())
     }

@@ -23,7 +23,8 @@ pub const STAR_MARGIN: f64 = 0.545;
 /// Display convention: a star of V = 0 has this radiance when its light is spread over REFERENCE_SOLID_ANGLE.
 pub const STAR_REFERENCE_RADIANCE: f64 = 30.0;
 /// (2 tan(30 degrees) / 720)^2 sr: the central pixel of a frame of 720 rows and 60 degrees.
-const REFERENCE_SOLID_ANGLE: f64 = (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
+pub const REFERENCE_SOLID_ANGLE: f64 =
+    (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
 
 /// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many faint stars
 /// that their mean light stands for them. By the number of stars in the real sky no list is long: about 10 on average, with a million stars too.
