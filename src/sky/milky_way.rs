@@ -189,24 +189,23 @@ fn extinction(galactic: DVec3) -> f64 {
     // Clouds are drawn out along the plane.
     let mut place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
     for octave in 0..DUST_OCTAVES {
-        noise += amplitude * value_noise(place, mix(DUST_SEED + octave));
+        noise += amplitude * value_noise(place + DVec3::splat(1024.0), mix(DUST_SEED + octave));
         amplitude *= DUST_FAINTER;
         place *= DUST_FINER;
     }
     DUST_DEPTH * layer * noise.max(0.0)
 }
 
-/// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them.
+/// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them. Coordinates are positive.
 fn value_noise(at: DVec3, key: u32) -> f64 {
-    let low = at.floor();
-    let t = at - low;
+    let low = at.as_uvec3();
+    let t = at - low.as_dvec3();
     let s = t * t * (DVec3::splat(3.0) - 2.0 * t);
     // Of a lattice point; odd numbers without a common pattern, so that each point has another.
-    let [x, y, z] = low.to_array().map(|v| v as i32 as u32);
     let point = |x: u32, y: u32, z: u32| {
         x.wrapping_mul(0x9e37_79b1).wrapping_add(y.wrapping_mul(0x85eb_ca77)).wrapping_add(z.wrapping_mul(0xc2b2_ae3d))
     };
-    let first = point(x, y, z).wrapping_add(key);
+    let first = point(low.x, low.y, low.z).wrapping_add(key);
     let corner = |i, j, k| f64::from(mix(first.wrapping_add(point(i, j, k)))) / 2_147_483_647.5 - 1.0;
     let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
     let along_x = |j, k| between(corner(0, j, k), corner(1, j, k), s.x);
