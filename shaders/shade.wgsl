@@ -27,16 +27,27 @@ fn star_cell(i: u32) -> u32 {
     return textureLoad(star_cells, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0).x;
 }
 
-// Of the tile's pixel `id`: light and alpha, or the view's value first.
+// Of the tile's pixel `id`: light and alpha, or the view's value first; nothing where the projection shows nothing.
 fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
+    let seen = has_look(pixel_place(id));
     if SHOWS_LIGHT {
-        return pixel_light(record);
+        return select(vec4<f32>(0.0), pixel_light(record), seen);
     }
-    return vec4<f32>(view_value(record, id), 0.0, 0.0, 1.0);
+    return vec4<f32>(select(no_value(), view_value(record, id), seen), 0.0, 0.0, 1.0);
+}
+
+// NaN, which may not be written as a constant.
+fn no_value() -> f32 {
+    return bitcast<f32>(0x7fc00000u | frame.view);
 }
 
 fn to_sky(d: vec3<f32>) -> vec3<f32> {
     return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
+}
+
+// Of stars.rs.
+fn least_patch() -> f32 {
+    return frame.sky_z.w;
 }
 
 fn pixel_light(here: Record) -> vec4<f32> {
@@ -100,8 +111,7 @@ fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
 
 // What BHR_VIEW_* shows; NaN where there is nothing.
 fn view_value(here: Record, id: vec2<u32>) -> f32 {
-    // NaN may not be written as a constant.
-    let nothing = bitcast<f32>(0x7fc00000u | frame.view);
+    let nothing = no_value();
     let first = next_crossing();
     let on_disk = first.u > 0.0;
     let in_sky = here.fate == FATE_ESCAPED;

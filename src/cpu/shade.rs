@@ -10,8 +10,9 @@ use crate::scene::observer::Lens;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION};
 use crate::scene::turbulence::Turbulence;
 use crate::scene::{Disk, Effects, Scene, View};
-use crate::sky::{SkyMap, StarIndex, shifted_map_light, under_grid};
+use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
 use glam::{DMat3, DVec3};
+use std::sync::Arc;
 
 /// How the effects let frequency shifts show: the shift that colours, and the one that beams.
 #[derive(Clone, Copy)]
@@ -30,7 +31,8 @@ pub struct Shader<'a> {
     profile: TemperatureProfile,
     turbulence: Option<Turbulence>,
     /// `None`: no stars.
-    stars: Option<&'static StarIndex>,
+    stars: Option<Arc<StarIndex>>,
+    least_patch: f64,
     /// The Milky Way and the host's map, where they are shown.
     maps: [Option<&'a SkyMap>; 2],
     grid: bool,
@@ -40,7 +42,7 @@ pub struct Shader<'a> {
 
 impl<'a> Shader<'a> {
     /// Errors: OUT_OF_MEMORY.
-    pub fn new(scene: &'a Scene, lens: &'a Lens, transparent: bool) -> Result<Self> {
+    pub fn new(scene: &'a Scene, lens: &'a Lens, stars: Arc<StarIndex>, transparent: bool) -> Result<Self> {
         let milky_way = scene.shows_milky_way().then(SkyMap::milky_way).transpose()?;
         Ok(Self {
             scene,
@@ -49,7 +51,8 @@ impl<'a> Shader<'a> {
             log_reference: scene.disk.map_or(0.0, |d| BlackbodyTable::shared().ln_luminance(d.temperature)),
             profile: TemperatureProfile::new(scene.matter_spin()),
             turbulence: scene.turbulence(),
-            stars: scene.shows_stars().then(StarIndex::shared),
+            stars: scene.shows_stars().then_some(stars),
+            least_patch: least_patch(lens.mapping.pixel_angle),
             maps: [milky_way, scene.shown_map().map(|map| &**map)],
             grid: scene.shows_grid(),
             chart_to_sky: scene.chart_to_sky(),
@@ -57,8 +60,18 @@ impl<'a> Shader<'a> {
         })
     }
 
+    /// Of the record at (x, y): light and alpha, or the view's value first; nothing where the projection shows nothing.
+    pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
+        match (self.scene.view, self.lens.mapping.has_look(x, y)) {
+            (View::Light, true) => self.pixel_light(here),
+            (View::Light, false) => [0.0; 4],
+            (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
+            (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
+        }
+    }
+
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
-    pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
+    fn pixel_light(&self, here: &Record) -> [f64; 4] {
         let mut light = [0.0; 3];
         let mut open = 1.0;
         if let Some(disk) = &self.scene.disk {
@@ -123,8 +136,10 @@ impl<'a> Shader<'a> {
             false => tangent(self.chart_to_sky * change),
         });
         let sky = &self.scene.sky;
-        let mut light = self.stars.map_or([0.0; 3], |stars| {
-            stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * sky.stars_brightness)
+        let mut light = self.stars.as_deref().map_or([0.0; 3], |stars| {
+            stars
+                .star_light(d, [dx, dy], shift.colour, shift.beaming, self.least_patch)
+                .map(|v| v * sky.stars_brightness)
         });
         for map in self.maps.iter().flatten() {
             let rgb = shifted_map_light(map.light(d, dx, dy), shift.colour, shift.beaming);
@@ -134,7 +149,7 @@ impl<'a> Shader<'a> {
     }
 
     /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.
-    pub fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
+    fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
         let first = here.crossings.first();
         match (self.scene.view, here.fate) {
             (View::Redshift, fate) => match first {

@@ -4,6 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
+use crate::scene::Projection;
 use crate::sky;
 use std::collections::HashMap;
 
@@ -16,6 +17,8 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
+    /// Of pixels; given rays have none.
+    pub projection: Projection,
 }
 
 /// Everything that decides how shading is compiled.
@@ -34,6 +37,7 @@ pub struct Look {
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
+    pub projection: Projection,
 }
 
 /// Everything that decides how development is compiled.
@@ -41,7 +45,8 @@ pub struct Look {
 pub struct FilmLook {
     format: u32,
     tone_map: u32,
-    false_colour: bool,
+    /// Number of the view; 0: light.
+    false_colour: u32,
     target: PixelTarget,
 }
 
@@ -58,7 +63,7 @@ pub enum PixelTarget {
 
 impl FilmLook {
     pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
-        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, target }
+        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
@@ -70,13 +75,13 @@ impl FilmLook {
     }
 
     /// The WGSL that takes radiance: film, and where its pixels go.
-    fn parts(self) -> [&'static str; 2] {
+    fn parts(self) -> [&'static str; 3] {
         let target = match self.target {
             PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
             PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
             PixelTarget::Rows => include_str!("../../shaders/packed_rows.wgsl"),
         };
-        [include_str!("../../shaders/film.wgsl"), target]
+        [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/false_colour.wgsl"), target]
     }
 
     /// The group of `parts`.
@@ -130,7 +135,7 @@ enum Name {
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
     Develop(FilmLook),
-    Export(Source, bool),
+    Export(Source, bool, Projection),
     SchwarzschildEnds,
     SchwarzschildColumns { delay: bool },
     KerrNodes { delay: bool, pattern: bool },
@@ -179,6 +184,7 @@ const INTEGRATION: [&str; 3] =
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
+const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 
@@ -191,7 +197,7 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let pixels = [PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")];
+    let pixels = [PASS, TRACED_LAYOUT, FRAME, PROJECTION, CAMERA, include_str!("../../shaders/pixels.wgsl")];
     join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &pixels])
 }
 
@@ -285,9 +291,9 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
     ];
-    let constants = sky::StarIndex::shared().wgsl_constants();
+    let constants = sky::StarIndex::wgsl_constants();
     let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
@@ -295,13 +301,13 @@ fn shade_sample_source(source: Source) -> String {
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
-    let [develop, put] = film.parts();
-    shade_source(source, Some(film.target), &[develop, put, include_str!("../../shaders/shade_only.wgsl")])
+    let [develop, colour, put] = film.parts();
+    shade_source(source, Some(film.target), &[develop, colour, put, include_str!("../../shaders/shade_only.wgsl")])
 }
 
 fn export_source(source: Source) -> String {
     let (_, driver) = source.driver(None);
-    let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
+    let parts = [MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver, include_str!("../../shaders/export.wgsl")];
     join(&[&parts, &source.parts()])
 }
 
@@ -315,7 +321,7 @@ fn develop_source(film: FilmLook) -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: false, target };
+    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: 0, target };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
@@ -496,10 +502,11 @@ impl Kernels {
         self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
     }
 
-    pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
+    pub fn export(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
         let (entry_point, _) = source.driver(None);
-        self.get(device, Name::Export(source, footprints), &groups, entry_point, || export_source(source))
+        let name = Name::Export(source, look.footprints, look.projection);
+        self.get(device, name, &groups, entry_point, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -600,6 +607,10 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
+fn projection_constant(projection: Projection) -> (&'static str, f64) {
+    ("PROJECTION", f64::from(projection as i32))
+}
+
 fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
     vec![
         ("SHOWS_LIGHT", flag(look.light)),
@@ -611,24 +622,31 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
         ("DISK", flag(look.disk)),
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
+        projection_constant(look.projection),
     ]
 }
 
 fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
-    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", flag(film.false_colour))]
+    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", film.false_colour.into())]
 }
 
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
-        Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
+        Name::Pixels(variant) => {
+            let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
+            [trace_constants(variant), pixels].concat()
+        }
         Name::Rays(variant) => trace_constants(variant),
         Name::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
         Name::Develop(film) => film_constants(film),
-        Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
+        Name::Export(source, footprints, projection) => {
+            let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
+            [source.constants(), export].concat()
+        }
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
         Name::KerrNodes { delay, pattern } => vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern))],

@@ -1,5 +1,5 @@
 //! What to draw, as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
-//! May use `physics`, and hold a map of `crate::sky`; may not know of C, of pointers or of the GPU.
+//! May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
 
 pub mod camera;
 pub mod disk;
@@ -8,6 +8,7 @@ pub mod frame;
 pub mod hole;
 pub mod lensing;
 pub mod observer;
+pub mod projection;
 pub mod quality;
 pub mod query;
 pub mod rays;
@@ -26,7 +27,7 @@ pub use quality::{Method, Quality};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 pub use sky::Sky;
 
-use crate::sky::SkyMap;
+use crate::sky::{SkyMap, StarIndex};
 use std::sync::Arc;
 
 /// Which relativistic effects colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored.
@@ -93,6 +94,9 @@ pub struct Scene {
     pub time: f64,
     pub quality: Quality,
     pub view: View,
+    /// Stars instead of the sky's: for tests.
+    #[doc(hidden)]
+    pub given_stars: Option<Arc<StarIndex>>,
 }
 
 impl Default for Scene {
@@ -108,6 +112,7 @@ impl Default for Scene {
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
+            given_stars: None,
         }
     }
 }

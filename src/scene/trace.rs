@@ -61,7 +61,7 @@ impl Scene {
     }
 
     pub fn shows_stars(&self) -> bool {
-        self.sky.flags & super::Sky::STARS != 0 && self.sky.stars_brightness > 0.0
+        self.sky.star_field().is_some() && self.sky.stars_brightness > 0.0
     }
 
     pub fn shows_milky_way(&self) -> bool {
