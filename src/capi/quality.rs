@@ -91,6 +91,7 @@ impl TryFrom<BhrQuality> for Quality {
             render_scale: given.render_scale,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
+            keep_light: None,
         };
         quality.check()?;
         Ok(quality)

@@ -2,6 +2,7 @@
 //! formats get the radiance as it is. Views other than light get false colour, or their value. In f32, so that
 //! `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how light was made.
 
+pub mod bloom;
 mod false_colour;
 mod tone_map;
 
@@ -45,6 +46,20 @@ impl FilmParams {
             transparent: u32::from(transparent),
             reserved: 0,
         }
+    }
+
+    /// Of a frame with bloom, whose light is exposed before it spreads: what develops the sum.
+    pub fn of_exposed(self) -> Self {
+        Self { exposure: 1.0, ..self }
+    }
+
+    /// Light as bloom spreads it: exposed, and limited as it will be when it is developed, so that no pixel spreads more than
+    /// the brightest that films tell apart, nor NaN. Alpha within [0, 1].
+    #[inline(always)]
+    pub fn exposed_light(&self, radiance: [f64; 4]) -> [f32; 4] {
+        let [r, g, b, a] = radiance.map(|v| v as f32);
+        let [r, g, b] = [r, g, b].map(|v| limited(v * self.exposure, MAX_SCENE_LIGHT));
+        [r, g, b, limited(a, 1.0)]
     }
 
     fn tone_map_kind(&self) -> ToneMap {
