@@ -2,8 +2,8 @@
 //! it, and the CPU's way of doing so; `shaders/bloom*.wgsl` and `src/gpu/bloom.rs` do the same with these numbers. Works on exposed
 //! light ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how it was made, or of pixels of 8 bits.
 //!
-//! What it shows: out = (1 - s) L + s (L * K), s = 0.25 `bloom`, and K, of integral 1,
-//! K(r) ~ (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, r0 = H / 300, r1 = H / 28, cut off smoothly about H / 4, H the frame's height.
+//! What it shows: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1,
+//! K(r) ~ (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height.
 //! These are the wings of light scattered in the eye: 10 / theta^3 + 10 / theta^2 in degrees (G. Spencer, P. Shirley, K. Zimmerman,
 //! D. Greenberg, SIGGRAPH 1995, their photopic f1 and f2, 0.478 * 20.91 and 0.138 * 72.37; likewise J. J. Vos, CIE 135/1, 1999), for a
 //! frame seen from two heights away, which makes 1 degree H / 28. Photographs' aureoles fall the same way (I. King 1971). Their
@@ -22,9 +22,9 @@ use crate::scene::{Film, Scene, View};
 use rayon::prelude::*;
 
 /// s of `bloom` 1.
-const MOST_SCATTERED: f64 = 0.25;
+const MOST_SCATTERED: f64 = 0.4;
 /// r0, r1 and the radius of the cut, in frame heights.
-const CORE: f64 = 1.0 / 300.0;
+const CORE: f64 = 1.0 / 180.0;
 const DEGREE: f64 = 1.0 / 28.0;
 const CUT: f64 = 0.25;
 /// The widest level's sigma, in frame heights, at most.
@@ -469,7 +469,7 @@ mod tests {
             let h = f64::from(height);
             let bloom = Bloom::of(1.0, [height, height]);
             let formula = |r: f64| {
-                let q = r * r + (h / 300.0).powi(2);
+                let q = r * r + (h / 180.0).powi(2);
                 q.powf(-1.5) + 28.0 / (h * q)
             };
             for place in [[180, 180], [181, 183], [height / 2 + 4, height / 2 - 7]] {
