@@ -67,6 +67,9 @@ pub struct RendererOptions {
     pub compatible_window: Option<NativeWindow>,
 }
 
+/// Of `FrameStats::pass_ns`.
+pub const PASSES: usize = 3;
+
 /// Numbers about the last finished frame. Times in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
@@ -77,6 +80,8 @@ pub struct FrameStats {
     pub cpu_ns: u64,
     /// 0: the adapter has no timestamps.
     pub gpu_ns: u64,
+    /// What `gpu_ns` is the sum of: tracing and shading, without bloom with development; bloom; development.
+    pub pass_ns: [u64; PASSES],
     pub readback_ns: u64,
     /// Device memory held by this renderer.
     pub device_bytes: u64,

@@ -246,13 +246,7 @@ impl Level {
 }
 
 /// Sum of the values of a rectangle whose first is `begin`, each times its column's and its row's factor.
-fn weighted_sum(
-    values: &[[f32; 4]],
-    width: usize,
-    [left, top]: [usize; 2],
-    across: &[f32],
-    down: &[f32],
-) -> [f32; 4] {
+fn weighted_sum(values: &[[f32; 4]], width: usize, [left, top]: [usize; 2], across: &[f32], down: &[f32]) -> [f32; 4] {
     let mut sum = [0.0; 4];
     for (row, down) in values.chunks_exact(width).skip(top).zip(down) {
         for (value, across) in row.iter().skip(left).zip(across) {
@@ -278,7 +272,8 @@ impl<'a> Gathering<'a> {
         let factor = self.bloom.factor as usize;
         // Cells whose taps reach into the tile: half a cell further on both sides.
         let reach = |begin: usize, side: usize, cells: u32| {
-            (begin.saturating_sub(factor / 2) / factor)..((begin + side + factor / 2).div_ceil(factor)).min(cells as usize)
+            (begin.saturating_sub(factor / 2) / factor)
+                ..((begin + side + factor / 2).div_ceil(factor)).min(cells as usize)
         };
         let (columns, rows) = (reach(left, width, base.size[0]), reach(top, height, base.size[1]));
         let [frame_width, frame_height] = self.bloom.frame.map(|side| side as usize);
@@ -456,9 +451,13 @@ mod tests {
     #[test]
     fn an_even_frame_stays_even() {
         for frame in [[5, 3], [129, 67], [640, 361]] {
-            let out = bloomed(&Bloom::of(1.0, frame), &vec![[0.5, 0.25, 2.0, 0.75]; (frame[0] * frame[1]) as usize], frame);
+            let out =
+                bloomed(&Bloom::of(1.0, frame), &vec![[0.5, 0.25, 2.0, 0.75]; (frame[0] * frame[1]) as usize], frame);
             for v in out {
-                assert!((0..3).all(|c| (v[c] / [0.5, 0.25, 2.0][c] - 1.0).abs() < 1e-5) && v[3] == 0.75, "{frame:?}: {v:?}");
+                assert!(
+                    (0..3).all(|c| (v[c] / [0.5, 0.25, 2.0][c] - 1.0).abs() < 1e-5) && v[3] == 0.75,
+                    "{frame:?}: {v:?}"
+                );
             }
         }
     }
@@ -480,7 +479,10 @@ mod tests {
                 let mean = rings.iter().map(|(_, (mean, _))| mean).sum::<f64>() / rings.len() as f64;
                 for (r, (ratio, spread)) in &rings {
                     println!("{height} {place:?} r {r}: {:.3} of the formula, {:.3} around", ratio / mean, spread);
-                    assert!((ratio / mean - 1.0).abs() < 0.1 && *spread < 0.05, "{height} {place:?} {r}: {ratio} {spread}");
+                    assert!(
+                        (ratio / mean - 1.0).abs() < 0.1 && *spread < 0.05,
+                        "{height} {place:?} {r}: {ratio} {spread}"
+                    );
                 }
                 let shape = (0..=height / 3).step_by(2).map(|r| ring(&glare, height, place, r.into(), |_| 1.0).0);
                 let shape = shape.skip(1).collect::<Vec<_>>();

@@ -266,6 +266,28 @@ mod tests {
         }
     }
 
+    /// A gradient so slow that without dithering its steps would be bands of 64 columns: the mean of any 8 x 8 pixels follows it, and no
+    /// row has a step's code for long.
+    #[test]
+    fn slow_gradients_show_no_bands() {
+        let params = params(ToneMap::None, PixelFormat::Rgba8Srgb);
+        let level = |x: u32| 40.0 + f64::from(x) / 64.0;
+        let code = |x: u32, y: u32| {
+            let light = srgb_decode(level(x) / 255.0) as f32;
+            f64::from(develop(&params, [light; 4], x, y)[0])
+        };
+        let mut longest = 0;
+        for y in 0..64 {
+            let row = (0..1024).map(|x| code(x, y)).collect::<Vec<_>>();
+            longest = row.chunk_by(|a, b| a == b).map(<[f64]>::len).fold(longest, usize::max);
+        }
+        assert!(longest < 24, "{longest} equal pixels in a row");
+        for (x, y) in (0..1016).step_by(4).flat_map(|x| (0..56).step_by(8).map(move |y| (x, y))) {
+            let mean = (0..64).map(|i| code(x + i % 8, y + i / 8) - level(x + i % 8)).sum::<f64>() / 64.0;
+            assert!(mean.abs() < 0.1, "({x}, {y}): {mean} of a step off");
+        }
+    }
+
     #[test]
     fn dither_is_jimenez_noise() {
         for (x, y) in [(0_u32, 0_u32), (1, 0), (0, 1), (17, 5), (1919, 1079)] {

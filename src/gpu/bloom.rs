@@ -1,8 +1,8 @@
 //! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that spread it. What goes
 //! where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
-use super::kernels::{self, Kernels, Stage, TextureKind};
 use super::frame::Written;
+use super::kernels::{self, Kernels, Stage, TextureKind};
 use super::{Device, Texture, uniform_stride};
 use crate::error::{Error, Result};
 use crate::film::bloom::{Bloom, Level, MOST_LEVELS, TAIL};
@@ -67,7 +67,9 @@ impl Made {
     fn new(device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<Self> {
         let TextureKind { format, dimension } = kernels::LIGHT;
         let texture = |label: &str, size: [u32; 2]| device.texture(label, format, dimension, size, 1);
-        let grids = |label: &str, levels: &[Level]| levels.iter().map(|level| texture(label, level.size)).collect::<Result<Vec<_>>>();
+        let grids = |label: &str, levels: &[Level]| {
+            levels.iter().map(|level| texture(label, level.size)).collect::<Result<Vec<_>>>()
+        };
         let but_last = &bloom.levels[..bloom.levels.len().saturating_sub(1)];
         let bytes = MOST_LEVELS as u64 * uniform_stride::<LevelUniform>(device);
         Ok(Self {
@@ -80,7 +82,8 @@ impl Made {
 
     fn serves(&self, bloom: &Bloom, light: [u32; 2]) -> bool {
         let grids = |textures: &[Texture], count: usize| {
-            textures.len() >= count && textures.iter().zip(&bloom.levels).take(count).all(|(t, level)| serves(t, level.size))
+            textures.len() >= count
+                && textures.iter().zip(&bloom.levels).take(count).all(|(t, level)| serves(t, level.size))
         };
         serves(&self.light, light)
             && grids(&self.gathered, bloom.levels.len())
@@ -119,7 +122,9 @@ impl BloomBuffers {
     pub fn write(&mut self, device: &Device, bloom: &Bloom, origin: [u32; 2], cells: Tile) -> Result<()> {
         let stride = uniform_stride::<LevelUniform>(device) as usize;
         let mut bytes = vec![0; bloom.levels.len() * stride];
-        for (index, ((slot, level), fine)) in bytes.chunks_exact_mut(stride).zip(&bloom.levels).zip(finer(bloom)).enumerate() {
+        for (index, ((slot, level), fine)) in
+            bytes.chunks_exact_mut(stride).zip(&bloom.levels).zip(finer(bloom)).enumerate()
+        {
             let below = index.checked_sub(1).and_then(|below| bloom.levels.get(below));
             let base = below.is_none();
             let uniform = LevelUniform {

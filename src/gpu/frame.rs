@@ -4,31 +4,42 @@
 
 use super::bloom::{BloomBuffers, BloomStages, LIGHT_BYTES};
 use super::export::{EXPORT_BYTES, imported};
-use super::kernels::{Compiled, FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups};
+use super::kernels::{
+    Compiled, FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups,
+};
 use super::lens_kerr::Wanted;
 use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
 use super::steps::{Step, Steps};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, MEMORY, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
-use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, timer, uniform_stride, variant};
+use super::{
+    Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, timer, uniform_stride, variant,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::physics::trace::Settings;
-use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
+use crate::renderer::{Backend, FrameRequest, FrameStats, PASSES, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{Lensing, Region, Scene, View};
+use arrayvec::ArrayVec;
 use glam::DVec3;
 use std::collections::VecDeque;
 use std::slice;
 use std::time::Instant;
 use wgpu::BufferUsages as Usage;
 
-/// Passes of a submission: shading, bloom, development.
-const MOST_PASSES: u32 = 3;
+/// Passes of a submission, at most one of each kind.
+#[derive(Clone, Copy)]
+enum PassKind {
+    Shading,
+    Bloom,
+    Development,
+}
+
 /// Of a step that gathers none.
 const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 /// Largest side of a tile, pixels.
@@ -180,6 +191,7 @@ pub struct Submitted {
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
     copied: Copied,
     tick_bytes: u64,
+    passes: ArrayVec<PassKind, PASSES>,
     /// Whether steps were counted: none are taken where rays are looked up and nothing else.
     counts: bool,
     tile: Option<Tile>,
@@ -527,11 +539,15 @@ impl FrameBuffers {
                 frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
                 film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
                 film_of_exposed: Written::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
-                passes: Written::new(device, "passes", u64::from(1 + MAX_BATCH) * uniform_stride::<PassUniform>(device))?,
+                passes: Written::new(
+                    device,
+                    "passes",
+                    u64::from(1 + MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                )?,
                 step_sum: step_sum(device)?,
             });
             // The clocks of software drivers tell nothing about their threads.
-            self.timer = if software { None } else { GpuTimer::new(device, MOST_PASSES)? };
+            self.timer = if software { None } else { GpuTimer::new(device, PASSES as u32)? };
         }
         if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.
@@ -610,7 +626,9 @@ impl FrameBuffers {
         } else {
             Shading::Only(taking(kernels, &[])?)
         };
-        let group = |puts: &Compiled, film: &Written, pixels| device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels]);
+        let group = |puts: &Compiled, film: &Written, pixels| {
+            device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels])
+        };
         let put_pixels = |puts: &Compiled, film: &Written| match target {
             FrameTarget::Screen(texture) => {
                 group(puts, film, wgpu::BindingResource::TextureView(&texture.view)).map(Put::Here)
@@ -713,10 +731,12 @@ impl FrameBuffers {
         let stages = &frame.stages;
         let stride = uniform_stride::<PassUniform>(device);
         let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
-        let mut passes = vec![0; (1 + step.samples.len()) * stride as usize];
+        let mut places = vec![0; (1 + step.samples.len()) * stride as usize];
         // The first is what is developed, which with bloom may be another tile than the shaded one.
         let developed = (step.develops.unwrap_or(step.shades), 0, 0);
-        for (slot, (tile, sample, i)) in passes.chunks_exact_mut(stride as usize).zip([developed].into_iter().chain(shaded)) {
+        for (slot, (tile, sample, i)) in
+            places.chunks_exact_mut(stride as usize).zip([developed].into_iter().chain(shaded))
+        {
             let pass = pass_of(&frame.request, tile, sample, frame.samples, i, step.light_origin);
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
@@ -733,7 +753,7 @@ impl FrameBuffers {
         let to = staging.buffer()?;
         let mut encoder = device.encoder("frame")?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed.passes.write(device, &passes)?;
+        fixed.passes.write(device, &places)?;
         if let Some(bloom) = &frame.bloom {
             self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
         }
@@ -741,16 +761,22 @@ impl FrameBuffers {
         let puts = stages.glare.is_some() || step.develops.is_some();
         let put = if puts { Some(stages.put.group(device, to)?) } else { None };
         let timer = &mut self.timer;
-        let mut in_pass = |label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
+        let mut passes = ArrayVec::new();
+        let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
+            passes.push(kind);
             let timestamp_writes = timer.as_mut().and_then(GpuTimer::next_pass);
-            record(&mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes }));
+            record(
+                &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes }),
+            );
         };
         if !step.samples.is_empty() {
-            in_pass("frame", &mut |pass| stages.shade(pass, &step, frame.samples, begins, stride as u32, put.as_ref()));
+            in_pass(PassKind::Shading, "frame", &mut |pass| {
+                stages.shade(pass, &step, frame.samples, begins, stride as u32, put.as_ref())
+            });
         }
         if let Some(glare) = &stages.glare {
             if let Some(cells) = step.gathers {
-                in_pass("bloom", &mut |pass| {
+                in_pass(PassKind::Bloom, "bloom", &mut |pass| {
                     glare.bloom.gather(pass, cells);
                     if step.spreads {
                         glare.bloom.spread(pass);
@@ -759,7 +785,7 @@ impl FrameBuffers {
             }
             if let Some(tile) = step.develops {
                 let put = glare.put.group(device, to)?;
-                in_pass("develop", &mut |pass| {
+                in_pass(PassKind::Development, "develop", &mut |pass| {
                     pass.set_bind_group(2, &put, &[]);
                     glare.develop.dispatch(pass, 0, [tile.width, tile.height]);
                 });
@@ -780,14 +806,7 @@ impl FrameBuffers {
         let submission = device.submit(encoder)?;
         copied.request(device)?;
         frame.submitted += 1;
-        Ok(Some(Submitted {
-            submission,
-            copied,
-            tick_bytes,
-            counts,
-            tile: developed,
-            row_bytes,
-        }))
+        Ok(Some(Submitted { submission, copied, tick_bytes, passes, counts, tile: developed, row_bytes }))
     }
 }
 
@@ -810,7 +829,11 @@ impl Submitted {
                 let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
                 stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
             }
-            stats.gpu_ns += timer::nanoseconds(device, part(bytes, TICKS, self.tick_bytes)?)?;
+            let ticks = part(bytes, TICKS, self.tick_bytes)?;
+            stats.gpu_ns += timer::nanoseconds(device, ticks)?;
+            for (kind, ticks) in self.passes.iter().zip(ticks.chunks(timer::PASS_BYTES as usize)) {
+                stats.pass_ns[*kind as usize] += timer::nanoseconds(device, ticks)?;
+            }
             if let (Some(tile), Some(pixels)) = (self.tile, bytes.get(PIXELS as usize..)) {
                 sink(tile, pixels, self.row_bytes)?;
             }

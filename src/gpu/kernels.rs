@@ -79,7 +79,9 @@ impl FilmLook {
             PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
             PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
             PixelTarget::Rows => include_str!("../../shaders/packed_rows.wgsl"),
-            PixelTarget::Light => concat!(include_str!("../../shaders/f16.wgsl"), "\n", include_str!("../../shaders/light.wgsl")),
+            PixelTarget::Light => {
+                concat!(include_str!("../../shaders/f16.wgsl"), "\n", include_str!("../../shaders/light.wgsl"))
+            }
         };
         [include_str!("../../shaders/film.wgsl"), target]
     }
@@ -142,9 +144,16 @@ enum Name {
     GiveBack,
     Export(Source, bool),
     SchwarzschildEnds,
-    SchwarzschildColumns { delay: bool },
-    KerrNodes { delay: bool, pattern: bool },
-    KerrFlags { pattern: bool },
+    SchwarzschildColumns {
+        delay: bool,
+    },
+    KerrNodes {
+        delay: bool,
+        pattern: bool,
+    },
+    KerrFlags {
+        pattern: bool,
+    },
 }
 
 /// The pipelines of one device.

@@ -54,7 +54,12 @@ impl Steps {
     }
 
     /// With bloom, for one that does not. `plan_of`: of a request, and how many pixels each of its own stands for.
-    pub fn twice(request: &FrameRequest, samples: u32, bloom: &Bloom, plan_of: impl Fn(&FrameRequest, u64) -> Plan) -> Self {
+    pub fn twice(
+        request: &FrameRequest,
+        samples: u32,
+        bloom: &Bloom,
+        plan_of: impl Fn(&FrameRequest, u64) -> Plan,
+    ) -> Self {
         let [width, height] = base(bloom);
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         let gather = plan_of(&FrameRequest { width, height, region, ..*request }, u64::from(bloom.factor).pow(2));
@@ -198,8 +203,13 @@ mod tests {
                 assert!(list.iter().take(spreads.unwrap_or(0)).all(|step| step.develops.is_none()));
                 let [width, height] = steps.largest();
                 for step in &list {
-                    assert!(step.shades.width <= width && step.shades.height <= height, "{step:?} in {width} x {height}");
-                    assert!(step.shades.x + step.shades.width <= frame[0] && step.shades.y + step.shades.height <= frame[1]);
+                    assert!(
+                        step.shades.width <= width && step.shades.height <= height,
+                        "{step:?} in {width} x {height}"
+                    );
+                    assert!(
+                        step.shades.x + step.shades.width <= frame[0] && step.shades.y + step.shades.height <= frame[1]
+                    );
                 }
             }
         }
