@@ -39,6 +39,8 @@ struct Made {
     gathered: Vec<Texture>,
     /// What each grid but the last and those above it spread.
     spread: Vec<Texture>,
+    /// Linear between the centres of cells.
+    smooth: wgpu::Sampler,
     /// A `LevelUniform` for each grid, `uniform_stride` apart.
     levels: Written,
 }
@@ -72,7 +74,10 @@ impl Made {
         };
         let but_last = &bloom.levels[..bloom.levels.len().saturating_sub(1)];
         let bytes = MOST_LEVELS as u64 * uniform_stride::<LevelUniform>(device);
+        let filter = wgpu::FilterMode::Linear;
+        let sampler = wgpu::SamplerDescriptor { mag_filter: filter, min_filter: filter, ..Default::default() };
         Ok(Self {
+            smooth: device.scoped("bloom", |device| device.create_sampler(&sampler))?,
             light: texture("light", light)?,
             gathered: grids("gathered light", &bloom.levels)?,
             spread: grids("spread light", but_last)?,
@@ -88,6 +93,10 @@ impl Made {
         serves(&self.light, light)
             && grids(&self.gathered, bloom.levels.len())
             && grids(&self.spread, bloom.levels.len().saturating_sub(1))
+    }
+
+    fn smooth(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Sampler(&self.smooth)
     }
 
     fn level(&self) -> wgpu::BindingResource<'_> {
@@ -156,11 +165,11 @@ impl BloomBuffers {
     }
 
     /// Group 1 of development.
-    pub fn group(&self, bloom: &Bloom) -> Result<[wgpu::BindingResource<'_>; 3]> {
+    pub fn group(&self, bloom: &Bloom) -> Result<[wgpu::BindingResource<'_>; 4]> {
         let made = self.made()?;
         let grids = if bloom.levels.len() > 1 { &made.spread } else { &made.gathered };
         let glare = grids.first().ok_or_else(|| Error::internal("bloom without a grid"))?;
-        Ok([view(&made.light), view(glare), made.level()])
+        Ok([view(&made.light), view(glare), made.smooth(), made.level()])
     }
 
     pub fn stages(&self, device: &Device, kernels: &mut Kernels, bloom: &Bloom) -> Result<BloomStages> {
@@ -168,6 +177,10 @@ impl BloomBuffers {
         let count = bloom.levels.len();
         let below = std::iter::once(&made.light).chain(&made.gathered);
         let gather = below.zip(&made.gathered).take(count).enumerate().map(|(index, (finer, cells))| {
+            if index == 0 && bloom.factor == 2 {
+                let group = [made.level(), view(finer), made.smooth(), view(cells)];
+                return kernels.gather_base(device)?.stage(device, &[&group]);
+            }
             let kernel = kernels.gather(device, if index == 0 { bloom.factor } else { 2 }, index > 0)?;
             kernel.stage(device, &[&[made.level(), view(finer), view(cells)]])
         });
@@ -178,7 +191,7 @@ impl BloomBuffers {
             let above = if index + 2 == count { made.gathered.get(index + 1) } else { made.spread.get(index + 1) };
             let all = made.gathered.get(index).zip(above).zip(made.spread.get(index));
             let ((finer, coarser), spread) = all.ok_or_else(|| Error::internal("bloom without its grids"))?;
-            let group = [made.level(), view(finer), view(coarser), view(spread)];
+            let group = [made.level(), view(finer), view(coarser), made.smooth(), view(spread)];
             give_back.push(kernels.give_back(device)?.stage(device, &[&group])?);
         }
         let sizes = bloom.levels.iter().map(|level| level.size).collect();

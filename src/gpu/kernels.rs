@@ -141,6 +141,7 @@ enum Name {
     Develop(FilmLook, Option<u32>),
     /// Finer cells, or pixels, along a cell's side; whether they are cells.
     Gather(u32, bool),
+    GatherBase,
     GiveBack,
     Export(Source, bool),
     SchwarzschildEnds,
@@ -345,6 +346,10 @@ fn gather_source() -> String {
     bloom_source(include_str!("../../shaders/bloom_gather.wgsl"))
 }
 
+fn gather_base_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_base.wgsl"))
+}
+
 fn give_back_source() -> String {
     bloom_source(include_str!("../../shaders/bloom_return.wgsl"))
 }
@@ -381,6 +386,7 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("develop with glare for a window", develop_source(film(PixelTarget::Screen), true)),
         ("develop with glare by rows", develop_source(film(PixelTarget::Rows), true)),
         ("bloom, gather", gather_source()),
+        ("bloom, gather pixels", gather_base_source()),
         ("bloom, give back", give_back_source()),
         ("shade only for bloom", shade_only_source(kerr(false), FilmLook::of_light())),
         ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
@@ -402,6 +408,9 @@ enum Slot {
     Read,
     Write,
     Texture(TextureKind),
+    /// A texture that a sampler filters.
+    Filtered(TextureKind),
+    Sampler,
     TextureWrite(TextureKind),
 }
 
@@ -465,6 +474,12 @@ impl Slot {
                 view_dimension: of.dimension,
                 multisampled: false,
             },
+            Self::Filtered(of) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: of.dimension,
+                multisampled: false,
+            },
+            Self::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
             Self::TextureWrite(of) => wgpu::BindingType::StorageTexture {
                 access: wgpu::StorageTextureAccess::WriteOnly,
                 format: of.format,
@@ -534,22 +549,28 @@ impl Kernels {
     /// `glare`: with bloom, pixels along a cell's side. Group 2, which puts the pixels, is for the caller to set.
     pub fn develop(&mut self, device: &Device, film: FilmLook, glare: Option<u32>) -> Result<Compiled> {
         let light = match glare {
-            Some(_) => vec![Slot::Texture(LIGHT), Slot::Texture(LIGHT), Slot::Uniform],
+            Some(_) => vec![Slot::Texture(LIGHT), Slot::Filtered(LIGHT), Slot::Sampler, Slot::Uniform],
             None => vec![Slot::Texture(RADIANCE)],
         };
         let groups = [vec![Slot::UniformPart], light, film.slots()];
         self.get(device, Name::Develop(film, glare), &groups, "develop_tile", || develop_source(film, glare.is_some()))
     }
 
-    /// For cells of `step` x `step` pixels, or finer cells.
+    /// For cells of `step` x `step` pixels, or of finer cells.
     pub fn gather(&mut self, device: &Device, step: u32, grid: bool) -> Result<Compiled> {
         let slots = vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)];
         self.get(device, Name::Gather(step, grid), &[slots], "gather", gather_source)
     }
 
+    /// For cells of 2 x 2 pixels.
+    pub fn gather_base(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::GatherBase, &[slots], "gather", gather_base_source)
+    }
+
     pub fn give_back(&mut self, device: &Device) -> Result<Compiled> {
-        let [finer, coarser] = [LIGHT; 2].map(Slot::Texture);
-        let slots = vec![Slot::UniformPart, finer, coarser, Slot::TextureWrite(LIGHT)];
+        let [finer, coarser] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
+        let slots = vec![Slot::UniformPart, finer, coarser, Slot::Sampler, Slot::TextureWrite(LIGHT)];
         self.get(device, Name::GiveBack, &[slots], "give_back", give_back_source)
     }
 
@@ -684,7 +705,7 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
         Name::Develop(film, None) => film_constants(film),
         Name::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
         Name::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
-        Name::GiveBack => Vec::new(),
+        Name::GatherBase | Name::GiveBack => Vec::new(),
         Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
