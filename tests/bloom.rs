@@ -72,19 +72,38 @@ fn bytes_do_not_depend_on_how_they_are_made() {
     for (tracer, mut renderer) in both() {
         for (name, set) in SCENES {
             for size in [[181, 97], [1, 1], [3, 50]] {
-                let mut show = |keep: Option<bool>, size| {
+                let mut show = |keep: Option<bool>, mapped: Option<bool>, size| {
                     renderer.scene = Scene::default();
+                    renderer.scene.quality.mapped_pixels = mapped;
                     set(&mut renderer.scene);
                     (renderer.scene.film.bloom, renderer.scene.quality.keep_light) = (0.8, keep);
                     picture(&mut renderer, PixelFormat::Bgra8Srgb, size)
                 };
-                let kept = show(Some(true), size);
-                let twice = show(Some(false), size);
+                let kept = show(Some(true), None, size);
+                let twice = show(Some(false), None, size);
                 assert!(kept == twice, "{tracer}, {name}, {size:?}: kept and made twice");
-                show(None, [64, 200]);
-                assert!(kept == show(None, size), "{tracer}, {name}, {size:?}: again");
+                // Put by kernels into the host's memory, where they can.
+                assert!(kept == show(Some(true), Some(true), size), "{tracer}, {name}, {size:?}: by rows");
+                assert!(kept == show(Some(false), Some(true), size), "{tracer}, {name}, {size:?}: twice, by rows");
+                show(None, None, [64, 200]);
+                assert!(kept == show(None, None, size), "{tracer}, {name}, {size:?}: again");
             }
         }
+    }
+}
+
+/// OpenGL, of which Mesa's software driver stands for all.
+#[test]
+fn gl_and_cpu_pictures_agree() {
+    for (name, set) in SCENES {
+        let [cpu, gl] = [Backend::Cpu, Backend::Gl].map(|backend| {
+            let mut renderer = Renderer::new(RendererOptions { backend: Some(backend), ..Default::default() }).unwrap();
+            set(&mut renderer.scene);
+            renderer.scene.film.bloom = 1.0;
+            picture(&mut renderer, PixelFormat::Rgba8Srgb, [96, 54])
+        });
+        let differ = cpu.iter().zip(&gl).filter(|(a, b)| a.abs_diff(**b) > 1).count();
+        assert!(differ < 10, "{name}: {differ} bytes differ by more than one step");
     }
 }
 

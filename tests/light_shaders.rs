@@ -9,11 +9,12 @@ use bhr::sky::StarIndex;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
-const SNIPPETS: [&str; 4] = [
+const SNIPPETS: [&str; 5] = [
     include_str!("../shaders/blackbody.wgsl"),
     include_str!("../shaders/stars.wgsl"),
     include_str!("../shaders/film.wgsl"),
     include_str!("../shaders/record.wgsl"),
+    include_str!("../shaders/false_colour.wgsl"),
 ];
 
 const BINDINGS: &str = "
@@ -51,8 +52,7 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    [BINDINGS, ENTRIES, &StarIndex::shared().wgsl_constants(), SNIPPETS[0], SNIPPETS[1], SNIPPETS[2], SNIPPETS[3]]
-        .concat()
+    [&[BINDINGS, ENTRIES, &StarIndex::shared().wgsl_constants()][..], &SNIPPETS].concat().concat()
 }
 
 #[test]
@@ -275,7 +275,9 @@ fn gpu_film_agrees() {
             cases.push(FilmParams::new(&film, View::Light, format, format != PixelFormat::Rgba16F));
         }
     }
-    cases.push(FilmParams::new(&Film::default(), View::Redshift, PixelFormat::Rgba8Srgb, false));
+    for view in [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric] {
+        cases.push(FilmParams::new(&Film::default(), view, PixelFormat::Rgba8Srgb, false));
+    }
     cases.push(FilmParams::new(&Film::default(), View::Redshift, PixelFormat::R32F, false));
     for params in cases {
         let tolerance = if params.format <= 2 { 1 } else { 0 };

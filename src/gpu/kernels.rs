@@ -38,7 +38,8 @@ pub struct Look {
 pub struct FilmLook {
     format: u32,
     tone_map: u32,
-    false_colour: bool,
+    /// Number of the view; 0: light.
+    false_colour: u32,
     target: PixelTarget,
 }
 
@@ -57,12 +58,12 @@ pub enum PixelTarget {
 
 impl FilmLook {
     pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
-        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, target }
+        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
     }
 
     /// Of light that bloom is to spread.
     pub fn of_light() -> Self {
-        Self { format: 1, tone_map: 0, false_colour: false, target: PixelTarget::Light }
+        Self { format: 1, tone_map: 0, false_colour: 0, target: PixelTarget::Light }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
@@ -74,7 +75,7 @@ impl FilmLook {
     }
 
     /// The WGSL that takes radiance: film, and where its pixels go.
-    fn parts(self) -> [&'static str; 2] {
+    fn parts(self) -> [&'static str; 3] {
         let target = match self.target {
             PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
             PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
@@ -83,7 +84,7 @@ impl FilmLook {
                 concat!(include_str!("../../shaders/f16.wgsl"), "\n", include_str!("../../shaders/light.wgsl"))
             }
         };
-        [include_str!("../../shaders/film.wgsl"), target]
+        [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/false_colour.wgsl"), target]
     }
 
     /// The group of `parts`.
@@ -313,8 +314,8 @@ fn shade_sample_source(source: Source) -> String {
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
-    let [develop, put] = film.parts();
-    shade_source(source, Some(film.target), &[develop, put, include_str!("../../shaders/shade_only.wgsl")])
+    let [develop, colour, put] = film.parts();
+    shade_source(source, Some(film.target), &[develop, colour, put, include_str!("../../shaders/shade_only.wgsl")])
 }
 
 fn export_source(source: Source) -> String {
@@ -356,7 +357,7 @@ fn give_back_source() -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: false, target };
+    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: 0, target };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
@@ -690,7 +691,7 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
 }
 
 fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
-    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", flag(film.false_colour))]
+    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", film.false_colour.into())]
 }
 
 /// Values of the `override` constants that the kernel's source declares.
