@@ -59,11 +59,10 @@ fn more_samples_come_nearer() {
             let squares = edge.iter().map(|i| (frame[*i] - best[*i]).powi(2)).sum::<f64>();
             (squares / edge.len() as f64).sqrt() / bright
         };
-        let errors = [1, 4, 16, 64].map(|samples| error(&light(&mut renderer, samples)));
+        let errors = [4, 16, 64].map(|samples| error(&light(&mut renderer, samples)));
         println!("{tracer}: {errors:.4?} of the edge's light, of {} pixels", edge.len());
-        assert!(errors[0] > 0.1, "{tracer}: one sample has no jagged edge");
-        assert!(errors[1] < 0.5 * errors[0] && errors[2] < 0.5 * errors[1] && errors[3] < 0.7 * errors[2], "{tracer}");
-        assert!(errors[2] < 0.03 && errors[3] < 0.012, "{tracer}: {errors:?}");
+        assert!(errors[1] < 0.5 * errors[0] && errors[2] < 0.7 * errors[1], "{tracer}: {errors:?}");
+        assert!(errors[0] < 0.08 && errors[1] < 0.03 && errors[2] < 0.012, "{tracer}: {errors:?}");
     }
 }
 
