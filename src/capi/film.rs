@@ -36,7 +36,8 @@ pub struct BhrFilm {
     /// r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
     /// reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
     /// and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
-    /// they are rendered. Frames above 25 megapixels are traced twice, as their light is not kept.
+    /// they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
+    /// borders interrupt it. Frames above 25 megapixels are traced twice, as their light is not kept.
     pub bloom: f64,
 }
 

@@ -4,6 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
+use crate::scene::Projection;
 use crate::sky;
 use std::collections::HashMap;
 
@@ -16,6 +17,8 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
+    /// Of pixels; given rays have none.
+    pub projection: Projection,
 }
 
 /// Everything that decides how shading is compiled.
@@ -24,6 +27,9 @@ pub struct Look {
     /// Light, not another view.
     pub light: bool,
     pub stars: bool,
+    pub milky_way: bool,
+    pub map: bool,
+    pub grid: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
     pub disk: bool,
@@ -31,6 +37,7 @@ pub struct Look {
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
+    pub projection: Projection,
 }
 
 /// Everything that decides how development is compiled.
@@ -144,7 +151,7 @@ enum Name {
     Gather(u32, bool),
     GatherBase,
     GiveBack,
-    Export(Source, bool),
+    Export(Source, bool, Projection),
     SchwarzschildEnds,
     SchwarzschildColumns {
         delay: bool,
@@ -200,6 +207,7 @@ const INTEGRATION: [&str; 3] =
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
+const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 
@@ -212,7 +220,7 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let pixels = [PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")];
+    let pixels = [PASS, TRACED_LAYOUT, FRAME, PROJECTION, CAMERA, include_str!("../../shaders/pixels.wgsl")];
     join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &pixels])
 }
 
@@ -300,13 +308,15 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
+        include_str!("../../shaders/sky_map.wgsl"),
+        include_str!("../../shaders/sky_grid.wgsl"),
         include_str!("../../shaders/disk.wgsl"),
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
     ];
-    let constants = sky::StarIndex::shared().wgsl_constants();
+    let constants = sky::StarIndex::wgsl_constants();
     let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
@@ -320,7 +330,7 @@ fn shade_only_source(source: Source, film: FilmLook) -> String {
 
 fn export_source(source: Source) -> String {
     let (_, driver) = source.driver(None);
-    let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
+    let parts = [MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver, include_str!("../../shaders/export.wgsl")];
     join(&[&parts, &source.parts()])
 }
 
@@ -452,11 +462,17 @@ pub const LENS_FLAGS: TextureKind =
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
-/// `light_tables` and `star_cells` of shade.wgsl.
-const TABLES: [TextureKind; 2] = [
+/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade.wgsl.
+const TABLES: [TextureKind; 4] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    SKY_MAP,
+    SKY_MAP,
 ];
+
+/// Pyramids of sky_map.wgsl.
+pub const SKY_MAP: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
 
 impl Slot {
     fn binding_type(self) -> wgpu::BindingType {
@@ -510,8 +526,8 @@ impl Source {
 
 /// Group 0 of shade.wgsl.
 fn shade_slots() -> Vec<Slot> {
-    let [light, cells] = TABLES.map(Slot::Texture);
-    vec![Slot::Uniform, Slot::UniformPart, light, cells]
+    let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
 impl Kernels {
@@ -575,10 +591,11 @@ impl Kernels {
         self.get(device, Name::GiveBack, &[slots], "give_back", give_back_source)
     }
 
-    pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
+    pub fn export(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
         let (entry_point, _) = source.driver(None);
-        self.get(device, Name::Export(source, footprints), &groups, entry_point, || export_source(source))
+        let name = Name::Export(source, look.footprints, look.projection);
+        self.get(device, name, &groups, entry_point, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -662,7 +679,7 @@ impl Kernels {
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
 /// loops counted over constants (of a pipeline or of all), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
-/// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
+/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
@@ -679,14 +696,22 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
+fn projection_constant(projection: Projection) -> (&'static str, f64) {
+    ("PROJECTION", f64::from(projection as i32))
+}
+
 fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
     vec![
         ("SHOWS_LIGHT", flag(look.light)),
         ("SHOWS_STARS", flag(look.stars)),
+        ("SHOWS_MILKY_WAY", flag(look.milky_way)),
+        ("SHOWS_MAP", flag(look.map)),
+        ("SHOWS_GRID", flag(look.grid)),
         ("ALL_EFFECTS", flag(look.all_effects)),
         ("DISK", flag(look.disk)),
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
+        projection_constant(look.projection),
     ]
 }
 
@@ -697,7 +722,10 @@ fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
-        Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
+        Name::Pixels(variant) => {
+            let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
+            [trace_constants(variant), pixels].concat()
+        }
         Name::Rays(variant) => trace_constants(variant),
         Name::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
         Name::ShadeOnly(source, look, film) => {
@@ -707,7 +735,10 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
         Name::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
         Name::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
         Name::GatherBase | Name::GiveBack => Vec::new(),
-        Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
+        Name::Export(source, footprints, projection) => {
+            let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
+            [source.constants(), export].concat()
+        }
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
         Name::KerrNodes { delay, pattern } => vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern))],
