@@ -818,7 +818,8 @@ typedef struct BhrFilm {
      * r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
      * reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
      * and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
-     * they are rendered. Frames above 25 megapixels are traced twice, as their light is not kept.
+     * they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
+     * borders interrupt it. Frames above 25 megapixels are traced twice, as their light is not kept.
      */
     double bloom;
 } BhrFilm;
@@ -1033,10 +1034,10 @@ BhrStatus bhr_set_progress(BhrContext *context,
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
  * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
- * UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST, OUT_OF_MEMORY.
- * Until the first pixels are written an error leaves the target alone; after that the message says so, and what is
- * not yet rendered is untouched.
+ * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for bloom
+ * with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST,
+ * OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the message says so, and
+ * what is not yet rendered is untouched.
  */
 BhrStatus bhr_render_image(BhrContext *context,
                            const BhrImage *target);
