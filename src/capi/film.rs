@@ -37,7 +37,7 @@ pub struct BhrFilm {
     /// reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
     /// and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
     /// they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
-    /// borders interrupt it. Frames above 25 megapixels are traced twice, as their light is not kept.
+    /// borders interrupt it. Frames above 25 megapixels (12 on the CPU) are traced twice, as their light is not kept.
     pub bloom: f64,
 }
 

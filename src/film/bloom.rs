@@ -342,7 +342,8 @@ impl Bloom {
 fn returned(i: usize, coarser: u32) -> ([usize; 3], [f32; 3]) {
     let own = i / 2;
     let cells = [own.saturating_sub(1), own, (own + 1).min(coarser as usize - 1)];
-    let shares = if i % 2 == 0 { [SPLINE[4], SPLINE[2], SPLINE[0]] } else { [SPLINE[5], SPLINE[3], SPLINE[1]] };
+    let shares =
+        if i.is_multiple_of(2) { [SPLINE[4], SPLINE[2], SPLINE[0]] } else { [SPLINE[5], SPLINE[3], SPLINE[1]] };
     (cells, shares.map(|share| share as f32))
 }
 
@@ -550,7 +551,7 @@ mod tests {
     fn the_finest_grid_is_bounded_and_glare_hardly_depends_on_it() {
         for frame in [[3840, 2160], [7680, 4320], [16384, 16384], [1 << 14, 1]] {
             let bloom = Bloom::of(0.5, frame);
-            assert!(bloom.levels[0].cells() as u64 <= MOST_CELLS && bloom.factor % 2 == 0, "{frame:?}");
+            assert!(bloom.levels[0].cells() as u64 <= MOST_CELLS && bloom.factor.is_multiple_of(2), "{frame:?}");
         }
         let bloom = Bloom::of(1.0, [7680, 4320]);
         assert_eq!(bloom.factor, 4);
