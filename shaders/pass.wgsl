@@ -15,11 +15,14 @@ struct Pass {
     reserved: u32,
 }
 
+// From this sample to the place looked at, pixels: 0 but where refine.wgsl spreads samples over a pixel.
+var<private> sample_shift: vec2<f32>;
+
 fn outside_tile(id: vec2<u32>) -> bool {
     return id.x >= pass_.size.x - 2u || id.y >= pass_.size.y - 2u;
 }
 
 // Of the sample in the tile's pixel `id`: its place in the full frame, pixels.
 fn pixel_place(id: vec2<u32>) -> vec2<f32> {
-    return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset;
+    return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset + sample_shift;
 }

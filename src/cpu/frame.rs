@@ -4,6 +4,7 @@
 use super::CpuTracer;
 use super::lens::{LensCache, LookedUp};
 use super::record::{Neighbours, Recorder};
+use super::refine::Refiner;
 use super::shade::Shader;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::{FilmParams, develop_row};
@@ -20,7 +21,7 @@ const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
 /// What makes a frame's records.
-enum Source<'a> {
+pub enum Source<'a> {
     Traced(Recorder<'a>),
     LookedUp(LookedUp<'a>),
 }
@@ -29,6 +30,8 @@ enum Source<'a> {
 struct Frame<'a> {
     source: Source<'a>,
     shader: Shader<'a>,
+    /// Of pixels with edges; `None`: each has several samples already, or a value that is not to be averaged.
+    refiner: Option<Refiner<'a>>,
     film: FilmParams,
     request: &'a FrameRequest,
     samples: u32,
@@ -105,16 +108,20 @@ impl<'a> Frame<'a> {
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
-        let recorder = Recorder::new(scene, lens);
+        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels));
+        let source = |recorder| match tables {
+            Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
+            None => Source::Traced(recorder),
+        };
+        let samples = if light { scene.quality.samples_per_pixel } else { 1 };
+        let refines = light && samples == 1;
         Self {
-            source: match cache.tables(scene, eye, scene.lensing(eye, pixels)) {
-                Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
-                None => Source::Traced(recorder),
-            },
+            source: source(Recorder::new(scene, lens)),
+            refiner: refines.then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
             shader: Shader::new(scene, lens, request.transparent),
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
-            samples: if light { scene.quality.samples_per_pixel } else { 1 },
+            samples,
             light,
         }
     }
@@ -135,7 +142,8 @@ impl<'a> Frame<'a> {
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
             let value = if self.light {
-                self.shader.pixel_light(record)
+                let refined = self.refiner.as_ref().and_then(|refiner| refiner.light(&self.shader, record, x, y));
+                refined.unwrap_or_else(|| self.shader.pixel_light(record))
             } else {
                 [self.shader.view_value(record, x, y), 0.0, 0.0, 1.0]
             };

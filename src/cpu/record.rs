@@ -6,6 +6,7 @@ use crate::physics::trace::{Fate, RayTrace, Settings, trace_look};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
+use crate::scene::refine::Edge;
 use crate::scene::turbulence::Place;
 use glam::DVec3;
 
@@ -28,6 +29,14 @@ pub struct Neighbours<'a> {
 impl<'a> Recorder<'a> {
     pub fn new(scene: &Scene, lens: &'a Lens) -> Self {
         Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
+    }
+
+    /// Which gives crossings of the whole plane, unless there is no disk, and goes on behind those that would hide the rest.
+    pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
+        let mut recorder = Self::new(scene, lens);
+        recorder.settings.opaque_u = None;
+        recorder.disk_u = recorder.disk_u.map(|_| [0.0, f64::INFINITY]);
+        recorder
     }
 
     /// The record of position (x, y) of the full frame, without footprints.
@@ -56,20 +65,24 @@ impl<'a> Recorder<'a> {
         }
         let Some([outer, inner]) = self.disk_u else { return };
         let within = |u: f64| u >= outer && u <= inner;
+        record.inside = traced.crossings.iter().filter(|x| x.u > inner).fold(0, |bits, x| bits | 1 << (x.order & 15));
         record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| DiskCrossing {
             u: x.u,
             order: x.order,
             g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
             place: Place { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
             footprint: [UNKNOWN_PLACE; 2],
+            share: 1.0,
         }));
     }
 }
 
 impl Neighbours<'_> {
-    /// `here` with its footprints.
+    /// `here` with its footprints and its edge.
     pub fn complete(&self, here: &Record) -> Record {
         let mut record = here.clone();
+        let kinds = [self.left, self.right, self.above, self.below].map(|there| edge_between(here, there));
+        record.edge = kinds.into_iter().max().unwrap_or_default();
         let pairs = [(self.left, self.right), (self.above, self.below)];
         if here.fate == Fate::Escaped {
             record.footprint = pairs.map(|(before, after)| derivative_of_direction(here, before, after));
@@ -79,6 +92,17 @@ impl Neighbours<'_> {
         }
         record
     }
+}
+
+/// Neighbours' rays that meet other things, or the same inside the disk's edge and not outside: two that miss a thin ring, each on
+/// its side, differ, too.
+fn edge_between(here: &Record, there: &Record) -> Edge {
+    let orders = |record: &Record| record.crossings.iter().fold(0u32, |bits, c| bits | 1 << (c.order & 31));
+    if here.fate != there.fate && here.fate != Fate::Hidden && there.fate != Fate::Hidden {
+        return Edge::Curve;
+    }
+    let alike = here.fate == there.fate && here.inside == there.inside && orders(here) == orders(there);
+    if alike { Edge::None } else { Edge::Disk }
 }
 
 /// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided.

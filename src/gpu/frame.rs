@@ -6,6 +6,7 @@ use super::export::{EXPORT_BYTES, imported};
 use super::kernels::{FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups};
 use super::lens_kerr::Wanted;
 use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
+use super::refine::{EdgeList, Refining};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
@@ -36,6 +37,7 @@ pub struct FrameBuffers {
     fixed: Option<FixedBuffers>,
     sized: Option<SizedBuffers>,
     makers: RecordMakers,
+    edges: EdgeList,
     readback: Readback,
     /// Where kernels put pixels row by row.
     mapped: Mapped,
@@ -90,8 +92,8 @@ struct Taking {
 
 /// What turns ray records into packed pixels.
 enum Shading {
-    /// Of the only sample.
-    Only(Taking),
+    /// Of the only sample; then more of the pixels that were listed (group 3) for their edges.
+    Only { taking: Taking, edges: wgpu::BindGroup, refining: Option<Refining> },
     Samples {
         /// Of even and of odd samples.
         shade: [Taking; 2],
@@ -256,7 +258,7 @@ impl GpuTracer {
             Source::Kerr { .. } => 8,
         };
         // Packed pixels have two staging buffers.
-        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes;
+        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
         let max_side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
         let plan = Plan::new(request, bytes, max_side, steps, samples);
 
@@ -426,6 +428,14 @@ impl Taking {
     }
 }
 
+impl Looks {
+    /// Whether pixels with edges are looked at once more; with several samples each pixel has been already, and values of views are no
+    /// light to be averaged.
+    fn refines(&self) -> bool {
+        self.look.light && !self.several_samples
+    }
+}
+
 impl Size {
     /// Whether buffers of this size hold what the other asks for.
     fn serves(&self, other: &Self) -> bool {
@@ -489,6 +499,7 @@ impl FrameBuffers {
             });
         }
         self.makers.prepare(device, &setup.making, size.tile)?;
+        self.edges.prepare(device, if setup.looks.refines() { size.tile } else { [1, 1] })?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
         fixed.film.write(device, bytemuck::bytes_of(&setup.film))
@@ -548,7 +559,14 @@ impl FrameBuffers {
                 develop: [develop(even)?, develop(odd)?],
             }
         } else {
-            Shading::Only(taking(kernels, &[])?)
+            let making = &setup.making;
+            let of = ((making.rest().unwrap_or(making.source), making.variant), (looks.look, looks.film));
+            let groups: [&[_]; 2] = [&shared, &records];
+            let refining = match looks.refines() {
+                true => Some(Refining::new(device, kernels, of.0, of.1, &groups, software)?),
+                false => None,
+            };
+            Shading::Only { taking: taking(kernels, &[])?, edges: self.edges.group(device, puts.edges()?)?, refining }
         };
         let film = &fixed.film.buffer;
         let here = |pixels| device.bind(puts.target()?, &[film.as_entire_binding(), pixels]).map(Put::Here);
@@ -649,6 +667,7 @@ impl FrameBuffers {
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.passes.write(device, &bytes)?;
         let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
+        self.edges.reset(&mut encoder);
         {
             let timestamps = self.timer.as_mut().and_then(GpuTimer::next_pass);
             let descriptor = wgpu::ComputePassDescriptor { label: Some("frame"), timestamp_writes: timestamps };
@@ -657,9 +676,13 @@ impl FrameBuffers {
                 let offset = i as u32 * stride as u32;
                 stages.records.encode(&mut pass, begins && i == 0, offset, size_of_tile);
                 match &stages.shading {
-                    Shading::Only(stage) => {
+                    Shading::Only { taking, edges, refining } => {
                         pass.set_bind_group(2, put.as_ref(), &[]);
-                        stage.dispatch(&mut pass, offset, size_of_tile);
+                        pass.set_bind_group(3, edges, &[]);
+                        taking.dispatch(&mut pass, offset, size_of_tile);
+                        if let Some(refining) = refining {
+                            refining.dispatch(&mut pass, offset);
+                        }
                     }
                     Shading::Samples { shade, .. } => {
                         shade[sample as usize % 2].dispatch(&mut pass, offset, size_of_tile);

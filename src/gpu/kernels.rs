@@ -4,7 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
-use crate::sky;
+use crate::{scene, sky};
 use std::collections::HashMap;
 
 /// Everything that decides how the tracing kernels are compiled.
@@ -58,11 +58,19 @@ impl FilmLook {
         Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, target }
     }
 
-    /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
+    /// For kernels that go over what `source` makes: deferred pixels lie scattered.
     fn over(self, source: Source) -> Self {
-        match (self.target, source) {
-            (PixelTarget::Rows, Source::Kerr { rest: true, .. }) => Self { target: PixelTarget::Packed, ..self },
+        match source {
+            Source::Kerr { rest: true, .. } => self.scattered(),
             _ => self,
+        }
+    }
+
+    /// For kernels over pixels that make no rows.
+    fn scattered(self) -> Self {
+        match self.target {
+            PixelTarget::Rows => Self { target: PixelTarget::Packed, ..self },
+            PixelTarget::Screen | PixelTarget::Packed => self,
         }
     }
 
@@ -105,6 +113,25 @@ pub enum Source {
     Kerr { delay: bool, pattern: bool, moving: bool, rest: bool },
 }
 
+/// How refine.wgsl finds its samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Refined {
+    /// Of the pixels' own records.
+    pub source: Source,
+    /// How rays are traced that no table holds.
+    pub variant: Variant,
+    pub samples: SamplesARow,
+}
+
+/// `GRID` of refine.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SamplesARow {
+    /// On edges of the disk.
+    Edge = scene::refine::EDGE_GRID as isize,
+    /// Where the critical curve runs.
+    Curve = scene::refine::CURVE_GRID as isize,
+}
+
 /// `METHOD_*` of integrator.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MethodCode(u32);
@@ -126,12 +153,21 @@ enum Name {
     Count,
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
+    /// `Refined::samples` a row.
+    Refine(Refined, Look, FilmLook),
     Develop(FilmLook),
     Export(Source, bool),
     SchwarzschildEnds,
-    SchwarzschildColumns { delay: bool },
-    KerrNodes { delay: bool, pattern: bool },
-    KerrFlags { pattern: bool },
+    SchwarzschildColumns {
+        delay: bool,
+    },
+    KerrNodes {
+        delay: bool,
+        pattern: bool,
+    },
+    KerrFlags {
+        pattern: bool,
+    },
 }
 
 /// The pipelines of one device.
@@ -177,7 +213,10 @@ const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
+const TRACED_FOOTPRINTS: &str = include_str!("../../shaders/traced_footprints.wgsl");
+const INTEGRATED: &str = include_str!("../../shaders/samples_integrated.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
+const EDGES: &str = include_str!("../../shaders/edges.wgsl");
 
 fn join(parts: &[&[&str]]) -> String {
     parts.concat().join("\n")
@@ -200,7 +239,7 @@ impl Source {
     /// The WGSL that makes records, without what shading needs as well.
     fn parts(self) -> Vec<&'static str> {
         match self {
-            Self::Traced => vec![TRACED_LAYOUT, include_str!("../../shaders/traced.wgsl")],
+            Self::Traced => vec![TRACED_LAYOUT, TRACED_FOOTPRINTS, include_str!("../../shaders/traced.wgsl")],
             Self::Schwarzschild { .. } => {
                 let record = include_str!("../../shaders/lens_schwarzschild_record.wgsl");
                 vec![GEODESIC, CAMERA, LENS_AXIS, SCHWARZSCHILD, record]
@@ -215,6 +254,22 @@ impl Source {
                     parts.push(include_str!("../../shaders/lens_kerr_pixel.wgsl"));
                 }
                 parts
+            }
+        }
+    }
+
+    /// The WGSL that makes records of refine.wgsl's samples.
+    fn sample_parts(self) -> Vec<&'static str> {
+        match self {
+            Self::Traced => {
+                let samples = [INTEGRATED, include_str!("../../shaders/samples_traced.wgsl")];
+                [&[GEODESIC, CAMERA, TRACED_LAYOUT, TRACED_FOOTPRINTS], &INTEGRATION[..], &samples].concat()
+            }
+            Self::Schwarzschild { .. } => self.parts(),
+            Self::Kerr { .. } => {
+                let record = include_str!("../../shaders/lens_kerr_record.wgsl");
+                let samples = [INTEGRATED, include_str!("../../shaders/samples_kerr.wgsl")];
+                [&[GEODESIC, CAMERA, LENS_AXIS, KERR, record], &INTEGRATION[..], &samples].concat()
             }
         }
     }
@@ -272,7 +327,8 @@ fn schwarzschild_columns_source() -> String {
     schwarzschild_build_source(include_str!("../../shaders/lens_schwarzschild_columns.wgsl"))
 }
 
-fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> String {
+/// `parts`: what makes the records.
+fn shade_source(parts: &[&str], rest: &[&str]) -> String {
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -281,17 +337,25 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
         include_str!("../../shaders/shade.wgsl"),
     ];
     let constants = sky::StarIndex::shared().wgsl_constants();
-    let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME], parts, &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
-    shade_source(source, None, &[include_str!("../../shaders/shade_sample.wgsl")])
+    let (_, driver) = source.driver(None);
+    shade_source(&source.parts(), &[driver, include_str!("../../shaders/shade_sample.wgsl")])
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
     let [develop, put] = film.parts();
-    shade_source(source, Some(film.target), &[develop, put, include_str!("../../shaders/shade_only.wgsl")])
+    let (_, driver) = source.driver(Some(film.target));
+    let rest = [driver, develop, put, EDGES, include_str!("../../shaders/shade_only.wgsl")];
+    shade_source(&source.parts(), &rest)
+}
+
+fn refine_source(source: Source, film: FilmLook) -> String {
+    let [develop, put] = film.parts();
+    let rest = [develop, put, EDGES, include_str!("../../shaders/refine.wgsl")];
+    shade_source(&source.sample_parts(), &rest)
 }
 
 fn export_source(source: Source) -> String {
@@ -335,6 +399,13 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("develop", develop_source(film(PixelTarget::Packed))),
         ("develop for a window", develop_source(film(PixelTarget::Screen))),
         ("develop by rows", develop_source(film(PixelTarget::Rows))),
+        ("refine, traced", refine_source(Source::Traced, film(PixelTarget::Packed))),
+        (
+            "refine, spin-0 lens",
+            refine_source(Source::Schwarzschild { delay: true, moving: true }, film(PixelTarget::Packed)),
+        ),
+        ("refine, Kerr lens", refine_source(kerr(true), film(PixelTarget::Packed))),
+        ("refine for a window", refine_source(kerr(true), film(PixelTarget::Screen))),
         ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
         ("shade only by rows", shade_only_source(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
@@ -446,6 +517,11 @@ fn shade_slots() -> Vec<Slot> {
     vec![Slot::Uniform, Slot::UniformPart, light, cells]
 }
 
+/// Group 3 of edges.wgsl.
+fn edge_slots() -> Vec<Slot> {
+    vec![Slot::Write]
+}
+
 impl Kernels {
     pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
         let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
@@ -470,13 +546,23 @@ impl Kernels {
         self.get(device, Name::ShadeSample(source, look), &groups, entry_point, || shade_sample_source(source))
     }
 
-    /// Group 2, which puts the pixels, is for the caller to set.
+    /// Groups 2, which puts the pixels, and 3, the list of those with edges, are for the caller to set.
     pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
         let film = film.over(source);
-        let groups = [shade_slots(), source.slots(), film.slots()];
+        let groups = [shade_slots(), source.slots(), film.slots(), edge_slots()];
         let wgsl = || shade_only_source(source, film);
         let (entry_point, _) = source.driver(Some(film.target));
         self.get(device, Name::ShadeOnly(source, look, film), &groups, entry_point, wgsl)
+    }
+
+    /// Groups 2 and 3 as `shade_only`.
+    pub fn refine(&mut self, device: &Device, refined: Refined, look: Look, film: FilmLook) -> Result<Compiled> {
+        let film = film.scattered();
+        // The disk may cover but a part of a sample's cell.
+        let look = Look { opaque: false, ..look };
+        let groups = [shade_slots(), refined.source.slots(), film.slots(), edge_slots()];
+        let wgsl = || refine_source(refined.source, film);
+        self.get(device, Name::Refine(refined, look, film), &groups, "refine", wgsl)
     }
 
     /// Group 2, which puts the pixels, is for the caller to set.
@@ -571,7 +657,7 @@ impl Kernels {
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
+/// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
 /// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
@@ -613,6 +699,14 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
+        Name::Refine(refined, look, film) => {
+            let traced = match refined.source {
+                Source::Traced => trace_constants(refined.variant),
+                _ => refined.source.constants(),
+            };
+            let samples = vec![("GRID", f64::from(refined.samples as u32)), ("WHOLE_PLANE", 1.0)];
+            [traced, look_constants(look), film_constants(film), samples].concat()
+        }
         Name::Develop(film) => film_constants(film),
         Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
@@ -627,6 +721,11 @@ impl Compiled {
     /// The layout of group 2.
     pub fn target(&self) -> Result<&wgpu::BindGroupLayout> {
         self.layouts.get(2).ok_or_else(|| Error::internal("a kernel without a target"))
+    }
+
+    /// The layout of group 3.
+    pub fn edges(&self) -> Result<&wgpu::BindGroupLayout> {
+        self.layouts.get(3).ok_or_else(|| Error::internal("a kernel without a list of edges"))
     }
 
     /// The pipeline with `groups`, the first of its groups: of each the resources in the order of its slots.

@@ -15,6 +15,7 @@ mod present;
 mod rays;
 mod readback;
 mod records;
+mod refine;
 mod swapchain;
 mod tables;
 mod texture;
