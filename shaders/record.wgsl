@@ -70,7 +70,7 @@ struct Crossing {
 }
 
 const EDGE_NONE: u32 = 0u;
-// An edge of the disk, or the neighbourhood of the critical curve where that is likely.
+// An edge of the disk, or the neighbourhood of the critical curve where that is likely, or a steep change on the disk.
 const EDGE_DISK: u32 = 1u;
 // The critical curve, at which all images of order 2 and higher lie.
 const EDGE_CURVE: u32 = 2u;
@@ -80,10 +80,17 @@ const RINGS_REACH: f32 = 3.0;
 // Half a pixel, and half as much again: how far an edge may be from the pixel's centre. Mirrors scene/refine.rs.
 const EDGE_REACH: f32 = 0.75;
 
-// Whether an edge of the disk runs through the pixel whose crossing lies at u; `change`: of u to the next pixel right and down.
+// Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
+const STEEP_CHANGE: f32 = 0.1;
+
+// Whether an edge of the disk runs through the pixel whose crossing lies at u, or u changes steeply there; `change`: of u to the next
+// pixel right and down.
 fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
-    let reach = EDGE_REACH * (abs(change.x) + abs(change.y));
-    return abs(u - frame.disk_u.x) < reach || abs(u - frame.disk_u.y) < reach;
+    let far = frame.disk_u.x;
+    let near = frame.disk_u.y;
+    let sum = abs(change.x) + abs(change.y);
+    let steep = u >= far && u <= near && sum > STEEP_CHANGE * u;
+    return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }
 
 // Of a looked-up pixel `curve` pixels from the critical curve.

@@ -46,7 +46,19 @@ fn edges_of_pixel(through: f32) -> u32 {
     let down = vec2<u32>(0u, 1u);
     let kinds = vec4<u32>(edge_between(here, traced_pixel - across), edge_between(here, traced_pixel + across),
         edge_between(here, traced_pixel - down), edge_between(here, traced_pixel + down));
-    return max(max(kinds.x, kinds.y), max(kinds.z, kinds.w));
+    return max(max(max(kinds.x, kinds.y), max(kinds.z, kinds.w)), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
+}
+
+// Of a pixel with crossings of these orders, the first.
+fn is_steep(orders: u32) -> bool {
+    if !DISK || orders == 0u {
+        return false;
+    }
+    let order = firstTrailingBit(orders);
+    let here = crossing_of_order(traced_pixel, order).x;
+    let right = crossing_of_order(traced_pixel + vec2<u32>(1u, 0u), order).x;
+    let below = crossing_of_order(traced_pixel + vec2<u32>(0u, 1u), order).x;
+    return abs(right - here) + abs(below - here) > STEEP_CHANGE * here;
 }
 
 fn edge_between(here: u32, pixel: vec2<u32>) -> u32 {

@@ -6,7 +6,7 @@ use crate::physics::trace::{Fate, RayTrace, Settings, trace_look};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
-use crate::scene::refine::Edge;
+use crate::scene::refine::{Edge, is_steep};
 use crate::scene::turbulence::Place;
 use glam::DVec3;
 
@@ -82,7 +82,8 @@ impl Neighbours<'_> {
     pub fn complete(&self, here: &Record) -> Record {
         let mut record = here.clone();
         let kinds = [self.left, self.right, self.above, self.below].map(|there| edge_between(here, there));
-        record.edge = kinds.into_iter().max().unwrap_or_default();
+        let steep = if is_steep_between(here, [self.right, self.below]) { Edge::Disk } else { Edge::None };
+        record.edge = kinds.into_iter().fold(steep, Edge::max);
         let pairs = [(self.left, self.right), (self.above, self.below)];
         if here.fate == Fate::Escaped {
             record.footprint = pairs.map(|(before, after)| derivative_of_direction(here, before, after));
@@ -103,6 +104,13 @@ fn edge_between(here: &Record, there: &Record) -> Edge {
     }
     let alike = here.fate == there.fate && here.inside == there.inside && orders(here) == orders(there);
     if alike { Edge::None } else { Edge::Disk }
+}
+
+/// At the first crossing; where neighbours do not have it, its change is not known but that it is one.
+fn is_steep_between(here: &Record, neighbours: [&Record; 2]) -> bool {
+    let Some(first) = here.crossings.first() else { return false };
+    let u = |there: &Record| there.crossings.iter().find(|c| c.order == first.order).map_or(0.0, |c| c.u);
+    is_steep(first.u, neighbours.map(|there| (u(there) - first.u).abs()).iter().sum())
 }
 
 /// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided.

@@ -14,7 +14,7 @@
 pub enum Edge {
     #[default]
     None,
-    /// An edge of the disk, or the neighbourhood of the critical curve, where that is likely.
+    /// An edge of the disk, or the neighbourhood of the critical curve, where that is likely, or a steep change on the disk.
     Disk,
     /// The critical curve.
     Curve,
@@ -26,6 +26,8 @@ pub const CURVE_GRID: u32 = 8;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
 const EDGE_REACH: f64 = 0.75;
+/// Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
+const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
 const CURVE_REACH: f64 = 1.25;
 const RINGS_REACH: f64 = 3.0;
@@ -37,10 +39,18 @@ pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {
     [outer / 1.5, inner * 1.15]
 }
 
-/// Whether an edge of the disk runs through the pixel whose crossing lies at `u`; `change`: of u to the next pixel right and down.
+/// Whether an edge of the disk runs through the pixel whose crossing lies at `u`, or u changes steeply there; `change`: of u to the next
+/// pixel right and down.
 pub fn near_disk_edge(u: f64, change: [f64; 2], disk_u: [f64; 2]) -> bool {
-    let reach = EDGE_REACH * (change[0].abs() + change[1].abs());
-    disk_u.iter().any(|edge| (u - edge).abs() < reach)
+    let sum = change[0].abs() + change[1].abs();
+    let [far, near] = disk_u;
+    let steep = u >= far && u <= near && is_steep(u, sum);
+    steep || disk_u.iter().any(|edge| (u - edge).abs() < EDGE_REACH * sum)
+}
+
+/// Whether the light of a crossing at `u` that changes by so much to the next pixels is not that at the pixel's centre.
+pub fn is_steep(u: f64, change: f64) -> bool {
+    change > STEEP_CHANGE * u
 }
 
 /// Of a looked-up pixel `curve` pixels from the critical curve that nothing hides.
