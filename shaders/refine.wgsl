@@ -1,9 +1,9 @@
-// Kernel: shades GRID x GRID samples of each pixel of a list of edges.wgsl and puts their mean in the pixel's place. Mirrors
-// src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
+// Kernel: shades `pass_.grid` x `pass_.grid` samples of each pixel of a list of edges.wgsl and puts their mean in the pixel's place.
+// Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
 // Samples of a row: 2 for edges of the disk, whose cover of each sample's cell is computed; 8 where the critical curve runs, as what lies
 // beside it is too thin for that.
-override GRID: u32 = 2u;
+var<private> grid: u32;
 
 const LANES: u32 = 64u;
 // Of crossings; the host keeps max_crossings at so many.
@@ -22,20 +22,21 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     @builtin(local_invocation_index) i: u32) {
     zero = group.z;
     lane = i;
+    grid = deciding(pass_.grid);
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
-        listed = min(atomicLoad(&edges.counts[select(0u, 1u, GRID > 2u)]), limit);
+        listed = min(atomicLoad(&edges.counts[list_kind()]), limit);
     }
     let count = workgroupUniformLoad(&listed);
-    let pixels = LANES / (GRID * GRID);
+    let pixels = LANES / (grid * grid);
     for (var first = group.x * pixels; first < count; first += groups.x * pixels) {
-        refine_sample(first + i / (GRID * GRID), count);
+        refine_sample(first + i / (grid * grid), count);
     }
 }
 
 // The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and puts nothing.
 fn refine_sample(entry: u32, count: u32) {
-    let id = listed_pixel(select(0u, 1u, GRID > 2u), min(entry, count - 1u));
+    let id = listed_pixel(list_kind(), min(entry, count - 1u));
     sample_shift = sample_place() - 0.5;
     let record = ray_record(id);
     lane_fate[lane] = record.fate;
@@ -53,7 +54,7 @@ fn refine_sample(entry: u32, count: u32) {
     lane_light[lane] = pixel_light(record);
     workgroupBarrier();
     if entry < count && sample_index() == 0u {
-        if GRID == 2u && is_ragged() {
+        if grid == 2u && is_ragged() {
             note_ragged(id);
         } else {
             put_pixel(id, mean_light());
@@ -62,29 +63,34 @@ fn refine_sample(entry: u32, count: u32) {
     workgroupBarrier();
 }
 
+// Of edges.wgsl: which list this dispatch goes over.
+fn list_kind() -> u32 {
+    return select(0u, 1u, grid > 2u);
+}
+
 fn sample_index() -> u32 {
-    return lane % (GRID * GRID);
+    return lane % (grid * grid);
 }
 
 fn sample_cell() -> vec2<u32> {
-    return vec2<u32>(sample_index() % GRID, sample_index() / GRID);
+    return vec2<u32>(sample_index() % grid, sample_index() / grid);
 }
 
 // Of this thread's sample in its cell, and in its pixel, 0 .. 1.
 fn place_in_cell() -> vec2<f32> {
-    return (vec2<f32>(sample_cell().yx) + 0.5) / f32(GRID);
+    return (vec2<f32>(sample_cell().yx) + 0.5) / f32(grid);
 }
 
 fn sample_place() -> vec2<f32> {
-    return (vec2<f32>(sample_cell()) + place_in_cell()) / f32(GRID);
+    return (vec2<f32>(sample_cell()) + place_in_cell()) / f32(grid);
 }
 
 fn mean_light() -> vec4<f32> {
     var sum = vec4<f32>(0.0);
-    for (var k = 0u; k < GRID * GRID; k += 1u) {
+    for (var k = 0u; k < grid * grid; k += 1u) {
         sum += lane_light[lane + k];
     }
-    return sum / f32(GRID * GRID);
+    return sum / f32(grid * grid);
 }
 
 // A pixel of EDGE_DISK turns out to need the samples of EDGE_CURVE. (The list has room for all but a million such pixels more than a
@@ -110,9 +116,9 @@ fn seen_crossing() -> Crossing {
 fn covered_share(u: f32, order: u32) -> f32 {
     let cell = sample_cell();
     let across = change_between(u, order, cell.x, 1u);
-    let down = change_between(u, order, cell.y, GRID);
-    // The next sample to the right lies 1 / GRID of a cell lower, and the next below so much to the right.
-    let skew = 1.0 / f32(GRID);
+    let down = change_between(u, order, cell.y, grid);
+    // The next sample to the right lies 1 / grid of a cell lower, and the next below so much to the right.
+    let skew = 1.0 / f32(grid);
     let slope = vec2<f32>(across.x - skew * down.x, down.x - skew * across.x) / (1.0 - skew * skew);
     let steepness = abs(slope.x) + abs(slope.y);
     let within = select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
@@ -124,12 +130,14 @@ fn covered_share(u: f32, order: u32) -> f32 {
 
 // Of the disk's own range of u: what may change over a cell, or a pixel, and still count as even.
 const EVEN_CHANGE: f32 = 0.5;
+// The same of the direct image, relative to u: there the light itself may not change evenly.
+const DIRECT_CHANGE: f32 = 0.25;
 
 // Change of u to the next sample along an axis, and 1; 0 and 0 where it is not known. `place`: of the sample on it; `stride`: lanes from
 // one to the next.
 fn change_between(u: f32, order: u32, place: u32, stride: u32) -> vec2<f32> {
     let has_before = place > 0u;
-    let has_after = place + 1u < GRID;
+    let has_after = place + 1u < grid;
     let before = lane_u[select(lane, lane - stride, has_before) * LANE_ORDERS + order];
     let after = lane_u[select(lane, lane + stride, has_after) * LANE_ORDERS + order];
     let knows_before = has_before && before > 0.0;
@@ -147,6 +155,11 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     let cut = corner * corner / (2.0 * most * max(least, 1e-20));
     let by_corner = select(cut, 1.0 - cut, level > 0.0);
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
+}
+
+// What u of the crossing of `order` may change over a pixel.
+fn even_change(order: u32, high: f32) -> f32 {
+    return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
 // Of the first of a pixel's 4 lanes: whether what it shows cannot change evenly from sample to sample.
@@ -168,7 +181,7 @@ fn is_ragged() -> bool {
         let span = high - low;
         // A crossing that some do not have may be anywhere.
         let partial = present < 4u && 2.0 * high >= far && 0.7 * low <= near;
-        let steep = present == 4u && span > EVEN_CHANGE * (near - far) && high + span >= far && low - span <= near;
+        let steep = present == 4u && span > even_change(k, high) && high + span >= far && low - span <= near;
         ragged = ragged || (!hidden && present > 0u && (partial || steep));
         hidden = hidden || (frame.disk.z >= 1.0 && present == 4u && low - span >= far && high + span <= near);
     }

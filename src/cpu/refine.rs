@@ -94,7 +94,7 @@ impl<'a> Refiner<'a> {
     fn is_ragged(&self, samples: &Samples) -> bool {
         for order in 0..CROSSINGS_KEPT {
             let Some(crossings) = self.crossings(samples, order) else { break };
-            if crossings.are_ragged() {
+            if crossings.are_ragged(order == 0) {
                 return true;
             }
             if self.opaque && crossings.cover() {

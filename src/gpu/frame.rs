@@ -18,6 +18,7 @@ use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSin
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
+use crate::scene::refine::{CURVE_GRID, EDGE_GRID};
 use crate::scene::{Lensing, Region, Scene, View};
 use glam::DVec3;
 use std::collections::VecDeque;
@@ -47,7 +48,7 @@ pub struct FrameBuffers {
 struct FixedBuffers {
     frame: Written,
     film: Written,
-    /// One `PassUniform` for each sample of a batch, `pass_stride` apart.
+    /// One `PassUniform` for each sample of a batch, `pass_stride` apart, and the last once more with `CURVE_GRID`.
     passes: Written,
     step_sum: Buffer,
 }
@@ -479,7 +480,7 @@ impl FrameBuffers {
             self.fixed = Some(FixedBuffers {
                 frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
                 film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
-                passes: Written::new(device, "passes", u64::from(MAX_BATCH) * pass_stride(device))?,
+                passes: Written::new(device, "passes", u64::from(MAX_BATCH + 1) * pass_stride(device))?,
                 step_sum: step_sum(device)?,
             });
             // The clocks of software drivers tell nothing about their threads.
@@ -644,7 +645,13 @@ impl FrameBuffers {
         let stride = pass_stride(device);
         let slots = range.clone().zip(0..);
         let passes = slots.map(|(sample, slot)| pass_of(&frame.request, tile, sample, frame.samples, slot));
-        let mut bytes = vec![0; range.len() * stride as usize];
+        let again = range.clone().last().zip(range.len().checked_sub(1));
+        let again = again.map(|(sample, slot)| PassUniform {
+            grid: CURVE_GRID,
+            ..pass_of(&frame.request, tile, sample, frame.samples, slot as u32)
+        });
+        let passes = passes.chain(again);
+        let mut bytes = vec![0; (range.len() + 1) * stride as usize];
         for (slot, pass) in bytes.chunks_exact_mut(stride as usize).zip(passes) {
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
@@ -681,7 +688,7 @@ impl FrameBuffers {
                         pass.set_bind_group(3, edges, &[]);
                         taking.dispatch(&mut pass, offset, size_of_tile);
                         if let Some(refining) = refining {
-                            refining.dispatch(&mut pass, offset);
+                            refining.dispatch(&mut pass, [offset, offset + stride as u32]);
                         }
                     }
                     Shading::Samples { shade, .. } => {
@@ -766,6 +773,6 @@ fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32, slot: 
         weight: 1.0 / samples as f32,
         first: u32::from(sample == 0),
         slot,
-        reserved: 0,
+        grid: EDGE_GRID,
     }
 }

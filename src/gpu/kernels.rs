@@ -4,7 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
-use crate::{scene, sky};
+use crate::sky;
 use std::collections::HashMap;
 
 /// Everything that decides how the tracing kernels are compiled.
@@ -120,16 +120,6 @@ pub struct Refined {
     pub source: Source,
     /// How rays are traced that no table holds.
     pub variant: Variant,
-    pub samples: SamplesARow,
-}
-
-/// `GRID` of refine.wgsl.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SamplesARow {
-    /// On edges of the disk.
-    Edge = scene::refine::EDGE_GRID as isize,
-    /// Where the critical curve runs.
-    Curve = scene::refine::CURVE_GRID as isize,
 }
 
 /// `METHOD_*` of integrator.wgsl.
@@ -153,21 +143,13 @@ enum Name {
     Count,
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
-    /// `Refined::samples` a row.
     Refine(Refined, Look, FilmLook),
     Develop(FilmLook),
     Export(Source, bool),
     SchwarzschildEnds,
-    SchwarzschildColumns {
-        delay: bool,
-    },
-    KerrNodes {
-        delay: bool,
-        pattern: bool,
-    },
-    KerrFlags {
-        pattern: bool,
-    },
+    SchwarzschildColumns { delay: bool },
+    KerrNodes { delay: bool, pattern: bool },
+    KerrFlags { pattern: bool },
 }
 
 /// The pipelines of one device.
@@ -704,8 +686,7 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
                 Source::Traced => trace_constants(refined.variant),
                 _ => refined.source.constants(),
             };
-            let samples = vec![("GRID", f64::from(refined.samples as u32)), ("WHOLE_PLANE", 1.0)];
-            [traced, look_constants(look), film_constants(film), samples].concat()
+            [traced, look_constants(look), film_constants(film), vec![("WHOLE_PLANE", 1.0)]].concat()
         }
         Name::Develop(film) => film_constants(film),
         Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),

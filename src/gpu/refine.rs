@@ -1,7 +1,7 @@
 //! The second look at pixels that edges run through: their list on the device, and the kernels that go over it (edges.wgsl,
 //! refine.wgsl). Knows kernels and their groups, no records and no light.
 
-use super::kernels::{FilmLook, Kernels, Look, Refined, SamplesARow, Source, Stage, Variant};
+use super::kernels::{FilmLook, Kernels, Look, Refined, Source, Stage, Variant};
 use super::{Buffer, Device};
 use crate::error::{Error, Result};
 use wgpu::BufferUsages as Usage;
@@ -51,9 +51,9 @@ impl EdgeList {
     }
 }
 
-/// The kernels over the list: edges of the disk first, as some of these turn out to need the critical curve's samples.
+/// The kernel over the list.
 pub struct Refining {
-    stages: [Stage; 2],
+    stage: Stage,
     groups: u32,
 }
 
@@ -67,18 +67,15 @@ impl Refining {
         shared: &[&[wgpu::BindingResource<'_>]],
         software: bool,
     ) -> Result<Self> {
-        let mut stage = |samples| {
-            let refined = Refined { source, variant, samples };
-            kernels.refine(device, refined, look, film)?.stage(device, shared)
-        };
-        let stages = [stage(SamplesARow::Edge)?, stage(SamplesARow::Curve)?];
-        Ok(Self { stages, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
+        let stage = kernels.refine(device, Refined { source, variant }, look, film)?.stage(device, shared)?;
+        Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
     }
 
-    /// After the pixels of a tile have been put; groups 2 and 3 are set.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32) {
-        for stage in &self.stages {
-            stage.run(pass, Some(offset), [self.groups, 1]);
+    /// After the pixels of a tile have been put; groups 2 and 3 are set. `offsets`: of the `PassUniform`s with `EDGE_GRID` and with
+    /// `CURVE_GRID`: some of the disk's edges turn out to need the critical curve's samples.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2]) {
+        for offset in offsets {
+            self.stage.run(pass, Some(offset), [self.groups, 1]);
         }
     }
 }

@@ -33,6 +33,8 @@ const CURVE_REACH: f64 = 1.25;
 const RINGS_REACH: f64 = 3.0;
 /// What u may change over a cell, or a pixel of `EDGE_GRID`, and still count as even: of the disk's own range of u.
 const EVEN_CHANGE: f64 = 0.5;
+/// The same of the direct image, relative to u: there the light itself may not change evenly.
+const DIRECT_CHANGE: f64 = 0.25;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
 pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {
@@ -134,8 +136,8 @@ impl Crossings<'_> {
         }
     }
 
-    /// Of `EDGE_GRID`: whether u may be on the disk and does not change evenly from sample to sample.
-    pub fn are_ragged(&self) -> bool {
+    /// Of `EDGE_GRID`: whether u may be on the disk and does not change evenly from sample to sample. `direct`: they are of order 0.
+    pub fn are_ragged(&self, direct: bool) -> bool {
         let [far, near] = self.disk_u;
         let Some((low, high, all)) = self.range() else { return false };
         let span = high - low;
@@ -143,7 +145,8 @@ impl Crossings<'_> {
             // A crossing that some do not have may be anywhere.
             return 2.0 * high >= far && 0.7 * low <= near;
         }
-        span > EVEN_CHANGE * (near - far) && high + span >= far && low - span <= near
+        let even = (EVEN_CHANGE * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
+        span > even && high + span >= far && low - span <= near
     }
 
     /// Of `EDGE_GRID`: whether the disk covers all of the pixel.
@@ -196,10 +199,10 @@ mod tests {
         let crossings = Crossings { u: &u, grid: 2, disk_u };
         let mean = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|cell| crossings.covered_share(cell)).iter().sum::<f64>() / 4.0;
         assert!((mean - 0.5).abs() < 1e-12, "{mean}");
-        assert!(!crossings.are_ragged() && !crossings.cover());
+        assert!(!crossings.are_ragged(false) && !crossings.cover());
         let jump = [0.1, 0.1, 0.0, 0.1];
         let crossings = Crossings { u: &jump, grid: 2, disk_u };
-        assert!(crossings.are_ragged() && crossings.covered_share([0, 1]) == 0.0);
+        assert!(crossings.are_ragged(false) && crossings.covered_share([0, 1]) == 0.0);
         assert!(crossings.covered_share([1, 0]) == 1.0);
     }
 
