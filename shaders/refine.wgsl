@@ -76,9 +76,14 @@ fn sample_cell() -> vec2<u32> {
     return vec2<u32>(sample_index() % grid, sample_index() / grid);
 }
 
+// How much of a cell each row of samples lies to the right of the one above.
+fn grid_skew() -> f32 {
+    return select(1.0 / f32(grid), 0.0, grid == 2u);
+}
+
 // Of this thread's sample in its cell, and in its pixel, 0 .. 1.
 fn place_in_cell() -> vec2<f32> {
-    return (vec2<f32>(sample_cell().yx) + 0.5) / f32(grid);
+    return 0.5 + grid_skew() * (vec2<f32>(sample_cell().yx) + 0.5 - 0.5 * f32(grid));
 }
 
 fn sample_place() -> vec2<f32> {
@@ -117,8 +122,8 @@ fn covered_share(u: f32, order: u32) -> f32 {
     let cell = sample_cell();
     let across = change_between(u, order, cell.x, 1u);
     let down = change_between(u, order, cell.y, grid);
-    // The next sample to the right lies 1 / grid of a cell lower, and the next below so much to the right.
-    let skew = 1.0 / f32(grid);
+    // The next sample to the right lies so much of a cell lower, and the next below so much to the right.
+    let skew = grid_skew();
     let slope = vec2<f32>(across.x - skew * down.x, down.x - skew * across.x) / (1.0 - skew * skew);
     let steepness = abs(slope.x) + abs(slope.y);
     let within = select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
@@ -128,9 +133,10 @@ fn covered_share(u: f32, order: u32) -> f32 {
     return select(within, clamp(share, 0.0, 1.0), even);
 }
 
-// Of the disk's own range of u: what may change over a cell, or a pixel, and still count as even.
+// Of the disk's own range of u: what may change over a cell, or between the samples of a pixel of the first list, and still count as even.
 const EVEN_CHANGE: f32 = 0.5;
-// The same of the direct image, relative to u: there the light itself may not change evenly.
+const EVEN_CHANGE_OF_PIXEL: f32 = 0.3;
+// The latter for the direct image, relative to u: there the light itself may not change evenly.
 const DIRECT_CHANGE: f32 = 0.25;
 
 // Change of u to the next sample along an axis, and 1; 0 and 0 where it is not known. `place`: of the sample on it; `stride`: lanes from
@@ -159,7 +165,7 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
 
 // What u of the crossing of `order` may change over a pixel.
 fn even_change(order: u32, high: f32) -> f32 {
-    return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
+    return min(EVEN_CHANGE_OF_PIXEL * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
 // Of the first of a pixel's 4 lanes: whether what it shows cannot change evenly from sample to sample.

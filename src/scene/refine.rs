@@ -31,9 +31,10 @@ const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
 const CURVE_REACH: f64 = 1.25;
 const RINGS_REACH: f64 = 3.0;
-/// What u may change over a cell, or a pixel of `EDGE_GRID`, and still count as even: of the disk's own range of u.
+/// What u may change over a cell, or between the samples of a pixel of `EDGE_GRID`, and still count as even: of the disk's own range of u.
 const EVEN_CHANGE: f64 = 0.5;
-/// The same of the direct image, relative to u: there the light itself may not change evenly.
+const EVEN_CHANGE_OF_PIXEL: f64 = 0.3;
+/// The latter for the direct image, relative to u: there the light itself may not change evenly.
 const DIRECT_CHANGE: f64 = 0.25;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
@@ -64,10 +65,16 @@ pub fn looked_up_edge(on_edge: bool, has_disk: bool, curve: f64) -> Edge {
     }
 }
 
-/// Of sample (column, row) in its cell, 0 .. 1. Each row lies a little to the right of the one above, and each column a little below
-/// the one before (Kensler 2013, Correlated Multi-Jittered Sampling, its canonical arrangement): no two have the same x or y.
+/// How much of a cell each row of samples lies to the right of the one above, and each column below the one before. Of many, that count
+/// as they fall, no two may have the same x or y (Kensler 2013, Correlated Multi-Jittered Sampling, its canonical arrangement); few,
+/// that stand for their surroundings, must reach equally far to all sides.
+fn grid_skew(grid: u32) -> f64 {
+    if grid == EDGE_GRID { 0.0 } else { 1.0 / f64::from(grid) }
+}
+
+/// Of sample (column, row) in its cell, 0 .. 1.
 pub fn place_in_cell([column, row]: [u32; 2], grid: u32) -> [f64; 2] {
-    [row, column].map(|i| (f64::from(i) + 0.5) / f64::from(grid))
+    [row, column].map(|i| 0.5 + grid_skew(grid) * (f64::from(i) + 0.5 - 0.5 * f64::from(grid)))
 }
 
 /// The same in the pixel.
@@ -105,8 +112,8 @@ impl Crossings<'_> {
         }
         let within = f64::from(u8::from(u >= outer && u <= inner));
         let (Some(across), Some(down)) = (self.change(cell, 0), self.change(cell, 1)) else { return within };
-        // The next sample to the right lies 1 / grid of a cell lower, and the next below so much to the right.
-        let skew = 1.0 / f64::from(self.grid);
+        // The next sample to the right lies so much of a cell lower, and the next below so much to the right.
+        let skew = grid_skew(self.grid);
         let slope = [across - skew * down, down - skew * across].map(|d| d / (1.0 - skew * skew));
         if slope[0].abs() + slope[1].abs() > EVEN_CHANGE * (inner - outer) {
             return within;
@@ -145,7 +152,7 @@ impl Crossings<'_> {
             // A crossing that some do not have may be anywhere.
             return 2.0 * high >= far && 0.7 * low <= near;
         }
-        let even = (EVEN_CHANGE * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
+        let even = (EVEN_CHANGE_OF_PIXEL * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
         span > even && high + span >= far && low - span <= near
     }
 
@@ -207,18 +214,19 @@ mod tests {
     }
 
     #[test]
-    fn samples_have_each_their_own_x_and_y() {
-        for grid in [EDGE_GRID, CURVE_GRID] {
-            let places = (0..grid * grid).map(|i| sample_place([i % grid, i / grid], grid)).collect::<Vec<_>>();
-            for axis in 0..2 {
-                let mut along = places.iter().map(|p| p[axis]).collect::<Vec<_>>();
-                along.sort_by(f64::total_cmp);
-                let step = 1.0 / f64::from(grid * grid);
-                assert!(
-                    along.iter().zip(0..).all(|(x, i)| (x - (f64::from(i) + 0.5) * step).abs() < 1e-12),
-                    "{along:?}"
-                );
-            }
+    fn many_samples_have_each_their_own_x_and_y() {
+        let grid = CURVE_GRID;
+        let places = (0..grid * grid).map(|i| sample_place([i % grid, i / grid], grid)).collect::<Vec<_>>();
+        for axis in 0..2 {
+            let mut along = places.iter().map(|p| p[axis]).collect::<Vec<_>>();
+            along.sort_by(f64::total_cmp);
+            let step = 1.0 / f64::from(grid * grid);
+            let even = along.iter().zip(0..).all(|(x, i)| (x - (f64::from(i) + 0.5) * step).abs() < 1e-12);
+            assert!(even, "{along:?}");
         }
+        assert_eq!(
+            [[0, 0], [1, 0], [1, 1]].map(|cell| sample_place(cell, 2)),
+            [[0.25, 0.25], [0.75, 0.25], [0.75, 0.75]]
+        );
     }
 }
