@@ -165,7 +165,7 @@ fn edges_of_pixel(through: f32) -> u32 {
     // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
     let rows = length(vec2<f32>(looked.dx.y, looked.dy.y));
     let curve = f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
-    return edges_looked_up(looked.on_edge, curve, through);
+    return edges_looked_up(looked.on_edge, curve, looked.cell.y < lens.outer_rows, through);
 }
 
 // The next crossing of the disk in the tables.
@@ -174,7 +174,6 @@ fn next_looked_up() -> Crossing {
     if !DISK {
         return crossing;
     }
-    let disk = frame.disk_u;
     var orders = looked.flags & 0xffffu;
     while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
@@ -183,7 +182,7 @@ fn next_looked_up() -> Crossing {
         let lane = select(order % 4u, 0u, PATTERN);
         let u = at.value[lane];
         looked.on_edge = looked.on_edge || near_disk_edge(u, looked_up_change(at, lane));
-        if (WHOLE_PLANE && u > 0.0 && u < KERR_NO_CROSSING) || (u >= disk.x && u <= disk.y) {
+        if is_wanted(u) && u < KERR_NO_CROSSING {
             crossing.u = u;
             crossing.order = order;
         }

@@ -117,7 +117,6 @@ fn next_crossing() -> Crossing {
     if !DISK {
         return crossing;
     }
-    let disk = frame.disk_u;
     if looked.first >= looked.swept {
         return crossing;
     }
@@ -131,7 +130,7 @@ fn next_crossing() -> Crossing {
         if comes && crossing.u <= 0.0 {
             looked.on_edge = looked.on_edge || near_disk_edge(u, u_change(at, phi));
         }
-        if comes && (WHOLE_PLANE || (u >= disk.x && u <= disk.y)) && crossing.u <= 0.0 {
+        if comes && is_wanted(u) && crossing.u <= 0.0 {
             crossing.u = u;
             crossing.order = looked.order;
         }
@@ -216,7 +215,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
 fn edges_of_pixel(through: f32) -> u32 {
     // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
     let curve = f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(looked.change), 1e-30);
-    return edges_looked_up(looked.on_edge, curve, through);
+    return edges_looked_up(looked.on_edge, curve, looked.branch == 0u, through);
 }
 
 // Gives the crossings once more from the first.

@@ -75,7 +75,7 @@ const EDGE_DISK: u32 = 1u;
 // The critical curve, at which all images of order 2 and higher lie.
 const EDGE_CURVE: u32 = 2u;
 // Distances to the critical curve, pixels, below which a pixel is one of each kind.
-const CURVE_REACH: f32 = 1.25;
+const CURVE_REACH: f32 = 0.85;
 const RINGS_REACH: f32 = 3.0;
 // Half a pixel, and half as much again: how far an edge may be from the pixel's centre. Mirrors scene/refine.rs.
 const EDGE_REACH: f32 = 0.75;
@@ -93,9 +93,9 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }
 
-// Of a looked-up pixel `curve` pixels from the critical curve.
-fn edges_looked_up(on_edge: bool, curve: f32, through: f32) -> u32 {
-    let near_ring = DISK && through > 0.0 && curve < RINGS_REACH;
+// Of a looked-up pixel `curve` pixels from the critical curve; the rings lie outside it.
+fn edges_looked_up(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
+    let near_ring = DISK && outside && through > 0.0 && curve < RINGS_REACH;
     let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);
     return select(kind, EDGE_CURVE, through > 0.0 && curve < CURVE_REACH);
 }
@@ -103,5 +103,11 @@ fn edges_looked_up(on_edge: bool, curve: f32, through: f32) -> u32 {
 // Whether there is a disk, and whether shading needs the footprint of crossings.
 override DISK: bool = true;
 override FOOTPRINTS: bool = true;
-// Whether next_crossing gives crossings of the plane outside the disk's radii as well.
+// Whether next_crossing can give crossings of the plane outside the disk's radii as well, and whether it is to.
 override WHOLE_PLANE: bool = false;
+var<private> whole_plane: bool;
+
+// Whether next_crossing gives one at u.
+fn is_wanted(u: f32) -> bool {
+    return (WHOLE_PLANE && whole_plane && u > 0.0) || (u >= frame.disk_u.x && u <= frame.disk_u.y);
+}

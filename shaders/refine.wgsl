@@ -1,8 +1,8 @@
 // Kernel: shades `pass_.grid` x `pass_.grid` samples of each pixel of a list of edges.wgsl and puts their mean in the pixel's place.
 // Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
-// Samples of a row: 2 for edges of the disk, whose cover of each sample's cell is computed; 8 where the critical curve runs, as what lies
-// beside it is too thin for that.
+// Samples of a row: 2 for edges of the disk, whose cover of each sample's cell is computed (whole_plane); 8 where the critical curve
+// runs, as what lies beside it is too thin for that.
 var<private> grid: u32;
 
 const LANES: u32 = 64u;
@@ -23,6 +23,7 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     zero = group.z;
     lane = i;
     grid = deciding(pass_.grid);
+    whole_plane = grid == 2u;
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
         listed = min(atomicLoad(&edges.counts[list_kind()]), limit);
@@ -43,18 +44,21 @@ fn refine_sample(entry: u32, count: u32) {
     for (var k = 0u; k < LANE_ORDERS; k += 1u) {
         lane_u[lane * LANE_ORDERS + k] = 0.0;
     }
-    for (var k = 0u; k < deciding(frame.max_crossings); k += 1u) {
-        let crossing = next_crossing();
-        if crossing.u > 0.0 {
+    if whole_plane {
+        for (var k = 0u; k < deciding(frame.max_crossings); k += 1u) {
+            let crossing = next_crossing();
+            if crossing.u <= 0.0 {
+                break;
+            }
             lane_u[lane * LANE_ORDERS + min(crossing.order, LANE_ORDERS - 1u)] = crossing.u;
         }
+        rewind_crossings();
     }
-    rewind_crossings();
     workgroupBarrier();
     lane_light[lane] = pixel_light(record);
     workgroupBarrier();
     if entry < count && sample_index() == 0u {
-        if grid == 2u && is_ragged() {
+        if whole_plane && is_ragged() {
             note_ragged(id);
         } else {
             put_pixel(id, mean_light());
@@ -65,7 +69,7 @@ fn refine_sample(entry: u32, count: u32) {
 
 // Of edges.wgsl: which list this dispatch goes over.
 fn list_kind() -> u32 {
-    return select(0u, 1u, grid > 2u);
+    return select(1u, 0u, whole_plane);
 }
 
 fn sample_index() -> u32 {
@@ -76,18 +80,12 @@ fn sample_cell() -> vec2<u32> {
     return vec2<u32>(sample_index() % grid, sample_index() / grid);
 }
 
-// How much of a cell each row of samples lies to the right of the one above.
-fn grid_skew() -> f32 {
-    return select(1.0 / f32(grid), 0.0, grid == 2u);
-}
-
-// Of this thread's sample in its cell, and in its pixel, 0 .. 1.
-fn place_in_cell() -> vec2<f32> {
-    return 0.5 + grid_skew() * (vec2<f32>(sample_cell().yx) + 0.5 - 0.5 * f32(grid));
-}
-
+// Of this thread's sample in its pixel, 0 .. 1. Of many samples each row lies a little to the right of the one above, and each column below
+// the one before.
 fn sample_place() -> vec2<f32> {
-    return (vec2<f32>(sample_cell()) + place_in_cell()) / f32(grid);
+    let skew = select(1.0 / f32(grid), 0.0, whole_plane);
+    let across = vec2<f32>(sample_cell()) + 0.5;
+    return (across + skew * (across.yx - 0.5 * f32(grid))) / f32(grid);
 }
 
 fn mean_light() -> vec4<f32> {
@@ -110,47 +108,26 @@ fn note_ragged(id: vec2<u32>) {
 
 fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
-    crossing.share = covered_share(crossing.u, min(crossing.order, LANE_ORDERS - 1u));
-    // Far from the disk g may be no number at all.
-    crossing.g = select(1.0, crossing.g, crossing.share > 0.0);
-    crossing.u = select(0.0, clamp(crossing.u, frame.disk_u.x, frame.disk_u.y), crossing.u > 0.0);
+    crossing.share = 1.0;
+    if whole_plane {
+        crossing.share = covered_share(crossing.u, min(crossing.order, LANE_ORDERS - 1u));
+        // Far from the disk g may be no number at all.
+        crossing.g = select(1.0, crossing.g, crossing.share > 0.0);
+        crossing.u = select(0.0, clamp(crossing.u, frame.disk_u.x, frame.disk_u.y), crossing.u > 0.0);
+    }
     return crossing;
 }
 
-// Share of this sample's cell in which the crossing of `order` lies on the disk, u changing evenly over the cell.
+// Share of this sample's cell, of 2 x 2, in which the crossing of `order` lies on the disk, u changing evenly over the cell.
 fn covered_share(u: f32, order: u32) -> f32 {
-    let cell = sample_cell();
-    let across = change_between(u, order, cell.x, 1u);
-    let down = change_between(u, order, cell.y, grid);
-    // The next sample to the right lies so much of a cell lower, and the next below so much to the right.
-    let skew = grid_skew();
-    let slope = vec2<f32>(across.x - skew * down.x, down.x - skew * across.x) / (1.0 - skew * skew);
-    let steepness = abs(slope.x) + abs(slope.y);
+    let left = lane_u[(lane & ~1u) * LANE_ORDERS + order];
+    let right = lane_u[(lane | 1u) * LANE_ORDERS + order];
+    let above = lane_u[(lane & ~2u) * LANE_ORDERS + order];
+    let below = lane_u[(lane | 2u) * LANE_ORDERS + order];
+    let slope = vec2<f32>(right - left, below - above);
     let within = select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
-    let even = across.y * down.y > 0.0 && steepness <= EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x);
-    let middle = u + dot(slope, 0.5 - place_in_cell());
-    let share = share_below(frame.disk_u.y - middle, slope) - share_below(frame.disk_u.x - middle, slope);
-    return select(within, clamp(share, 0.0, 1.0), even);
-}
-
-// Of the disk's own range of u: what may change over a cell, or between the samples of a pixel of the first list, and still count as even.
-const EVEN_CHANGE: f32 = 0.5;
-const EVEN_CHANGE_OF_PIXEL: f32 = 0.3;
-// The latter for the direct image, relative to u: there the light itself may not change evenly.
-const DIRECT_CHANGE: f32 = 0.25;
-
-// Change of u to the next sample along an axis, and 1; 0 and 0 where it is not known. `place`: of the sample on it; `stride`: lanes from
-// one to the next.
-fn change_between(u: f32, order: u32, place: u32, stride: u32) -> vec2<f32> {
-    let has_before = place > 0u;
-    let has_after = place + 1u < grid;
-    let before = lane_u[select(lane, lane - stride, has_before) * LANE_ORDERS + order];
-    let after = lane_u[select(lane, lane + stride, has_after) * LANE_ORDERS + order];
-    let knows_before = has_before && before > 0.0;
-    let knows_after = has_after && after > 0.0;
-    let rise = select(u, after, knows_after) - select(u, before, knows_before);
-    let share = select(1.0, 0.5, knows_before && knows_after);
-    return vec2<f32>(rise * share, select(0.0, 1.0, knows_before || knows_after));
+    let share = share_below(frame.disk_u.y - u, slope) - share_below(frame.disk_u.x - u, slope);
+    return select(within, clamp(share, 0.0, 1.0), min(min(left, right), min(above, below)) > 0.0);
 }
 
 // Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two sides.
@@ -163,9 +140,14 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
 }
 
-// What u of the crossing of `order` may change over a pixel.
+// Between the samples of a pixel: what u may change, of the disk's own range of it; and of the direct image, relative to u, as there the
+// light itself may not change evenly.
+const EVEN_CHANGE: f32 = 0.5;
+const DIRECT_CHANGE: f32 = 0.25;
+
+// What u of the crossing of `order` may change between the samples of a pixel.
 fn even_change(order: u32, high: f32) -> f32 {
-    return min(EVEN_CHANGE_OF_PIXEL * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
+    return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
 // Of the first of a pixel's 4 lanes: whether what it shows cannot change evenly from sample to sample.

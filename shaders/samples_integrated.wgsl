@@ -30,8 +30,9 @@ fn integrated_record(id: vec2<u32>) -> Record {
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local, begin.c.angular_momentum / begin.c.nu_local,
         0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if begin.light {
-        // Nothing hides what is behind: the disk may cover but a part of the sample's cell.
-        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, vec2<f32>(1.0, 0.0));
+        // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
+        let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
+        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, opaque_u);
         let traced = trace(begin.c, begin.state, settings);
         record.fate = traced.fate;
         if traced.fate == FATE_ESCAPED {
@@ -51,7 +52,7 @@ fn next_integrated() -> Crossing {
     }
     while kept_order < min(frame.max_crossings, KEPT_ORDERS) && crossing.u <= 0.0 {
         let at = kept_crossings[kept_order];
-        if at.x > 0.0 {
+        if is_wanted(at.x) {
             crossing.u = at.x;
             crossing.order = kept_order;
             crossing.g = kept_ratio * redshift_of(kept_constants, at.x);

@@ -142,7 +142,7 @@ impl<'a> Frame<'a> {
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
             let value = if self.light {
-                let refined = self.refiner.as_ref().and_then(|refiner| refiner.light(&self.shader, record, x, y));
+                let refined = self.refiner.as_ref().and_then(|r| r.light(&self.shader, &self.source, record, [x, y]));
                 refined.unwrap_or_else(|| self.shader.pixel_light(record))
             } else {
                 [self.shader.view_value(record, x, y), 0.0, 0.0, 1.0]

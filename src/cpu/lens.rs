@@ -171,7 +171,7 @@ impl<'a> LookedUp<'a> {
         }
         let orders = 0..self.recorder.settings.max_crossings;
         let on_edge = orders.filter_map(|order| found.crossing(order)).any(|c| self.is_near_edge(&c, &steps));
-        self.note_edge(&mut record, on_edge, found.curve_distance(&steps));
+        self.note_edge(&mut record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
         if !self.pattern {
             return record;
         }
@@ -203,7 +203,7 @@ impl<'a> LookedUp<'a> {
                 break;
             }
         }
-        self.note_edge(record, on_edge, found.curve_distance(&steps));
+        self.note_edge(record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
         if let (Some(sky), false) = (found.sky(), record.fate == Fate::Hidden) {
             escape(record, seen.ratio, sky.direction, steps.map(|step| sky.change(&step)));
         }
@@ -214,10 +214,10 @@ impl<'a> LookedUp<'a> {
         self.recorder.disk_u.is_some_and(|disk_u| near_disk_edge(crossing.image.u, change, disk_u))
     }
 
-    /// `curve`: distance to the critical curve, pixels.
-    fn note_edge(&self, record: &mut Record, on_edge: bool, curve: f64) {
+    /// `curve`: distance to the critical curve, pixels; `outside`: the ray escapes.
+    fn note_edge(&self, record: &mut Record, on_edge: bool, outside: bool, curve: f64) {
         let seen = if record.fate == Fate::Hidden { f64::INFINITY } else { curve };
-        record.edge = looked_up_edge(on_edge, self.recorder.disk_u.is_some(), seen);
+        record.edge = looked_up_edge(on_edge, outside && self.recorder.disk_u.is_some(), seen);
     }
 
     fn see(&self, x: f64, y: f64) -> Seen {
@@ -253,7 +253,7 @@ impl<'a> LookedUp<'a> {
             }
         }
         let slope = look.curve_slope() * turns[0].dpsi.hypot(turns[1].dpsi);
-        self.note_edge(record, on_edge, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
+        self.note_edge(record, on_edge, look.escaped, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
         if look.escaped && record.fate != Fate::Hidden {
             let sky = plane.sky(&look);
             escape(record, seen.ratio, sky.direction, turns.map(|turn| sky.change(&turn)));

@@ -29,12 +29,11 @@ const EDGE_REACH: f64 = 0.75;
 /// Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
 const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
-const CURVE_REACH: f64 = 1.25;
+const CURVE_REACH: f64 = 0.85;
 const RINGS_REACH: f64 = 3.0;
-/// What u may change over a cell, or between the samples of a pixel of `EDGE_GRID`, and still count as even: of the disk's own range of u.
+/// Between the samples of a pixel of `EDGE_GRID`: what u may change, of the disk's own range of it, and still count as even; and of the
+/// direct image, relative to u, as there the light itself may not change evenly.
 const EVEN_CHANGE: f64 = 0.5;
-const EVEN_CHANGE_OF_PIXEL: f64 = 0.3;
-/// The latter for the direct image, relative to u: there the light itself may not change evenly.
 const DIRECT_CHANGE: f64 = 0.25;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
@@ -56,11 +55,12 @@ pub fn is_steep(u: f64, change: f64) -> bool {
     change > STEEP_CHANGE * u
 }
 
-/// Of a looked-up pixel `curve` pixels from the critical curve that nothing hides.
-pub fn looked_up_edge(on_edge: bool, has_disk: bool, curve: f64) -> Edge {
+/// Of a looked-up pixel `curve` pixels from the critical curve that nothing hides; `rings`: there is a disk, whose rings lie outside the
+/// curve as the pixel does.
+pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
     match () {
         () if curve < CURVE_REACH => Edge::Curve,
-        () if on_edge || (has_disk && curve < RINGS_REACH) => Edge::Disk,
+        () if on_edge || (rings && curve < RINGS_REACH) => Edge::Disk,
         () => Edge::None,
     }
 }
@@ -72,15 +72,11 @@ fn grid_skew(grid: u32) -> f64 {
     if grid == EDGE_GRID { 0.0 } else { 1.0 / f64::from(grid) }
 }
 
-/// Of sample (column, row) in its cell, 0 .. 1.
-pub fn place_in_cell([column, row]: [u32; 2], grid: u32) -> [f64; 2] {
-    [row, column].map(|i| 0.5 + grid_skew(grid) * (f64::from(i) + 0.5 - 0.5 * f64::from(grid)))
-}
-
-/// The same in the pixel.
-pub fn sample_place(cell: [u32; 2], grid: u32) -> [f64; 2] {
-    let within = place_in_cell(cell, grid);
-    std::array::from_fn(|i| (f64::from(cell[i]) + within[i]) / f64::from(grid))
+/// Of sample (column, row) in its pixel, 0 .. 1.
+pub fn sample_place([column, row]: [u32; 2], grid: u32) -> [f64; 2] {
+    let across = |i: u32| f64::from(i) + 0.5;
+    let lead = |i: u32| grid_skew(grid) * (across(i) - 0.5 * f64::from(grid));
+    [across(column) + lead(row), across(row) + lead(column)].map(|x| x / f64::from(grid))
 }
 
 /// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or two sides.
@@ -95,55 +91,27 @@ fn share_below(level: f64, slope: [f64; 2]) -> f64 {
     if level > 0.0 { 1.0 - cut } else { cut }
 }
 
-/// u of the crossing of one order at each sample of a pixel, row by row; 0 where there is none.
-pub struct Crossings<'a> {
-    pub u: &'a [f64],
-    pub grid: u32,
+/// u of the crossing of one order at each sample of a pixel of `EDGE_GRID`, row by row; 0 where there is none.
+pub struct Crossings {
+    pub u: [f64; 4],
     pub disk_u: [f64; 2],
 }
 
-impl Crossings<'_> {
-    /// Share of the cell of sample (column, row) in which the crossing lies on the disk.
-    pub fn covered_share(&self, cell: [u32; 2]) -> f64 {
+impl Crossings {
+    /// Share of the cell of a sample in which the crossing lies on the disk, u changing evenly over the cell.
+    pub fn covered_share(&self, index: usize) -> f64 {
         let [outer, inner] = self.disk_u;
-        let u = self.at(cell);
-        if u <= 0.0 {
-            return 0.0;
+        let at = |i: usize| self.u.get(i).copied().unwrap_or(0.0);
+        let u = at(index);
+        let [left, right, above, below] = [at(index & !1), at(index | 1), at(index & !2), at(index | 2)];
+        if left.min(right).min(above).min(below) <= 0.0 {
+            return f64::from(u8::from(u >= outer && u <= inner));
         }
-        let within = f64::from(u8::from(u >= outer && u <= inner));
-        let (Some(across), Some(down)) = (self.change(cell, 0), self.change(cell, 1)) else { return within };
-        // The next sample to the right lies so much of a cell lower, and the next below so much to the right.
-        let skew = grid_skew(self.grid);
-        let slope = [across - skew * down, down - skew * across].map(|d| d / (1.0 - skew * skew));
-        if slope[0].abs() + slope[1].abs() > EVEN_CHANGE * (inner - outer) {
-            return within;
-        }
-        let place = place_in_cell(cell, self.grid);
-        let middle = u + slope[0] * (0.5 - place[0]) + slope[1] * (0.5 - place[1]);
-        (share_below(inner - middle, slope) - share_below(outer - middle, slope)).clamp(0.0, 1.0)
+        let slope = [right - left, below - above];
+        (share_below(inner - u, slope) - share_below(outer - u, slope)).clamp(0.0, 1.0)
     }
 
-    fn at(&self, [column, row]: [u32; 2]) -> f64 {
-        self.u.get((row * self.grid + column) as usize).copied().unwrap_or(0.0)
-    }
-
-    /// Change of u to the next sample along an axis. `None`: neither neighbour has the crossing.
-    fn change(&self, cell: [u32; 2], axis: usize) -> Option<f64> {
-        let shifted = |to: Option<u32>| -> Option<f64> {
-            let mut other = cell;
-            other[axis] = to.filter(|i| *i < self.grid)?;
-            Some(self.at(other)).filter(|u| *u > 0.0)
-        };
-        let here = self.at(cell);
-        match (shifted(cell[axis].checked_sub(1)), shifted(Some(cell[axis] + 1))) {
-            (Some(before), Some(after)) => Some(0.5 * (after - before)),
-            (Some(before), None) => Some(here - before),
-            (None, Some(after)) => Some(after - here),
-            (None, None) => None,
-        }
-    }
-
-    /// Of `EDGE_GRID`: whether u may be on the disk and does not change evenly from sample to sample. `direct`: they are of order 0.
+    /// Whether u may be on the disk and does not change evenly from sample to sample. `direct`: they are of order 0.
     pub fn are_ragged(&self, direct: bool) -> bool {
         let [far, near] = self.disk_u;
         let Some((low, high, all)) = self.range() else { return false };
@@ -152,11 +120,11 @@ impl Crossings<'_> {
             // A crossing that some do not have may be anywhere.
             return 2.0 * high >= far && 0.7 * low <= near;
         }
-        let even = (EVEN_CHANGE_OF_PIXEL * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
+        let even = (EVEN_CHANGE * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
         span > even && high + span >= far && low - span <= near
     }
 
-    /// Of `EDGE_GRID`: whether the disk covers all of the pixel.
+    /// Whether the disk covers all of the pixel.
     pub fn cover(&self) -> bool {
         let [far, near] = self.disk_u;
         self.range().is_some_and(|(low, high, all)| {
@@ -202,15 +170,14 @@ mod tests {
         let disk_u = [0.05, 0.15];
         // u = 0.05 where x + 0.4 y = 0.7.
         let plane = |[x, y]: [f64; 2]| 0.05 + 0.02 * (x + 0.4 * y - 0.7);
-        let u: Vec<f64> = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|cell| plane(sample_place(cell, 2))).into();
-        let crossings = Crossings { u: &u, grid: 2, disk_u };
-        let mean = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|cell| crossings.covered_share(cell)).iter().sum::<f64>() / 4.0;
+        let u = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|cell| plane(sample_place(cell, 2)));
+        let crossings = Crossings { u, disk_u };
+        let mean = (0..4).map(|index| crossings.covered_share(index)).sum::<f64>() / 4.0;
         assert!((mean - 0.5).abs() < 1e-12, "{mean}");
         assert!(!crossings.are_ragged(false) && !crossings.cover());
-        let jump = [0.1, 0.1, 0.0, 0.1];
-        let crossings = Crossings { u: &jump, grid: 2, disk_u };
-        assert!(crossings.are_ragged(false) && crossings.covered_share([0, 1]) == 0.0);
-        assert!(crossings.covered_share([1, 0]) == 1.0);
+        let crossings = Crossings { u: [0.1, 0.1, 0.0, 0.1], disk_u };
+        assert!(crossings.are_ragged(false) && crossings.covered_share(2) == 0.0 && crossings.covered_share(0) == 1.0);
+        assert!(Crossings { u: [0.1, 0.101, 0.1, 0.101], disk_u }.cover());
     }
 
     #[test]
