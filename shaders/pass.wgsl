@@ -12,8 +12,8 @@ struct Pass {
     first: u32,
     // Of this sample among those of the submission.
     slot: u32,
-    // Samples of a row that refine.wgsl takes of a pixel.
-    grid: u32,
+    // Samples that refine.wgsl takes of a pixel.
+    refined: u32,
 }
 
 // From this sample to the place looked at, pixels: 0 but where refine.wgsl spreads samples over a pixel.

@@ -1,9 +1,9 @@
-// Kernel: shades `pass_.grid` x `pass_.grid` samples of each pixel of a list of edges.wgsl and puts their mean in the pixel's place.
+// Kernel: shades `pass_.refined` samples of each pixel of a list of edges.wgsl and puts their mean in the pixel's place.
 // Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
-// Samples of a row: 2 for edges of the disk, whose cover of each sample's cell is computed (whole_plane); 8 where the critical curve
-// runs, as what lies beside it is too thin for that.
-var<private> grid: u32;
+// Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 64 where the critical curve runs, as
+// what lies beside it is too thin for that.
+var<private> samples: u32;
 
 const LANES: u32 = 64u;
 // Of crossings; the host keeps max_crossings at so many.
@@ -22,16 +22,16 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     @builtin(local_invocation_index) i: u32) {
     zero = group.z;
     lane = i;
-    grid = deciding(pass_.grid);
-    whole_plane = grid == 2u;
+    samples = deciding(pass_.refined);
+    whole_plane = samples == 4u;
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
         listed = min(atomicLoad(&edges.counts[list_kind()]), limit);
     }
     let count = workgroupUniformLoad(&listed);
-    let pixels = LANES / (grid * grid);
+    let pixels = LANES / samples;
     for (var first = group.x * pixels; first < count; first += groups.x * pixels) {
-        refine_sample(first + i / (grid * grid), count);
+        refine_sample(first + i / samples, count);
     }
 }
 
@@ -73,27 +73,26 @@ fn list_kind() -> u32 {
 }
 
 fn sample_index() -> u32 {
-    return lane % (grid * grid);
+    return lane % samples;
 }
 
-fn sample_cell() -> vec2<u32> {
-    return vec2<u32>(sample_index() % grid, sample_index() / grid);
-}
-
-// Of this thread's sample in its pixel, 0 .. 1. Of many samples each row lies a little to the right of the one above, and each column below
-// the one before.
+// Of this thread's sample in its pixel, 0 .. 1: the middle of its quarter, or sample_offset of src/scene/frame.rs.
 fn sample_place() -> vec2<f32> {
-    let skew = select(1.0 / f32(grid), 0.0, whole_plane);
-    let across = vec2<f32>(sample_cell()) + 0.5;
-    return (across + skew * (across.yx - 0.5 * f32(grid))) / f32(grid);
+    if whole_plane {
+        return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;
+    }
+    const GOLDEN: f32 = 0.618033988749895;
+    let i = f32(sample_index());
+    let n = f32(samples);
+    return vec2<f32>((i + 0.5) / n, fract((i - 0.5 * (n - 1.0)) * GOLDEN + 0.5));
 }
 
 fn mean_light() -> vec4<f32> {
     var sum = vec4<f32>(0.0);
-    for (var k = 0u; k < grid * grid; k += 1u) {
+    for (var k = 0u; k < samples; k += 1u) {
         sum += lane_light[lane + k];
     }
-    return sum / f32(grid * grid);
+    return sum / f32(samples);
 }
 
 // A pixel of EDGE_DISK turns out to need the samples of EDGE_CURVE. (The list has room for all but a million such pixels more than a

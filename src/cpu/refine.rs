@@ -6,7 +6,7 @@ use super::shade::Shader;
 use crate::physics::trace::CROSSINGS_KEPT;
 use crate::scene::Scene;
 use crate::scene::record::{Record, UNKNOWN_PLACE};
-use crate::scene::refine::{CURVE_GRID, Crossings, EDGE_GRID, Edge, sample_place};
+use crate::scene::refine::{CURVE_SAMPLES, Crossings, EDGE_SAMPLES, Edge, sample_place};
 
 /// What refines the pixels of a frame.
 pub struct Refiner<'a> {
@@ -30,15 +30,15 @@ impl<'a> Refiner<'a> {
             Edge::Disk => self.smooth_light(shader, here, at),
             Edge::Curve => None,
         };
-        let cells = (0..CURVE_GRID).flat_map(|row| (0..CURVE_GRID).map(move |column| [column, row]));
-        let counted = || mean(cells.map(|cell| shader.pixel_light(&sample(source, here, at, cell, CURVE_GRID))));
+        let light = |index| shader.pixel_light(&sample(source, here, at, sample_place(index, CURVE_SAMPLES)));
+        let counted = || mean((0..CURVE_SAMPLES).map(light));
         Some(smooth.unwrap_or_else(counted))
     }
 
     /// From the cover of few samples' cells. `None`: what they show cannot change evenly from one to the next.
     fn smooth_light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
-        let cells = [[0, 0], [1, 0], [0, 1], [1, 1]];
-        let mut records = cells.map(|cell| sample(&self.plane, here, at, cell, EDGE_GRID));
+        let record = |index| sample(&self.plane, here, at, sample_place(index, EDGE_SAMPLES));
+        let mut records = [0, 1, 2, 3].map(record);
         let orders = self.orders(&records);
         if self.are_ragged(&records, &orders) {
             return None;
@@ -81,10 +81,9 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// The record of the sample in `cell` of the pixel about `at`. A traced one's footprints are those of the pixel's own record `here`, where
+/// The record of the sample at `place` in the pixel about `at`. A traced one's footprints are those of the pixel's own record `here`, where
 /// that has any.
-fn sample(source: &Source<'_>, here: &Record, at: [f64; 2], cell: [u32; 2], grid: u32) -> Record {
-    let place = sample_place(cell, grid);
+fn sample(source: &Source<'_>, here: &Record, at: [f64; 2], place: [f64; 2]) -> Record {
     let [x, y] = [0, 1].map(|i| at[i] + place[i] - 0.5);
     match source {
         Source::LookedUp(lookup) => {

@@ -18,7 +18,7 @@ use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSin
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
-use crate::scene::refine::{CURVE_GRID, EDGE_GRID};
+use crate::scene::refine::{CURVE_SAMPLES, EDGE_SAMPLES};
 use crate::scene::{Lensing, Region, Scene, View};
 use glam::DVec3;
 use std::collections::VecDeque;
@@ -48,7 +48,7 @@ pub struct FrameBuffers {
 struct FixedBuffers {
     frame: Written,
     film: Written,
-    /// One `PassUniform` for each sample of a batch, `pass_stride` apart, and the last once more with `CURVE_GRID`.
+    /// One `PassUniform` for each sample of a batch, `pass_stride` apart, and the last once more with `CURVE_SAMPLES`.
     passes: Written,
     step_sum: Buffer,
 }
@@ -647,7 +647,7 @@ impl FrameBuffers {
         let passes = slots.map(|(sample, slot)| pass_of(&frame.request, tile, sample, frame.samples, slot));
         let again = range.clone().last().zip(range.len().checked_sub(1));
         let again = again.map(|(sample, slot)| PassUniform {
-            grid: CURVE_GRID,
+            refined: CURVE_SAMPLES,
             ..pass_of(&frame.request, tile, sample, frame.samples, slot as u32)
         });
         let passes = passes.chain(again);
@@ -773,6 +773,6 @@ fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32, slot: 
         weight: 1.0 / samples as f32,
         first: u32::from(sample == 0),
         slot,
-        grid: EDGE_GRID,
+        refined: EDGE_SAMPLES,
     }
 }

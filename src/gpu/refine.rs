@@ -71,8 +71,8 @@ impl Refining {
         Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
     }
 
-    /// After the pixels of a tile have been put; groups 2 and 3 are set. `offsets`: of the `PassUniform`s with `EDGE_GRID` and with
-    /// `CURVE_GRID`: some of the disk's edges turn out to need the critical curve's samples.
+    /// After the pixels of a tile have been put; groups 2 and 3 are set. `offsets`: of the `PassUniform`s with `EDGE_SAMPLES` and with
+    /// `CURVE_SAMPLES`: some of the disk's edges turn out to need the critical curve's samples.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2]) {
         for offset in offsets {
             self.stage.run(pass, Some(offset), [self.groups, 1]);

@@ -50,8 +50,8 @@ pub struct PassUniform {
     pub weight: f32,
     pub first: u32,
     pub slot: u32,
-    /// `EDGE_GRID` or `CURVE_GRID`.
-    pub grid: u32,
+    /// `EDGE_SAMPLES` or `CURVE_SAMPLES`.
+    pub refined: u32,
 }
 
 fn with(v: DVec3, w: f64) -> Vec4 {

@@ -9,6 +9,8 @@
 //! - The critical curve ([`Edge::Curve`]), which images of higher orders approach by e^-pi each (Ohanian 1987, Am. J. Phys. 55, 428),
 //!   so that those of order 2 and more share a pixel with it: many rays, which count as they fall where u does not change evenly.
 
+use super::frame::sample_offset;
+
 /// What runs through a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Edge {
@@ -20,9 +22,9 @@ pub enum Edge {
     Curve,
 }
 
-/// Samples of a row, and of a column, in pixels of either kind.
-pub const EDGE_GRID: u32 = 2;
-pub const CURVE_GRID: u32 = 8;
+/// Samples of a pixel of either kind. The many count as they fall and must not lie in rows, whatever way a ring runs.
+pub const EDGE_SAMPLES: u32 = 4;
+pub const CURVE_SAMPLES: u32 = 64;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
 const EDGE_REACH: f64 = 0.75;
@@ -31,7 +33,7 @@ const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
 const CURVE_REACH: f64 = 0.85;
 const RINGS_REACH: f64 = 3.0;
-/// Between the samples of a pixel of `EDGE_GRID`: what u may change, of the disk's own range of it, and still count as even; and of the
+/// Between the samples of a pixel of `EDGE_SAMPLES`: what u may change, of the disk's own range of it, and still count as even; and of the
 /// direct image, relative to u, as there the light itself may not change evenly.
 const EVEN_CHANGE: f64 = 0.5;
 const DIRECT_CHANGE: f64 = 0.25;
@@ -65,18 +67,12 @@ pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
     }
 }
 
-/// How much of a cell each row of samples lies to the right of the one above, and each column below the one before. Of many, that count
-/// as they fall, no two may have the same x or y (Kensler 2013, Correlated Multi-Jittered Sampling, its canonical arrangement); few,
-/// that stand for their surroundings, must reach equally far to all sides.
-fn grid_skew(grid: u32) -> f64 {
-    if grid == EDGE_GRID { 0.0 } else { 1.0 / f64::from(grid) }
-}
-
-/// Of sample (column, row) in its pixel, 0 .. 1.
-pub fn sample_place([column, row]: [u32; 2], grid: u32) -> [f64; 2] {
-    let across = |i: u32| f64::from(i) + 0.5;
-    let lead = |i: u32| grid_skew(grid) * (across(i) - 0.5 * f64::from(grid));
-    [across(column) + lead(row), across(row) + lead(column)].map(|x| x / f64::from(grid))
+/// Where in its pixel sample `index` of `count` lies, 0 .. 1.
+pub fn sample_place(index: u32, count: u32) -> [f64; 2] {
+    if count == EDGE_SAMPLES {
+        return [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side));
+    }
+    sample_offset(index, count)
 }
 
 /// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or two sides.
@@ -91,7 +87,7 @@ fn share_below(level: f64, slope: [f64; 2]) -> f64 {
     if level > 0.0 { 1.0 - cut } else { cut }
 }
 
-/// u of the crossing of one order at each sample of a pixel of `EDGE_GRID`, row by row; 0 where there is none.
+/// u of the crossing of one order at each sample of a pixel of `EDGE_SAMPLES`, row by row; 0 where there is none.
 pub struct Crossings {
     pub u: [f64; 4],
     pub disk_u: [f64; 2],
@@ -170,7 +166,7 @@ mod tests {
         let disk_u = [0.05, 0.15];
         // u = 0.05 where x + 0.4 y = 0.7.
         let plane = |[x, y]: [f64; 2]| 0.05 + 0.02 * (x + 0.4 * y - 0.7);
-        let u = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|cell| plane(sample_place(cell, 2)));
+        let u = [0, 1, 2, 3].map(|index| plane(sample_place(index, EDGE_SAMPLES)));
         let crossings = Crossings { u, disk_u };
         let mean = (0..4).map(|index| crossings.covered_share(index)).sum::<f64>() / 4.0;
         assert!((mean - 0.5).abs() < 1e-12, "{mean}");
@@ -180,20 +176,23 @@ mod tests {
         assert!(Crossings { u: [0.1, 0.101, 0.1, 0.101], disk_u }.cover());
     }
 
+    /// Strips of any direction get their share of the samples.
     #[test]
-    fn many_samples_have_each_their_own_x_and_y() {
-        let grid = CURVE_GRID;
-        let places = (0..grid * grid).map(|i| sample_place([i % grid, i / grid], grid)).collect::<Vec<_>>();
-        for axis in 0..2 {
-            let mut along = places.iter().map(|p| p[axis]).collect::<Vec<_>>();
-            along.sort_by(f64::total_cmp);
-            let step = 1.0 / f64::from(grid * grid);
-            let even = along.iter().zip(0..).all(|(x, i)| (x - (f64::from(i) + 0.5) * step).abs() < 1e-12);
-            assert!(even, "{along:?}");
+    fn many_samples_do_not_lie_in_rows() {
+        let places = (0..CURVE_SAMPLES).map(|i| sample_place(i, CURVE_SAMPLES)).collect::<Vec<_>>();
+        let mut worst = 0.0_f64;
+        for turn in 0..360 {
+            let (sin, cos) = f64::from(turn).to_radians().sin_cos();
+            let along = |[x, y]: [f64; 2]| (x - 0.5) * cos + (y - 0.5) * sin;
+            for middle in -4..=4 {
+                let middle = f64::from(middle) * 0.05;
+                let within = places.iter().filter(|p| (along(**p) - middle).abs() < 0.05).count() as f64;
+                let edge = |level: f64| share_below(level, [cos, sin]);
+                let area = edge(middle + 0.05) - edge(middle - 0.05);
+                worst = worst.max((within / f64::from(CURVE_SAMPLES) - area).abs());
+            }
         }
-        assert_eq!(
-            [[0, 0], [1, 0], [1, 1]].map(|cell| sample_place(cell, 2)),
-            [[0.25, 0.25], [0.75, 0.25], [0.75, 0.75]]
-        );
+        // Rows of 8, an eighth apart, make it 0.1.
+        assert!(worst < 0.05, "{worst}");
     }
 }
