@@ -113,8 +113,9 @@ fn sky_is_good() -> bool {
 // Flags of the crossings in component `k` of a layer, of the order `order`.
 fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let margin = 0.25 * max(p.finite_high[k] - p.finite_low[k], 0.0);
-    let near = frame.disk_u.y;
-    let far = frame.disk_u.x;
+    // Pixels beside an edge look for it, too; as `REACHED_U` of scene/refine.rs.
+    let near = frame.disk_u.y * 1.15;
+    let far = frame.disk_u.x / 1.5;
     if near < far || p.low[k] - margin > near || p.high[k] + margin < far {
         return 0u;
     }

@@ -22,7 +22,11 @@ struct Deferred {
 struct Looked {
     seen: LocalLook,
     cell: vec2<u32>,
+    // Those of crossings that were given already are taken away.
     flags: u32,
+    all_flags: u32,
+    // Whether an edge of the disk runs through the pixel at a crossing given so far.
+    on_edge: bool,
     // Weights of interpolation and their derivatives, by column and by row.
     columns: vec4<f32>,
     columns_slope: vec4<f32>,
@@ -65,7 +69,9 @@ fn look_up(id: vec2<u32>) -> Record {
 
     looked.seen = seen;
     looked.cell = vec2<u32>(column, kerr_first_row(inner) + place.node + KERR_ROWS_BELOW);
-    looked.flags = textureLoad(kerr_flags, looked.cell, 0).x;
+    looked.all_flags = textureLoad(kerr_flags, looked.cell, 0).x;
+    looked.flags = looked.all_flags;
+    looked.on_edge = false;
     looked.columns = lagrange(around - f32(column));
     looked.columns_slope = lagrange_slope(around - f32(column));
     looked.rows = lagrange(place.share);
@@ -149,19 +155,34 @@ fn interpolate(layer: u32) -> Interpolated {
     return sum;
 }
 
+// Of component `lane` to the next pixel right and down.
+fn looked_up_change(at: Interpolated, lane: u32) -> vec2<f32> {
+    let by = vec2<f32>(at.by_column[lane], at.by_row[lane]);
+    return vec2<f32>(dot(by, looked.dx), dot(by, looked.dy));
+}
+
+fn edges_of_pixel(through: f32) -> u32 {
+    // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
+    let rows = length(vec2<f32>(looked.dx.y, looked.dy.y));
+    let curve = f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
+    return edges_looked_up(looked.on_edge, curve, looked.cell.y < lens.outer_rows, through);
+}
+
 // The next crossing of the disk in the tables.
 fn next_looked_up() -> Crossing {
     var crossing: Crossing;
     if !DISK {
         return crossing;
     }
-    let disk = frame.disk_u;
     var orders = looked.flags & 0xffffu;
     while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
         orders &= orders - 1u;
-        let u = interpolate(select(order / 4u, order, PATTERN)).value[select(order % 4u, 0u, PATTERN)];
-        if u >= disk.x && u <= disk.y {
+        let at = interpolate(select(order / 4u, order, PATTERN));
+        let lane = select(order % 4u, 0u, PATTERN);
+        let u = at.value[lane];
+        looked.on_edge = looked.on_edge || near_disk_edge(u, looked_up_change(at, lane));
+        if is_wanted(u) && u < KERR_NO_CROSSING {
             crossing.u = u;
             crossing.order = order;
         }

@@ -49,6 +49,12 @@ fn next_crossing() -> Crossing {
     var crossing: Crossing;
     while rest_order < min(frame.max_crossings, REST_ORDERS) && crossing.u <= 0.0 {
         let u = rest_crossings[rest_order].x;
+        if u > 0.0 {
+            // The tables' slope is nearly right all the same.
+            let at = interpolate(select(rest_order / 4u, rest_order, PATTERN));
+            let change = looked_up_change(at, select(rest_order % 4u, 0u, PATTERN));
+            looked.on_edge = looked.on_edge || near_disk_edge(u, change);
+        }
         if u >= frame.disk_u.x && u <= frame.disk_u.y {
             crossing.u = u;
             crossing.order = rest_order;

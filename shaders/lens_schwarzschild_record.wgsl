@@ -20,6 +20,10 @@ struct Looked {
     swept_slope: f32,
     change: vec2<f32>,
     turn: vec2<f32>,
+    // d(first crossing's angle) to the next pixel right and down: the same for every crossing.
+    first_change: vec2<f32>,
+    // Whether an edge of the disk runs through the pixel at a crossing given so far.
+    on_edge: bool,
     // Unit vectors of the ray's plane (with e_r) and across it, chart.
     along: vec3<f32>,
     across: vec3<f32>,
@@ -68,6 +72,13 @@ fn ray_record(id: vec2<u32>) -> Record {
     looked.along = frame.e_theta.xyz * tangent.x + frame.e_phi.xyz * tangent.y;
     looked.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
     looked.first = first_crossing_angle(tangent.x);
+    looked.on_edge = false;
+    if DISK {
+        // N_z stays 0 (OrbitPlane::image_change); both factors change sign from crossing to crossing.
+        let turn = sincos(min(looked.first, PI));
+        let rise = looked.along.z * turn.y - frame.e_r.z * turn.x;
+        looked.first_change = looked.turn * (-looked.across.z * turn.x / rise);
+    }
 
     // L = r sin(theta) p_phi, p = -n.
     let momentum = -frame.place.y * n.z / frame.place.x;
@@ -106,7 +117,6 @@ fn next_crossing() -> Crossing {
     if !DISK {
         return crossing;
     }
-    let disk = frame.disk_u;
     if looked.first >= looked.swept {
         return crossing;
     }
@@ -114,9 +124,13 @@ fn next_crossing() -> Crossing {
     // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found must be kept
     // apart, too: lanes that have left go on writing.)
     loop {
-        let u = column_at(lens_u, phi / max(looked.swept, 1e-6)).x;
-        let there = phi < looked.swept && looked.order < frame.max_crossings && u >= disk.x && u <= disk.y;
-        if there && crossing.u <= 0.0 {
+        let at = column_at(lens_u, phi / max(looked.swept, 1e-6));
+        let u = at.x;
+        let comes = phi < looked.swept && looked.order < frame.max_crossings;
+        if comes && crossing.u <= 0.0 {
+            looked.on_edge = looked.on_edge || near_disk_edge(u, u_change(at, phi));
+        }
+        if comes && is_wanted(u) && crossing.u <= 0.0 {
             crossing.u = u;
             crossing.order = looked.order;
         }
@@ -131,6 +145,12 @@ fn next_crossing() -> Crossing {
         complete(&crossing, looked.first + PI * f32(crossing.order));
     }
     return crossing;
+}
+
+// Of u to the next pixel right and down, where the table of u has `at` at the crossing `phi`.
+fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
+    let y = phi / looked.swept;
+    return at.y * looked.change + at.z * ((looked.first_change - y * looked.swept_slope * looked.change) / looked.swept);
 }
 
 // Of a table over (place, y): value and derivatives by place and by y. Cubic in both: Hermite in y, Lagrange in place.
@@ -176,23 +196,31 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
         let integral = column_at(lens_delay, phi / looked.swept).x;
         (*crossing).place.delay = delay_boundary(c, u, du) - delay_boundary(c, frame.place.x, begin.state.du) + integral;
     }
-    // How far a turn of the ray's plane moves the crossing along the ray and around the disk, and how far the next pixel moves it in u.
-    let lift = -looked.across.z * turn.x / tangent.z;
+    // How far a turn of the ray's plane moves the crossing around the disk, and how far the next pixel moves it.
     let swing = (n.x * looked.across.y - n.y * looked.across.x) * turn.x;
     let around = n.x * tangent.y - n.y * tangent.x;
     let rho2 = n.x * n.x + n.y * n.y;
-    let phi_change = looked.turn * lift;
+    let phi_change = looked.first_change;
     let azimuth_change = (looked.turn * swing + phi_change * around) / rho2;
-    let y = phi / looked.swept;
-    let y_change = (phi_change - y * looked.swept_slope * looked.change) / looked.swept;
-    let u_change = at.y * looked.change + at.z * y_change;
+    let du_change = u_change(at, phi);
     // The gradient of the travel time at its far end is the photon's momentum: b along phi, -u' / (D u^2) along u.
     var delay_change = vec2<f32>(0.0);
     if DELAY {
-        delay_change = (kappa * phi_change + du / (u * u * (1.0 - 2.0 * u)) * u_change) / c.energy;
+        delay_change = (kappa * phi_change + du / (u * u * (1.0 - 2.0 * u)) * du_change) / c.energy;
     }
-    (*crossing).dx = Place(-u_change.x / u, azimuth_change.x, delay_change.x);
-    (*crossing).dy = Place(-u_change.y / u, azimuth_change.y, delay_change.y);
+    (*crossing).dx = Place(-du_change.x / u, azimuth_change.x, delay_change.x);
+    (*crossing).dy = Place(-du_change.y / u, azimuth_change.y, delay_change.y);
+}
+
+fn edges_of_pixel(through: f32) -> u32 {
+    // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
+    let curve = f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(looked.change), 1e-30);
+    return edges_looked_up(looked.on_edge, curve, looked.branch == 0u, through);
+}
+
+// Gives the crossings once more from the first.
+fn rewind_crossings() {
+    looked.order = 0u;
 }
 
 // No record is pending here.

@@ -12,10 +12,14 @@ struct Pass {
     first: u32,
     // Of this sample among those of the submission.
     slot: u32,
-    reserved: u32,
+    // Samples that refine.wgsl takes of a pixel.
+    refined: u32,
     // Where in the full frame the texture of a frame's light begins (light.wgsl).
     light_origin: vec2<i32>,
 }
+
+// From this sample to the place looked at, pixels: 0 but where refine.wgsl spreads samples over a pixel.
+var<private> sample_shift: vec2<f32>;
 
 fn outside_tile(id: vec2<u32>) -> bool {
     return id.x >= pass_.size.x - 2u || id.y >= pass_.size.y - 2u;
@@ -23,5 +27,5 @@ fn outside_tile(id: vec2<u32>) -> bool {
 
 // Of the sample in the tile's pixel `id`: its place in the full frame, pixels.
 fn pixel_place(id: vec2<u32>) -> vec2<f32> {
-    return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset;
+    return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset + sample_shift;
 }

@@ -13,11 +13,16 @@ override AZIMUTH: bool = true;
 var<private> pixel: vec2<u32>;
 var<private> frequency_ratio: f32;
 var<private> disk_orders: u32;
+var<private> inside_orders: u32;
 var<private> plane_u: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if crossing.order == 0u {
         plane_u = crossing.u;
+    }
+    // Without a disk its radii are (1, 0).
+    if crossing.u > max(frame.disk_u.x, frame.disk_u.y) {
+        inside_orders |= 1u << crossing.order;
     }
     if crossing.u >= frame.disk_u.x && crossing.u <= frame.disk_u.y {
         var azimuth = 0.0;
@@ -42,9 +47,10 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     let c = begin.c;
     frequency_ratio = begin.frequency_ratio;
     disk_orders = 0u;
+    inside_orders = 0u;
     plane_u = 0.0;
     var sky = vec4<f32>(0.0);
-    var m = TracedMeta(FATE_CAPTURED, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
+    var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
     if begin.light {
         let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
         let traced = trace(c, begin.state, settings);
@@ -57,6 +63,7 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     textureStore(record_sky, pixel, sky);
     m.orders = disk_orders;
+    m.inside = inside_orders;
     if frame.view == VIEW_METRIC {
         m.energy = plane_u;
     }

@@ -50,12 +50,16 @@ fn least_patch() -> f32 {
     return frame.sky_z.w;
 }
 
+// Of the light behind the disk, how much it lets pass at the pixel shaded last.
+var<private> seen_through: f32;
+
+// Who uses this file defines seen_crossing() -> Crossing: next_crossing() with its share.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
     // max_crossings bounds what next_crossing gives; behind the first crossing of an opaque disk nothing is seen.
     for (var k = 0u; k < select(deciding(frame.max_crossings), 1u, OPAQUE); k += 1u) {
-        let crossing = next_crossing();
+        let crossing = seen_crossing();
         if crossing.u <= 0.0 {
             break;
         }
@@ -68,9 +72,11 @@ fn pixel_light(here: Record) -> vec4<f32> {
         if FOOTPRINTS {
             structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
         }
-        light += open * frame.disk.z * structure * disk_light(crossing.u, shift);
-        open *= 1.0 - frame.disk.z;
+        let opacity = frame.disk.z * crossing.share;
+        light += open * opacity * structure * disk_light(crossing.u, shift);
+        open *= 1.0 - opacity;
     }
+    seen_through = open;
     if (SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID) && here.fate == FATE_ESCAPED && open > 0.0 {
         light += open * sky_light(here);
     }

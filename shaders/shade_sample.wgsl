@@ -4,6 +4,12 @@
 @group(2) @binding(0) var radiance_before: texture_2d<f32>;
 @group(2) @binding(1) var radiance: texture_storage_2d<rgba32float, write>;
 
+fn seen_crossing() -> Crossing {
+    var crossing = next_crossing();
+    crossing.share = 1.0;
+    return crossing;
+}
+
 fn take_record(id: vec2<u32>, record: Record) {
     var sum = shade_record(id, record) * pass_.weight;
     if deciding(pass_.first) == 0u {

@@ -1,21 +1,11 @@
-// Ray records of traced pixels: reads what pixels.wgsl wrote, and takes derivatives from neighbours. The layout of the textures is in
-// traced_layout.wgsl.
+// Ray records of traced pixels: reads what pixels.wgsl wrote.
 
-@group(1) @binding(0) var record_sky: texture_2d<f32>;
-@group(1) @binding(1) var record_meta: texture_2d<u32>;
-@group(1) @binding(2) var record_disk: texture_2d_array<f32>;
-
-// Of the record at hand: its place in the textures, the crossings not yet given, and the layer of the next.
-var<private> traced_pixel: vec2<u32>;
-// Whether the neighbours to the left and to the right are of the same face.
-var<private> traced_joined: vec2<bool>;
+// Of the record at hand: the crossings not yet given, and the layer of the next.
 var<private> traced_orders: u32;
 var<private> traced_layer: u32;
 
 fn ray_record(id: vec2<u32>) -> Record {
-    traced_pixel = id + 1u;
-    let x = pixel_place(id).x;
-    traced_joined = vec2<bool>(same_face(x, x - 1.0), same_face(x, x + 1.0));
+    go_to_traced(id);
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
@@ -24,32 +14,9 @@ fn ray_record(id: vec2<u32>) -> Record {
         let sky = textureLoad(record_sky, traced_pixel, 0);
         record.sky = sky.xyz;
         record.sky_redshift = sky.w;
-        let dx = derivative_of_direction(sky.xyz, vec2<u32>(1u, 0u));
-        let dy = derivative_of_direction(sky.xyz, vec2<u32>(0u, 1u));
-        record.footprint = footprint_of(sky.xyz, dx.xyz, dy.xyz);
-        record.footprint.dx = select(vec2<f32>(1e30), record.footprint.dx, dx.w != 0.0);
-        record.footprint.dy = select(vec2<f32>(1e30), record.footprint.dy, dy.w != 0.0);
+        record.footprint = sky_footprint(sky.xyz);
     }
     return record;
-}
-
-// Whether the neighbours at -+ step may be compared with the pixel.
-fn traced_neighbours(step: vec2<u32>) -> vec2<bool> {
-    return select(traced_joined, vec2<bool>(true), step.x == 0u);
-}
-
-// d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; w is 0 where neither
-// did, which only the mean sky can stand for.
-fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
-    let before = textureLoad(record_sky, traced_pixel - step, 0);
-    let after = textureLoad(record_sky, traced_pixel + step, 0);
-    let joined = traced_neighbours(step);
-    let has_before = joined.x && before.w != 0.0;
-    let has_after = joined.y && after.w != 0.0;
-    let first = select(here, before.xyz, has_before);
-    let last = select(here, after.xyz, has_after);
-    let difference = (last - first) * select(1.0, 0.5, has_before && has_after);
-    return vec4<f32>(difference, select(0.0, 1.0, has_before || has_after));
 }
 
 fn next_crossing() -> Crossing {
@@ -71,34 +38,35 @@ fn next_crossing() -> Crossing {
     return crossing;
 }
 
-fn place_of(crossing: vec4<f32>) -> Place {
-    return Place(-log(crossing.x), crossing.z, crossing.w);
+// A pixel whose neighbour's ray meets other things, or the same inside the disk's edge and not outside: one that misses a thin ring
+// on one side of it and one that does on the other differ, too.
+fn edges_of_pixel(through: f32) -> u32 {
+    let here = textureLoad(record_meta, traced_pixel, 0).x;
+    let across = vec2<u32>(1u, 0u);
+    let down = vec2<u32>(0u, 1u);
+    let kinds = vec4<u32>(edge_between(here, traced_pixel - across), edge_between(here, traced_pixel + across),
+        edge_between(here, traced_pixel - down), edge_between(here, traced_pixel + down));
+    let beside = select(vec2<u32>(EDGE_NONE), kinds.xy, traced_joined);
+    return max(max(max(beside.x, beside.y), max(kinds.z, kinds.w)), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
 }
 
-// The crossing of the plane of this order, if it is the disk's; else 0.
-fn crossing_of_order(pixel: vec2<u32>, order: u32) -> vec4<f32> {
-    let orders = unpack_meta(textureLoad(record_meta, pixel, 0)).orders;
-    if (orders & (1u << order)) == 0u {
-        return vec4<f32>(0.0);
+// Of a pixel with crossings of these orders, the first.
+fn is_steep(orders: u32) -> bool {
+    if !DISK || orders == 0u {
+        return false;
     }
-    return textureLoad(record_disk, pixel, countOneBits(orders & ((1u << order) - 1u)), 0);
+    let order = firstTrailingBit(orders);
+    let here = crossing_of_order(traced_pixel, order).x;
+    let right = select(here, crossing_of_order(traced_pixel + vec2<u32>(1u, 0u), order).x, traced_joined.y);
+    let below = crossing_of_order(traced_pixel + vec2<u32>(0u, 1u), order).x;
+    return abs(right - here) + abs(below - here) > STEEP_CHANGE * here;
 }
 
-// d(place) / d(pixel) of a crossing, from the crossings of its order at -+ step, as derivative_of_direction.
-fn derivative_of_place(here: vec4<f32>, order: u32, step: vec2<u32>) -> Place {
-    let before = crossing_of_order(traced_pixel - step, order);
-    let after = crossing_of_order(traced_pixel + step, order);
-    let joined = traced_neighbours(step);
-    let has_before = joined.x && before.x > 0.0;
-    let has_after = joined.y && after.x > 0.0;
-    if !has_before && !has_after {
-        return Place(1e30, 0.0, 0.0);
-    }
-    let share = select(1.0, 0.5, has_before && has_after);
-    let first = place_of(select(here, before, has_before));
-    let last = place_of(select(here, after, has_after));
-    let turn = wrap_angle(last.azimuth - first.azimuth);
-    return Place(share * (last.ln_r - first.ln_r), share * turn, share * (last.delay - first.delay));
+fn edge_between(here: u32, pixel: vec2<u32>) -> u32 {
+    let there = textureLoad(record_meta, pixel, 0).x;
+    let fates = vec2<u32>(here & 3u, there & 3u);
+    let parted = fates.x != fates.y && fates.x != FATE_HIDDEN && fates.y != FATE_HIDDEN;
+    return select(select(EDGE_NONE, EDGE_DISK, here != there), EDGE_CURVE, parted);
 }
 
 // No record is pending here.

@@ -5,6 +5,7 @@ use super::CpuTracer;
 use super::delivery::Delivery;
 use super::lens::{LensCache, LookedUp};
 use super::record::{Neighbours, Recorder};
+use super::refine::Refiner;
 use super::shade::Shader;
 use crate::error::Result;
 use crate::film::bloom::Bloom;
@@ -24,15 +25,18 @@ const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
 /// What makes a frame's records.
-enum Source<'a> {
+pub enum Source<'a> {
     Traced(Recorder<'a>),
     LookedUp(LookedUp<'a>),
 }
 
 /// A frame being rendered.
 pub struct Frame<'a> {
+    lens: &'a Lens,
     source: Source<'a>,
     shader: Shader<'a>,
+    /// Of pixels with edges; `None`: each has several samples already, or a value that is not to be averaged.
+    refiner: Option<Refiner<'a>>,
     pub film: FilmParams,
     request: &'a FrameRequest,
     pub samples: u32,
@@ -100,16 +104,21 @@ impl<'a> Frame<'a> {
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
-        let recorder = Recorder::new(scene, lens);
+        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels));
+        let source = |recorder| match tables {
+            Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
+            None => Source::Traced(recorder),
+        };
+        let samples = if light { scene.quality.samples_per_pixel } else { 1 };
+        let refines = light && samples == 1;
         Ok(Self {
-            source: match cache.tables(scene, eye, scene.lensing(eye, pixels)) {
-                Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
-                None => Source::Traced(recorder),
-            },
+            lens,
+            source: source(Recorder::new(scene, lens)),
+            refiner: refines.then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
-            samples: if light { scene.quality.samples_per_pixel } else { 1 },
+            samples,
         })
     }
 
@@ -128,7 +137,9 @@ impl<'a> Frame<'a> {
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
-            let value = self.shader.shade_record(record, x, y);
+            let refiner = self.refiner.as_ref().filter(|_| self.lens.mapping.has_look(x, y));
+            let refined = refiner.and_then(|r| r.light(&self.shader, &self.source, record, [x, y]));
+            let value = refined.unwrap_or_else(|| self.shader.shade_record(record, x, y));
             (0..4).for_each(|c| pixel[c] += weight * value[c]);
         })
     }
@@ -173,7 +184,6 @@ fn trace_records<T: Send>(
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
     let stride = width as usize;
-    let stranger = Record::captured();
     // In one piece: rows made and freed by many threads leave their allocators in shreds.
     let mut records = vec![Record::captured(); stride * height as usize];
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
@@ -190,7 +200,7 @@ fn trace_records<T: Send>(
             for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
                 let [left, here, right] = across else { continue };
                 let (x, y) = place(column, row);
-                let neighbours = Neighbours { left, right, above, below }.apart(&recorder.lens.mapping, x, &stranger);
+                let neighbours = Neighbours::of(&recorder.lens.mapping, x, [left, right, above, below]);
                 take(&neighbours.complete(here), x, y, item);
             }
         },

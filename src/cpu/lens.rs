@@ -10,6 +10,7 @@ use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_PLACE};
+use crate::scene::refine::{looked_up_edge, near_disk_edge, reached_u};
 use crate::scene::turbulence::Place;
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
@@ -83,7 +84,7 @@ impl LensCache {
 fn wanted(scene: &Scene) -> Crossings {
     let orders = scene.pixel_settings().max_crossings;
     match scene.disk_u() {
-        Some(disk_u) => Crossings { orders, disk_u, pattern: scene.turbulence().is_some() },
+        Some(disk_u) => Crossings { orders, disk_u: reached_u(disk_u), pattern: scene.turbulence().is_some() },
         None => Crossings { orders: 0, disk_u: [1.0, 0.0], pattern: false },
     }
 }
@@ -158,8 +159,7 @@ impl<'a> LookedUp<'a> {
         let trace = |dx, dy| self.recorder.trace(x + dx, y + dy);
         let [left, right, above, below] = [trace(-1.0, 0.0), trace(1.0, 0.0), trace(0.0, -1.0), trace(0.0, 1.0)];
         let here = trace(0.0, 0.0);
-        let neighbours = Neighbours { left: &left, right: &right, above: &above, below: &below };
-        neighbours.apart(&self.recorder.lens.mapping, x, &Record::captured()).complete(&here)
+        Neighbours::of(&self.recorder.lens.mapping, x, [&left, &right, &above, &below]).complete(&here)
     }
 
     /// By tracing the pixel; footprints, which need not be as exact, from the table.
@@ -169,6 +169,9 @@ impl<'a> LookedUp<'a> {
         if let (Some(sky), Fate::Escaped) = (found.sky(), record.fate) {
             record.footprint = steps.map(|step| sky.change(&step));
         }
+        let orders = 0..self.recorder.settings.max_crossings;
+        let on_edge = orders.filter_map(|order| found.crossing(order)).any(|c| self.is_near_edge(&c, &steps));
+        self.note_edge(&mut record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
         if !self.pattern {
             return record;
         }
@@ -185,19 +188,36 @@ impl<'a> LookedUp<'a> {
     /// With spin.
     fn look_in_grid(&self, found: &kerr::Seen, seen: &Seen, record: &mut Record) {
         let steps = seen.changes.map(|change| found.place.step(change));
+        let mut on_edge = false;
         for crossing in found.crossings() {
             let u = crossing.image.u;
+            on_edge |= self.is_near_edge(&crossing, &steps);
+            if !self.recorder.disk_u.is_some_and(|[outer, inner]| u >= outer && u <= inner) {
+                continue;
+            }
             let place = self.pattern.then(|| {
                 let changes = steps.map(|step| change_of_place(u, &crossing.change(&step)));
                 (place_of(&crossing.image), changes)
             });
             if self.cross(record, seen.ratio, u, crossing.order, place) {
-                return;
+                break;
             }
         }
-        if let Some(sky) = found.sky() {
+        self.note_edge(record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
+        if let (Some(sky), false) = (found.sky(), record.fate == Fate::Hidden) {
             escape(record, seen.ratio, sky.direction, steps.map(|step| sky.change(&step)));
         }
+    }
+
+    fn is_near_edge(&self, crossing: &kerr::Crossing, steps: &[kerr::Step; 2]) -> bool {
+        let change = [0, 1].map(|i| crossing.change(&steps[i]).u);
+        self.recorder.disk_u.is_some_and(|disk_u| near_disk_edge(crossing.image.u, change, disk_u))
+    }
+
+    /// `curve`: distance to the critical curve, pixels; `outside`: the ray escapes.
+    fn note_edge(&self, record: &mut Record, on_edge: bool, outside: bool, curve: f64) {
+        let seen = if record.fate == Fate::Hidden { f64::INFINITY } else { curve };
+        record.edge = looked_up_edge(on_edge, outside && self.recorder.disk_u.is_some(), seen);
     }
 
     fn see(&self, x: f64, y: f64) -> Seen {
@@ -213,9 +233,12 @@ impl<'a> LookedUp<'a> {
         let look = lens.look(seen.n);
         let plane = OrbitPlane::new(frame, seen.n);
         let turns = seen.changes.map(|change| plane.turn(frame, &look, change));
+        let mut on_edge = false;
         if let (Some([outer, inner]), Some(first)) = (self.recorder.disk_u, plane.crossing_angle(0)) {
             for order in 0..self.recorder.settings.max_crossings as u32 {
                 let Some(crossing) = look.crossing(first + PI * f64::from(order)) else { break };
+                let change = turns.map(|turn| plane.u_change(&look, &crossing, &turn));
+                on_edge |= near_disk_edge(crossing.u, change, [outer, inner]);
                 if !(crossing.u >= outer && crossing.u <= inner) {
                     continue;
                 }
@@ -225,11 +248,13 @@ impl<'a> LookedUp<'a> {
                     (place_of(&image), changes.map(|change| change_of_place(crossing.u, &change)))
                 });
                 if self.cross(record, seen.ratio, crossing.u, order, place) {
-                    return;
+                    break;
                 }
             }
         }
-        if look.escaped {
+        let slope = look.curve_slope() * turns[0].dpsi.hypot(turns[1].dpsi);
+        self.note_edge(record, on_edge, look.escaped, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
+        if look.escaped && record.fate != Fate::Hidden {
             let sky = plane.sky(&look);
             escape(record, seen.ratio, sky.direction, turns.map(|turn| sky.change(&turn)));
         }
@@ -242,7 +267,7 @@ impl<'a> LookedUp<'a> {
         let nowhere = Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
         let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_PLACE; 2]));
         // Tables hold no more crossings than a record does.
-        let _ = record.crossings.try_push(DiskCrossing { u, order, g: ratio * g, place, footprint });
+        let _ = record.crossings.try_push(DiskCrossing { u, order, g: ratio * g, place, footprint, share: 1.0 });
         let hidden = self.recorder.settings.opaque_u.is_some();
         if hidden {
             record.fate = Fate::Hidden;

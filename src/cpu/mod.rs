@@ -6,6 +6,7 @@ mod frame;
 mod lens;
 mod rays;
 mod record;
+mod refine;
 mod shade;
 
 pub use rays::{trace_path, trace_ray};

@@ -7,6 +7,7 @@ use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::projection::Mapping;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
+use crate::scene::refine::{Edge, is_steep};
 use crate::scene::turbulence::Place;
 use glam::DVec3;
 
@@ -18,17 +19,25 @@ pub struct Recorder<'a> {
     pub(super) retrograde: bool,
 }
 
-/// The records one pixel to the left, right, above and below.
+/// The records one pixel to the left, right, above and below; none across a border between two faces of a cube.
 pub struct Neighbours<'a> {
-    pub left: &'a Record,
-    pub right: &'a Record,
-    pub above: &'a Record,
-    pub below: &'a Record,
+    pub left: Option<&'a Record>,
+    pub right: Option<&'a Record>,
+    pub above: Option<&'a Record>,
+    pub below: Option<&'a Record>,
 }
 
 impl<'a> Recorder<'a> {
     pub fn new(scene: &Scene, lens: &'a Lens) -> Self {
         Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
+    }
+
+    /// Which gives crossings of the whole plane, unless there is no disk, and goes on behind those that would hide the rest.
+    pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
+        let mut recorder = Self::new(scene, lens);
+        recorder.settings.opaque_u = None;
+        recorder.disk_u = recorder.disk_u.map(|_| [0.0, f64::INFINITY]);
+        recorder
     }
 
     /// The record of position (x, y) of the full frame, without footprints.
@@ -57,26 +66,36 @@ impl<'a> Recorder<'a> {
         }
         let Some([outer, inner]) = self.disk_u else { return };
         let within = |u: f64| u >= outer && u <= inner;
+        record.inside = traced.crossings.iter().filter(|x| x.u > inner).fold(0, |bits, x| bits | 1 << (x.order & 15));
         record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| DiskCrossing {
             u: x.u,
             order: x.order,
             g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
             place: Place { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
             footprint: [UNKNOWN_PLACE; 2],
+            share: 1.0,
         }));
     }
 }
 
 impl<'a> Neighbours<'a> {
-    /// Of the position at x: a neighbour on another face of a cube counts as none, for which `stranger`, captured, stands.
-    pub fn apart(self, mapping: &Mapping, x: f64, stranger: &'a Record) -> Self {
-        let or_stranger = |record, there| if mapping.same_face(x, there) { record } else { stranger };
-        Self { left: or_stranger(self.left, x - 1.0), right: or_stranger(self.right, x + 1.0), ..self }
+    /// Of the position at x: left, right, above, below.
+    pub fn of(mapping: &Mapping, x: f64, [left, right, above, below]: [&'a Record; 4]) -> Self {
+        Self {
+            left: mapping.same_face(x, x - 1.0).then_some(left),
+            right: mapping.same_face(x, x + 1.0).then_some(right),
+            above: Some(above),
+            below: Some(below),
+        }
     }
 
-    /// `here` with its footprints.
+    /// `here` with its footprints and its edge.
     pub fn complete(&self, here: &Record) -> Record {
         let mut record = here.clone();
+        let kinds = [self.left, self.right, self.above, self.below]
+            .map(|there| there.map_or(Edge::None, |there| edge_between(here, there)));
+        let steep = if is_steep_between(here, [self.right, self.below]) { Edge::Disk } else { Edge::None };
+        record.edge = kinds.into_iter().fold(steep, Edge::max);
         let pairs = [(self.left, self.right), (self.above, self.below)];
         if here.fate == Fate::Escaped {
             record.footprint = pairs.map(|(before, after)| derivative_of_direction(here, before, after));
@@ -88,20 +107,39 @@ impl<'a> Neighbours<'a> {
     }
 }
 
+/// Neighbours' rays that meet other things, or the same inside the disk's edge and not outside: two that miss a thin ring, each on
+/// its side, differ, too.
+fn edge_between(here: &Record, there: &Record) -> Edge {
+    let orders = |record: &Record| record.crossings.iter().fold(0u32, |bits, c| bits | 1 << (c.order & 31));
+    if here.fate != there.fate && here.fate != Fate::Hidden && there.fate != Fate::Hidden {
+        return Edge::Curve;
+    }
+    let alike = here.fate == there.fate && here.inside == there.inside && orders(here) == orders(there);
+    if alike { Edge::None } else { Edge::Disk }
+}
+
+/// At the first crossing; where neighbours do not have it, its change is not known but that it is one.
+fn is_steep_between(here: &Record, neighbours: [Option<&Record>; 2]) -> bool {
+    let Some(first) = here.crossings.first() else { return false };
+    let u = |there: &Record| there.crossings.iter().find(|c| c.order == first.order).map_or(0.0, |c| c.u);
+    is_steep(first.u, neighbours.map(|there| there.map_or(0.0, |there| (u(there) - first.u).abs())).iter().sum())
+}
+
 /// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided.
-fn derivative_of_direction(here: &Record, before: &Record, after: &Record) -> DVec3 {
-    match (before.fate == Fate::Escaped, after.fate == Fate::Escaped) {
-        (true, true) => 0.5 * (after.direction - before.direction),
-        (false, true) => after.direction - here.direction,
-        (true, false) => here.direction - before.direction,
-        (false, false) => UNKNOWN_DIRECTION,
+fn derivative_of_direction(here: &Record, before: Option<&Record>, after: Option<&Record>) -> DVec3 {
+    let escaped = |there: Option<&Record>| there.filter(|r| r.fate == Fate::Escaped).map(|r| r.direction);
+    match (escaped(before), escaped(after)) {
+        (Some(before), Some(after)) => 0.5 * (after - before),
+        (None, Some(after)) => after - here.direction,
+        (Some(before), None) => here.direction - before,
+        (None, None) => UNKNOWN_DIRECTION,
     }
 }
 
 /// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
-fn derivative_of_place(here: &DiskCrossing, before: &Record, after: &Record) -> Place {
+fn derivative_of_place(here: &DiskCrossing, before: Option<&Record>, after: Option<&Record>) -> Place {
     let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(|c| c.place);
-    let (before, after) = (same(before), same(after));
+    let (before, after) = (before.and_then(same), after.and_then(same));
     if before.is_none() && after.is_none() {
         return UNKNOWN_PLACE;
     }

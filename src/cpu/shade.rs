@@ -71,7 +71,7 @@ impl<'a> Shader<'a> {
     }
 
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
-    fn pixel_light(&self, here: &Record) -> [f64; 4] {
+    pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
         let mut light = [0.0; 3];
         let mut open = 1.0;
         if let Some(disk) = &self.scene.disk {
@@ -82,8 +82,9 @@ impl<'a> Shader<'a> {
                 let gravity = || nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
                 let rgb = self.disk_light(disk, crossing.u, self.visible_shift(crossing.g, gravity));
                 let structure = self.turbulence.map_or(1.0, |t| t.brightness(crossing.place, crossing.footprint));
-                (0..3).for_each(|c| light[c] += open * disk.opacity * structure * rgb[c]);
-                open *= 1.0 - disk.opacity;
+                let opacity = disk.opacity * crossing.share;
+                (0..3).for_each(|c| light[c] += open * opacity * structure * rgb[c]);
+                open *= 1.0 - opacity;
             }
         }
         if here.fate != Fate::Escaped {

@@ -2,6 +2,7 @@
 
 use crate::physics::trace::Fate;
 use crate::scene::record::{DiskCrossing, Record};
+use crate::scene::refine::Edge;
 use crate::scene::turbulence::Place;
 use glam::DVec3;
 
@@ -31,6 +32,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         g: dy[3],
         place: place(*at),
         footprint: [place(*dx), place(*dy)],
+        share: 1.0,
     };
     Record {
         fate,
@@ -41,6 +43,8 @@ pub fn imported(bytes: &[u8]) -> Record {
         angular_momentum: momentum,
         steps: steps as u32,
         plane_u,
+        inside: 0,
+        edge: Edge::None,
         crossings: rest.as_chunks().0.iter().take(count as usize).map(crossing).collect(),
     }
 }

@@ -9,6 +9,7 @@ use super::kernels::{
 };
 use super::lens_kerr::Wanted;
 use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
+use super::refine::{EdgeList, Refining};
 use super::steps::{Step, Steps};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, MEMORY, Plan};
@@ -24,6 +25,7 @@ use crate::renderer::{Backend, FrameRequest, FrameStats, PASSES, Progress, Tile,
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
+use crate::scene::refine::{CURVE_SAMPLES, EDGE_SAMPLES};
 use crate::scene::{Lensing, Region, Scene, View};
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -54,6 +56,7 @@ pub struct FrameBuffers {
     sized: Option<SizedBuffers>,
     bloom: BloomBuffers,
     makers: RecordMakers,
+    edges: EdgeList,
     readback: Readback,
     /// Where kernels put pixels row by row.
     mapped: Mapped,
@@ -65,7 +68,8 @@ struct FixedBuffers {
     film: Written,
     /// The same for light that is exposed already.
     film_of_exposed: Written,
-    /// One `PassUniform` for what is developed in frames with bloom, and one for each sample of a batch, `pass_stride` apart.
+    /// One `PassUniform` for what is developed in frames with bloom, one for each sample of a batch, and the last
+    /// once more with `CURVE_SAMPLES`; `uniform_stride` apart.
     passes: Written,
     step_sum: Buffer,
 }
@@ -110,8 +114,8 @@ struct Taking {
 
 /// What turns ray records into packed pixels.
 enum Shading {
-    /// Of the only sample.
-    Only(Taking),
+    /// Of the only sample; then more of the pixels that were listed (group 3) for their edges.
+    Only { taking: Taking, edges: wgpu::BindGroup, refining: Option<Refining> },
     Samples {
         /// Of even and of odd samples.
         shade: [Taking; 2],
@@ -291,7 +295,7 @@ impl GpuTracer {
             Source::Kerr { .. } => 8,
         };
         // Packed pixels have two staging buffers.
-        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes;
+        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
         let steps = self.steps(scene, request, &setup, bytes, ray_steps);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
@@ -490,6 +494,14 @@ impl Taking {
     }
 }
 
+impl Looks {
+    /// Whether pixels with edges are looked at once more; with several samples each pixel has been already, and values of views are no
+    /// light to be averaged.
+    fn refines(&self) -> bool {
+        self.look.light && !self.several_samples
+    }
+}
+
 impl Size {
     /// Whether buffers of this size hold what the other asks for.
     fn serves(&self, other: &Self) -> bool {
@@ -546,7 +558,7 @@ impl FrameBuffers {
                 passes: Written::new(
                     device,
                     "passes",
-                    u64::from(1 + MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                    u64::from(2 + MAX_BATCH) * uniform_stride::<PassUniform>(device),
                 )?,
                 step_sum: step_sum(device)?,
             });
@@ -567,6 +579,7 @@ impl FrameBuffers {
             });
         }
         self.makers.prepare(device, &setup.making, size.tile)?;
+        self.edges.prepare(device, if setup.looks.refines() { size.tile } else { [1, 1] })?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
         fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
@@ -628,7 +641,14 @@ impl FrameBuffers {
                 develop: [develop(even)?, develop(odd)?],
             }
         } else {
-            Shading::Only(taking(kernels, &[])?)
+            let making = &setup.making;
+            let of = ((making.rest().unwrap_or(making.source), making.variant), (looks.look, looks.film));
+            let groups: [&[_]; 2] = [&shared, &records];
+            let refining = match looks.refines() {
+                true => Some(Refining::new(device, kernels, of.0, of.1, &groups, software)?),
+                false => None,
+            };
+            Shading::Only { taking: taking(kernels, &[])?, edges: self.edges.group(device, puts.edges()?)?, refining }
         };
         let group = |puts: &Compiled, film: &Written, pixels| {
             device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels])
@@ -672,9 +692,13 @@ impl Stages {
             let offset = slot * stride;
             self.records.encode(pass, begins && slot == 1, offset, tile);
             match &self.shading {
-                Shading::Only(stage) => {
+                Shading::Only { taking, edges, refining } => {
                     pass.set_bind_group(2, put, &[]);
-                    stage.dispatch(pass, offset, tile);
+                    pass.set_bind_group(3, edges, &[]);
+                    taking.dispatch(pass, offset, tile);
+                    if let Some(refining) = refining {
+                        refining.dispatch(pass, [offset, offset + stride]);
+                    }
                 }
                 Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(pass, offset, tile),
             }
@@ -735,14 +759,17 @@ impl FrameBuffers {
         let stages = &frame.stages;
         let stride = uniform_stride::<PassUniform>(device);
         let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
-        let mut places = vec![0; (1 + step.samples.len()) * stride as usize];
         // The first is what is developed, which with bloom may be another tile than the shaded one.
         let developed = (step.develops.unwrap_or(step.shades), 0, 0);
-        for (slot, (tile, sample, i)) in
-            places.chunks_exact_mut(stride as usize).zip([developed].into_iter().chain(shaded))
-        {
-            let pass = pass_of(&frame.request, tile, sample, frame.samples, i, step.light_origin);
-            slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
+        let mut passes: Vec<PassUniform> = [developed]
+            .into_iter()
+            .chain(shaded)
+            .map(|(tile, sample, i)| pass_of(&frame.request, tile, sample, frame.samples, i, step.light_origin))
+            .collect();
+        passes.extend(passes.last().map(|last| PassUniform { refined: CURVE_SAMPLES, ..*last }));
+        let mut places = vec![0; passes.len() * stride as usize];
+        for (slot, pass) in places.chunks_exact_mut(stride as usize).zip(&passes) {
+            slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(pass));
         }
         let size_of_tile = [step.shades.width, step.shades.height];
         check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
@@ -762,6 +789,7 @@ impl FrameBuffers {
             self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
         }
         let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
+        self.edges.reset(&mut encoder);
         let puts = stages.glare.is_some() || step.develops.is_some();
         let put = if puts { Some(stages.put.group(device, to)?) } else { None };
         let timer = &mut self.timer;
@@ -871,7 +899,7 @@ fn pass_of(
         weight: 1.0 / samples as f32,
         first: u32::from(sample == 0),
         slot,
-        reserved: 0,
+        refined: EDGE_SAMPLES,
         light_origin: light_origin.map(|v| v as i32),
     }
 }

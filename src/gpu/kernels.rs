@@ -73,11 +73,19 @@ impl FilmLook {
         Self { format: 1, tone_map: 0, false_colour: 0, target: PixelTarget::Light }
     }
 
-    /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
+    /// For kernels that go over what `source` makes: deferred pixels lie scattered.
     fn over(self, source: Source) -> Self {
-        match (self.target, source) {
-            (PixelTarget::Rows, Source::Kerr { rest: true, .. }) => Self { target: PixelTarget::Packed, ..self },
+        match source {
+            Source::Kerr { rest: true, .. } => self.scattered(),
             _ => self,
+        }
+    }
+
+    /// For kernels over pixels that make no rows.
+    fn scattered(self) -> Self {
+        match self.target {
+            PixelTarget::Rows => Self { target: PixelTarget::Packed, ..self },
+            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => self,
         }
     }
 
@@ -124,6 +132,15 @@ pub enum Source {
     Kerr { delay: bool, pattern: bool, moving: bool, rest: bool },
 }
 
+/// How refine.wgsl finds its samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Refined {
+    /// Of the pixels' own records.
+    pub source: Source,
+    /// How rays are traced that no table holds.
+    pub variant: Variant,
+}
+
 /// `METHOD_*` of integrator.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MethodCode(u32);
@@ -145,6 +162,7 @@ enum Name {
     Count,
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
+    Refine(Refined, Look, FilmLook),
     /// Of a sum of samples; or of light that has spread over a grid of cells of so many pixels' side.
     Develop(FilmLook, Option<u32>),
     /// Finer cells, or pixels, along a cell's side; whether they are cells.
@@ -209,7 +227,10 @@ const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
 const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
+const TRACED_FOOTPRINTS: &str = include_str!("../../shaders/traced_footprints.wgsl");
+const INTEGRATED: &str = include_str!("../../shaders/samples_integrated.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
+const EDGES: &str = include_str!("../../shaders/edges.wgsl");
 
 fn join(parts: &[&[&str]]) -> String {
     parts.concat().join("\n")
@@ -232,7 +253,7 @@ impl Source {
     /// The WGSL that makes records, without what shading needs as well.
     fn parts(self) -> Vec<&'static str> {
         match self {
-            Self::Traced => vec![TRACED_LAYOUT, include_str!("../../shaders/traced.wgsl")],
+            Self::Traced => vec![TRACED_LAYOUT, TRACED_FOOTPRINTS, include_str!("../../shaders/traced.wgsl")],
             Self::Schwarzschild { .. } => {
                 let record = include_str!("../../shaders/lens_schwarzschild_record.wgsl");
                 vec![GEODESIC, CAMERA, LENS_AXIS, SCHWARZSCHILD, record]
@@ -247,6 +268,22 @@ impl Source {
                     parts.push(include_str!("../../shaders/lens_kerr_pixel.wgsl"));
                 }
                 parts
+            }
+        }
+    }
+
+    /// The WGSL that makes records of refine.wgsl's samples.
+    fn sample_parts(self) -> Vec<&'static str> {
+        match self {
+            Self::Traced => {
+                let samples = [INTEGRATED, include_str!("../../shaders/samples_traced.wgsl")];
+                [&[GEODESIC, CAMERA, TRACED_LAYOUT, TRACED_FOOTPRINTS], &INTEGRATION[..], &samples].concat()
+            }
+            Self::Schwarzschild { .. } => self.parts(),
+            Self::Kerr { .. } => {
+                let record = include_str!("../../shaders/lens_kerr_record.wgsl");
+                let samples = [INTEGRATED, include_str!("../../shaders/samples_kerr.wgsl")];
+                [&[GEODESIC, CAMERA, LENS_AXIS, KERR, record], &INTEGRATION[..], &samples].concat()
             }
         }
     }
@@ -304,7 +341,8 @@ fn schwarzschild_columns_source() -> String {
     schwarzschild_build_source(include_str!("../../shaders/lens_schwarzschild_columns.wgsl"))
 }
 
-fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> String {
+/// `parts`: what makes the records.
+fn shade_source(parts: &[&str], rest: &[&str]) -> String {
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
@@ -315,17 +353,25 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
         include_str!("../../shaders/shade.wgsl"),
     ];
     let constants = sky::StarIndex::wgsl_constants();
-    let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION], parts, &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
-    shade_source(source, None, &[include_str!("../../shaders/shade_sample.wgsl")])
+    let (_, driver) = source.driver(None);
+    shade_source(&source.parts(), &[driver, include_str!("../../shaders/shade_sample.wgsl")])
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
     let [develop, colour, put] = film.parts();
-    shade_source(source, Some(film.target), &[develop, colour, put, include_str!("../../shaders/shade_only.wgsl")])
+    let (_, driver) = source.driver(Some(film.target));
+    let rest = [driver, develop, colour, put, EDGES, include_str!("../../shaders/shade_only.wgsl")];
+    shade_source(&source.parts(), &rest)
+}
+
+fn refine_source(source: Source, film: FilmLook) -> String {
+    let [develop, colour, put] = film.parts();
+    let rest = [develop, colour, put, EDGES, include_str!("../../shaders/refine.wgsl")];
+    shade_source(&source.sample_parts(), &rest)
 }
 
 fn export_source(source: Source) -> String {
@@ -400,6 +446,13 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("bloom, gather pixels", gather_base_source()),
         ("bloom, give back", give_back_source()),
         ("shade only for bloom", shade_only_source(kerr(false), FilmLook::of_light())),
+        ("refine, traced", refine_source(Source::Traced, film(PixelTarget::Packed))),
+        (
+            "refine, spin-0 lens",
+            refine_source(Source::Schwarzschild { delay: true, moving: true }, film(PixelTarget::Packed)),
+        ),
+        ("refine, Kerr lens", refine_source(kerr(true), film(PixelTarget::Packed))),
+        ("refine for a window", refine_source(kerr(true), film(PixelTarget::Screen))),
         ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
         ("shade only by rows", shade_only_source(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
@@ -530,6 +583,11 @@ fn shade_slots() -> Vec<Slot> {
     vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
+/// Group 3 of edges.wgsl.
+fn edge_slots() -> Vec<Slot> {
+    vec![Slot::Write]
+}
+
 impl Kernels {
     pub fn pixels(&mut self, device: &Device, variant: Variant) -> Result<Compiled> {
         let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
@@ -554,13 +612,23 @@ impl Kernels {
         self.get(device, Name::ShadeSample(source, look), &groups, entry_point, || shade_sample_source(source))
     }
 
-    /// Group 2, which puts the pixels, is for the caller to set.
+    /// Groups 2, which puts the pixels, and 3, the list of those with edges, are for the caller to set.
     pub fn shade_only(&mut self, device: &Device, source: Source, look: Look, film: FilmLook) -> Result<Compiled> {
         let film = film.over(source);
-        let groups = [shade_slots(), source.slots(), film.slots()];
+        let groups = [shade_slots(), source.slots(), film.slots(), edge_slots()];
         let wgsl = || shade_only_source(source, film);
         let (entry_point, _) = source.driver(Some(film.target));
         self.get(device, Name::ShadeOnly(source, look, film), &groups, entry_point, wgsl)
+    }
+
+    /// Groups 2 and 3 as `shade_only`.
+    pub fn refine(&mut self, device: &Device, refined: Refined, look: Look, film: FilmLook) -> Result<Compiled> {
+        let film = film.scattered();
+        // The disk may cover but a part of a sample's cell.
+        let look = Look { opaque: false, ..look };
+        let groups = [shade_slots(), refined.source.slots(), film.slots(), edge_slots()];
+        let wgsl = || refine_source(refined.source, film);
+        self.get(device, Name::Refine(refined, look, film), &groups, "refine", wgsl)
     }
 
     /// `glare`: with bloom, pixels along a cell's side. Group 2, which puts the pixels, is for the caller to set.
@@ -678,7 +746,7 @@ impl Kernels {
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants (of a pipeline or of all), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
+/// loops counted over constants (of a pipeline or of all), over the samples of a pixel (64 at most), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
 /// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
@@ -731,6 +799,13 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
+        Name::Refine(refined, look, film) => {
+            let traced = match refined.source {
+                Source::Traced => trace_constants(refined.variant),
+                _ => refined.source.constants(),
+            };
+            [traced, look_constants(look), film_constants(film), vec![("WHOLE_PLANE", 1.0)]].concat()
+        }
         Name::Develop(film, None) => film_constants(film),
         Name::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
         Name::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
@@ -751,6 +826,11 @@ impl Compiled {
     /// The layout of group 2.
     pub fn target(&self) -> Result<&wgpu::BindGroupLayout> {
         self.layouts.get(2).ok_or_else(|| Error::internal("a kernel without a target"))
+    }
+
+    /// The layout of group 3.
+    pub fn edges(&self) -> Result<&wgpu::BindGroupLayout> {
+        self.layouts.get(3).ok_or_else(|| Error::internal("a kernel without a list of edges"))
     }
 
     /// The pipeline with `groups`, the first of its groups: of each the resources in the order of its slots.

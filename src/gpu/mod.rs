@@ -16,6 +16,7 @@ mod present;
 mod rays;
 mod readback;
 mod records;
+mod refine;
 mod sky_maps;
 mod steps;
 mod swapchain;

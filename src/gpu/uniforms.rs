@@ -53,7 +53,8 @@ pub struct PassUniform {
     pub weight: f32,
     pub first: u32,
     pub slot: u32,
-    pub reserved: u32,
+    /// `EDGE_SAMPLES` or `CURVE_SAMPLES`.
+    pub refined: u32,
     pub light_origin: [i32; 2],
 }
 

@@ -13,6 +13,7 @@ pub mod quality;
 pub mod query;
 pub mod rays;
 pub mod record;
+pub mod refine;
 pub mod sky;
 pub mod trace;
 pub mod turbulence;

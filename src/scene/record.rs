@@ -1,6 +1,7 @@
 //! The ray record of a pixel: the one interface between lensing and shading, on both tracers (shaders/record.wgsl has the same
 //! fields). However it was made, shading cannot tell. Plain data.
 
+use super::refine::Edge;
 use super::turbulence::Place;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use arrayvec::ArrayVec;
@@ -19,6 +20,8 @@ pub struct DiskCrossing {
     pub place: Place,
     /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
     pub footprint: [Place; 2],
+    /// How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1.
+    pub share: f64,
 }
 
 /// What became of a pixel's ray. Directions in the chart.
@@ -38,6 +41,10 @@ pub struct Record {
     pub steps: u32,
     /// 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
     pub plane_u: f64,
+    /// Orders of crossings inside the disk's inner edge, a bit each.
+    pub inside: u16,
+    /// What runs through the pixel.
+    pub edge: Edge,
     pub crossings: ArrayVec<DiskCrossing, CROSSINGS_KEPT>,
 }
 
@@ -53,6 +60,8 @@ impl Record {
             angular_momentum: 0.0,
             steps: 0,
             plane_u: 0.0,
+            inside: 0,
+            edge: Edge::None,
             crossings: ArrayVec::new(),
         }
     }
@@ -68,6 +77,8 @@ impl Record {
         self.angular_momentum = 0.0;
         self.steps = 0;
         self.plane_u = 0.0;
+        self.inside = 0;
+        self.edge = Edge::None;
     }
 }
 

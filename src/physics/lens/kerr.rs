@@ -715,6 +715,12 @@ impl Seen<'_> {
         Some(Sky { direction, by_column: across(vector(at.by_column)), by_row: across(vector(at.by_row)) })
     }
 
+    /// Distance to the critical curve, in the unit that `steps` go at right angles.
+    pub fn curve_distance(&self, steps: &[Step; 2]) -> f64 {
+        let rows = steps[0].row.hypot(steps[1].row).max(f64::MIN_POSITIVE);
+        self.grid.nodes_per_octave[self.place.branch as usize] / (LN_2 * rows)
+    }
+
     /// False: only a ray's integration tells its crossings well enough.
     pub fn crossings_are_good(&self) -> bool {
         self.flags & POOR_CROSSINGS == 0

@@ -93,13 +93,23 @@ impl OrbitPlane {
         PlaneImage { u: crossing.u, azimuth: at.y.atan2(at.x), delay: look.delay(crossing) }
     }
 
-    /// The change of `image` with the look direction.
-    ///
-    /// N_z stays 0: dphi = -sin(phi) dT_z / N'_z. The delay follows from its gradient (`Look::delay_gradient`).
+    /// How far the crossing moves along the ray with the look direction: N_z stays 0, dphi = -sin(phi) dT_z / N'_z.
+    fn phi_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> f64 {
+        let (sin, cos) = crossing.phi.sin_cos();
+        let rise = self.tangent.z * cos - self.e_r.z * sin;
+        -turn.dtangent.z * sin / (look.sin.max(f64::MIN_POSITIVE) * rise)
+    }
+
+    /// The change of a crossing's u with the look direction.
+    pub fn u_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> f64 {
+        crossing.u_psi * turn.dpsi + crossing.u_phi * self.phi_change(look, crossing, turn)
+    }
+
+    /// The change of `image` with the look direction. The delay follows from its gradient (`Look::delay_gradient`).
     pub fn image_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> PlaneImage {
         let (at, heading) = (self.position(crossing.phi), self.heading(crossing.phi));
         let swing = turn.dtangent * (crossing.phi.sin() / look.sin.max(f64::MIN_POSITIVE));
-        let dphi = -swing.z / heading.z;
+        let dphi = self.phi_change(look, crossing, turn);
         let moved = swing + heading * dphi;
         let du = crossing.u_psi * turn.dpsi + crossing.u_phi * dphi;
         let (by_phi, by_u) = look.delay_gradient(crossing);

@@ -155,6 +155,12 @@ impl Look<'_> {
         self.family.coordinate.sin_critical
     }
 
+    /// d ln |t| / d psi, t = tan((psi - psi_c) / 2).
+    pub fn curve_slope(&self) -> f64 {
+        let t = self.t_hat * self.family.coordinate.scale;
+        (1.0 + t * t) / (2.0 * t)
+    }
+
     #[inline]
     fn locate(&mut self) {
         let coordinate = &self.family.coordinate;

@@ -1,0 +1,110 @@
+//! The second look at a pixel that edges run through: more rays, on edges of the disk its cover of each one's cell, and their mean light.
+//! Mirrored by shaders/refine.wgsl; `scene::refine` has the rules. Knows no film.
+
+use super::frame::Source;
+use super::shade::Shader;
+use crate::physics::trace::CROSSINGS_KEPT;
+use crate::scene::Scene;
+use crate::scene::record::{Record, UNKNOWN_PLACE};
+use crate::scene::refine::{CURVE_SAMPLES, Crossings, EDGE_SAMPLES, Edge, sample_place};
+
+/// What refines the pixels of a frame.
+pub struct Refiner<'a> {
+    /// Gives crossings of the whole plane; nothing is hidden in it.
+    plane: Source<'a>,
+    disk_u: Option<[f64; 2]>,
+    opaque: bool,
+}
+
+impl<'a> Refiner<'a> {
+    /// `plane`: of records of the whole plane (`Recorder::whole_plane`).
+    pub fn new(scene: &Scene, plane: Source<'a>) -> Self {
+        Self { plane, disk_u: scene.disk_u(), opaque: scene.disk.is_some_and(|disk| disk.opacity >= 1.0) }
+    }
+
+    /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`: nothing runs
+    /// through it.
+    pub fn light(&self, shader: &Shader<'_>, source: &Source<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
+        let smooth = match here.edge {
+            Edge::None => return None,
+            Edge::Disk => self.smooth_light(shader, here, at),
+            Edge::Curve => None,
+        };
+        let light = |index| shader.pixel_light(&sample(source, here, at, sample_place(index, CURVE_SAMPLES)));
+        let counted = || mean((0..CURVE_SAMPLES).map(light));
+        Some(smooth.unwrap_or_else(counted))
+    }
+
+    /// From the cover of few samples' cells. `None`: what they show cannot change evenly from one to the next.
+    fn smooth_light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
+        let record = |index| sample(&self.plane, here, at, sample_place(index, EDGE_SAMPLES));
+        let mut records = [0, 1, 2, 3].map(record);
+        let orders = self.orders(&records);
+        if self.are_ragged(&records, &orders) {
+            return None;
+        }
+        for (record, index) in records.iter_mut().zip(0..) {
+            for crossing in &mut record.crossings {
+                let of_order = orders.as_ref().and_then(|orders| orders.get(crossing.order as usize));
+                crossing.share = of_order.map_or(0.0, |crossings| crossings.covered_share(index));
+                if let Some([outer, inner]) = self.disk_u {
+                    crossing.u = crossing.u.clamp(outer, inner);
+                }
+            }
+            record.crossings.retain(|crossing| crossing.share > 0.0);
+        }
+        Some(mean(records.iter().map(|record| shader.pixel_light(record))))
+    }
+
+    /// The samples' crossings by order. `None`: there is no disk.
+    fn orders(&self, records: &[Record; 4]) -> Option<[Crossings; CROSSINGS_KEPT]> {
+        let disk_u = self.disk_u?;
+        let of =
+            |record: &Record, order: usize| record.crossings.iter().find(|c| c.order as usize == order).map(|c| c.u);
+        Some(std::array::from_fn(|order| Crossings {
+            u: records.each_ref().map(|record| of(record, order).unwrap_or(0.0)),
+            disk_u,
+        }))
+    }
+
+    fn are_ragged(&self, records: &[Record; 4], orders: &Option<[Crossings; CROSSINGS_KEPT]>) -> bool {
+        for (crossings, order) in orders.iter().flatten().zip(0..) {
+            if crossings.are_ragged(order == 0) {
+                return true;
+            }
+            if self.opaque && crossings.cover() {
+                return false;
+            }
+        }
+        let [first, rest @ ..] = records;
+        rest.iter().any(|other| other.fate != first.fate)
+    }
+}
+
+/// The record of the sample at `place` in the pixel about `at`. A traced one's footprints are those of the pixel's own record `here`, where
+/// that has any.
+fn sample(source: &Source<'_>, here: &Record, at: [f64; 2], place: [f64; 2]) -> Record {
+    let [x, y] = [0, 1].map(|i| at[i] + place[i] - 0.5);
+    match source {
+        Source::LookedUp(lookup) => {
+            let mut record = Record::captured();
+            lookup.record(x, y, &mut record);
+            record
+        }
+        Source::Traced(recorder) => {
+            let mut record = recorder.trace(x, y);
+            record.footprint = here.footprint;
+            for crossing in &mut record.crossings {
+                let same = here.crossings.iter().find(|c| c.order == crossing.order);
+                crossing.footprint = same.map_or([UNKNOWN_PLACE; 2], |c| c.footprint);
+            }
+            record
+        }
+    }
+}
+
+fn mean(lights: impl Iterator<Item = [f64; 4]>) -> [f64; 4] {
+    let (sum, count) =
+        lights.fold(([0.0; 4], 0.0), |(sum, count), light| (std::array::from_fn(|c| sum[c] + light[c]), count + 1.0));
+    sum.map(|v: f64| v / count)
+}

@@ -1,0 +1,81 @@
+//! The second look at pixels that edges run through: their list on the device, and the kernels that go over it (edges.wgsl,
+//! refine.wgsl). Knows kernels and their groups, no records and no light.
+
+use super::kernels::{FilmLook, Kernels, Look, Refined, Source, Stage, Variant};
+use super::{Buffer, Device};
+use crate::error::{Error, Result};
+use wgpu::BufferUsages as Usage;
+
+/// `Edges` of edges.wgsl: bytes before the pixels, and of a pixel.
+const HEAD: u64 = 8;
+const PIXEL: u64 = 4;
+/// Room for pixels that are listed twice: at first as an edge of the disk and then as the critical curve's.
+const LISTED_TWICE: u64 = 1 << 20;
+
+/// Workgroups that share the list: as `REST_GROUPS` of frame.rs.
+const GROUPS: u32 = 2048;
+const GROUPS_SOFTWARE: u32 = 16;
+
+/// The list; it grows and stays.
+#[derive(Default)]
+pub struct EdgeList {
+    buffer: Option<Buffer>,
+}
+
+impl EdgeList {
+    /// Bytes of a tile's pixel on the device.
+    pub const BYTES_PER_PIXEL: u64 = PIXEL;
+
+    /// Makes room for the pixels of a tile.
+    pub fn prepare(&mut self, device: &Device, tile: [u32; 2]) -> Result<()> {
+        let pixels = u64::from(tile[0]) * u64::from(tile[1]);
+        let size = HEAD + (pixels + pixels.min(LISTED_TWICE)) * PIXEL;
+        if self.buffer.as_ref().is_none_or(|b| b.size() < size) {
+            self.buffer = None;
+            self.buffer = Some(device.buffer("edges", size, Usage::STORAGE | Usage::COPY_DST)?);
+        }
+        Ok(())
+    }
+
+    /// Empties it.
+    pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(buffer) = &self.buffer {
+            encoder.clear_buffer(buffer, 0, Some(HEAD));
+        }
+    }
+
+    /// As group 3 of the kernels that write and read it.
+    pub fn group(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindGroup> {
+        let buffer = self.buffer.as_ref().ok_or_else(|| Error::internal("a list of edges without a buffer"))?;
+        device.bind(layout, &[buffer.as_entire_binding()])
+    }
+}
+
+/// The kernel over the list.
+pub struct Refining {
+    stage: Stage,
+    groups: u32,
+}
+
+impl Refining {
+    /// `shared`: groups 0 and 1, as those of the kernels that shaded the pixels.
+    pub fn new(
+        device: &Device,
+        kernels: &mut Kernels,
+        (source, variant): (Source, Variant),
+        (look, film): (Look, FilmLook),
+        shared: &[&[wgpu::BindingResource<'_>]],
+        software: bool,
+    ) -> Result<Self> {
+        let stage = kernels.refine(device, Refined { source, variant }, look, film)?.stage(device, shared)?;
+        Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
+    }
+
+    /// After the pixels of a tile have been put; groups 2 and 3 are set. `offsets`: of the `PassUniform`s with `EDGE_SAMPLES` and with
+    /// `CURVE_SAMPLES`: some of the disk's edges turn out to need the critical curve's samples.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2]) {
+        for offset in offsets {
+            self.stage.run(pass, Some(offset), [self.groups, 1]);
+        }
+    }
+}
