@@ -727,7 +727,7 @@ BhrStatus bhr_image_release(BhrImage *image);
 #define BHR_SKY_PROCEDURAL 2u
 
 /**
- * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (a tenth of a second): true to
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s): true to
  * about a degree, eight times as bright next to the stars as it is to the eye.
  */
 #define BHR_SKY_MILKY_WAY 4u

@@ -18,7 +18,7 @@ pub const BHR_SKY_STARS: u32 = 1u32;
 /// ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and 110 MB of device
 /// memory.
 pub const BHR_SKY_PROCEDURAL: u32 = 2u32;
-/// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (a tenth of a second): true to
+/// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s): true to
 /// about a degree, eight times as bright next to the stars as it is to the eye.
 pub const BHR_SKY_MILKY_WAY: u32 = 4u32;
 /// BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one.

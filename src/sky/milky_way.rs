@@ -48,7 +48,7 @@ const EXTINCTION: [f64; 3] = [0.88, 1.0, 1.24];
 const DUST_SEED: u32 = 0x4d57;
 
 impl SkyMap {
-    /// The Milky Way of this process, made at first use (a tenth of a second). Errors: OUT_OF_MEMORY.
+    /// The Milky Way of this process, made at first use (0.1 to 0.3 s). Errors: OUT_OF_MEMORY.
     pub fn milky_way() -> Result<&'static Self> {
         static SHARED: OnceLock<SkyMap> = OnceLock::new();
         match SHARED.get() {
