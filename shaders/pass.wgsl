@@ -14,6 +14,8 @@ struct Pass {
     slot: u32,
     // Samples that refine.wgsl takes of a pixel.
     refined: u32,
+    // Where in the full frame the texture of a frame's light begins (light.wgsl).
+    light_origin: vec2<i32>,
 }
 
 // From this sample to the place looked at, pixels: 0 but where refine.wgsl spreads samples over a pixel.

@@ -1,7 +1,7 @@
 // Ray records of samples of traced pixels: integrated, with the footprints of the pixel's own record where it has them.
 
 fn ray_record(id: vec2<u32>) -> Record {
-    traced_pixel = id + 1u;
+    at_traced_pixel(id);
     var record = integrated_record(id);
     let sky = textureLoad(record_sky, traced_pixel, 0);
     if record.fate == FATE_ESCAPED && sky.w != 0.0 {

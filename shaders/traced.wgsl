@@ -5,7 +5,7 @@ var<private> traced_orders: u32;
 var<private> traced_layer: u32;
 
 fn ray_record(id: vec2<u32>) -> Record {
-    traced_pixel = id + 1u;
+    at_traced_pixel(id);
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
@@ -44,8 +44,9 @@ fn edges_of_pixel(through: f32) -> u32 {
     let here = textureLoad(record_meta, traced_pixel, 0).x;
     let across = vec2<u32>(1u, 0u);
     let down = vec2<u32>(0u, 1u);
-    let kinds = vec4<u32>(edge_between(here, traced_pixel - across), edge_between(here, traced_pixel + across),
-        edge_between(here, traced_pixel - down), edge_between(here, traced_pixel + down));
+    let kinds = vec4<u32>(edge_between(here, traced_pixel - across, traced_joined.x),
+        edge_between(here, traced_pixel + across, traced_joined.y), edge_between(here, traced_pixel - down, true),
+        edge_between(here, traced_pixel + down, true));
     return max(max(max(kinds.x, kinds.y), max(kinds.z, kinds.w)), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
 }
 
@@ -56,13 +57,14 @@ fn is_steep(orders: u32) -> bool {
     }
     let order = firstTrailingBit(orders);
     let here = crossing_of_order(traced_pixel, order).x;
-    let right = crossing_of_order(traced_pixel + vec2<u32>(1u, 0u), order).x;
+    let right = select(0.0, crossing_of_order(traced_pixel + vec2<u32>(1u, 0u), order).x, traced_joined.y);
     let below = crossing_of_order(traced_pixel + vec2<u32>(0u, 1u), order).x;
     return abs(right - here) + abs(below - here) > STEEP_CHANGE * here;
 }
 
-fn edge_between(here: u32, pixel: vec2<u32>) -> u32 {
-    let there = textureLoad(record_meta, pixel, 0).x;
+// For a pixel of another face a captured one stands.
+fn edge_between(here: u32, pixel: vec2<u32>, joined: bool) -> u32 {
+    let there = select(FATE_CAPTURED, textureLoad(record_meta, pixel, 0).x, joined);
     let fates = vec2<u32>(here & 3u, there & 3u);
     let parted = fates.x != fates.y && fates.x != FATE_HIDDEN && fates.y != FATE_HIDDEN;
     return select(select(EDGE_NONE, EDGE_DISK, here != there), EDGE_CURVE, parted);

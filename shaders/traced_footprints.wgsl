@@ -7,6 +7,19 @@
 
 // Of the record at hand: its place in the textures.
 var<private> traced_pixel: vec2<u32>;
+// Whether the neighbours to the left and to the right are of the same face.
+var<private> traced_joined: vec2<bool>;
+
+fn at_traced_pixel(id: vec2<u32>) {
+    traced_pixel = id + 1u;
+    let x = pixel_place(id).x;
+    traced_joined = vec2<bool>(same_face(x, x - 1.0), same_face(x, x + 1.0));
+}
+
+// Whether the neighbours at -+ step may be compared with the pixel.
+fn traced_neighbours(step: vec2<u32>) -> vec2<bool> {
+    return select(traced_joined, vec2<bool>(true), step.x == 0u);
+}
 
 fn sky_footprint(sky: vec3<f32>) -> Footprint {
     let dx = derivative_of_direction(sky, vec2<u32>(1u, 0u));
@@ -22,8 +35,9 @@ fn sky_footprint(sky: vec3<f32>) -> Footprint {
 fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
     let before = textureLoad(record_sky, traced_pixel - step, 0);
     let after = textureLoad(record_sky, traced_pixel + step, 0);
-    let has_before = before.w != 0.0;
-    let has_after = after.w != 0.0;
+    let joined = traced_neighbours(step);
+    let has_before = joined.x && before.w != 0.0;
+    let has_after = joined.y && after.w != 0.0;
     let first = select(here, before.xyz, has_before);
     let last = select(here, after.xyz, has_after);
     let difference = (last - first) * select(1.0, 0.5, has_before && has_after);
@@ -47,8 +61,9 @@ fn crossing_of_order(pixel: vec2<u32>, order: u32) -> vec4<f32> {
 fn derivative_of_place(here: vec4<f32>, order: u32, step: vec2<u32>) -> Place {
     let before = crossing_of_order(traced_pixel - step, order);
     let after = crossing_of_order(traced_pixel + step, order);
-    let has_before = before.x > 0.0;
-    let has_after = after.x > 0.0;
+    let joined = traced_neighbours(step);
+    let has_before = joined.x && before.x > 0.0;
+    let has_after = joined.y && after.x > 0.0;
     if !has_before && !has_after {
         return Place(1e30, 0.0, 0.0);
     }

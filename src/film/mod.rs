@@ -2,6 +2,7 @@
 //! formats get the radiance as it is. Views other than light get false colour, or their value. In f32, so that
 //! `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how light was made.
 
+pub mod bloom;
 mod false_colour;
 mod tone_map;
 
@@ -20,11 +21,11 @@ pub struct FilmParams {
     pub tone_map: u32,
     /// A `PixelFormat`.
     pub format: u32,
-    /// 1: the red channel holds a view's value, not light.
+    /// A `View`; any but light: the red channel holds its value.
     pub false_colour: u32,
-    /// The view's value that becomes the first colour.
+    /// Scaled as `false_colour` says, the view's value that becomes the first colour.
     pub view_low: f32,
-    /// 1 / (last colour's value - first's).
+    /// 1 / (last colour's scaled value - first's).
     pub view_scale: f32,
     /// 1: alpha is kept; 0: it becomes 1.
     pub transparent: u32,
@@ -34,17 +35,31 @@ pub struct FilmParams {
 impl FilmParams {
     /// `film` has passed its check. `transparent`: keep alpha, radiance being premultiplied by it.
     pub fn new(film: &Film, view: View, format: PixelFormat, transparent: bool) -> Self {
-        let (low, high) = false_colour::range(view);
+        let (low, scale) = false_colour::ends(view);
         Self {
             exposure: film.exposure_ev.exp2() as f32,
             tone_map: film.tone_map as u32,
             format: format as i32 as u32,
-            false_colour: u32::from(view != View::Light),
+            false_colour: view as u32,
             view_low: low,
-            view_scale: 1.0 / (high - low),
+            view_scale: scale,
             transparent: u32::from(transparent),
             reserved: 0,
         }
+    }
+
+    /// Of a frame with bloom, whose light is exposed before it spreads: what develops the sum.
+    pub fn of_exposed(self) -> Self {
+        Self { exposure: 1.0, ..self }
+    }
+
+    /// Light as bloom spreads it: exposed, and limited as it will be when it is developed, so that no pixel spreads more than
+    /// the brightest that films tell apart, nor NaN. Alpha within [0, 1].
+    #[inline(always)]
+    pub fn exposed_light(&self, radiance: [f64; 4]) -> [f32; 4] {
+        let [r, g, b, a] = radiance.map(|v| v as f32);
+        let [r, g, b] = [r, g, b].map(|v| limited(v * self.exposure, MAX_SCENE_LIGHT));
+        [r, g, b, limited(a, 1.0)]
     }
 
     fn tone_map_kind(&self) -> ToneMap {
@@ -52,6 +67,17 @@ impl FilmParams {
             1 => ToneMap::Aces,
             2 => ToneMap::Agx,
             _ => ToneMap::None,
+        }
+    }
+
+    fn view(&self) -> View {
+        match self.false_colour {
+            1 => View::Redshift,
+            2 => View::Order,
+            3 => View::Deflection,
+            4 => View::Steps,
+            5 => View::Metric,
+            _ => View::Light,
         }
     }
 
@@ -126,8 +152,8 @@ fn develop_8bit(
 
 /// Codes of a view's value, rounded without dither.
 fn false_colour_codes(params: &FilmParams, value: f32) -> [u32; 4] {
-    let share = (value - params.view_low) * params.view_scale;
-    let [r, g, b] = false_colour::false_colour(share).map(|v| code(v * 255.0 + 0.5));
+    let ends = (params.view_low, params.view_scale);
+    let [r, g, b] = false_colour::false_colour(params.view(), ends, value).map(|v| code(v * 255.0 + 0.5));
     [r, g, b, 255]
 }
 
@@ -251,6 +277,28 @@ mod tests {
         }
     }
 
+    /// A gradient so slow that without dithering its steps would be bands of 64 columns: the mean of any 8 x 8 pixels follows it, and no
+    /// row has a step's code for long.
+    #[test]
+    fn slow_gradients_show_no_bands() {
+        let params = params(ToneMap::None, PixelFormat::Rgba8Srgb);
+        let level = |x: u32| 40.0 + f64::from(x) / 64.0;
+        let code = |x: u32, y: u32| {
+            let light = srgb_decode(level(x) / 255.0) as f32;
+            f64::from(develop(&params, [light; 4], x, y)[0])
+        };
+        let mut longest = 0;
+        for y in 0..64 {
+            let row = (0..1024).map(|x| code(x, y)).collect::<Vec<_>>();
+            longest = row.chunk_by(|a, b| a == b).map(<[f64]>::len).fold(longest, usize::max);
+        }
+        assert!(longest < 24, "{longest} equal pixels in a row");
+        for (x, y) in (0..1016).step_by(4).flat_map(|x| (0..56).step_by(8).map(move |y| (x, y))) {
+            let mean = (0..64).map(|i| code(x + i % 8, y + i / 8) - level(x + i % 8)).sum::<f64>() / 64.0;
+            assert!(mean.abs() < 0.1, "({x}, {y}): {mean} of a step off");
+        }
+    }
+
     #[test]
     fn dither_is_jimenez_noise() {
         for (x, y) in [(0_u32, 0_u32), (1, 0), (0, 1), (17, 5), (1919, 1079)] {
@@ -316,7 +364,7 @@ mod tests {
         let redshift = FilmParams::new(&film, View::Redshift, PixelFormat::Rgba8Srgb, true);
         let at = |value: f32| develop(&redshift, [value, 0.0, 0.0, 0.0], 1, 2);
         assert_eq!(at(f32::NAN).as_slice(), [128, 128, 128, 255]);
-        assert_eq!(at(7.0), at(2.0));
-        assert!(at(0.0)[0] < 80 && at(2.0)[0] > 240, "{:?} {:?}", at(0.0), at(2.0));
+        assert_eq!(at(7.0), at(3.0));
+        assert!(at(0.0)[0] > at(0.0)[2] + 100 && at(3.0)[2] > at(3.0)[0] + 100, "{:?} {:?}", at(0.0), at(3.0));
     }
 }
