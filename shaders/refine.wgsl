@@ -76,7 +76,7 @@ fn sample_index() -> u32 {
     return lane % samples;
 }
 
-// Of this thread's sample in its pixel, 0 .. 1: the middle of its quarter, or sample_offset of src/scene/frame.rs.
+// Of this thread's sample in its pixel, 0 .. 1: the middle of its quarter, or `lattice` of src/scene/frame.rs.
 fn sample_place() -> vec2<f32> {
     if whole_plane {
         return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;

@@ -59,11 +59,16 @@ impl Region {
 ///
 /// The lattice: even steps in x and steps of the golden ratio, modulo 1, in y, spread evenly for any count.
 pub fn sample_offset(index: u32, count: u32) -> [f64; 2] {
+    lattice(index, count).map(|share| 0.5 + spline_quantile(share))
+}
+
+/// The lattice's point, 0 .. 1 each way.
+pub fn lattice(index: u32, count: u32) -> [f64; 2] {
     let (i, n) = (f64::from(index), f64::from(count));
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
     // Point symmetric: the mean lies at the pixel's centre exactly.
     let turn = 0.5 - golden * (n - 1.0) / 2.0;
-    [(i + 0.5) / n, (i * golden + turn).rem_euclid(1.0)].map(|share| 0.5 + spline_quantile(share))
+    [(i + 0.5) / n, (i * golden + turn).rem_euclid(1.0)]
 }
 
 /// Where the integral of the quadratic B-spline from -3/2 on is `share`, 0 .. 1.

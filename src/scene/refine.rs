@@ -9,7 +9,7 @@
 //! - The critical curve ([`Edge::Curve`]), which images of higher orders approach by e^-pi each (Ohanian 1987, Am. J. Phys. 55, 428),
 //!   so that those of order 2 and more share a pixel with it: many rays, which count as they fall where u does not change evenly.
 
-use super::frame::sample_offset;
+use super::frame::lattice;
 
 /// What runs through a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,7 +72,7 @@ pub fn sample_place(index: u32, count: u32) -> [f64; 2] {
     if count == EDGE_SAMPLES {
         return [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side));
     }
-    sample_offset(index, count)
+    lattice(index, count)
 }
 
 /// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or two sides.
