@@ -55,7 +55,7 @@ fn refine_sample(entry: u32, count: u32) {
         rewind_crossings();
     }
     workgroupBarrier();
-    lane_light[lane] = pixel_light(record);
+    lane_light[lane] = shade_record(id, record);
     workgroupBarrier();
     if entry < count && sample_index() == 0u {
         if whole_plane && is_ragged() {

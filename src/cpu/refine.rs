@@ -30,15 +30,18 @@ impl<'a> Refiner<'a> {
             Edge::Disk => self.smooth_light(shader, here, at),
             Edge::Curve => None,
         };
-        let light = |index| shader.pixel_light(&sample(source, here, at, sample_place(index, CURVE_SAMPLES)));
+        let light = |index| {
+            let place = place_about(at, index, CURVE_SAMPLES);
+            shader.shade_record(&sample(source, here, place), place[0], place[1])
+        };
         let counted = || mean((0..CURVE_SAMPLES).map(light));
         Some(smooth.unwrap_or_else(counted))
     }
 
     /// From the cover of few samples' cells. `None`: what they show cannot change evenly from one to the next.
     fn smooth_light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
-        let record = |index| sample(&self.plane, here, at, sample_place(index, EDGE_SAMPLES));
-        let mut records = [0, 1, 2, 3].map(record);
+        let places = [0, 1, 2, 3].map(|index| place_about(at, index, EDGE_SAMPLES));
+        let mut records = places.map(|place| sample(&self.plane, here, place));
         let orders = self.orders(&records);
         if self.are_ragged(&records, &orders) {
             return None;
@@ -53,7 +56,7 @@ impl<'a> Refiner<'a> {
             }
             record.crossings.retain(|crossing| crossing.share > 0.0);
         }
-        Some(mean(records.iter().map(|record| shader.pixel_light(record))))
+        Some(mean(records.iter().zip(places).map(|(record, [x, y])| shader.shade_record(record, x, y))))
     }
 
     /// The samples' crossings by order. `None`: there is no disk.
@@ -81,10 +84,14 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// The record of the sample at `place` in the pixel about `at`. A traced one's footprints are those of the pixel's own record `here`, where
-/// that has any.
-fn sample(source: &Source<'_>, here: &Record, at: [f64; 2], place: [f64; 2]) -> Record {
-    let [x, y] = [0, 1].map(|i| at[i] + place[i] - 0.5);
+/// Of a sample of the pixel about `at`.
+fn place_about(at: [f64; 2], index: u32, count: u32) -> [f64; 2] {
+    let place = sample_place(index, count);
+    [0, 1].map(|i| at[i] + place[i] - 0.5)
+}
+
+/// The record of the sample at a place. A traced one's footprints are those of the pixel's own record `here`, where that has any.
+fn sample(source: &Source<'_>, here: &Record, [x, y]: [f64; 2]) -> Record {
     match source {
         Source::LookedUp(lookup) => {
             let mut record = Record::captured();
