@@ -1,4 +1,5 @@
-// Kernel: shades `pass_.refined` samples of each pixel of a list of edges.wgsl and puts their mean in the pixel's place.
+// Kernel: shades `pass_.refined` samples of each pixel of a list of edges.wgsl and has their mean taken in place of
+// the pixel's light.
 // Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
 // Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 64 where the critical curve runs, as
@@ -26,7 +27,7 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     whole_plane = samples == 4u;
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
-        listed = min(atomicLoad(&edges.counts[list_kind()]), limit);
+        listed = min(atomicLoad(&edges.counts[list_place(list_kind())]), limit);
     }
     let count = workgroupUniformLoad(&listed);
     let pixels = LANES / samples;
@@ -61,7 +62,7 @@ fn refine_sample(entry: u32, count: u32) {
         if whole_plane && is_ragged() {
             note_ragged(id);
         } else {
-            put_pixel(id, mean_light());
+            take_light(id, mean_light());
         }
     }
     workgroupBarrier();
@@ -98,10 +99,10 @@ fn mean_light() -> vec4<f32> {
 // A pixel of EDGE_DISK turns out to need the samples of EDGE_CURVE. (The list has room for all but a million such pixels more than a
 // tile's: those keep what they have.)
 fn note_ragged(id: vec2<u32>) {
-    if atomicLoad(&edges.counts[0]) + atomicLoad(&edges.counts[1]) < arrayLength(&edges.pixels) {
+    if atomicLoad(&edges.counts[list_place(0u)]) + atomicLoad(&edges.counts[list_place(1u)]) < arrayLength(&edges.pixels) {
         note_edges(id, EDGE_CURVE);
     } else {
-        put_pixel(id, mean_light());
+        take_light(id, mean_light());
     }
 }
 

@@ -1,17 +1,11 @@
-// Shades one of several samples of a tile's pixels and adds it to the sum of those before.
+// What becomes of the light of one of a pixel's samples: it is added to the sum of those before.
 
 // Of the tile: the sum of the samples before, and with this one.
 @group(2) @binding(0) var radiance_before: texture_2d<f32>;
 @group(2) @binding(1) var radiance: texture_storage_2d<rgba32float, write>;
 
-fn seen_crossing() -> Crossing {
-    var crossing = next_crossing();
-    crossing.share = 1.0;
-    return crossing;
-}
-
-fn take_record(id: vec2<u32>, record: Record) {
-    var sum = shade_record(id, record) * pass_.weight;
+fn take_light(id: vec2<u32>, light: vec4<f32>) {
+    var sum = light * pass_.weight;
     if deciding(pass_.first) == 0u {
         sum += textureLoad(radiance_before, id, 0);
     }

@@ -35,7 +35,7 @@ pub struct Frame<'a> {
     lens: &'a Lens,
     source: Source<'a>,
     shader: Shader<'a>,
-    /// Of pixels with edges; `None`: each has several samples already, or a value that is not to be averaged.
+    /// Of pixels with edges; `None`: values of views are not to be averaged.
     refiner: Option<Refiner<'a>>,
     pub film: FilmParams,
     request: &'a FrameRequest,
@@ -110,11 +110,10 @@ impl<'a> Frame<'a> {
             None => Source::Traced(recorder),
         };
         let samples = if light { scene.quality.samples_per_pixel } else { 1 };
-        let refines = light && samples == 1;
         Ok(Self {
             lens,
             source: source(Recorder::new(scene, lens)),
-            refiner: refines.then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
+            refiner: light.then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
@@ -133,7 +132,7 @@ impl<'a> Frame<'a> {
     /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
     pub fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
         let region = self.request.region;
-        let offset = sample_offset(sample, self.samples);
+        let offset = sample_offset(sample, self.samples, self.lens.mapping.projection);
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {

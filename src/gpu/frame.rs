@@ -26,7 +26,7 @@ use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::refine::{CURVE_SAMPLES, EDGE_SAMPLES};
-use crate::scene::{Lensing, Region, Scene, View};
+use crate::scene::{Lensing, Projection, Region, Scene, View};
 use arrayvec::ArrayVec;
 use glam::DVec3;
 use std::collections::VecDeque;
@@ -68,8 +68,8 @@ struct FixedBuffers {
     film: Written,
     /// The same for light that is exposed already.
     film_of_exposed: Written,
-    /// One `PassUniform` for what is developed in frames with bloom, one for each sample of a batch, and the last
-    /// once more with `CURVE_SAMPLES`; `uniform_stride` apart.
+    /// One `PassUniform` for what is developed in frames with bloom, two for each sample of a batch, with
+    /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`; `uniform_stride` apart.
     passes: Written,
     step_sum: Buffer,
 }
@@ -112,13 +112,19 @@ struct Taking {
     rest_groups: u32,
 }
 
+/// The kernels that shade a sample: of all pixels, and then more rays of those that were listed for their edges.
+struct Shades {
+    taking: Taking,
+    refining: Option<Refining>,
+}
+
 /// What turns ray records into packed pixels.
 enum Shading {
-    /// Of the only sample; then more of the pixels that were listed (group 3) for their edges.
-    Only { taking: Taking, edges: wgpu::BindGroup, refining: Option<Refining> },
+    /// Of the only sample.
+    Only(Shades),
     Samples {
         /// Of even and of odd samples.
-        shade: [Taking; 2],
+        shade: [Shades; 2],
         /// After an even and after an odd last sample.
         develop: [Stage; 2],
     },
@@ -127,6 +133,8 @@ enum Shading {
 struct Stages {
     records: RecordStages,
     shading: Shading,
+    /// Group 3 of the kernels that shade: the list of pixels with edges.
+    edges: wgpu::BindGroup,
     put: Put,
     /// In frames with bloom: what follows shading, which then puts light.
     glare: Option<GlareStages>,
@@ -179,6 +187,7 @@ pub struct BegunFrame {
     request: FrameRequest,
     target: PixelTarget,
     samples: u32,
+    projection: Projection,
     source: Source,
     steps: Steps,
     bloom: Option<Bloom>,
@@ -310,7 +319,9 @@ impl GpuTracer {
         let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
         let bloom = setup.bloom;
-        Ok(BegunFrame { stages, request: *request, target: kind, samples, source, steps, bloom, submitted: 0 })
+        let projection = setup.looks.look.projection;
+        let request = *request;
+        Ok(BegunFrame { stages, request, target: kind, samples, projection, source, steps, bloom, submitted: 0 })
     }
 
     /// `bytes` that a pixel of a tile takes, and steps of its ray.
@@ -456,7 +467,10 @@ impl GpuTracer {
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed.passes.write(device, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0, [0, 0])))?;
+        fixed.passes.write(
+            device,
+            bytemuck::bytes_of(&pass_of(request, whole, (0, 1), setup.looks.look.projection, 0, [0, 0])),
+        )?;
         let mut encoder = device.encoder("records")?;
         buffers.makers.reset(setup.making.source, &fixed.step_sum, &mut encoder);
         {
@@ -491,14 +505,6 @@ impl Taking {
         if let Some(rest) = &self.rest {
             rest.run(pass, Some(offset), [self.rest_groups, 1]);
         }
-    }
-}
-
-impl Looks {
-    /// Whether pixels with edges are looked at once more; with several samples each pixel has been already, and values of views are no
-    /// light to be averaged.
-    fn refines(&self) -> bool {
-        self.look.light && !self.several_samples
     }
 }
 
@@ -558,7 +564,7 @@ impl FrameBuffers {
                 passes: Written::new(
                     device,
                     "passes",
-                    u64::from(2 + MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                    u64::from(1 + 2 * MAX_BATCH) * uniform_stride::<PassUniform>(device),
                 )?,
                 step_sum: step_sum(device)?,
             });
@@ -579,7 +585,7 @@ impl FrameBuffers {
             });
         }
         self.makers.prepare(device, &setup.making, size.tile)?;
-        self.edges.prepare(device, if setup.looks.refines() { size.tile } else { [1, 1] })?;
+        self.edges.prepare(device, if setup.looks.look.light { size.tile } else { [1, 1] })?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
         fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
@@ -618,7 +624,7 @@ impl FrameBuffers {
         let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let shared = [frame, pass.clone(), light, cells, milky_way, map];
-        let taking = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
+        let shades = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &mut Kernels, source| {
                 let compiled = match looks.several_samples {
                     true => kernels.shade_sample(device, source, looks.look)?,
@@ -627,7 +633,15 @@ impl FrameBuffers {
                 let groups: [&[_]; 3] = [&shared, &records, target];
                 compiled.stage(device, if looks.several_samples { &groups } else { &groups[..2] })
             };
-            Taking::new(kernels, &setup.making, software, take)
+            let making = &setup.making;
+            let refine = |kernels: &mut Kernels| {
+                let film = (!looks.several_samples).then_some(looks.film);
+                let (source, groups) = (making.rest().unwrap_or(making.source), [&shared[..], &records, target]);
+                let groups = if film.is_some() { &groups[..2] } else { &groups };
+                Refining::new(device, kernels, (source, making.variant), (looks.look, film), groups, software)
+            };
+            let refining = if looks.look.light { Some(refine(kernels)?) } else { None };
+            Ok::<_, Error>(Shades { taking: Taking::new(kernels, making, software, take)?, refining })
         };
         let puts = match looks.several_samples {
             true => kernels.develop(device, looks.film, None)?,
@@ -637,19 +651,13 @@ impl FrameBuffers {
             let develop =
                 |from: wgpu::BindingResource<'_>| puts.stage(device, &[slice::from_ref(&pass), slice::from_ref(&from)]);
             Shading::Samples {
-                shade: [taking(kernels, &[odd.clone(), even.clone()])?, taking(kernels, &[even.clone(), odd.clone()])?],
+                shade: [shades(kernels, &[odd.clone(), even.clone()])?, shades(kernels, &[even.clone(), odd.clone()])?],
                 develop: [develop(even)?, develop(odd)?],
             }
         } else {
-            let making = &setup.making;
-            let of = ((making.rest().unwrap_or(making.source), making.variant), (looks.look, looks.film));
-            let groups: [&[_]; 2] = [&shared, &records];
-            let refining = match looks.refines() {
-                true => Some(Refining::new(device, kernels, of.0, of.1, &groups, software)?),
-                false => None,
-            };
-            Shading::Only { taking: taking(kernels, &[])?, edges: self.edges.group(device, puts.edges()?)?, refining }
+            Shading::Only(shades(kernels, &[])?)
         };
+        let edges = self.edges.group(device, &kernels.edge_list(device)?)?;
         let group = |puts: &Compiled, film: &Written, pixels| {
             device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels])
         };
@@ -672,7 +680,17 @@ impl FrameBuffers {
             }
             _ => (put_pixels(&puts, &fixed.film)?, None),
         };
-        Ok(Stages { records: made, shading, put, glare })
+        Ok(Stages { records: made, shading, edges, put, glare })
+    }
+}
+
+impl Shades {
+    /// `offsets`: of the sample's two `PassUniform`s.
+    fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
+        self.taking.dispatch(pass, offsets[0], tile);
+        if let Some(refining) = &self.refining {
+            refining.dispatch(pass, offsets);
+        }
     }
 }
 
@@ -688,19 +706,18 @@ impl Stages {
         put: Option<&wgpu::BindGroup>,
     ) {
         let tile = [step.shades.width, step.shades.height];
-        for (sample, slot) in step.samples.clone().zip(1..) {
+        pass.set_bind_group(3, &self.edges, &[]);
+        for (sample, slot) in step.samples.clone().zip((1..).step_by(2)) {
             let offset = slot * stride;
             self.records.encode(pass, begins && slot == 1, offset, tile);
             match &self.shading {
-                Shading::Only { taking, edges, refining } => {
+                Shading::Only(shades) => {
                     pass.set_bind_group(2, put, &[]);
-                    pass.set_bind_group(3, edges, &[]);
-                    taking.dispatch(pass, offset, tile);
-                    if let Some(refining) = refining {
-                        refining.dispatch(pass, [offset, offset + stride]);
-                    }
+                    shades.dispatch(pass, [offset, offset + stride], tile);
                 }
-                Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(pass, offset, tile),
+                Shading::Samples { shade, .. } => {
+                    shade[sample as usize % 2].dispatch(pass, [offset, offset + stride], tile);
+                }
             }
         }
         if let (Shading::Samples { develop, .. }, true) = (&self.shading, step.samples.end == samples) {
@@ -761,15 +778,14 @@ impl FrameBuffers {
         let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
         // The first is what is developed, which with bloom may be another tile than the shaded one.
         let developed = (step.develops.unwrap_or(step.shades), 0, 0);
-        let mut passes: Vec<PassUniform> = [developed]
-            .into_iter()
-            .chain(shaded)
-            .map(|(tile, sample, i)| pass_of(&frame.request, tile, sample, frame.samples, i, step.light_origin))
-            .collect();
-        passes.extend(passes.last().map(|last| PassUniform { refined: CURVE_SAMPLES, ..*last }));
-        let mut places = vec![0; passes.len() * stride as usize];
-        for (slot, pass) in places.chunks_exact_mut(stride as usize).zip(&passes) {
-            slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(pass));
+        let of = |(tile, sample, i)| {
+            pass_of(&frame.request, tile, (sample, frame.samples), frame.projection, i, step.light_origin)
+        };
+        let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
+        let passes = [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice));
+        let mut places = vec![0; (1 + 2 * step.samples.len()) * stride as usize];
+        for (slot, pass) in places.chunks_exact_mut(stride as usize).zip(passes) {
+            slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
         let size_of_tile = [step.shades.width, step.shades.height];
         check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
@@ -881,17 +897,17 @@ fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
     found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
 }
 
-/// `slot`: of the sample in its submission.
+/// Of the sample of so many, the `slot`th of its submission.
 fn pass_of(
     request: &FrameRequest,
     tile: Tile,
-    sample: u32,
-    samples: u32,
+    (sample, samples): (u32, u32),
+    projection: Projection,
     slot: u32,
     light_origin: [u32; 2],
 ) -> PassUniform {
     let region = request.region;
-    let [dx, dy] = sample_offset(sample, samples);
+    let [dx, dy] = sample_offset(sample, samples, projection);
     PassUniform {
         origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
         size: [tile.width + 2, tile.height + 2],

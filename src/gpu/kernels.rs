@@ -162,7 +162,7 @@ enum Name {
     Count,
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
-    Refine(Refined, Look, FilmLook),
+    Refine(Refined, Look, Option<FilmLook>),
     /// Of a sum of samples; or of light that has spread over a grid of cells of so many pixels' side.
     Develop(FilmLook, Option<u32>),
     /// Finer cells, or pixels, along a cell's side; whether they are cells.
@@ -231,6 +231,9 @@ const TRACED_FOOTPRINTS: &str = include_str!("../../shaders/traced_footprints.wg
 const INTEGRATED: &str = include_str!("../../shaders/samples_integrated.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 const EDGES: &str = include_str!("../../shaders/edges.wgsl");
+const SHADE_RECORD: &str = include_str!("../../shaders/shade_record.wgsl");
+const SHADE_ONLY: &str = include_str!("../../shaders/shade_only.wgsl");
+const SHADE_SAMPLE: &str = include_str!("../../shaders/shade_sample.wgsl");
 
 fn join(parts: &[&[&str]]) -> String {
     parts.concat().join("\n")
@@ -358,19 +361,23 @@ fn shade_source(parts: &[&str], rest: &[&str]) -> String {
 
 fn shade_sample_source(source: Source) -> String {
     let (_, driver) = source.driver(None);
-    shade_source(&source.parts(), &[driver, include_str!("../../shaders/shade_sample.wgsl")])
+    shade_source(&source.parts(), &[driver, EDGES, SHADE_RECORD, SHADE_SAMPLE])
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
     let [develop, colour, put] = film.parts();
     let (_, driver) = source.driver(Some(film.target));
-    let rest = [driver, develop, colour, put, EDGES, include_str!("../../shaders/shade_only.wgsl")];
+    let rest = [driver, develop, colour, put, EDGES, SHADE_RECORD, SHADE_ONLY];
     shade_source(&source.parts(), &rest)
 }
 
-fn refine_source(source: Source, film: FilmLook) -> String {
-    let [develop, colour, put] = film.parts();
-    let rest = [develop, colour, put, EDGES, include_str!("../../shaders/refine.wgsl")];
+/// `film`: of pixels with one sample.
+fn refine_source(source: Source, film: Option<FilmLook>) -> String {
+    let mut rest = vec![EDGES, include_str!("../../shaders/refine.wgsl")];
+    match film {
+        Some(film) => rest.extend(film.parts().into_iter().chain([SHADE_ONLY])),
+        None => rest.push(SHADE_SAMPLE),
+    }
     shade_source(&source.sample_parts(), &rest)
 }
 
@@ -446,13 +453,14 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("bloom, gather pixels", gather_base_source()),
         ("bloom, give back", give_back_source()),
         ("shade only for bloom", shade_only_source(kerr(false), FilmLook::of_light())),
-        ("refine, traced", refine_source(Source::Traced, film(PixelTarget::Packed))),
+        ("refine, traced", refine_source(Source::Traced, Some(film(PixelTarget::Packed)))),
         (
             "refine, spin-0 lens",
-            refine_source(Source::Schwarzschild { delay: true, moving: true }, film(PixelTarget::Packed)),
+            refine_source(Source::Schwarzschild { delay: true, moving: true }, Some(film(PixelTarget::Packed))),
         ),
-        ("refine, Kerr lens", refine_source(kerr(true), film(PixelTarget::Packed))),
-        ("refine for a window", refine_source(kerr(true), film(PixelTarget::Screen))),
+        ("refine, Kerr lens", refine_source(kerr(true), Some(film(PixelTarget::Packed)))),
+        ("refine for a window", refine_source(kerr(true), Some(film(PixelTarget::Screen)))),
+        ("refine one of several samples", refine_source(kerr(true), None)),
         ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
         ("shade only by rows", shade_only_source(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
@@ -583,6 +591,11 @@ fn shade_slots() -> Vec<Slot> {
     vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
+/// Group 2 of shade_sample.wgsl.
+fn sum_slots() -> Vec<Slot> {
+    vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]
+}
+
 /// Group 3 of edges.wgsl.
 fn edge_slots() -> Vec<Slot> {
     vec![Slot::Write]
@@ -605,9 +618,9 @@ impl Kernels {
         self.get(device, Name::Rays(variant), &[slots], "trace_rays", rays_source)
     }
 
+    /// Group 3, the list of pixels with edges, is for the caller to set.
     pub fn shade_sample(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
-        let target = vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)];
-        let groups = [shade_slots(), source.slots(), target];
+        let groups = [shade_slots(), source.slots(), sum_slots(), edge_slots()];
         let (entry_point, _) = source.driver(None);
         self.get(device, Name::ShadeSample(source, look), &groups, entry_point, || shade_sample_source(source))
     }
@@ -621,12 +634,19 @@ impl Kernels {
         self.get(device, Name::ShadeOnly(source, look, film), &groups, entry_point, wgsl)
     }
 
-    /// Groups 2 and 3 as `shade_only`.
-    pub fn refine(&mut self, device: &Device, refined: Refined, look: Look, film: FilmLook) -> Result<Compiled> {
-        let film = film.scattered();
+    /// Groups 2 and 3 as `shade_only`, or, without `film`, `shade_sample`.
+    pub fn refine(
+        &mut self,
+        device: &Device,
+        refined: Refined,
+        look: Look,
+        film: Option<FilmLook>,
+    ) -> Result<Compiled> {
+        let film = film.map(FilmLook::scattered);
         // The disk may cover but a part of a sample's cell.
         let look = Look { opaque: false, ..look };
-        let groups = [shade_slots(), refined.source.slots(), film.slots(), edge_slots()];
+        let target = film.map_or_else(sum_slots, FilmLook::slots);
+        let groups = [shade_slots(), refined.source.slots(), target, edge_slots()];
         let wgsl = || refine_source(refined.source, film);
         self.get(device, Name::Refine(refined, look, film), &groups, "refine", wgsl)
     }
@@ -723,6 +743,11 @@ impl Kernels {
         Ok(compiled)
     }
 
+    /// The layout of group 3 of kernels that shade.
+    pub fn edge_list(&mut self, device: &Device) -> Result<wgpu::BindGroupLayout> {
+        self.layout(device, &edge_slots())
+    }
+
     fn layout(&mut self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
         if let Some(layout) = self.layouts.get(slots) {
             return Ok(layout.clone());
@@ -804,7 +829,8 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
                 Source::Traced => trace_constants(refined.variant),
                 _ => refined.source.constants(),
             };
-            [traced, look_constants(look), film_constants(film), vec![("WHOLE_PLANE", 1.0)]].concat()
+            let film = film.map_or_else(Vec::new, film_constants);
+            [traced, look_constants(look), film, vec![("WHOLE_PLANE", 1.0)]].concat()
         }
         Name::Develop(film, None) => film_constants(film),
         Name::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
@@ -826,11 +852,6 @@ impl Compiled {
     /// The layout of group 2.
     pub fn target(&self) -> Result<&wgpu::BindGroupLayout> {
         self.layouts.get(2).ok_or_else(|| Error::internal("a kernel without a target"))
-    }
-
-    /// The layout of group 3.
-    pub fn edges(&self) -> Result<&wgpu::BindGroupLayout> {
-        self.layouts.get(3).ok_or_else(|| Error::internal("a kernel without a list of edges"))
     }
 
     /// The pipeline with `groups`, the first of its groups: of each the resources in the order of its slots.

@@ -2,12 +2,13 @@
 //! refine.wgsl). Knows kernels and their groups, no records and no light.
 
 use super::kernels::{FilmLook, Kernels, Look, Refined, Source, Stage, Variant};
+use super::tiles::MAX_BATCH;
 use super::{Buffer, Device};
 use crate::error::{Error, Result};
 use wgpu::BufferUsages as Usage;
 
-/// `Edges` of edges.wgsl: bytes before the pixels, and of a pixel.
-const HEAD: u64 = 8;
+/// `Edges` of edges.wgsl: bytes before the pixels, two counts for each sample of a submission, and of a pixel.
+const HEAD: u64 = 8 * MAX_BATCH as u64;
 const PIXEL: u64 = 4;
 /// Room for pixels that are listed twice: at first as an edge of the disk and then as the critical curve's.
 const LISTED_TWICE: u64 = 1 << 20;
@@ -58,12 +59,12 @@ pub struct Refining {
 }
 
 impl Refining {
-    /// `shared`: groups 0 and 1, as those of the kernels that shaded the pixels.
+    /// `shared`: groups 0 and 1, and without `film` 2, as those of the kernels that shaded the pixels.
     pub fn new(
         device: &Device,
         kernels: &mut Kernels,
         (source, variant): (Source, Variant),
-        (look, film): (Look, FilmLook),
+        (look, film): (Look, Option<FilmLook>),
         shared: &[&[wgpu::BindingResource<'_>]],
         software: bool,
     ) -> Result<Self> {
@@ -71,7 +72,7 @@ impl Refining {
         Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
     }
 
-    /// After the pixels of a tile have been put; groups 2 and 3 are set. `offsets`: of the `PassUniform`s with `EDGE_SAMPLES` and with
+    /// After the pixels of a tile have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of the `PassUniform`s with `EDGE_SAMPLES` and with
     /// `CURVE_SAMPLES`: some of the disk's edges turn out to need the critical curve's samples.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2]) {
         for offset in offsets {

@@ -1,5 +1,6 @@
 //! The part of a frame that an image holds.
 
+use super::Projection;
 use crate::error::{Error, Result};
 
 /// The image is this part of a larger frame of `full_width` x `full_height` pixels: its top-left pixel is (x, y).
@@ -55,9 +56,11 @@ impl Region {
 ///
 /// The filter is the quadratic B-spline, 3 pixels wide, sigma 1/2. A box, which a pixel is, lets through 30 % of what repeats every 4/3
 /// pixels, which then shows as a pattern 4 pixels long; the spline 3 %, and 26 % of the finest detail that pixels can show (box: 64 %). Filters
-/// that keep more of it have negative lobes, which make dark rings around stars and the photon ring.
-pub fn sample_offset(index: u32, count: u32) -> [f64; 2] {
-    lattice(index, count).map(|share| 0.5 + spline_quantile(share))
+/// that keep more of it have negative lobes, which make dark rings around stars and the photon ring. Of
+/// CUBE it is the box: across a border of its faces lies another part of the sky.
+pub fn sample_offset(index: u32, count: u32, projection: Projection) -> [f64; 2] {
+    let place = lattice(index, count);
+    if projection == Projection::Cube { place } else { place.map(|share| 0.5 + spline_quantile(share)) }
 }
 
 /// `count` places in a unit square, spread evenly for any count: even steps in x and steps of the golden ratio, modulo 1, in y.
@@ -86,12 +89,12 @@ mod tests {
     use super::*;
 
     fn offsets(count: u32) -> Vec<[f64; 2]> {
-        (0..count).map(|i| sample_offset(i, count)).collect()
+        (0..count).map(|i| sample_offset(i, count, Projection::Perspective)).collect()
     }
 
     #[test]
     fn one_sample_lies_at_the_centre() {
-        assert_eq!(sample_offset(0, 1), [0.5, 0.5]);
+        assert_eq!(sample_offset(0, 1, Projection::Perspective), [0.5, 0.5]);
     }
 
     #[test]
