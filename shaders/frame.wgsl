@@ -34,6 +34,7 @@ struct Frame {
     capture_u: f32,
     max_steps: u32,
     max_crossings: u32,
+    // The local frame: 0 static, 1 rain, RAIN_CLOCK rain and of that clock.
     rain: u32,
     // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
     effects: u32,
@@ -41,6 +42,8 @@ struct Frame {
     // Seed of the turbulence, and its generation at the reference time.
     pattern: vec2<u32>,
 }
+
+const RAIN_CLOCK: u32 = 2u;
 
 const VIEW_REDSHIFT: u32 = 1u;
 const VIEW_ORDER: u32 = 2u;
