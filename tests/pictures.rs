@@ -140,6 +140,8 @@ fn turbulence_shows_its_seed_and_its_time() {
         ("delay", |r| r.scene.effects.0 ^= Effects::LIGHT_DELAY),
     ];
     for (name, set) in scenes().into_iter().filter(|(name, _)| name.starts_with("turbulent")) {
+        // From there the disk is a narrow band.
+        let least = if name.contains("horizon") { 100 } else { 1000 };
         for (tracer, mut renderer) in both() {
             for (what, change) in changes {
                 renderer.scene = Default::default();
@@ -150,7 +152,7 @@ fn turbulence_shows_its_seed_and_its_time() {
                 let pixels = before.chunks_exact(4).zip(after.chunks_exact(4));
                 let differ = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 8)).count();
                 println!("{name} on {tracer}: another {what} changes {differ} pixels");
-                assert!(differ > 1000, "{name} on {tracer}: another {what} changes {differ} pixels");
+                assert!(differ > least, "{name} on {tracer}: another {what} changes {differ} pixels");
             }
         }
     }
