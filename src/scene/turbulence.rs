@@ -164,8 +164,7 @@ fn fade(t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Disk};
-    use glam::DVec3;
+    use crate::scene::Disk;
 
     const STILL: [Place; 2] = [Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];
 
