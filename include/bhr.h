@@ -473,7 +473,7 @@ typedef struct BhrCamera {
     double forward[3];
     /** Any non-zero length, not parallel to forward. Default +z. */
     double up[3];
-    /** Full vertical angle, radians: (0, pi) for PERSPECTIVE, (0, 2 pi] for FISHEYE. Default pi / 3. */
+    /** Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi / 3. */
     double fov_y;
     /** BHR_MOTION_*. Default STATIC. */
     BhrMotion motion;
@@ -489,15 +489,25 @@ typedef struct BhrCamera {
 /** A flat picture; fov_y in (0, pi). */
 #define BHR_PROJECTION_PERSPECTIVE 0
 
-/** Equidistant dome master in the inscribed circle; fov_y is the full angle, to 2 pi. UNSUPPORTED in this version. */
+/**
+ * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y / 2
+ * (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in a
+ * TRANSPARENT image, NaN in views, rays without direction.
+ */
 #define BHR_PROJECTION_FISHEYE 1
 
-/** 360 x 180 degrees, forward in the middle, up at the top; fov_y is ignored. UNSUPPORTED in this version. */
+/**
+ * 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is ignored.
+ * A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels are far
+ * narrower than high, the light of single stars is not exact.
+ */
 #define BHR_PROJECTION_EQUIRECT 2
 
 /**
- * 6 faces side by side, width = 6 height: right left up down front back; image up is up, on the up face backward,
- * on the down face forward. UNSUPPORTED in this version.
+ * 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
+ * forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
+ * ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
+ * Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
  */
 #define BHR_PROJECTION_CUBE 3
 
@@ -544,8 +554,7 @@ BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, d
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
- * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant; UNSUPPORTED for projections other than
- * PERSPECTIVE.
+ * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
  */
 BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 
@@ -618,7 +627,10 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 
 /* ---- images in the host's memory ---- */
 
-/** BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. */
+/**
+ * BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom adds light
+ * and leaves alpha: glare over the host's own picture.
+ */
 #define BHR_IMAGE_TRANSPARENT 1u
 
 /** A pixel's bytes in memory order; row 0 is at the top. */
@@ -707,19 +719,29 @@ BhrStatus bhr_image_release(BhrImage *image);
 /** BhrSky.flags: the real sky, from the embedded star catalogue. */
 #define BHR_SKY_STARS 1u
 
-/** BhrSky.flags: a random star field. UNSUPPORTED in this version. */
+/**
+ * BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards the
+ * Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS the real
+ * ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and 110 MB of device
+ * memory.
+ */
 #define BHR_SKY_PROCEDURAL 2u
 
 /**
- * BhrSky.flags: the embedded glow of the Milky Way. Accepted, being part of the default, but not drawn by this
- * version.
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (a tenth of a second): true to
+ * about a degree, eight times as bright next to the stars as it is to the eye.
  */
 #define BHR_SKY_MILKY_WAY 4u
 
-/** BhrSky.flags: the map that bhr_set_sky_map was given. UNSUPPORTED in this version. */
+/** BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one. */
 #define BHR_SKY_MAP 8u
 
-/** BhrSky.flags: a coordinate grid, which shows the lensing. UNSUPPORTED in this version. */
+/**
+ * BhrSky.flags: a grid in sky axes, which shows the lensing: right ascension every hour (15 degrees; every 6 hours
+ * within 15 degrees of the poles), declination every 15 degrees, the equator and right ascension 0 in another
+ * colour. Lines are 1.3 pixels wide and laid over the sky, whatever its brightness and the shift of its light; where
+ * less than 10 pixels apart they fade into an even tint.
+ */
 #define BHR_SKY_GRID 16u
 
 /** What lies at infinity. */
@@ -730,14 +752,14 @@ typedef struct BhrSky {
     uint32_t flags;
     /** 0 .. 1e6. Default 1. */
     double stars_brightness;
-    /** Of the Milky Way and the map, 0 .. 1e6. Default 1. */
+    /** Of the Milky Way and the map: a factor on their light, 0 .. 1e6. Default 1. */
     double map_brightness;
     /**
      * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
      * to scene axes. Default (0, 0, 0, 1).
      */
     double orientation[4];
-    /** Of BHR_SKY_PROCEDURAL. Default 0. */
+    /** Of BHR_SKY_PROCEDURAL: any number. Default 0. */
     uint64_t seed;
 } BhrSky;
 
@@ -757,8 +779,18 @@ BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
 BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
 
 /**
- * Gives BHR_SKY_MAP its picture, copied before return; NULL removes it. Errors: INVALID_ARGUMENT for a bad image;
- * UNSUPPORTED for every other image in this version.
+ * Gives BHR_SKY_MAP its picture, copied before return (a second or two for 16384 x 8192); NULL removes it. The next
+ * frames that are asked for show it. It covers the whole sky whatever its aspect: at x of width and y of height, from
+ * the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). So the north
+ * pole is at the top, right ascension 0 (+x of the sky axes) in the middle, and +y at a quarter of the width: the
+ * picture looks as the sky does from inside, as astronomers' maps do.
+ *
+ * Light at rest is what the picture holds, linear Rec. 709, 8-bit formats decoded, to within 0.2 % of the brightest
+ * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
+ * that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
+ * Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
+ * Pictures of more than 16384 x 8192 are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
+ * a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
  */
 BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
@@ -769,7 +801,8 @@ typedef int32_t BhrToneMap;
 
 /**
  * Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
- * tone map.
+ * tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone map, the
+ * sRGB curve, dithering.
  */
 typedef struct BhrFilm {
     /** sizeof(BhrFilm). */
@@ -778,7 +811,17 @@ typedef struct BhrFilm {
     BhrToneMap tone_map;
     /** Stops, -20 .. 20. Default 0. */
     double exposure_ev;
-    /** 0 off (default) .. 1. UNSUPPORTED above 0 in this version. */
+    /**
+     * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
+     * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of integral 1,
+     * falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about H / 4: the eye's
+     * 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from 2 H away, with r0 = H / 180,
+     * r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
+     * reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
+     * and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
+     * they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
+     * borders interrupt it. Frames above 25 megapixels (12 on the CPU) are traced twice, as their light is not kept.
+     */
     double bloom;
 } BhrFilm;
 
@@ -797,10 +840,7 @@ typedef struct BhrFilm {
  */
 BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
 
-/**
- * Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map; UNSUPPORTED
- * for bloom.
- */
+/** Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map. */
 BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
 
 /** The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
@@ -858,7 +898,10 @@ typedef struct BhrQuality {
     uint32_t struct_size;
     /** BHR_METHOD_*. Default AUTO. */
     BhrMethod method;
-    /** 1 (default) .. 256. */
+    /**
+     * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
+     * centre. Views other than BHR_VIEW_LIGHT take one.
+     */
     uint32_t samples_per_pixel;
     /** Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
     uint32_t max_steps;
@@ -975,11 +1018,13 @@ typedef struct BhrRegion {
 } BhrRegion;
 
 /**
- * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. An image
+ * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes from
+ * the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image
  * that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
  * INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
+BhrStatus bhr_set_region(BhrContext *context,
+                         const BhrRegion *region);
 
 /* ---- rendering into memory ---- */
 
@@ -999,11 +1044,13 @@ BhrStatus bhr_set_progress(BhrContext *context,
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
  * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by
- * the progress callback; DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target
- * alone; after that the message says so, and what is not yet rendered is untouched.
+ * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for bloom
+ * with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST,
+ * OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the message says so, and
+ * what is not yet rendered is untouched.
  */
-BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
+BhrStatus bhr_render_image(BhrContext *context,
+                           const BhrImage *target);
 
 /* ---- rendering in the background ---- */
 
@@ -1104,7 +1151,8 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
 
 /**
  * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
- * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
+ * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
+ * the window is not 6 times as wide as high. Returns when the
  * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
  * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
  * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
@@ -1194,16 +1242,18 @@ typedef struct BhrHit {
 
 /**
  * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
- * the pixel centres; out_rays has room for width * height. A zero direction where a projection has none. Errors:
+ * the pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
+ * circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors:
  * INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon. out_rays is
- * left alone by INVALID_ARGUMENT and cleared by other errors.
+ * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
+ * UNSUPPORTED inside a spinning hole's horizon. out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
  */
 BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
 
 /**
  * One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
- * image). Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+ * image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
+ * bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
  */
 BhrStatus bhr_camera_ray(const BhrContext *context,
                          uint32_t width,

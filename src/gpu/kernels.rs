@@ -4,6 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
+use crate::scene::Projection;
 use crate::sky;
 use std::collections::HashMap;
 
@@ -16,6 +17,8 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
+    /// Of pixels; given rays have none.
+    pub projection: Projection,
 }
 
 /// Everything that decides how shading is compiled.
@@ -24,6 +27,9 @@ pub struct Look {
     /// Light, not another view.
     pub light: bool,
     pub stars: bool,
+    pub milky_way: bool,
+    pub map: bool,
+    pub grid: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
     pub disk: bool,
@@ -31,6 +37,7 @@ pub struct Look {
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
+    pub projection: Projection,
 }
 
 /// Everything that decides how development is compiled.
@@ -52,11 +59,18 @@ pub enum PixelTarget {
     Packed,
     /// Into a buffer in the host's memory, packed, row by row.
     Rows,
+    /// Not pixels yet: exposed light, for bloom to spread.
+    Light,
 }
 
 impl FilmLook {
     pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
         Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
+    }
+
+    /// Of light that bloom is to spread.
+    pub fn of_light() -> Self {
+        Self { format: 1, tone_map: 0, false_colour: 0, target: PixelTarget::Light }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
@@ -73,6 +87,9 @@ impl FilmLook {
             PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
             PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
             PixelTarget::Rows => include_str!("../../shaders/packed_rows.wgsl"),
+            PixelTarget::Light => {
+                concat!(include_str!("../../shaders/f16.wgsl"), "\n", include_str!("../../shaders/light.wgsl"))
+            }
         };
         [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/false_colour.wgsl"), target]
     }
@@ -82,6 +99,7 @@ impl FilmLook {
         let pixels = match self.target {
             PixelTarget::Screen => Slot::TextureWrite(SCREEN),
             PixelTarget::Packed | PixelTarget::Rows => Slot::Write,
+            PixelTarget::Light => Slot::TextureWrite(LIGHT),
         };
         vec![Slot::Uniform, pixels]
     }
@@ -89,7 +107,7 @@ impl FilmLook {
     /// Threads of a workgroup of the kernels that put pixels.
     fn group(self) -> [u32; 2] {
         match self.target {
-            PixelTarget::Screen | PixelTarget::Packed => GROUP,
+            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => GROUP,
             PixelTarget::Rows => ROWS_GROUP,
         }
     }
@@ -127,12 +145,24 @@ enum Name {
     Count,
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
-    Develop(FilmLook),
-    Export(Source, bool),
+    /// Of a sum of samples; or of light that has spread over a grid of cells of so many pixels' side.
+    Develop(FilmLook, Option<u32>),
+    /// Finer cells, or pixels, along a cell's side; whether they are cells.
+    Gather(u32, bool),
+    GatherBase,
+    GiveBack,
+    Export(Source, bool, Projection),
     SchwarzschildEnds,
-    SchwarzschildColumns { delay: bool },
-    KerrNodes { delay: bool, pattern: bool },
-    KerrFlags { pattern: bool },
+    SchwarzschildColumns {
+        delay: bool,
+    },
+    KerrNodes {
+        delay: bool,
+        pattern: bool,
+    },
+    KerrFlags {
+        pattern: bool,
+    },
 }
 
 /// The pipelines of one device.
@@ -177,6 +207,7 @@ const INTEGRATION: [&str; 3] =
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
+const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 
@@ -189,7 +220,7 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let pixels = [PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")];
+    let pixels = [PASS, TRACED_LAYOUT, FRAME, PROJECTION, CAMERA, include_str!("../../shaders/pixels.wgsl")];
     join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &pixels])
 }
 
@@ -277,13 +308,15 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
+        include_str!("../../shaders/sky_map.wgsl"),
+        include_str!("../../shaders/sky_grid.wgsl"),
         include_str!("../../shaders/disk.wgsl"),
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
     ];
-    let constants = sky::StarIndex::shared().wgsl_constants();
+    let constants = sky::StarIndex::wgsl_constants();
     let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
@@ -297,16 +330,39 @@ fn shade_only_source(source: Source, film: FilmLook) -> String {
 
 fn export_source(source: Source) -> String {
     let (_, driver) = source.driver(None);
-    let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
+    let parts = [MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver, include_str!("../../shaders/export.wgsl")];
     join(&[&parts, &source.parts()])
 }
 
-fn develop_source(film: FilmLook) -> String {
+fn develop_source(film: FilmLook, glare: bool) -> String {
     let driver = match film.target {
-        PixelTarget::Screen | PixelTarget::Packed => include_str!("../../shaders/develop.wgsl"),
+        PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => include_str!("../../shaders/develop.wgsl"),
         PixelTarget::Rows => include_str!("../../shaders/develop_rows.wgsl"),
     };
-    join(&[&[PASS], &film.parts(), &[driver]])
+    let light: &[&str] = match glare {
+        true => &[BLOOM, include_str!("../../shaders/glare.wgsl")],
+        false => &[include_str!("../../shaders/summed.wgsl")],
+    };
+    join(&[&[PASS], light, &film.parts(), &[driver]])
+}
+
+const BLOOM: &str = include_str!("../../shaders/bloom.wgsl");
+
+/// A kernel of bloom.
+fn bloom_source(kernel: &str) -> String {
+    join(&[&[BLOOM, include_str!("../../shaders/f16.wgsl"), kernel]])
+}
+
+fn gather_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_gather.wgsl"))
+}
+
+fn gather_base_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_base.wgsl"))
+}
+
+fn give_back_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_return.wgsl"))
 }
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
@@ -333,9 +389,17 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("pixels", pixels_source()),
         ("count", count_source()),
         ("present", super::present::present_source()),
-        ("develop", develop_source(film(PixelTarget::Packed))),
-        ("develop for a window", develop_source(film(PixelTarget::Screen))),
-        ("develop by rows", develop_source(film(PixelTarget::Rows))),
+        ("develop", develop_source(film(PixelTarget::Packed), false)),
+        ("develop for a window", develop_source(film(PixelTarget::Screen), false)),
+        ("develop by rows", develop_source(film(PixelTarget::Rows), false)),
+        ("develop for bloom", develop_source(FilmLook::of_light(), false)),
+        ("develop with glare", develop_source(film(PixelTarget::Packed), true)),
+        ("develop with glare for a window", develop_source(film(PixelTarget::Screen), true)),
+        ("develop with glare by rows", develop_source(film(PixelTarget::Rows), true)),
+        ("bloom, gather", gather_source()),
+        ("bloom, gather pixels", gather_base_source()),
+        ("bloom, give back", give_back_source()),
+        ("shade only for bloom", shade_only_source(kerr(false), FilmLook::of_light())),
         ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
         ("shade only by rows", shade_only_source(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
@@ -355,6 +419,9 @@ enum Slot {
     Read,
     Write,
     Texture(TextureKind),
+    /// A texture that a sampler filters.
+    Filtered(TextureKind),
+    Sampler,
     TextureWrite(TextureKind),
 }
 
@@ -376,6 +443,10 @@ pub const TRACED: [TextureKind; 3] = [
 pub const RADIANCE: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
 
+/// Light that bloom spreads, of frames and of grids: exposed_light, finer, coarser and glare of the shaders.
+pub const LIGHT: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba16Float, dimension: wgpu::TextureViewDimension::D2 };
+
 /// What a window is filled from: 8-bit codes, whatever curve they follow.
 pub const SCREEN: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
@@ -391,11 +462,17 @@ pub const LENS_FLAGS: TextureKind =
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
-/// `light_tables` and `star_cells` of shade.wgsl.
-const TABLES: [TextureKind; 2] = [
+/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade.wgsl.
+const TABLES: [TextureKind; 4] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    SKY_MAP,
+    SKY_MAP,
 ];
+
+/// Pyramids of sky_map.wgsl.
+pub const SKY_MAP: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
 
 impl Slot {
     fn binding_type(self) -> wgpu::BindingType {
@@ -414,6 +491,12 @@ impl Slot {
                 view_dimension: of.dimension,
                 multisampled: false,
             },
+            Self::Filtered(of) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: of.dimension,
+                multisampled: false,
+            },
+            Self::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
             Self::TextureWrite(of) => wgpu::BindingType::StorageTexture {
                 access: wgpu::StorageTextureAccess::WriteOnly,
                 format: of.format,
@@ -443,8 +526,8 @@ impl Source {
 
 /// Group 0 of shade.wgsl.
 fn shade_slots() -> Vec<Slot> {
-    let [light, cells] = TABLES.map(Slot::Texture);
-    vec![Slot::Uniform, Slot::UniformPart, light, cells]
+    let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
 impl Kernels {
@@ -480,16 +563,39 @@ impl Kernels {
         self.get(device, Name::ShadeOnly(source, look, film), &groups, entry_point, wgsl)
     }
 
-    /// Group 2, which puts the pixels, is for the caller to set.
-    pub fn develop(&mut self, device: &Device, film: FilmLook) -> Result<Compiled> {
-        let groups = [vec![Slot::UniformPart], vec![Slot::Texture(RADIANCE)], film.slots()];
-        self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
+    /// `glare`: with bloom, pixels along a cell's side. Group 2, which puts the pixels, is for the caller to set.
+    pub fn develop(&mut self, device: &Device, film: FilmLook, glare: Option<u32>) -> Result<Compiled> {
+        let light = match glare {
+            Some(_) => vec![Slot::Texture(LIGHT), Slot::Filtered(LIGHT), Slot::Sampler, Slot::Uniform],
+            None => vec![Slot::Texture(RADIANCE)],
+        };
+        let groups = [vec![Slot::UniformPart], light, film.slots()];
+        self.get(device, Name::Develop(film, glare), &groups, "develop_tile", || develop_source(film, glare.is_some()))
     }
 
-    pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
+    /// For cells of `step` x `step` pixels, or of finer cells.
+    pub fn gather(&mut self, device: &Device, step: u32, grid: bool) -> Result<Compiled> {
+        let slots = vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::Gather(step, grid), &[slots], "gather", gather_source)
+    }
+
+    /// For cells of 2 x 2 pixels.
+    pub fn gather_base(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::GatherBase, &[slots], "gather", gather_base_source)
+    }
+
+    pub fn give_back(&mut self, device: &Device) -> Result<Compiled> {
+        let [finer, coarser] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
+        let slots = vec![Slot::UniformPart, finer, coarser, Slot::Sampler, Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::GiveBack, &[slots], "give_back", give_back_source)
+    }
+
+    pub fn export(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
         let (entry_point, _) = source.driver(None);
-        self.get(device, Name::Export(source, footprints), &groups, entry_point, || export_source(source))
+        let name = Name::Export(source, look.footprints, look.projection);
+        self.get(device, name, &groups, entry_point, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -541,7 +647,7 @@ impl Kernels {
             groups: &layouts.iter().collect::<Vec<_>>(),
         })?;
         let group = match name {
-            Name::ShadeOnly(_, _, film) | Name::Develop(film) => film.group(),
+            Name::ShadeOnly(_, _, film) | Name::Develop(film, _) => film.group(),
             _ => GROUP,
         };
         let compiled = Compiled { pipeline, layouts, group };
@@ -572,8 +678,8 @@ impl Kernels {
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
-/// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
+/// loops counted over constants (of a pipeline or of all), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
+/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
@@ -590,14 +696,22 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
+fn projection_constant(projection: Projection) -> (&'static str, f64) {
+    ("PROJECTION", f64::from(projection as i32))
+}
+
 fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
     vec![
         ("SHOWS_LIGHT", flag(look.light)),
         ("SHOWS_STARS", flag(look.stars)),
+        ("SHOWS_MILKY_WAY", flag(look.milky_way)),
+        ("SHOWS_MAP", flag(look.map)),
+        ("SHOWS_GRID", flag(look.grid)),
         ("ALL_EFFECTS", flag(look.all_effects)),
         ("DISK", flag(look.disk)),
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
+        projection_constant(look.projection),
     ]
 }
 
@@ -608,14 +722,23 @@ fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
-        Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
+        Name::Pixels(variant) => {
+            let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
+            [trace_constants(variant), pixels].concat()
+        }
         Name::Rays(variant) => trace_constants(variant),
         Name::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
-        Name::Develop(film) => film_constants(film),
-        Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
+        Name::Develop(film, None) => film_constants(film),
+        Name::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
+        Name::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
+        Name::GatherBase | Name::GiveBack => Vec::new(),
+        Name::Export(source, footprints, projection) => {
+            let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
+            [source.constants(), export].concat()
+        }
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
         Name::KerrNodes { delay, pattern } => vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern))],

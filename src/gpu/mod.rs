@@ -3,6 +3,7 @@
 
 mod adapter;
 mod bindings;
+mod bloom;
 mod buffer;
 mod device;
 mod export;
@@ -15,6 +16,8 @@ mod present;
 mod rays;
 mod readback;
 mod records;
+mod sky_maps;
+mod steps;
 mod swapchain;
 mod tables;
 mod texture;
@@ -39,7 +42,7 @@ pub use timer::{GpuTimer, read_time};
 use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;
 use crate::renderer::Backend;
-use crate::scene::{Method, Scene};
+use crate::scene::{Method, Projection, Scene};
 use kernels::{Kernels, Variant};
 use std::sync::Arc;
 use tables::Tables;
@@ -88,6 +91,12 @@ impl GpuTracer {
     }
 }
 
+/// Distance of two uniforms of a buffer of which dispatches choose one.
+fn uniform_stride<T>(device: &Device) -> u64 {
+    let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
+    (size_of::<T>() as u64).next_multiple_of(alignment)
+}
+
 /// Settings of the f64 tracer brought to what f32 can do.
 fn for_f32(settings: Settings) -> Settings {
     Settings { tolerance: settings.tolerance.max(SMALLEST_TOLERANCE), ..settings }
@@ -110,5 +119,6 @@ fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant 
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
         azimuth: false,
+        projection: Projection::Perspective,
     }
 }

@@ -166,6 +166,14 @@ static void camera_numbers(Watch *watch, BhrContext *context) {
         camera.fov_y = bad_fov[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "fov_y", bhr_set_camera(context, &camera));
     }
+    /* Of a fisheye the whole sphere is the limit; the others have no such angle. */
+    static const double bad_circle[] = {0.0, -0.5, 2.0 * PI + 1e-9, 7.0, NAN, INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad_circle); i++) {
+        BhrCamera camera = default_camera();
+        camera.projection = BHR_PROJECTION_FISHEYE;
+        camera.fov_y = bad_circle[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "fov_y", bhr_set_camera(context, &camera));
+    }
     static const double fast[][3] = {{1.0, 0.0, 0.0}, {0.0, -1.0, 0.0}, {0.6, 0.6, 0.6}, {0.0, 0.0, 1e300}};
     for (size_t i = 0; i < COUNT_OF(fast); i++) {
         BhrCamera camera = default_camera();
@@ -202,6 +210,15 @@ static void camera(Watch *watch, BhrContext *context) {
     good.motion = BHR_MOTION_VELOCITY;
     good.velocity[0] = 1.0 - 1e-9;
     CHECK_OK(bhr_set_camera(context, &good));
+    for (BhrProjection projection = BHR_PROJECTION_PERSPECTIVE; projection <= BHR_PROJECTION_CUBE; projection++) {
+        BhrCamera kept = {.struct_size = sizeof kept};
+        good = default_camera();
+        good.projection = projection;
+        good.fov_y = projection == BHR_PROJECTION_FISHEYE ? 2.0 * PI : projection == BHR_PROJECTION_PERSPECTIVE ? 1.0 : -9.0;
+        CHECK_OK(bhr_set_camera(context, &good));
+        CHECK_OK(bhr_get_camera(context, &kept));
+        CHECK(memcmp(&kept, &good, sizeof kept) == 0, "projection %d is not kept", (int)projection);
+    }
     good = default_camera();
     CHECK_OK(bhr_set_camera(context, &good));
 
@@ -372,6 +389,8 @@ static void sky(Watch *watch, BhrContext *context) {
     CHECK(value.flags == (BHR_SKY_STARS | BHR_SKY_MILKY_WAY), "the default sky's flags are %#x", (unsigned)value.flags);
     value.flags = 0x1000;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_sky(context, &value));
+    value.flags = BHR_SKY_PROCEDURAL | 0x80000000u;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "0x80000002", bhr_set_sky(context, &value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "sky", bhr_sky_init(NULL, sizeof value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_sky_init(&value, sizeof value - 1));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_sky(NULL, NULL));
@@ -388,6 +407,16 @@ static void sky(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_sky_init(&value, sizeof value));
     CHECK_OK(bhr_get_sky(context, &value));
     CHECK(value.flags == 0, "a black sky has flags %#x", (unsigned)value.flags);
+    static const uint64_t seeds[] = {0, 1, UINT64_MAX};
+    for (size_t i = 0; i < COUNT_OF(seeds); i++) {
+        CHECK_OK(bhr_sky_init(&value, sizeof value));
+        value.flags = BHR_SKY_PROCEDURAL | (i % 2 ? BHR_SKY_STARS : 0), value.seed = seeds[i];
+        CHECK_OK(bhr_set_sky(context, &value));
+        BhrSky back;
+        CHECK_OK(bhr_sky_init(&back, sizeof back));
+        CHECK_OK(bhr_get_sky(context, &back));
+        CHECK(back.flags == value.flags && back.seed == seeds[i], "the procedural sky %zu has flags %#x", i, (unsigned)back.flags);
+    }
     CHECK_OK(bhr_sky_init(&value, sizeof value));
     CHECK_OK(bhr_set_sky(context, &value));
     watch_begin(watch, context);
