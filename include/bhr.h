@@ -564,8 +564,9 @@ BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 /**
  * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
  * stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
- * *out_coordinate_time, unless NULL, becomes the scene time that went by; falling at or inside the horizon it is
- * rain time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
+ * *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
+ * fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as at
+ * bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
  * where the motion cannot be; UNSUPPORTED for VELOCITY.
  */
 BhrStatus bhr_camera_advance(const BhrContext *context,
@@ -859,7 +860,10 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 /** Intensity follows g^3 (I_nu), g^4 (bolometric). */
 #define BHR_EFFECT_BEAMING 4u
 
-/** The moving disk is seen at its retarded time (turbulence only; an eye at or inside the horizon sees all of it at the scene's time). */
+/**
+ * The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all of the disk is seen
+ * as it is at the t that bhr_set_time gives.
+ */
 #define BHR_EFFECT_LIGHT_DELAY 8u
 
 /** What a new context has. */
@@ -871,8 +875,14 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
  */
 BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 
-/** Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. Errors: INVALID_ARGUMENT. */
-BhrStatus bhr_set_time(BhrContext *context, double time);
+/**
+ * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera, which ends at the
+ * horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time T = t + H(r), r in M, with
+ * H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that falls from rest at infinity shows.
+ * bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+ */
+BhrStatus bhr_set_time(BhrContext *context,
+                       double time);
 
 /* ---- quality ---- */
 

@@ -72,7 +72,7 @@ fn constants(energy: f32, angular_momentum: f32, carter: f32, k: f32, nu_local: 
     let b = k - 2.0 * a * angular_momentum * energy + a2e2;
     let scale = max(sqrt(max(k + a2e2, 0.0)), 3.0 * abs(energy));
     return Constants(a, energy, angular_momentum, nu_local, k, b, a2e2, a * a * carter, scale, frame.place.x, frame.hole.y,
-        frame.hole.z);
+        frame.hole.z, select(CLOCK_COORDINATE, CLOCK_RAIN, frame.rain == RAIN_CLOCK));
 }
 
 // Scaled so that the local observer measures frequency 1: good for every E (geodesic.rs).

@@ -36,6 +36,7 @@ struct Frame {
     capture_u: f32,
     max_steps: u32,
     max_crossings: u32,
+    // The local frame: 0 static, 1 rain, RAIN_CLOCK rain and of that clock.
     rain: u32,
     // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
     effects: u32,
@@ -45,6 +46,8 @@ struct Frame {
     // Columns and rows of the finest levels of the Milky Way and of the host's map.
     map_sizes: vec4<u32>,
 }
+
+const RAIN_CLOCK: u32 = 2u;
 
 const VIEW_REDSHIFT: u32 = 1u;
 const VIEW_ORDER: u32 = 2u;

@@ -5,6 +5,10 @@
 override SPINNING: bool = true;
 override DELAY: bool = true;
 
+// Clock.
+const CLOCK_COORDINATE: u32 = 0u;
+const CLOCK_RAIN: u32 = 1u;
+
 struct Constants {
     a: f32,
     energy: f32,
@@ -19,6 +23,8 @@ struct Constants {
     u_eye: f32,
     r_plus: f32,
     r_minus: f32,
+    // CLOCK_*.
+    clock: u32,
 }
 
 struct State {
@@ -63,11 +69,19 @@ fn delay_by_parts(c: Constants) -> bool {
     return c.energy > 0.05;
 }
 
-// d/dtau of State.delay; the coordinate clock only. With E > 0 the parts of E^2/u^2 and E^2/u are as for E = 1, over E.
+// d/dtau of State.delay.
 fn delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     if !DELAY {
         return 0.0;
     }
+    if SPINNING {
+        return coordinate_delay_rate(c, u, n_z);
+    }
+    return select(coordinate_delay_rate(c, u, n_z), rain_delay_rate(c, u), c.clock == CLOCK_RAIN);
+}
+
+// With E > 0 the parts of E^2/u^2 and E^2/u are as for E = 1, over E.
+fn coordinate_delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     let frame = c.a * c.a * c.energy * n_z * n_z;
     let horizon = (4.0 * c.energy - 2.0 * c.a * c.angular_momentum * u) / horizon_function(c, u);
     if !delay_by_parts(c) {
@@ -78,16 +92,42 @@ fn delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     return (c.b * u - c.a2q * u * u + 2.0 * by_parts) / c.energy + frame + horizon;
 }
 
+// E = 1. The nodes of a step have no u'; but rays that escape from the photon sphere or deeper, the only ones asked for, all move
+// outwards: u' = -sqrt(1 - K u^2 D).
+fn rain_delay_rate(c: Constants, u: f32) -> f32 {
+    let l = log(max(u, 1e-30));
+    let du = -sqrt(max(1.0 - c.k * u * u * (1.0 - 2.0 * u), 0.0));
+    return c.k * u * (3.0 + 2.0 * l - 2.0 * u * (2.0 + 3.0 * l) + 4.0 * u / (1.0 - du));
+}
+
 fn delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
+    if SPINNING {
+        return coordinate_delay_boundary(c, u, du);
+    }
+    let rain = 2.0 * du * log(u) - du / u - 2.0 * sqrt(2.0 / u) + 4.0 * log(1.0 + sqrt(2.0 * u));
+    return select(coordinate_delay_boundary(c, u, du), rain, c.clock == CLOCK_RAIN);
+}
+
+fn coordinate_delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
     if !delay_by_parts(c) {
         return 0.0;
     }
     return (2.0 * du * log(u / c.u_eye) - du / u) / c.energy;
 }
 
-// Time from the event at `there` to the eye.
-fn delay_between(c: Constants, eye: State, there: State) -> f32 {
-    return delay_boundary(c, there.u, there.du) - delay_boundary(c, eye.u, eye.du) + there.delay - eye.delay;
+// The clock's time less t at u, outside the horizon: H of rain_offset.
+fn clock_offset(c: Constants, u: f32) -> f32 {
+    if SPINNING {
+        return 0.0;
+    }
+    let w = sqrt(2.0 * u);
+    let root = 1.0 + w;
+    return select(0.0, 4.0 / w + 2.0 * log((1.0 - 2.0 * u) / (root * root)), c.clock == CLOCK_RAIN);
+}
+
+// The clock's time at the eye less the t at which light left `there`, with the integral part of the delay between them.
+fn retardation(c: Constants, eye_u: f32, eye_du: f32, u: f32, du: f32, integral: f32) -> f32 {
+    return delay_boundary(c, u, du) - delay_boundary(c, eye_u, eye_du) + integral + clock_offset(c, u);
 }
 
 // The chart direction of N, normalised, turned by the drag.

@@ -139,7 +139,8 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     }
     let room = max(u_plus - s.u, HORIZON_ROOM * u_plus);
     let limit = clamp(1.2 * h, 0.03, 0.35) * room / (abs(s.du) + sqrt(curvature * room));
-    return select(1e30, limit, s.u > 0.3 * u_plus);
+    let leaves = !SPINNING && c.clock == CLOCK_RAIN && s.du < 0.0;
+    return select(1e30, limit, s.u > 0.3 * u_plus && !leaves);
 }
 
 // Inside the horizon with u' from the first integral (integrator.rs: held_inside).

@@ -194,7 +194,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
     (*crossing).place = Place(-log(u), arctan2(n.y, n.x), 0.0);
     if DELAY {
         let integral = column_at(lens_delay, phi / looked.swept).x;
-        (*crossing).place.delay = delay_boundary(c, u, du) - delay_boundary(c, frame.place.x, begin.state.du) + integral;
+        (*crossing).place.delay = retardation(c, frame.place.x, begin.state.du, u, du, integral);
     }
     // How far a turn of the ray's plane moves the crossing around the disk, and how far the next pixel moves it.
     let swing = (n.x * looked.across.y - n.y * looked.across.x) * turn.x;

@@ -143,7 +143,7 @@ fn find_crossing(c: Constants, eye: State, start: State, to: State, h: f32, orde
     let there = crossing_state(c, start, to, h);
     var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order);
     if DELAY {
-        crossing.delay = delay_between(c, eye, there);
+        crossing.delay = retardation(c, eye.u, eye.du, there.u, there.du, there.delay - eye.delay);
     }
     return crossing;
 }

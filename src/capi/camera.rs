@@ -234,8 +234,9 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
 
 /// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
 /// stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
-/// *out_coordinate_time, unless NULL, becomes the scene time that went by; falling at or inside the horizon it is
-/// rain time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
+/// *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
+/// fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as at
+/// bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
 /// where the motion cannot be; UNSUPPORTED for VELOCITY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_advance(

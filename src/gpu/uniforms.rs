@@ -3,6 +3,7 @@
 
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
+use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
@@ -121,7 +122,7 @@ impl FrameUniform {
             capture_u: settings.capture_u as f32,
             max_steps: settings.max_steps,
             max_crossings: settings.max_crossings as u32,
-            rain: u32::from(frame.rain),
+            rain: u32::from(frame.rain) + u32::from(frame.clock() == Clock::Rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
             pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),

@@ -22,8 +22,24 @@ use glam::DVec3;
 pub enum Clock {
     /// Boyer-Lindquist (Schwarzschild) t, for eyes outside the horizon.
     Coordinate,
-    /// Painleve-Gullstrand (rain) time, spin 0 only: regular through the horizon.
+    /// Painleve-Gullstrand (rain) time, spin 0 only: regular through the horizon. `rain_offset` leads to t.
     Rain,
+}
+
+/// The clock of falling eyes is rain time from here inwards: t would cost the more digits the nearer to the horizon. It is the photon
+/// sphere: from no farther out, all light that escapes moves outwards only, for which the rate of rain time is regular.
+pub const RAIN_CLOCK_RADIUS: f64 = 3.0;
+
+/// H, rain time less t outside the horizon, M: dH/dr = sqrt(2/r) / (1 - 2/r), so that
+///
+/// ```text
+/// H = 2 sqrt(2 r) + 2 ln((sqrt r - sqrt 2) / (sqrt r + sqrt 2)) = 4 / w + 2 ln(D / (1 + w)^2),   w = sqrt(2 u),   D = 1 - 2 u
+/// ```
+///
+/// (Gullstrand 1922; Martel & Poisson 2001, eq. 2.5). `d` is D: beside the horizon the caller knows it better than `u` tells.
+pub fn rain_offset(u: f64, d: f64) -> f64 {
+    let w = (2.0 * u).sqrt();
+    4.0 / w + 2.0 * (d / (1.0 + w).powi(2)).ln()
 }
 
 /// The constants of one ray. Scaled so that E = 1 where the local energy allows it, else so that the observer of the local
@@ -125,7 +141,7 @@ impl Constants {
     pub fn delay_rate(&self, u: f64, du: f64, n_z: f64) -> f64 {
         let k = self.k;
         if self.clock == Clock::Rain {
-            // Gullstrand 1922: T = t + 2 sqrt(2 r) + 2 ln |(sqrt r - sqrt 2) / (sqrt r + sqrt 2)|; a = 0, E = 1, B = K.
+            // T = t + H (`rain_offset`); a = 0, E = 1, B = K.
             let l = u.ln();
             return 3.0 * k * u + 2.0 * k * u * l - 2.0 * k * u * u * (2.0 + 3.0 * l) + 4.0 * k * u * u / (1.0 - du);
         }
@@ -158,6 +174,19 @@ impl Constants {
     /// Time from the event at `there` to the eye, which the ray left as `eye`; > 0 outside the horizon.
     pub fn delay(&self, eye: &State, there: &State) -> f64 {
         self.delay_boundary(there.u, there.du) - self.delay_boundary(eye.u, eye.du) + there.delay - eye.delay
+    }
+
+    /// The clock's time less t at u, outside the horizon.
+    pub fn clock_offset(&self, u: f64) -> f64 {
+        match self.clock {
+            Clock::Coordinate => 0.0,
+            Clock::Rain => rain_offset(u, 1.0 - 2.0 * u),
+        }
+    }
+
+    /// The clock's time at the eye less the t at which light left `there`, outside the horizon: matter keeps t.
+    pub fn retardation(&self, eye: &State, there: &State) -> f64 {
+        self.delay(eye, there) + self.clock_offset(there.u)
     }
 }
 

@@ -199,7 +199,8 @@ fn error_norm(c: &Constants, s: &State, error: &State) -> f64 {
 ///
 /// Outside, beside the horizon (u > 0.3 u+): k (u+ - u) / (|u'| + sqrt(|u''| (u+ - u))), which cannot overshoot u+: drag and
 /// delay diverge there. k = 1.2 `h`, `h` being the step in sigma: rays that start or pass there lose no accuracy; but at most 0.35,
-/// and not below 0.03, which gives 1e-10. Inside (spin 0): `h` u / (|u'| + sqrt(|u''| u)), as u is large.
+/// and not below 0.03, which gives 1e-10. No limit for light that leaves by rain time: for it nothing diverges there. Inside (spin 0):
+/// `h` u / (|u'| + sqrt(|u''| u)), as u is large.
 #[inline]
 pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     let u_plus = 1.0 / c.r_plus;
@@ -209,6 +210,9 @@ pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     let curvature = c.u_acceleration(s.u).abs();
     if s.u >= u_plus {
         return h * s.u / (s.du.abs() + (curvature * s.u).sqrt());
+    }
+    if c.clock == Clock::Rain && s.du < 0.0 {
+        return f64::INFINITY;
     }
     let room = u_plus - s.u;
     (1.2 * h).clamp(0.03, 0.35) * room / (s.du.abs() + (curvature * room).sqrt())

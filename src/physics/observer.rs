@@ -5,7 +5,7 @@
 //! observer (ZAMO when the hole spins), or, at or inside a spin-0 horizon and for a camera falling from rest at infinity, of
 //! the rain observer, whose tetrad is the static one boosted by -sqrt(2/r) e_r (Painleve 1921, Gullstrand 1922).
 
-use super::geodesic::{Clock, Constants, State};
+use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State};
 use super::orbit::{circular_orbit, horizon_inner, horizon_outer, zamo_omega};
 use glam::DVec3;
 
@@ -100,6 +100,11 @@ impl LocalFrame {
         Self { rain: true, lapse: f64::NAN, ..self }
     }
 
+    /// The clock by which rays of this frame tell times.
+    pub fn clock(&self) -> Clock {
+        if self.rain && self.r <= RAIN_CLOCK_RADIUS { Clock::Rain } else { Clock::Coordinate }
+    }
+
     /// Components (n_r, n_th, n_ph) of a chart vector.
     pub fn components(&self, v: DVec3) -> DVec3 {
         DVec3::new(self.e_r.dot(v), self.e_theta.dot(v), self.e_phi.dot(v))
@@ -182,9 +187,7 @@ impl LocalFrame {
         let (polar, w) = (self.r * p.y * e, self.r * p.z * e);
         let carter = polar * polar + (self.cos * w).powi(2);
         let mut constants = Constants::new(0.0, 1.0, self.sin * w, carter, e, u);
-        if self.r <= constants.r_plus {
-            constants.clock = Clock::Rain;
-        }
+        constants.clock = self.clock();
         let state = State {
             u,
             du: e * (p.x - beta),

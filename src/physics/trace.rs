@@ -63,7 +63,7 @@ pub struct PlaneCrossing {
     pub u: f64,
     /// In (-pi, pi].
     pub azimuth: f64,
-    /// Time since the photon left there (`Constants::clock`); 0 unless asked for.
+    /// `Constants::retardation`; 0 unless asked for.
     pub delay: f64,
     /// Number of this crossing along the ray, from 0.
     pub order: u32,
@@ -240,7 +240,7 @@ fn find_crossing(c: &Constants, eye: &State, s: &Settings, segment: &Segment, or
     if !(state.u > 0.0 && state.u <= outermost) {
         return None;
     }
-    let delay = if s.delay { c.delay(eye, &state) } else { 0.0 };
+    let delay = if s.delay { c.retardation(eye, &state) } else { 0.0 };
     Some(PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order })
 }
 

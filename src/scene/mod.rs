@@ -91,7 +91,8 @@ pub struct Scene {
     pub sky_map: Option<Arc<SkyMap>>,
     pub film: Film,
     pub effects: Effects,
-    /// Scene time, in scene lengths; turns the disk.
+    /// Scene time, in scene lengths; turns the disk. It is t, but for a camera at or inside a spin-0 horizon rain time T = t + H
+    /// (`physics::geodesic::rain_offset`), which goes on where t ends.
     pub time: f64,
     pub quality: Quality,
     pub view: View,

@@ -4,6 +4,7 @@ use super::frame::Region;
 use super::observer::Lens;
 use super::{Camera, Motion, Ray, Scene};
 use crate::error::{Error, Result};
+use crate::physics::geodesic::rain_offset;
 use crate::physics::metric::{Kerr, boyer_lindquist};
 use crate::physics::observer::Observer;
 use crate::physics::orbit::{circular_orbit, ergosphere, horizon_inner, horizon_outer, isco, photon_orbit};
@@ -144,8 +145,8 @@ impl Scene {
         Ok((Eye { lens, aberration }, region))
     }
 
-    /// `camera` moved along its own world line by `proper_time` (scene lengths, any sign), and the scene time that went by; for
-    /// a fall that begins or ends at or inside the horizon that is rain (Painleve-Gullstrand) time, which is proper time.
+    /// `camera` moved along its own world line by `proper_time` (scene lengths, any sign), and the scene time that went by: by the
+    /// clock of the end (`Scene::time`) less that of the begin. For a fall inside the horizon that is proper time.
     ///
     /// ORBIT follows the geodesic: at spin 0 and off the plane the great circle along +ph, position and axes turned together.
     /// Errors: UNSUPPORTED for VELOCITY; as `observer` for where the camera is; INVALID_STATE when a fall ends in the singularity
@@ -235,8 +236,8 @@ struct Fall {
     time: f64,
 }
 
-/// r^(3/2) falls evenly in proper time: r^(3/2) = r0^(3/2) - (3/2) sqrt(2) tau; t = T - 2 sqrt(2 r) - 2 ln |...|, T the rain
-/// time (Martel & Poisson 2001, eq. 2.5).
+/// r^(3/2) falls evenly in proper time, which is rain time: r^(3/2) = r0^(3/2) - (3/2) sqrt(2) tau (Martel & Poisson 2001, eq. 2.5).
+/// Outside the horizon the clock is t.
 fn fall_schwarzschild(r0: f64, tau: f64) -> Result<Fall> {
     let left = r0.powf(1.5) - 1.5 * std::f64::consts::SQRT_2 * tau;
     if left.is_nan() || left <= 0.0 {
@@ -246,15 +247,8 @@ fn fall_schwarzschild(r0: f64, tau: f64) -> Result<Fall> {
         )));
     }
     let radius = left.powf(2.0 / 3.0);
-    let horizon_time = |r: f64| {
-        let (x, h) = (r.sqrt(), std::f64::consts::SQRT_2);
-        2.0 * (2.0 * r).sqrt() + 2.0 * ((x - h) / (x + h)).abs().ln()
-    };
-    let outside = radius > 2.0 && r0 > 2.0;
-    let time = tau - if outside { horizon_time(radius) - horizon_time(r0) } else { 0.0 };
-    // Rounding can end the fall so near to the horizon that t is infinite.
-    let time = if time.is_finite() { time } else { tau };
-    Ok(Fall { radius, azimuth: 0.0, time })
+    let offset = |r: f64| if r > 2.0 { rain_offset(1.0 / r, (r - 2.0) / r) } else { 0.0 };
+    Ok(Fall { radius, azimuth: 0.0, time: tau - (offset(radius) - offset(r0)) })
 }
 
 /// E = 1, L = Q = 0 (Carter 1968): dr/dtau = -sqrt(2 r (r^2 + a^2)) / Sigma, dph/dtau = 2 a r / (Sigma Delta),

@@ -12,7 +12,8 @@
 //! variance, and a generation is invisible when it comes and goes.
 
 use super::{Effects, Scene, View};
-use crate::physics::orbit::horizon_outer;
+use crate::physics::geodesic::{Clock, rain_offset};
+use crate::physics::observer::LocalFrame;
 use std::f64::consts::{PI, TAU};
 
 /// Of a generation, M: at its brightest (half of it) it is sheared 6 : 1 at r = 6 and 1 : 1 at r = 20. Much
@@ -33,7 +34,7 @@ pub struct Place {
     pub ln_r: f64,
     /// Chart.
     pub azimuth: f64,
-    /// M; 0 where light is not delayed.
+    /// M (`Constants::retardation`); 0 where light is not delayed.
     pub delay: f64,
 }
 
@@ -59,9 +60,11 @@ impl Scene {
     pub fn turbulence(&self) -> Option<Turbulence> {
         let disk = self.disk.filter(|d| d.turbulence > 0.0 && self.view == View::Light)?;
         self.disk_u()?;
-        let reference_delay = if self.needs_delay() { self.camera_radius() } else { 0.0 };
+        let eye = self.observer().ok().map(|o| o.frame).filter(|_| self.needs_delay());
+        let reference_delay = eye.map_or(0.0, |eye| eye.r);
         // A tiny mass can make the time infinite.
-        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay;
+        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay
+            + eye.map_or(0.0, |eye| clock_advance(&eye));
         let age = time.rem_euclid(0.5 * LIFETIME);
         let births = ((time - age) / (0.5 * LIFETIME)).round();
         Some(Turbulence {
@@ -75,19 +78,18 @@ impl Scene {
         })
     }
 
-    /// Whether light shows when it left the disk: only structure that moves does. Not with an eye at or inside the horizon, whom
-    /// the chart's time does not reach: it sees the whole disk at the scene's time.
+    /// Whether light shows when it left the disk: only structure that moves does.
     pub fn needs_delay(&self) -> bool {
         self.view == View::Light
             && self.disk.is_some_and(|d| d.turbulence > 0.0)
             && self.effects.has(Effects::LIGHT_DELAY)
-            && self.camera_radius() > horizon_outer(self.hole.spin)
     }
+}
 
-    /// M.
-    fn camera_radius(&self) -> f64 {
-        self.camera.position.length() / self.hole.mass
-    }
+/// The clock of the eye's delays less the scene's time there: H where that is still t.
+fn clock_advance(eye: &LocalFrame) -> f64 {
+    let outside = eye.clock() == Clock::Rain && eye.r > 2.0;
+    if outside { rain_offset(1.0 / eye.r, (eye.r - 2.0) / eye.r) } else { 0.0 }
 }
 
 impl Turbulence {
@@ -162,8 +164,7 @@ fn fade(t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Camera, Disk};
-    use glam::DVec3;
+    use crate::scene::Disk;
 
     const STILL: [Place; 2] = [Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];
 
@@ -295,7 +296,7 @@ mod tests {
         }
     }
 
-    /// Light that took longer shows an earlier time; without the effect, or from inside the horizon, all is of one time.
+    /// Light that took longer shows an earlier time; without the effect all is of one time.
     #[test]
     fn delay_is_time() {
         let mut late = scene(0.0, false, 1e6, 5);
@@ -308,12 +309,9 @@ mod tests {
                 assert!(difference.abs() < 1e-6, "{delay}: {difference}");
             }
         }
-        let mut inside = scene(0.0, false, 0.0, 0);
-        inside.effects = Effects(Effects::ALL);
-        assert!(inside.needs_delay());
-        inside.camera = Camera { position: DVec3::new(1.5, 0.0, 0.5), ..Camera::default() };
-        assert!(!inside.needs_delay());
-        assert_eq!(inside.turbulence().unwrap().reference_delay, 0.0);
+        let still = scene(0.0, false, 0.0, 0);
+        assert!(!still.needs_delay());
+        assert_eq!(still.turbulence().unwrap().reference_delay, 0.0);
     }
 
     #[test]

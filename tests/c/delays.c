@@ -1,6 +1,6 @@
-/* delays.c -- the delay of BhrCrossing and the t of bhr_trace_path of a hole without spin, against the orbit equation
- * (Darwin 1959), integrated here: u'' = 3 u^2 - u and dt = d phi / (b u^2 (1 - 2 u)), by RK4 in the angle swept about
- * the hole; M = 1. */
+/* delays.c -- times about a hole without spin: the delay of BhrCrossing and the t of bhr_trace_path, against the orbit
+ * equation (Darwin 1959), integrated here: u'' = 3 u^2 - u and dt = d phi / (b u^2 (1 - 2 u)), by RK4 in the angle swept
+ * about the hole; and the scene time of a fall through the horizon, against Gullstrand's. M = 1. */
 #include "check.h"
 
 #include <math.h>
@@ -140,6 +140,36 @@ static void path(BhrContext *context, const Look *look) {
     CHECK(worst < 1e-9, "r %g alpha %g: the path is off by %.1e", look->r, look->alpha, worst);
 }
 
+/* Rain time less t, M = 1 (Gullstrand 1922). */
+static double rain_offset(double r) {
+    return 2.0 * sqrt(2.0 * r) + 2.0 * log((sqrt(r) - sqrt(2.0)) / (sqrt(r) + sqrt(2.0)));
+}
+
+/* Adding up what bhr_camera_advance says gives t outside the horizon and t + rain_offset, which goes on, inside: rain
+ * time is proper time. Where the fall is follows from r^(3/2), which shrinks evenly. */
+static void fall(BhrContext *context) {
+    BhrCamera camera;
+    CHECK_OK(bhr_camera_init(&camera, sizeof camera));
+    camera.position[0] = 0.0, camera.position[1] = 5.0 * MASS, camera.position[2] = 0.0;
+    camera.motion = BHR_MOTION_FREE_FALL;
+    double              time = 0.0, proper = 0.0;
+    unsigned            inside = 0;
+    static const double steps[] = {2.0, 1.0, 0.75, 0.1, 0.01, 0.001, 0.2, 0.5, 0.3, -0.6, -0.5, 1.1};
+    for (size_t i = 0; i < COUNT_OF(steps); i++) {
+        double elapsed = 0.0;
+        CHECK_OK(bhr_camera_advance(context, &camera, steps[i] * MASS, &elapsed));
+        time += elapsed / MASS;
+        proper += steps[i];
+        const double r = sqrt(dot(camera.position, camera.position)) / MASS;
+        const double way = pow(5.0, 1.5) - 1.5 * sqrt(2.0) * proper;
+        CHECK(fabs(r - pow(way, 2.0 / 3.0)) < 1e-12, "after %g M the fall is at %.15g M", proper, r);
+        const double expected = proper + rain_offset(5.0) - (r > 2.0 ? rain_offset(r) : 0.0);
+        CHECK(fabs(time - expected) < 1e-10, "at %g M the clock is at %.12g, not %.12g", r, time, expected);
+        inside += r <= 2.0;
+    }
+    CHECK(inside > 1 && inside < COUNT_OF(steps) - 1, "%u places lie inside", inside);
+}
+
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
     BhrContext      *context = check_context(backend);
@@ -158,6 +188,7 @@ int main(int argc, char **argv) {
         }
     }
     CHECK(compared > 40, "%u crossings were compared", compared);
+    fall(context);
     bhr_context_destroy(context);
     return check_end();
 }

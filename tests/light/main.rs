@@ -5,6 +5,7 @@
 mod colours;
 mod delays;
 mod disk;
+mod fall;
 mod orbit;
 mod turbulence;
 mod views;

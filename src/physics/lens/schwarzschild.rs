@@ -21,7 +21,7 @@
 //! radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi oddly.
 
 use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE};
-use crate::physics::geodesic::{Clock, Constants};
+use crate::physics::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, rain_offset};
 use crate::physics::integrator::{B, D, Quintic, gauss_legendre};
 use crate::physics::observer::LocalFrame;
 use crate::physics::shadow::critical_direction;
@@ -35,8 +35,6 @@ pub const LEAST_STATIC_RADIUS: f64 = 2.0005;
 pub const CAPTURE_U: f64 = 0.25;
 /// Captured rays are of use to eyes outside this radius only: those of nearer eyes start inside it and move inwards.
 const LEAST_CAPTURE_RADIUS: f64 = 6.0;
-/// Of this radius or less, all rays that escape move outwards only.
-const PHOTON_SPHERE: f64 = 3.0;
 /// Escaping rays from |t_hat| = 2^-2 on have v = u; the ray there is in the table in both ways.
 const FREE_OCTAVE: f64 = -2.0;
 /// Steps to the end of a ray before it is given up; one near the critical ray takes some 20 / `Resolution::step`.
@@ -390,36 +388,27 @@ impl Family {
     /// it has no singularity at the horizon, near or far.
     fn constants(&self, b: f64) -> Constants {
         let mut constants = Constants::new(0.0, 1.0, b, 0.0, 1.0, self.u_eye);
-        if self.r <= PHOTON_SPHERE {
+        if self.r <= RAIN_CLOCK_RADIUS {
             constants.clock = Clock::Rain;
         }
         constants
     }
 
-    /// The clock of the eye's delays, as `LocalFrame::start` has it.
-    pub fn clock(&self) -> Clock {
-        if self.r <= 2.0 { Clock::Rain } else { Clock::Coordinate }
-    }
-
-    /// Time from the event at `u` to the eye, on the ray of impact parameter `b`, from the integral part J there. The slopes
-    /// are du/dtau = b du/dphi, at the eye and there.
+    /// `Constants::retardation` by the eye's clock (`LocalFrame::clock`) at the crossing `u` of the ray of impact parameter `b`, from the
+    /// integral part J there. The slopes are du/dtau = b du/dphi, at the eye and there.
     pub fn delay(&self, b: f64, eye_slope: f64, u: f64, slope: f64, integral: f64) -> f64 {
         let constants = self.constants(b);
         let rise = constants.delay_boundary(u, slope) - constants.delay_boundary(self.u_eye, eye_slope) + integral;
-        if constants.clock == self.clock() {
-            return rise;
+        let retardation = rise + constants.clock_offset(u);
+        if self.rain || constants.clock == Clock::Coordinate {
+            return retardation;
         }
-        rise + rain_offset(u, 1.0 - 2.0 * u) - rain_offset(self.u_eye, (self.r - 2.0) / self.r)
+        // A static eye keeps t.
+        retardation - rain_offset(self.u_eye, (self.r - 2.0) / self.r)
     }
 
     /// du/dtau at the eye of the direction (sin psi, cos psi): (cos psi - beta) / (1 - beta cos psi).
     pub fn eye_slope(&self, cos: f64) -> f64 {
         (cos - self.beta) / (1.0 - self.beta * cos)
     }
-}
-
-/// Rain time less t: 4 / w + 2 ln(D / (1 + w)^2) with w = sqrt(2 u), D = 1 - 2 u > 0 (Gullstrand 1922).
-fn rain_offset(u: f64, d: f64) -> f64 {
-    let w = (2.0 * u).sqrt();
-    4.0 / w + 2.0 * (d / (1.0 + w).powi(2)).ln()
 }

@@ -6,7 +6,6 @@
 
 use super::coordinate::LEAST_T_HAT;
 use super::schwarzschild::{Branch, Column, Family, Resolution};
-use crate::physics::geodesic::Clock;
 use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec3Swizzles};
 
@@ -220,7 +219,7 @@ impl Look<'_> {
         Some(Crossing { phi, u: v + u_s, u_psi, u_phi: v_phi + slope_s })
     }
 
-    /// Time since light left a crossing (`Family::clock`), M; 0 if the table has no delays.
+    /// Time since light left a crossing (`Constants::retardation`), M; 0 if the table has no delays.
     pub fn delay(&self, crossing: &Crossing) -> f64 {
         if !self.family.with_delay || self.table.swept.is_empty() {
             return 0.0;
@@ -247,8 +246,6 @@ impl Look<'_> {
     /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay to the
     /// eye is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
     ///
-    /// Rain time adds w / (u^2 D), w = sqrt(2 u). As u'^2 = 1 - b^2 u^2 D the sum is (b^2 - 1 / u^2) / (w - u'), with u' < 0.
-    ///
     /// 0 if the table has no delays.
     pub fn delay_gradient(&self, crossing: &Crossing) -> (f64, f64) {
         if !self.family.with_delay {
@@ -256,11 +253,7 @@ impl Look<'_> {
         }
         let (b, u) = (self.b, crossing.u);
         let slope = b * crossing.u_phi;
-        let by_u = match self.family.clock() {
-            Clock::Rain => (b * b - 1.0 / (u * u)) / ((2.0 * u).sqrt() - slope),
-            Clock::Coordinate => slope / (u * u * (1.0 - 2.0 * u)),
-        };
-        (b, by_u)
+        (b, slope / (u * u * (1.0 - 2.0 * u)))
     }
 }
 
