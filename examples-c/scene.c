@@ -1,5 +1,5 @@
-/* viewer_scene.c -- see viewer_scene.h. */
-#include "viewer_scene.h"
+/* scene.c -- see scene.h. */
+#include "scene.h"
 
 /* The first look: a fast hole seen from a little above a disk with structure, so that its light turns and bends. */
 const SceneOptions SCENE_DEFAULTS = {

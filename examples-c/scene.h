@@ -1,7 +1,7 @@
-/* viewer_scene.h -- everything that a frame of the viewer shows, as plain values that are copied to try a change and
- * thrown away when bhr refuses it. Knows no window and no input. */
-#ifndef EXAMPLES_VIEWER_SCENE_H
-#define EXAMPLES_VIEWER_SCENE_H
+/* scene.h -- everything that a frame of viewer, gallery or film shows, as plain values that are copied to try a change
+ * and thrown away when bhr refuses it. Knows no window and no input. */
+#ifndef EXAMPLES_SCENE_H
+#define EXAMPLES_SCENE_H
 
 #include "common.h"
 
