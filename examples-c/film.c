@@ -119,7 +119,7 @@ static BhrStatus fall_on(Film *film, double proper_time) {
 
 static void write_clock(Slot *slot) {
     char     text[96];
-    uint32_t scale = slot->image.height / 240 + 1;
+    uint32_t scale = slot->image.width / 480 > 1 ? slot->image.width / 480 : 1; /* the text is 300 wide at 1 */
     snprintf(text, sizeof text, "tau = %.2f M   r = %.2f M%s", slot->proper_time, slot->radius,
              slot->radius < HORIZON ? "   inside the horizon" : "");
     picture_write(&slot->image, 4 * scale, slot->image.height - CELL_HEIGHT * scale, scale, text);
@@ -257,8 +257,8 @@ static int film_fall(const Settings *s) {
     if (!made) {
         return EXIT_FAILURE;
     }
-    printf("%u frames of %u x %u in %.1f s: %s%s\n", (unsigned)s->frames, (unsigned)s->size[0], (unsigned)s->size[1],
-           wall_seconds() - start, s->video != NULL ? s->video : s->output,
+    printf("%u frame%s of %u x %u in %.1f s: %s%s\n", (unsigned)s->frames, s->frames == 1 ? "" : "s",
+           (unsigned)s->size[0], (unsigned)s->size[1], wall_seconds() - start, s->video != NULL ? s->video : s->output,
            s->video != NULL ? "" : "/frame-00000.png and on");
     return EXIT_SUCCESS;
 }
