@@ -5,6 +5,7 @@
 #include "common.h"
 #include "picture.h"
 #include "scene.h"
+#include "vectors.h"
 #include "video.h"
 
 #include <errno.h>
@@ -51,26 +52,9 @@ typedef struct Film {
 
 /* ---- the fall ---- */
 
-static double radius_of(const BhrCamera *camera) {
-    const double *p = camera->position;
-    return sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-}
-
 /* Proper time from r to the centre, falling from rest at infinity: (2/3) sqrt(r^3 / 2). */
 static double time_left(double radius) {
     return 2.0 / 3.0 * sqrt(0.5 * radius * radius * radius);
-}
-
-static void look(BhrCamera *camera, Look where) {
-    const double *p = camera->position;
-    for (int i = 0; i < 3; i++) {
-        camera->forward[i] = where == LOOK_OUT ? p[i] : -p[i];
-    }
-    if (where == LOOK_SIDE) { /* to the west: the disk's matter comes from there */
-        camera->forward[0] = p[1];
-        camera->forward[1] = -p[0];
-        camera->forward[2] = 0.0;
-    }
 }
 
 static BhrStatus begin_fall(Scene *scene, const Settings *s) {
@@ -84,7 +68,8 @@ static BhrStatus begin_fall(Scene *scene, const Settings *s) {
     scene->camera.motion = BHR_MOTION_FREE_FALL;
     scene->film.tone_map = BHR_TONE_MAP_AGX;
     scene->quality.samples_per_pixel = s->samples;
-    look(&scene->camera, s->look);
+    camera_make_orthonormal(&scene->camera);
+    camera_turn(&scene->camera, s->look == LOOK_OUT ? PI : s->look == LOOK_SIDE ? -0.5 * PI : 0.0, 0.0);
     return status;
 }
 
@@ -105,7 +90,7 @@ static BhrStatus fall_on(Film *film, double proper_time) {
     }
     film->proper_time += proper_time;
     film->scene.time += elapsed;
-    double radius = radius_of(&film->scene.camera);
+    double radius = length(film->scene.camera.position);
     if (radius <= HORIZON) {
         const double from = film->settings->from;
         double start = from > HORIZON ? from + 2.0 * log(0.5 * from - 1.0) : infall_offset(from);
@@ -161,7 +146,7 @@ static int begin(Film *film, Slot *slot, uint32_t number) {
     }
     slot->number = number;
     slot->proper_time = film->proper_time;
-    slot->radius = radius_of(&film->scene.camera);
+    slot->radius = length(film->scene.camera.position);
     return 1;
 }
 

@@ -45,26 +45,10 @@ static void dome(Scene *scene, double angle) {
     scene->camera.fov_y = angle * PI / 180.0;
 }
 
-/* Turns the look upwards from the hole, about the camera's right-hand axis; upright when it was so before. */
-static void look_up(Scene *scene, double angle) {
-    BhrCamera   *camera = &scene->camera;
-    const double c = cos(angle * PI / 180.0), s = sin(angle * PI / 180.0);
-    const double length = sqrt(camera->position[0] * camera->position[0] + camera->position[1] * camera->position[1] +
-                               camera->position[2] * camera->position[2]);
-    double inward[3], dot = 0.0, norm = 0.0, up[3];
-    for (int i = 0; i < 3; i++) {
-        inward[i] = -camera->position[i] / length;
-        dot += inward[i] * camera->up[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        up[i] = camera->up[i] - dot * inward[i];
-        norm += up[i] * up[i];
-    }
-    for (int i = 0; i < 3; i++) {
-        up[i] /= sqrt(norm);
-        camera->forward[i] = c * inward[i] + s * up[i];
-        camera->up[i] = c * up[i] - s * inward[i];
-    }
+/* Turns the look away from the hole. */
+static void turn(Scene *scene, double right, double up) {
+    camera_make_orthonormal(&scene->camera);
+    camera_turn(&scene->camera, right * PI / 180.0, up * PI / 180.0);
 }
 
 /* Puts the hole, seen from `distance`, in front of a place of the real sky, north up: sky axes are scene axes. */
@@ -142,7 +126,7 @@ static BhrStatus orbiting_observer(Scene *scene) {
 
 static BhrStatus dome_master(Scene *scene) {
     BhrStatus status = stand(scene, 12.0, -90.0, 25.0, 60.0);
-    look_up(scene, 40.0);
+    turn(scene, 0.0, 40.0);
     dome(scene, 180.0);
     return status;
 }
