@@ -28,7 +28,7 @@ static const SceneOptions BEGINNING = {
     .fov = 50.0,
     .disk_outer = 16.0,
     .turbulence = 0.8,
-    .exposure = 0.5,
+    .exposure = 0.0,
     .view = BHR_VIEW_LIGHT,
 };
 
@@ -76,13 +76,15 @@ static BhrStatus schwarzschild_face_on(Scene *scene) {
 
 static BhrStatus kerr(Scene *scene) {
     scene->spin = 0.998;
-    scene->film.exposure_ev = 1.5;
-    return stand(scene, 20.0, -90.0, 8.0, 45.0);
+    scene->disk.temperature = 18000.0; /* of the hottest ring; what is farther out shall be hot enough to be seen */
+    scene->film.exposure_ev = 1.0;
+    return stand(scene, 32.0, -90.0, 9.0, 42.0);
 }
 
 static BhrStatus translucent(Scene *scene) {
     scene->spin = 0.9;
     scene->disk.opacity = 0.5;
+    scene->disk.temperature = 12000.0;
     scene->disk.turbulence = 1.0;
     return stand(scene, 30.0, -90.0, 20.0, 45.0);
 }
@@ -92,17 +94,20 @@ static const double ORION[2] = {83.0, 1.0};
 
 static BhrStatus orion(Scene *scene) {
     scene->has_disk = 0;
-    stand_before(scene, ORION[0], ORION[1], 1e9, 40.0); /* from so far the hole bends nothing that shows */
+    scene->film.exposure_ev = -2.0;
+    stand_before(scene, ORION[0], ORION[1], 1e9, 34.0); /* from so far the hole bends nothing that shows */
     return BHR_OK;
 }
 
 static BhrStatus einstein_ring(Scene *scene) {
     scene->has_disk = 0;
-    stand_before(scene, ORION[0], ORION[1], 100.0, 40.0);
+    scene->film.exposure_ev = -2.0;
+    stand_before(scene, ORION[0], ORION[1], 100.0, 34.0);
     return BHR_OK;
 }
 
 static BhrStatus fall(Scene *scene, double radius) {
+    scene->film.exposure_ev = -1.5; /* ahead all light is bluer and brighter */
     scene->camera.motion = BHR_MOTION_FREE_FALL;
     return stand(scene, radius, -90.0, 25.0, 110.0);
 }
@@ -121,7 +126,9 @@ static BhrStatus fall_1_5(Scene *scene) {
 
 static BhrStatus orbiting_observer(Scene *scene) {
     scene->camera.motion = BHR_MOTION_ORBIT;
-    return stand(scene, 6.0, -90.0, 20.0, 90.0);
+    BhrStatus status = stand(scene, 7.0, -90.0, 20.0, 95.0);
+    turn(scene, 45.0, 0.0); /* between the hole and where the way leads */
+    return status;
 }
 
 static BhrStatus dome_master(Scene *scene) {
@@ -176,6 +183,7 @@ static BhrStatus view_deflection(Scene *scene) {
 }
 
 static BhrStatus view_steps(Scene *scene) {
+    scene->quality.method = BHR_METHOD_ADAPTIVE; /* AUTO looks most pixels up in tables, without a step */
     return view(scene, BHR_VIEW_STEPS);
 }
 
@@ -200,7 +208,7 @@ static const Exhibit EXHIBITS[] = {
     {"fall-4", "free fall, at r = 4 M, looking in", {16, 9}, fall_4},
     {"fall-2.5", "free fall, at r = 2.5 M", {16, 9}, fall_2_5},
     {"fall-1.5", "free fall, inside the horizon, at r = 1.5 M", {16, 9}, fall_1_5},
-    {"orbiting-observer", "in orbit at r = 6 M, at half the speed of light", {16, 9}, orbiting_observer},
+    {"orbiting-observer", "in orbit at r = 7 M, at 0.45 of the speed of light", {16, 9}, orbiting_observer},
     {"dome-master", "half the sky for a planetarium", {1, 1}, dome_master},
     {"equirect", "the whole sky, 360 x 180 degrees", {2, 1}, equirect},
     {"cube", "the whole sky as the faces of a cube: right left up down front back", {6, 1}, cube},
