@@ -13,7 +13,8 @@
 #define SHEET_COLUMNS 4u
 #define SHEET_MARGIN 8u
 #define LEAST_CELL 132u    /* pixels across: the longest name */
-#define MOST_CELL 320u
+#define MOST_CELL 240u
+#define SHEET_GREY 40      /* of 255 */
 #define LEAST_WIDTH 16u    /* of a picture: the flattest, of shape 6 : 1, keeps two rows */
 #define MOST_WIDTH 16384u
 
@@ -235,9 +236,13 @@ static int sheet_begin(Sheet *sheet, uint32_t width) {
     sheet->cell[0] = width < LEAST_CELL ? LEAST_CELL : width > MOST_CELL ? MOST_CELL : width;
     sheet->cell[1] = sheet->cell[0] * 9 / 16;
     sheet->shown = 0;
-    return picture_allocate(&sheet->image, BHR_FORMAT_RGBA8_SRGB,
-                            SHEET_COLUMNS * (sheet->cell[0] + SHEET_MARGIN) + SHEET_MARGIN,
-                            rows * (sheet->cell[1] + SHEET_MARGIN + 2 * CELL_HEIGHT) + SHEET_MARGIN);
+    if (!picture_allocate(&sheet->image, BHR_FORMAT_RGBA8_SRGB,
+                          SHEET_COLUMNS * (sheet->cell[0] + SHEET_MARGIN) + SHEET_MARGIN,
+                          rows * (sheet->cell[1] + SHEET_MARGIN + 2 * CELL_HEIGHT) + SHEET_MARGIN)) {
+        return 0;
+    }
+    picture_fill(&sheet->image, SHEET_GREY);
+    return 1;
 }
 
 /* The largest picture of its shape in the middle of the next cell, and its name below. */

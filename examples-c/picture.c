@@ -9,6 +9,7 @@
 
 #define CHANNELS 4u
 #define COLOURS 3u /* the fourth channel is alpha, which is no light */
+#define OPAQUE 255
 
 /* ---- memory ---- */
 
@@ -44,6 +45,15 @@ int picture_allocate(BhrImage *image, BhrFormat format, uint32_t width, uint32_t
 
 static unsigned char *pixel(const BhrImage *image, uint32_t x, uint32_t y) {
     return (unsigned char *)image->pixels + CHANNELS * ((size_t)y * image->width + x);
+}
+
+void picture_fill(BhrImage *image, unsigned char grey) {
+    for (uint32_t y = 0; y < image->height; y++) {
+        for (uint32_t x = 0; x < image->width; x++) {
+            memset(pixel(image, x, y), grey, COLOURS);
+            pixel(image, x, y)[COLOURS] = OPAQUE;
+        }
+    }
 }
 
 /* ---- scaling ---- */
@@ -88,7 +98,7 @@ static void mean_light(const BhrImage *from, const double light[256], Stretch ac
     for (uint32_t i = 0; i < COLOURS; i++) {
         out[i] = value_of(fmin(sum[i] / area, 1.0));
     }
-    out[COLOURS] = 255;
+    out[COLOURS] = OPAQUE;
 }
 
 void picture_scale(const BhrImage *from, BhrImage *to, uint32_t x, uint32_t y, uint32_t width, uint32_t height) {
