@@ -29,7 +29,7 @@ typedef struct Settings {
     const char *output, *video;
     uint32_t    frames, rate, size[2], samples;
     double      from, to, elevation, fov;
-    int32_t     look, backend;
+    int32_t     look, projection, backend;
     int         no_clock, help;
 } Settings;
 
@@ -66,6 +66,7 @@ static BhrStatus begin_fall(Scene *scene, const Settings *s) {
     options.fov = s->fov;
     BhrStatus status = scene_init(scene, &options);
     scene->camera.motion = BHR_MOTION_FREE_FALL;
+    scene->camera.projection = s->projection;
     scene->film.tone_map = BHR_TONE_MAP_AGX;
     scene->quality.samples_per_pixel = s->samples;
     camera_make_orthonormal(&scene->camera);
@@ -275,7 +276,8 @@ static int check(const Settings *s) {
 
 static int run(int argc, char **argv) {
     Settings s = {.output = "film-out", .frames = 240, .rate = 24, .size = {640, 360}, .samples = 4, .from = 12.0,
-                  .to = 0.05, .elevation = 20.0, .fov = 100.0, .look = LOOK_IN, .backend = BHR_BACKEND_AUTO};
+                  .to = 0.05, .elevation = 20.0, .fov = 100.0, .look = LOOK_IN,
+                  .projection = BHR_PROJECTION_PERSPECTIVE, .backend = BHR_BACKEND_AUTO};
     const Option options[] = {
         {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be; default film-out", NULL},
         {"--video", OPTION_TEXT, &s.video, "FILE", "a video instead of pictures, by ffmpeg; overwritten", NULL},
@@ -286,7 +288,8 @@ static int run(int argc, char **argv) {
         {"--from", OPTION_DOUBLE, &s.from, "R", "the first frame's radius in M; default 12", NULL},
         {"--to", OPTION_DOUBLE, &s.to, "R", "the last frame's radius in M; default 0.05", NULL},
         {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "above the disk's plane; default 20", NULL},
-        {"--fov", OPTION_DOUBLE, &s.fov, "DEG", "vertical field of view, below 180; default 100", NULL},
+        {"--fov", OPTION_DOUBLE, &s.fov, "DEG", "vertical field of view; default 100", NULL},
+        {"--projection", OPTION_CHOICE, &s.projection, NULL, "default perspective; fisheye for domes", PROJECTIONS},
         {"--look", OPTION_CHOICE, &s.look, NULL, "to the hole, from it, or across; default in", LOOKS},
         {"--no-clock", OPTION_FLAG, &s.no_clock, NULL, "writes no proper time and radius into the picture", NULL},
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
