@@ -1,5 +1,5 @@
-/* gallery.c -- named scenes into PNG files, and a contact sheet of them: what the renderer can show, each in a few lines.
- * Lengths are in units of the hole's mass M, angles in degrees. */
+/* gallery.c -- named scenes into PNG files, and a contact sheet of them: what the renderer can show, each in a few
+ * lines. Lengths are in units of the hole's mass M, angles in degrees. */
 #include "common.h"
 #include "picture.h"
 #include "scene.h"
@@ -257,7 +257,8 @@ static void sheet_add(Sheet *sheet, const BhrImage *picture, const char *name) {
     }
     picture_scale(picture, &sheet->image, x + (cell[0] - width) / 2, y + (cell[1] - height) / 2, width, height);
     uint32_t text = CELL_WIDTH * (uint32_t)strlen(name);
-    picture_write(&sheet->image, x + (text < cell[0] ? (cell[0] - text) / 2 : 0), y + cell[1] + CELL_HEIGHT / 2, 1, name);
+    x += text < cell[0] ? (cell[0] - text) / 2 : 0;
+    picture_write(&sheet->image, x, y + cell[1] + CELL_HEIGHT / 2, 1, name);
     sheet->shown++;
 }
 
@@ -317,7 +318,8 @@ static int render(BhrContext *context, const Settings *s, const Exhibit *exhibit
 /* Renders one scene, and puts it on the sheet unless that is NULL. 1, or 0 after a message. */
 static int make_picture(BhrContext *context, const Settings *s, const Exhibit *exhibit, Sheet *sheet) {
     BhrImage picture;
-    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, s->width, s->width * exhibit->shape[1] / exhibit->shape[0])) {
+    uint32_t height = s->width * exhibit->shape[1] / exhibit->shape[0];
+    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, s->width, height)) {
         return 0;
     }
     int made = render(context, s, exhibit, &picture);
@@ -386,7 +388,8 @@ static void list_exhibits(void) {
 /* 0, or EXIT_USAGE after a message. */
 static int check(const char *program, const Settings *s) {
     if (s->width < LEAST_WIDTH || s->width > MOST_WIDTH) {
-        fprintf(stderr, "%s: --width is %u; it must be %u to %u\n", program, (unsigned)s->width, LEAST_WIDTH, MOST_WIDTH);
+        fprintf(stderr, "%s: --width is %u; it must be %u to %u\n", program, (unsigned)s->width, LEAST_WIDTH,
+                MOST_WIDTH);
         return EXIT_USAGE;
     }
     if (s->only != NULL && find_exhibit(s->only) == NULL) {
@@ -412,7 +415,7 @@ static int run(int argc, char **argv) {
         return result;
     }
     if (s.help) {
-        printf("Usage: gallery [options]\nRenders named scenes into PNG files, and a contact sheet of them, " SHEET ".\n\n");
+        printf("Usage: gallery [options]\nRenders named scenes into PNG files, and a contact sheet, " SHEET ".\n\n");
         options_print(stdout, options, COUNT_OF(options));
         return EXIT_SUCCESS;
     }

@@ -16,7 +16,7 @@ int picture_allocate(BhrImage *image, BhrFormat format, uint32_t width, uint32_t
 /* Makes it all opaque grey, 0 to 255. */
 void picture_fill(BhrImage *image, unsigned char grey);
 
-/* `from` shrunk (or stretched) into the rectangle of `to`, which must lie inside it: each pixel is the mean light of the
+/* `from` shrunk (or stretched) into a rectangle of `to`, which must lie inside it: each pixel is the mean light of the
  * area that it covers. */
 void picture_scale(const BhrImage *from, BhrImage *to, uint32_t x, uint32_t y, uint32_t width, uint32_t height);
 

@@ -97,8 +97,8 @@ int video_open(Video *video, const char *path, uint32_t width, uint32_t height, 
     }
     snprintf(frame_size, sizeof frame_size, "%ux%u", (unsigned)width, (unsigned)height);
     snprintf(frame_rate, sizeof frame_rate, "%u", (unsigned)rate);
-    /* "file:" keeps ffmpeg from reading a protocol or an option into the name. Most players want 4:2:0; the primaries of
-     * sRGB are those of Rec. 709. */
+    /* "file:" keeps ffmpeg from reading a protocol or an option into the name. Most players want 4:2:0; the primaries
+     * of sRGB are those of Rec. 709. */
     snprintf(file, length, "file:%s", path);
     char *arguments[] = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
                          "-f", "rawvideo", "-pixel_format", "rgba", "-video_size", frame_size,
