@@ -95,14 +95,14 @@ static const double ORION[2] = {83.0, 1.0};
 
 static BhrStatus orion(Scene *scene) {
     scene->has_disk = 0;
-    scene->film.exposure_ev = -2.0;
+    scene->film.exposure_ev = -1.0;
     stand_before(scene, ORION[0], ORION[1], 1e9, 34.0); /* from so far the hole bends nothing that shows */
     return BHR_OK;
 }
 
 static BhrStatus einstein_ring(Scene *scene) {
     scene->has_disk = 0;
-    scene->film.exposure_ev = -2.0;
+    scene->film.exposure_ev = -1.0;
     stand_before(scene, ORION[0], ORION[1], 100.0, 34.0);
     return BHR_OK;
 }
@@ -133,28 +133,29 @@ static BhrStatus orbiting_observer(Scene *scene) {
 }
 
 static BhrStatus dome_master(Scene *scene) {
-    BhrStatus status = stand(scene, 12.0, -90.0, 25.0, 60.0);
+    scene->film.exposure_ev = -0.5;
+    BhrStatus status = stand(scene, 12.0, -90.0, 30.0, 60.0);
     turn(scene, 0.0, 40.0);
     dome(scene, 180.0);
     return status;
 }
 
 static BhrStatus equirect(Scene *scene) {
-    BhrStatus status = stand(scene, 12.0, -90.0, 12.0, 60.0);
+    scene->film.exposure_ev = -0.5;
     scene->camera.projection = BHR_PROJECTION_EQUIRECT;
-    return status;
+    return stand(scene, 15.0, -90.0, 25.0, 60.0);
 }
 
 static BhrStatus cube(Scene *scene) {
-    BhrStatus status = stand(scene, 12.0, -90.0, 12.0, 60.0);
+    scene->film.exposure_ev = -0.5;
     scene->camera.projection = BHR_PROJECTION_CUBE;
-    return status;
+    return stand(scene, 15.0, -90.0, 25.0, 60.0);
 }
 
 static BhrStatus grid(Scene *scene) {
     scene->has_disk = 0;
-    scene->sky.flags = BHR_SKY_GRID | BHR_SKY_STARS;
-    return stand(scene, 20.0, -90.0, 0.0, 80.0);
+    scene->sky.flags |= BHR_SKY_GRID;
+    return stand(scene, 20.0, -90.0, 20.0, 80.0);
 }
 
 static BhrStatus procedural(Scene *scene) {
@@ -213,7 +214,7 @@ static const Exhibit EXHIBITS[] = {
     {"dome-master", "half the sky for a planetarium", {1, 1}, dome_master},
     {"equirect", "the whole sky, 360 x 180 degrees", {2, 1}, equirect},
     {"cube", "the whole sky as the faces of a cube: right left up down front back", {6, 1}, cube},
-    {"grid", "the sky's coordinates, every second one behind the hole seen twice", {16, 9}, grid},
+    {"grid", "the sky's coordinates: all of them again within the Einstein ring", {16, 9}, grid},
     {"procedural", "a random sky", {16, 9}, procedural},
     {"view-redshift", "false colour: frequency here over frequency there", {16, 9}, view_redshift},
     {"view-order", "false colour: which image of the disk", {16, 9}, view_order},
