@@ -68,7 +68,7 @@ static void stand_before(Scene *scene, double right_ascension, double declinatio
 /* ---- the scenes ---- */
 
 static BhrStatus schwarzschild_edge_on(Scene *scene) {
-    return stand(scene, 30.0, -90.0, 4.0, 45.0);
+    return stand(scene, 30.0, 110.0, 4.0, 45.0);
 }
 
 static BhrStatus schwarzschild_face_on(Scene *scene) {
@@ -79,7 +79,8 @@ static BhrStatus kerr(Scene *scene) {
     scene->spin = 0.998;
     scene->disk.temperature = 18000.0; /* of the hottest ring; what is farther out shall be hot enough to be seen */
     scene->film.exposure_ev = 1.0;
-    return stand(scene, 32.0, -90.0, 9.0, 42.0);
+    scene->sky.map_brightness = 0.5;
+    return stand(scene, 32.0, 75.0, 9.0, 42.0);
 }
 
 static BhrStatus translucent(Scene *scene) {
@@ -95,15 +96,24 @@ static const double ORION[2] = {83.0, 1.0};
 
 static BhrStatus orion(Scene *scene) {
     scene->has_disk = 0;
-    scene->film.exposure_ev = -1.0;
+    scene->film.exposure_ev = -0.5;
+    scene->sky.map_brightness = 2.0;
     stand_before(scene, ORION[0], ORION[1], 1e9, 34.0); /* from so far the hole bends nothing that shows */
     return BHR_OK;
 }
 
 static BhrStatus einstein_ring(Scene *scene) {
     scene->has_disk = 0;
-    scene->film.exposure_ev = -1.0;
+    scene->film.exposure_ev = -0.5;
+    scene->sky.map_brightness = 2.0;
     stand_before(scene, ORION[0], ORION[1], 100.0, 34.0);
+    return BHR_OK;
+}
+
+/* The Milky Way's middle becomes a ring. */
+static BhrStatus galactic_centre(Scene *scene) {
+    scene->has_disk = 0;
+    stand_before(scene, 266.4, -28.9, 40.0, 60.0);
     return BHR_OK;
 }
 
@@ -207,6 +217,7 @@ static const Exhibit EXHIBITS[] = {
     {"translucent", "a thin disk: the images of all orders through each other", {16, 9}, translucent},
     {"orion", "the constellation with no hole before it", {16, 9}, orion},
     {"einstein-ring", "the same, with a hole 100 M away before its centre", {16, 9}, einstein_ring},
+    {"galactic-centre", "the middle of the Milky Way behind a hole", {16, 9}, galactic_centre},
     {"fall-4", "free fall, at r = 4 M, looking in", {16, 9}, fall_4},
     {"fall-2.5", "free fall, at r = 2.5 M", {16, 9}, fall_2_5},
     {"fall-1.5", "free fall, inside the horizon, at r = 1.5 M", {16, 9}, fall_1_5},
