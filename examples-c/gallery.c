@@ -15,7 +15,7 @@
 #define LEAST_CELL 132u    /* pixels across: the longest name */
 #define MOST_CELL 240u
 #define SHEET_GREY 40      /* of 255 */
-#define LEAST_WIDTH 16u    /* of a picture: the flattest, of shape 6 : 1, keeps two rows */
+#define LEAST_WIDTH 16u    /* of a picture: of shape 16 : 9 that is 9 rows */
 #define MOST_WIDTH 16384u
 
 /* ---- parts of scenes ---- */
@@ -329,9 +329,9 @@ static int render(BhrContext *context, const Settings *s, const Exhibit *exhibit
 
 /* Renders one scene, and puts it on the sheet unless that is NULL. 1, or 0 after a message. */
 static int make_picture(BhrContext *context, const Settings *s, const Exhibit *exhibit, Sheet *sheet) {
-    BhrImage picture;
-    uint32_t height = s->width * exhibit->shape[1] / exhibit->shape[0];
-    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, s->width, height)) {
+    BhrImage       picture;
+    const uint32_t unit = s->width / exhibit->shape[0]; /* exactly that shape: a cube must be six squares */
+    if (!picture_allocate(&picture, BHR_FORMAT_RGBA8_SRGB, unit * exhibit->shape[0], unit * exhibit->shape[1])) {
         return 0;
     }
     int made = render(context, s, exhibit, &picture);
@@ -416,7 +416,7 @@ static int run(int argc, char **argv) {
     const Option options[] = {
         {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be; default gallery-out", NULL},
         {"--only", OPTION_TEXT, &s.only, "NAME", "this scene alone, and no contact sheet", NULL},
-        {"--width", OPTION_UINT, &s.width, "N", "of a picture, in pixels, 16 to 16384; default 960", NULL},
+        {"--width", OPTION_UINT, &s.width, "N", "pixels across, 16 to 16384, rounded down to the scene's shape; default 960", NULL},
         {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256; default 8", NULL},
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
         {"--list", OPTION_FLAG, &s.list, NULL, "names the scenes", NULL},
