@@ -195,7 +195,7 @@ static BhrStatus view_deflection(Scene *scene) {
 }
 
 static BhrStatus view_steps(Scene *scene) {
-    scene->quality.method = BHR_METHOD_ADAPTIVE; /* AUTO looks most pixels up in tables, without a step */
+    scene->quality.method = BHR_METHOD_RK4; /* AUTO looks most pixels up in tables, without a step */
     return view(scene, BHR_VIEW_STEPS);
 }
 
@@ -416,7 +416,7 @@ static int run(int argc, char **argv) {
     const Option options[] = {
         {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be; default gallery-out", NULL},
         {"--only", OPTION_TEXT, &s.only, "NAME", "this scene alone, and no contact sheet", NULL},
-        {"--width", OPTION_UINT, &s.width, "N", "pixels across, 16 to 16384, rounded down to the scene's shape; default 960", NULL},
+        {"--width", OPTION_UINT, &s.width, "N", "pixels across, 16 to 16384, to fit the shape; default 960", NULL},
         {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256; default 8", NULL},
         {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
         {"--list", OPTION_FLAG, &s.list, NULL, "names the scenes", NULL},
