@@ -4,7 +4,7 @@
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, LensTables, Method};
+use bhr::scene::{Camera, LensTables, Method, Sky};
 use criterion::Criterion;
 use glam::DQuat;
 use std::cell::RefCell;
@@ -128,6 +128,8 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
     measured("spin 0, ADAPTIVE", size, Change::Nothing, Box::new(method(0.0, Method::Adaptive)));
     measured("spin 0, no disk", size, Change::Nothing, Box::new(|r| r.scene.disk = None));
     measured("spin 0, no stars", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = 0));
+    let procedural = |r: &mut Renderer| r.scene.sky.flags |= Sky::PROCEDURAL;
+    measured("spin 0, procedural stars too", size, Change::Nothing, Box::new(procedural));
     measured("spin 0, neither", size, Change::Nothing, Box::new(|r| (r.scene.disk, r.scene.sky.flags) = (None, 0)));
     let turbulent = |r: &mut Renderer| r.scene.disk.iter_mut().for_each(|d| d.turbulence = 1.0);
     measured("spin 0, turbulent", size, Change::Nothing, Box::new(turbulent));

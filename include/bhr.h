@@ -473,7 +473,7 @@ typedef struct BhrCamera {
     double forward[3];
     /** Any non-zero length, not parallel to forward. Default +z. */
     double up[3];
-    /** Full vertical angle, radians: (0, pi) for PERSPECTIVE, (0, 2 pi] for FISHEYE. Default pi / 3. */
+    /** Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi / 3. */
     double fov_y;
     /** BHR_MOTION_*. Default STATIC. */
     BhrMotion motion;
@@ -489,15 +489,25 @@ typedef struct BhrCamera {
 /** A flat picture; fov_y in (0, pi). */
 #define BHR_PROJECTION_PERSPECTIVE 0
 
-/** Equidistant dome master in the inscribed circle; fov_y is the full angle, to 2 pi. UNSUPPORTED in this version. */
+/**
+ * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y / 2
+ * (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in a
+ * TRANSPARENT image, NaN in views, rays without direction.
+ */
 #define BHR_PROJECTION_FISHEYE 1
 
-/** 360 x 180 degrees, forward in the middle, up at the top; fov_y is ignored. UNSUPPORTED in this version. */
+/**
+ * 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is ignored.
+ * A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels are far
+ * narrower than high, the light of single stars is not exact.
+ */
 #define BHR_PROJECTION_EQUIRECT 2
 
 /**
- * 6 faces side by side, width = 6 height: right left up down front back; image up is up, on the up face backward,
- * on the down face forward. UNSUPPORTED in this version.
+ * 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
+ * forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
+ * ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
+ * Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
  */
 #define BHR_PROJECTION_CUBE 3
 
@@ -544,8 +554,7 @@ BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, d
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
- * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant; UNSUPPORTED for projections other than
- * PERSPECTIVE.
+ * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
  */
 BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 
@@ -706,19 +715,29 @@ BhrStatus bhr_image_release(BhrImage *image);
 /** BhrSky.flags: the real sky, from the embedded star catalogue. */
 #define BHR_SKY_STARS 1u
 
-/** BhrSky.flags: a random star field. UNSUPPORTED in this version. */
+/**
+ * BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards the
+ * Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS the real
+ * ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and 110 MB of device
+ * memory.
+ */
 #define BHR_SKY_PROCEDURAL 2u
 
 /**
- * BhrSky.flags: the embedded glow of the Milky Way. Accepted, being part of the default, but not drawn by this
- * version.
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (a tenth of a second): true to
+ * about a degree, eight times as bright next to the stars as it is to the eye.
  */
 #define BHR_SKY_MILKY_WAY 4u
 
-/** BhrSky.flags: the map that bhr_set_sky_map was given. UNSUPPORTED in this version. */
+/** BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one. */
 #define BHR_SKY_MAP 8u
 
-/** BhrSky.flags: a coordinate grid, which shows the lensing. UNSUPPORTED in this version. */
+/**
+ * BhrSky.flags: a grid in sky axes, which shows the lensing: right ascension every hour (15 degrees; every 6 hours
+ * within 15 degrees of the poles), declination every 15 degrees, the equator and right ascension 0 in another
+ * colour. Lines are 1.3 pixels wide and laid over the sky, whatever its brightness and the shift of its light; where
+ * less than 10 pixels apart they fade into an even tint.
+ */
 #define BHR_SKY_GRID 16u
 
 /** What lies at infinity. */
@@ -729,14 +748,14 @@ typedef struct BhrSky {
     uint32_t flags;
     /** 0 .. 1e6. Default 1. */
     double stars_brightness;
-    /** Of the Milky Way and the map, 0 .. 1e6. Default 1. */
+    /** Of the Milky Way and the map: a factor on their light, 0 .. 1e6. Default 1. */
     double map_brightness;
     /**
      * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
      * to scene axes. Default (0, 0, 0, 1).
      */
     double orientation[4];
-    /** Of BHR_SKY_PROCEDURAL. Default 0. */
+    /** Of BHR_SKY_PROCEDURAL: any number. Default 0. */
     uint64_t seed;
 } BhrSky;
 
@@ -756,8 +775,18 @@ BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
 BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
 
 /**
- * Gives BHR_SKY_MAP its picture, copied before return; NULL removes it. Errors: INVALID_ARGUMENT for a bad image;
- * UNSUPPORTED for every other image in this version.
+ * Gives BHR_SKY_MAP its picture, copied before return (a second or two for 16384 x 8192); NULL removes it. The next
+ * frames that are asked for show it. It covers the whole sky whatever its aspect: at x of width and y of height, from
+ * the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). So the north
+ * pole is at the top, right ascension 0 (+x of the sky axes) in the middle, and +y at a quarter of the width: the
+ * picture looks as the sky does from inside, as astronomers' maps do.
+ *
+ * Light at rest is what the picture holds, linear Rec. 709, 8-bit formats decoded, to within 0.2 % of the brightest
+ * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
+ * that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
+ * Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
+ * Pictures of more than 16384 x 8192 are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
+ * a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
  */
 BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
@@ -897,25 +926,47 @@ BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *quality);
  * What a pixel shows. 8-bit formats and windows: false colour, without film. R32F: the value, NaN where there is
  * none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is INVALID_ARGUMENT. A
  * backend may not have every view: then rendering is UNSUPPORTED.
+ *
+ * The colours of values, for a host's legend: s goes from 0 to 1 over the range that each view states, and stays at 0
+ * and 1 beyond it. Sequential map: CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78 s, from
+ * dark blue over purple, red and orange to light yellow. Diverging map: m = |2 s - 1|, L = 95 - 57 m, (a, b) = (52.00,
+ * 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, and light grey between them. White of Rec. 709,
+ * encoded as sRGB; equal steps of s differ by equal steps of colour and of lightness. NaN: grey, (128, 128, 128).
  */
 typedef int32_t BhrView;
 
 /** The picture. The default. */
 #define BHR_VIEW_LIGHT 0
 
-/** g of the first crossing within the disk's radii, else the sky's redshift. */
+/**
+ * g of the first crossing within the disk's radii, else the sky's redshift; NaN captured without such a crossing.
+ * Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is shifted, blue above 1, red
+ * below.
+ */
 #define BHR_VIEW_REDSHIFT 1
 
-/** 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. */
+/**
+ * 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential map, s = (order + 2) / 5:
+ * order 3 and above are one colour.
+ */
 #define BHR_VIEW_ORDER 2
 
-/** Angle between look direction and sky direction, radians; NaN captured. */
+/**
+ * Angle between look direction and sky direction, radians; NaN captured. Sequential map, s = 1 + log2(angle / pi) / 6:
+ * angles from pi / 64 to pi.
+ */
 #define BHR_VIEW_DEFLECTION 3
 
-/** Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO). */
+/**
+ * Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO). Sequential map, s =
+ * log2(steps / 8) / 6: 8 .. 512 steps.
+ */
 #define BHR_VIEW_STEPS 4
 
-/** -g_tt at the first crossing of the equatorial plane; NaN without one. */
+/**
+ * -g_tt = 1 - 2 M / r at the first crossing of the equatorial plane; NaN without one. Sequential map, s = 1 - sqrt(1 -
+ * value): 0, the static limit, and less are its dark end; 1, infinity, its light one.
+ */
 #define BHR_VIEW_METRIC 5
 
 /** Sets the view. Default BHR_VIEW_LIGHT. Errors: INVALID_ARGUMENT for an unknown view. */
@@ -967,9 +1018,10 @@ BhrStatus bhr_set_progress(BhrContext *context,
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
  * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by
- * the progress callback; DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target
- * alone; after that the message says so, and what is not yet rendered is untouched.
+ * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
+ * UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST, OUT_OF_MEMORY.
+ * Until the first pixels are written an error leaves the target alone; after that the message says so, and what is
+ * not yet rendered is untouched.
  */
 BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
@@ -1072,7 +1124,8 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
 
 /**
  * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
- * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
+ * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
+ * the window is not 6 times as wide as high. Returns when the
  * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
  * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
  * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
@@ -1162,16 +1215,18 @@ typedef struct BhrHit {
 
 /**
  * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
- * the pixel centres; out_rays has room for width * height. A zero direction where a projection has none. Errors:
+ * the pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
+ * circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors:
  * INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon. out_rays is
- * left alone by INVALID_ARGUMENT and cleared by other errors.
+ * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
+ * UNSUPPORTED inside a spinning hole's horizon. out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
  */
 BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
 
 /**
  * One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
- * image). Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+ * image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
+ * bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
  */
 BhrStatus bhr_camera_ray(const BhrContext *context,
                          uint32_t width,

@@ -1,9 +1,5 @@
-// Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs. Reads `frame`
-// and light_table(i), defined where the bindings are.
-
-// A row of its own after the tables that never change; of each entry its value and the step to the next.
-const PROFILE_OFFSET: u32 = (FIXED_TABLES + TABLE_WIDTH - 1u) / TABLE_WIDTH * TABLE_WIDTH;
-const PROFILE_SIZE: u32 = 2048u;
+// Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs (at PROFILE_OFFSET of
+// StarIndex::wgsl_constants; of each entry its value and the step to the next). Reads `frame` and light_table(i), defined where the bindings are.
 
 // False: an effect that colours light or changes its brightness is switched off.
 override ALL_EFFECTS: bool = true;

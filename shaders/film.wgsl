@@ -1,10 +1,9 @@
 // Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of packed.wgsl
 // or screen.wgsl.
 
-// What a pipeline is made for; the numbers of ToneMap and PixelFormat, and whether a view's value is shown.
+// What a pipeline is made for: the numbers of ToneMap and PixelFormat. (The view: false_colour.wgsl.)
 override TONE_MAP: u32 = 1u;
 override FORMAT: u32 = 1u;
-override FALSE_COLOUR: bool = false;
 
 struct FilmParams {
     exposure: f32,
@@ -55,9 +54,8 @@ fn develop_bgra8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
 }
 
 fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    if FALSE_COLOUR {
-        let share = (radiance.x - film.view_low) * film.view_scale;
-        return vec4<u32>(vec3<u32>(false_colour(share) * 255.0 + 0.5), 255u);
+    if FALSE_COLOUR != 0u {
+        return vec4<u32>(vec3<u32>(false_colour(radiance.x) * 255.0 + 0.5), 255u);
     }
     let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
     // Most of the sky is black, and black stays black, whatever the dither. (A `return` here, called from a loop, crashes the shader
@@ -164,20 +162,4 @@ fn agx_sigmoid(x: f32) -> f32 {
     let power = select(3.25, 3.0, toe);
     let t = max(2.0 * (x - AGX_PIVOT) / scale, 0.0);
     return clamp(0.5 + scale * t / pow(1.0 + pow(t, power), 1.0 / power), 0.0, 1.0);
-}
-
-fn false_colour(share: f32) -> vec3<f32> {
-    if is_nan(vec3<f32>(share)).x {
-        return vec3<f32>(0.5);
-    }
-    let s = 2.0 * clamp(share, 0.0, 1.0) - 1.0;
-    var sum = vec3<f32>(0.519528, 0.052835, 0.283648);
-    sum = sum * s + vec3<f32>(-0.084876, 0.072525, 0.410502);
-    sum = sum * s + vec3<f32>(-1.206411, -0.080524, -0.039970);
-    sum = sum * s + vec3<f32>(-0.142943, -0.175859, -0.507857);
-    sum = sum * s + vec3<f32>(1.150665, 0.011892, -0.238708);
-    sum = sum * s + vec3<f32>(0.731407, -0.006731, -0.220599);
-    sum = sum * s + vec3<f32>(-0.093959, 0.467181, -0.098045);
-    sum = sum * s + vec3<f32>(0.122859, 0.565404, 0.547807);
-    return clamp(sum, vec3<f32>(0.0), vec3<f32>(1.0));
 }

@@ -1,8 +1,9 @@
-// The scene as the kernels of a frame see it, and the lens. src/gpu/uniforms.rs mirrors the struct.
+// The scene as the kernels of a frame see it. src/gpu/uniforms.rs mirrors the struct.
 
 // The scene in the hole's units; the same for all tiles and samples of a frame.
 struct Frame {
-    // Camera axes, components in the observer's frame: half the image plane's width and height, and forward.
+    // Units of a FramePoint (projection.wgsl), to the right, up, forward; components in the observer's frame. w of the first: angle of a
+    // fisheye's pixel.
     right: vec4<f32>,
     up: vec4<f32>,
     forward: vec4<f32>,
@@ -18,7 +19,8 @@ struct Frame {
     zamo: vec4<f32>,
     // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
-    // Columns that take chart directions to sky axes; w of the first: brightness of the stars.
+    // Columns that take chart directions to sky axes; w of the first: brightness of the stars, of the second: of the maps, of the third:
+    // least_patch of stars.rs.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,
@@ -40,6 +42,8 @@ struct Frame {
     view: u32,
     // Seed of the turbulence, and its generation at the reference time.
     pattern: vec2<u32>,
+    // Columns and rows of the finest levels of the Milky Way and of the host's map.
+    map_sizes: vec4<u32>,
 }
 
 const VIEW_REDSHIFT: u32 = 1u;
@@ -51,25 +55,3 @@ const VIEW_METRIC: u32 = 5u;
 const EFFECT_DOPPLER_SHIFT: u32 = 1u;
 const EFFECT_GRAVITY_SHIFT: u32 = 2u;
 const EFFECT_BEAMING: u32 = 4u;
-
-// Unit look direction, components in the camera's own frame, through (x, y) of the full frame in pixels.
-fn camera_look(x: f32, y: f32) -> vec3<f32> {
-    let right = 2.0 * x / frame.size.x - 1.0;
-    let up = 1.0 - 2.0 * y / frame.size.y;
-    return normalize(frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz);
-}
-
-// A look direction, and its changes to the next pixel right and down but for what they hold along it.
-struct CameraView {
-    look: vec3<f32>,
-    dx: vec3<f32>,
-    dy: vec3<f32>,
-}
-
-fn camera_view(x: f32, y: f32) -> CameraView {
-    let right = 2.0 * x / frame.size.x - 1.0;
-    let up = 1.0 - 2.0 * y / frame.size.y;
-    let ray = frame.right.xyz * right + frame.up.xyz * up + frame.forward.xyz;
-    let inverse = inverseSqrt(dot(ray, ray));
-    return CameraView(ray * inverse, frame.right.xyz * (2.0 / frame.size.x * inverse), frame.up.xyz * (-2.0 / frame.size.y * inverse));
-}

@@ -71,7 +71,7 @@ fn nystrom_step_of_n(c: Constants, s: State, h: f32, end: ptr<function, State>) 
 
 // a = 0: N'' = -K N turns N by sqrt(K) h in the ray's plane.
 fn turn_n(c: Constants, s: State, h: f32, end: ptr<function, State>) {
-    let kappa = sqrt(max(c.k, 1e-12));
+    let kappa = sqrt(max(c.k, 1e-30));
     let turn = sincos(kappa * h);
     (*end).n = s.n * turn.y + s.dn * (turn.x / kappa);
     (*end).dn = s.dn * turn.y - s.n * (turn.x * kappa);
@@ -140,6 +140,16 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     let room = max(u_plus - s.u, HORIZON_ROOM * u_plus);
     let limit = clamp(1.2 * h, 0.03, 0.35) * room / (abs(s.du) + sqrt(curvature * room));
     return select(1e30, limit, s.u > 0.3 * u_plus);
+}
+
+// Inside the horizon with u' from the first integral (integrator.rs: held_inside).
+fn held_inside(c: Constants, s: State) -> State {
+    var held = s;
+    if !SPINNING && STEP_LIMIT {
+        let du = -sqrt(max(c.energy * c.energy + c.k * s.u * s.u * (2.0 * s.u - 1.0), 0.0));
+        held.du = select(s.du, du, s.du < 0.0 && s.u * c.r_plus >= 1.0);
+    }
+    return held;
 }
 
 // Quintic Hermite interpolation over one step, in the fraction of the step.

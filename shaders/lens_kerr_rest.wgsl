@@ -1,12 +1,14 @@
 // Ray records with spin of pixels that the tables of lens_kerr.wgsl do not hold: integrated. The sky's footprint is the tables'
 // all the same; those of crossings come from the next pixels' rays.
 
-// u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right, of the next below. u is 0 where
-// there is none.
+// u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right (to the left where a face ends), of
+// the next below. u is 0 where there is none.
 const REST_ORDERS: u32 = 16u;
 var<private> rest_crossings: array<vec3<f32>, 48>;
 var<private> rest_ray: u32;
 var<private> rest_order: u32;
+// Of the second ray from the pixel: 1 or -1.
+var<private> rest_step: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     var azimuth = 0.0;
@@ -22,10 +24,12 @@ fn ray_record(id: vec2<u32>) -> Record {
     for (var i = 0u; i < 3u * REST_ORDERS; i += 1u) {
         rest_crossings[i] = vec3<f32>(0.0);
     }
+    let x = pixel_place(id).x;
+    rest_step = select(-1.0, 1.0, same_face(x, x + 1.0));
     // The pixel itself comes last.
     for (var k = select(1u, 3u, FOOTPRINTS); k > 0u; k -= 1u) {
         rest_ray = k - 1u;
-        let place = pixel_place(id) + vec2<f32>(f32(rest_ray & 1u), f32(rest_ray >> 1u));
+        let place = pixel_place(id) + vec2<f32>(f32(rest_ray & 1u) * rest_step, f32(rest_ray >> 1u));
         let begin = begin_local(local_look(camera_look(place.x, place.y)).n);
         let traced = trace(begin.c, begin.state, settings);
         record.fate = traced.fate;
@@ -56,16 +60,16 @@ fn next_crossing() -> Crossing {
         if PATTERN {
             let at = rest_crossings[crossing.order];
             crossing.place = Place(-log(at.x), at.y, at.z);
-            crossing.dx = rest_change(at, rest_crossings[REST_ORDERS + crossing.order]);
-            crossing.dy = rest_change(at, rest_crossings[2u * REST_ORDERS + crossing.order]);
+            crossing.dx = rest_change(at, rest_crossings[REST_ORDERS + crossing.order], rest_step);
+            crossing.dy = rest_change(at, rest_crossings[2u * REST_ORDERS + crossing.order], 1.0);
         }
     }
     return crossing;
 }
 
-fn rest_change(here: vec3<f32>, next: vec3<f32>) -> Place {
+fn rest_change(here: vec3<f32>, next: vec3<f32>, step: f32) -> Place {
     if next.x <= 0.0 {
         return Place(1e30, 0.0, 0.0);
     }
-    return Place(-log(next.x / here.x), wrap_angle(next.y - here.y), next.z - here.z);
+    return Place(-step * log(next.x / here.x), step * wrap_angle(next.y - here.y), step * (next.z - here.z));
 }

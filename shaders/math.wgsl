@@ -8,7 +8,18 @@ const TAU: f32 = 6.28318530717959;
 // |x| <= pi/4 that Cephes uses (Moshier 1992).
 fn sincos(x: f32) -> vec2<f32> {
     let k = round(x * 0.636619772367581);
-    let y = (x - k * 1.5703125) - k * 4.83826794897e-4;
+    return sincos_quarters((x - k * 1.5703125) - k * 4.83826794897e-4, k);
+}
+
+// (sin, cos) of 2 pi part / whole, to 2e-7: quarters of the whole are taken off exactly where whole and part are pixels, f32 turns
+// would round.
+fn sincos_turn(part: f32, whole: f32) -> vec2<f32> {
+    let k = round(4.0 * part / whole);
+    return sincos_quarters((part - k * (0.25 * whole)) * (TAU / whole), k);
+}
+
+// Of y + k pi/2, |y| <= pi/4, k a whole number.
+fn sincos_quarters(y: f32, k: f32) -> vec2<f32> {
     let y2 = y * y;
     let s = y + y * y2 * (-1.6666654611e-1 + y2 * (8.3321608736e-3 - y2 * 1.9515295891e-4));
     let c = 1.0 - 0.5 * y2 + y2 * y2 * (4.166664568298827e-2 + y2 * (-1.388731625493765e-3 + y2 * 2.443315711809948e-5));

@@ -5,10 +5,16 @@
 // Tables as textures, TABLE_WIDTH entries a row: software drivers reach into buffers lane by lane.
 @group(0) @binding(2) var light_tables: texture_2d<f32>;
 @group(0) @binding(3) var star_cells: texture_2d<u32>;
+// Pyramids of sky_map.wgsl: the embedded one, and the host's.
+@group(0) @binding(4) var milky_way: texture_2d<f32>;
+@group(0) @binding(5) var sky_map: texture_2d<f32>;
 
 // What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every `if`.
 override SHOWS_LIGHT: bool = true;
 override SHOWS_STARS: bool = true;
+override SHOWS_MILKY_WAY: bool = true;
+override SHOWS_MAP: bool = true;
+override SHOWS_GRID: bool = true;
 override OPAQUE: bool = false;
 
 const TABLE_WIDTH: u32 = 2048u;
@@ -21,16 +27,27 @@ fn star_cell(i: u32) -> u32 {
     return textureLoad(star_cells, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0).x;
 }
 
-// Of the tile's pixel `id`: light and alpha, or the view's value first.
+// Of the tile's pixel `id`: light and alpha, or the view's value first; nothing where the projection shows nothing.
 fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
+    let seen = has_look(pixel_place(id));
     if SHOWS_LIGHT {
-        return pixel_light(record);
+        return select(vec4<f32>(0.0), pixel_light(record), seen);
     }
-    return vec4<f32>(view_value(record, id), 0.0, 0.0, 1.0);
+    return vec4<f32>(select(no_value(), view_value(record, id), seen), 0.0, 0.0, 1.0);
+}
+
+// NaN, which may not be written as a constant.
+fn no_value() -> f32 {
+    return bitcast<f32>(0x7fc00000u | frame.view);
 }
 
 fn to_sky(d: vec3<f32>) -> vec3<f32> {
     return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
+}
+
+// Of stars.rs.
+fn least_patch() -> f32 {
+    return frame.sky_z.w;
 }
 
 fn pixel_light(here: Record) -> vec4<f32> {
@@ -54,7 +71,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
         light += open * frame.disk.z * structure * disk_light(crossing.u, shift);
         open *= 1.0 - frame.disk.z;
     }
-    if SHOWS_STARS && here.fate == FATE_ESCAPED && open > 0.0 {
+    if (SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID) && here.fate == FATE_ESCAPED && open > 0.0 {
         light += open * sky_light(here);
     }
     return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
@@ -65,13 +82,36 @@ fn sky_light(here: Record) -> vec3<f32> {
     if !ALL_EFFECTS {
         shift = visible_shift(here.sky_redshift, nu_static_eye(here.energy) / here.energy);
     }
-    return star_light(here.sky, here.footprint, shift.colour, shift.beaming) * frame.sky_x.w;
+    var light = vec3<f32>(0.0);
+    if SHOWS_STARS {
+        light = star_light(here.sky, here.footprint, shift.colour, shift.beaming) * frame.sky_x.w;
+    }
+    if SHOWS_MILKY_WAY || SHOWS_MAP {
+        light += extended_light(here, shift) * frame.sky_y.w;
+    }
+    if SHOWS_GRID {
+        light = under_grid(light, to_sky(here.sky), here.footprint);
+    }
+    return light;
+}
+
+// Of the Milky Way and the host's map.
+fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
+    let d = to_sky(here.sky);
+    let taps = map_taps(here.footprint);
+    var light = vec3<f32>(0.0);
+    if SHOWS_MILKY_WAY {
+        light = shifted_map_light(map_light(milky_way, frame.map_sizes.xy, d, taps), shift.colour, shift.beaming);
+    }
+    if SHOWS_MAP {
+        light += shifted_map_light(map_light(sky_map, frame.map_sizes.zw, d, taps), shift.colour, shift.beaming);
+    }
+    return light;
 }
 
 // What BHR_VIEW_* shows; NaN where there is nothing.
 fn view_value(here: Record, id: vec2<u32>) -> f32 {
-    // NaN may not be written as a constant.
-    let nothing = bitcast<f32>(0x7fc00000u | frame.view);
+    let nothing = no_value();
     let first = next_crossing();
     let on_disk = first.u > 0.0;
     let in_sky = here.fate == FATE_ESCAPED;

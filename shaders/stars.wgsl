@@ -1,8 +1,7 @@
 // The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule), where the reasons are.
-// Reads light_table(i), star_cell(i) and to_sky(d), defined where the bindings are; the constants in capitals that are not here come from
+// Reads light_table(i), star_cell(i), to_sky(d) and least_patch(), defined where the bindings are; the constants in capitals that are not here come from
 // StarIndex::wgsl_constants.
 
-const STAR_MIN_AREA: f32 = 1e-3;
 const STAR_TINY_AREA: f32 = 1e-30;
 const MAX_STAR_LIGHT: f32 = 1e9;
 
@@ -54,6 +53,12 @@ fn star_footprint(t: f32) -> f32 {
     return select(0.5 * skirt * skirt, 0.75 - a * a, a < 0.5);
 }
 
+// The mean sky's brightness in a direction, relative to its mean over the sky (StarIndex::mean_sky_density).
+fn mean_sky_density(crowding: f32, direction: vec3<f32>) -> f32 {
+    let height = 1.0 + abs(dot(direction, GALACTIC_POLE));
+    return 1.0 + crowding * (2.0 / (height * height) - 1.0);
+}
+
 // Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1: of the chart direction `seen` and its footprint.
 fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f32) -> vec3<f32> {
     let d = to_sky(seen);
@@ -68,7 +73,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
     let fade = select(0.0, star_fade(level, radius), indexed);
     let list = star_cell(cell_of(d, level));
     let mean = light_table(MEAN_SKY_OFFSET + level);
-    var i = STAR_LISTS_OFFSET + (list >> 8u);
+    var i = list >> 8u;
     let end = i + select(0u, list & 255u, indexed);
     // Bit 0: this level's mean sky is to be shaded; bit 1: the next one's.
     var means = select(0u, 1u, mean.x > 0.0 && fade > 0.0) | select(0u, 2u, mean.y > 0.0 && fade < 1.0);
@@ -82,7 +87,8 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
     let across = p_axis * dy.y - q_axis * dy.x;
     let down = q_axis * dx.x - p_axis * dx.y;
     let area = abs(dx.x * dy.y - dx.y * dy.x);
-    let magnification = 1.0 / max(max(area, STAR_MIN_AREA * stretch2), STAR_TINY_AREA);
+    let density = mean_sky_density(mean.w, d);
+    let magnification = 1.0 / max(max(area, least_patch() * stretch2), STAR_TINY_AREA);
     // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe runs whatever
     // stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break; }` finds no star there, Mesa 22.3.)
     loop {
@@ -104,7 +110,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
             var table = MEAN_SKY_TABLES + select(level + 1u, level, own) * BLACKBODY_SIZE;
             var temperature = select(mean.y, mean.x, own);
             var log_reference = 0.0;
-            var share = select(1.0 - fade, fade, own);
+            var share = density * select(1.0 - fade, fade, own);
             if hit {
                 let kind = light_table(STARS_OFFSET + u32(star.w));
                 table = BLACKBODY_OFFSET;

@@ -58,7 +58,10 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
             steps += 1u;
             h = min(h_wish, h_most);
             if STEP_LIMIT {
-                h = min(h, step_limit(c, state, settings.step));
+                // Inside, the limit is all.
+                let limit = step_limit(c, state, settings.step);
+                let inside = state.u >= u_plus;
+                h = select(min(h, limit), select(limit, min(h_wish, limit), METHOD == METHOD_DORMAND_PRINCE), inside);
             }
             let step = step_ray(c, state, h);
             if METHOD == METHOD_DORMAND_PRINCE {
@@ -69,7 +72,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
                     continue;
                 }
             }
-            next = step.state;
+            next = held_inside(c, step.state);
             crossed = side * next.n.z < 0.0;
             let captured = next.du > 0.0 && (next.u >= settings.capture_u || u_plus - next.u < 1e-6 * u_plus);
             fate = select(select(FATE_UNRESOLVED, FATE_CAPTURED, captured), FATE_ESCAPED, next.u <= 0.0);

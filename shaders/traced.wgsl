@@ -7,11 +7,15 @@
 
 // Of the record at hand: its place in the textures, the crossings not yet given, and the layer of the next.
 var<private> traced_pixel: vec2<u32>;
+// Whether the neighbours to the left and to the right are of the same face.
+var<private> traced_joined: vec2<bool>;
 var<private> traced_orders: u32;
 var<private> traced_layer: u32;
 
 fn ray_record(id: vec2<u32>) -> Record {
     traced_pixel = id + 1u;
+    let x = pixel_place(id).x;
+    traced_joined = vec2<bool>(same_face(x, x - 1.0), same_face(x, x + 1.0));
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
@@ -29,13 +33,19 @@ fn ray_record(id: vec2<u32>) -> Record {
     return record;
 }
 
+// Whether the neighbours at -+ step may be compared with the pixel.
+fn traced_neighbours(step: vec2<u32>) -> vec2<bool> {
+    return select(traced_joined, vec2<bool>(true), step.x == 0u);
+}
+
 // d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; w is 0 where neither
 // did, which only the mean sky can stand for.
 fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
     let before = textureLoad(record_sky, traced_pixel - step, 0);
     let after = textureLoad(record_sky, traced_pixel + step, 0);
-    let has_before = before.w != 0.0;
-    let has_after = after.w != 0.0;
+    let joined = traced_neighbours(step);
+    let has_before = joined.x && before.w != 0.0;
+    let has_after = joined.y && after.w != 0.0;
     let first = select(here, before.xyz, has_before);
     let last = select(here, after.xyz, has_after);
     let difference = (last - first) * select(1.0, 0.5, has_before && has_after);
@@ -78,8 +88,9 @@ fn crossing_of_order(pixel: vec2<u32>, order: u32) -> vec4<f32> {
 fn derivative_of_place(here: vec4<f32>, order: u32, step: vec2<u32>) -> Place {
     let before = crossing_of_order(traced_pixel - step, order);
     let after = crossing_of_order(traced_pixel + step, order);
-    let has_before = before.x > 0.0;
-    let has_after = after.x > 0.0;
+    let joined = traced_neighbours(step);
+    let has_before = joined.x && before.x > 0.0;
+    let has_after = joined.y && after.x > 0.0;
     if !has_before && !has_after {
         return Place(1e30, 0.0, 0.0);
     }

@@ -339,8 +339,7 @@ impl Renderer {
     /// DEVICE_LOST.
     pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<Shown> {
         self.check_device()?;
-        let whole = Region { full_width: 1, full_height: 1, x: 0, y: 0 };
-        self.scene.lens(&whole)?;
+        self.scene.observer()?;
         if !surface.has_ended() && !self.surfaces.iter().any(|ours| std::ptr::eq(ours.as_ptr(), Arc::as_ptr(surface))) {
             return Err(Error::argument("surface was made by another context"));
         }
@@ -384,7 +383,7 @@ impl Renderer {
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
-    /// INVALID_STATE where the camera's motion cannot be; CANCELLED when `progress` returns false (tiles not yet begun are
+    /// INVALID_STATE where the camera's motion cannot be, or for a cube of another shape; CANCELLED when `progress` returns false (tiles not yet begun are
     /// untouched); whatever the device reports.
     pub fn render(
         &mut self,

@@ -70,7 +70,7 @@ impl<'a> Truth<'a> {
 
     /// Through the centre of pixel `index`, counted row by row.
     fn look(&self, index: usize) -> DVec3 {
-        let width = self.lens.width as usize;
+        let width = self.lens.mapping.width as usize;
         self.lens.look((index % width) as f64 + 0.5, (index / width) as f64 + 0.5)
     }
 
@@ -105,7 +105,7 @@ impl<'a> Truth<'a> {
 
     /// Of every pixel.
     fn rays(&self) -> Vec<TrueRay> {
-        let pixels = self.lens.width as usize * self.lens.height as usize;
+        let pixels = self.lens.mapping.width as usize * self.lens.mapping.height as usize;
         let ray = |i| {
             let look = self.look(i);
             let here = self.sight(look);
@@ -543,7 +543,7 @@ impl Changes {
     const SHARE: f64 = 1e-3;
 
     fn new(truth: &Truth, pixel: usize) -> Self {
-        let width = truth.lens.width as usize;
+        let width = truth.lens.mapping.width as usize;
         let (x, y) = ((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
         let h = 0.5 * Self::SHARE;
         let at = |dx: f64, dy: f64| truth.sight(truth.lens.look(x + dx, y + dy));

@@ -9,11 +9,12 @@ use bhr::sky::StarIndex;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
-const SNIPPETS: [&str; 4] = [
+const SNIPPETS: [&str; 5] = [
     include_str!("../shaders/blackbody.wgsl"),
     include_str!("../shaders/stars.wgsl"),
     include_str!("../shaders/film.wgsl"),
     include_str!("../shaders/record.wgsl"),
+    include_str!("../shaders/false_colour.wgsl"),
 ];
 
 const BINDINGS: &str = "
@@ -25,6 +26,7 @@ const BINDINGS: &str = "
 fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 fn star_cell(i: u32) -> u32 { return star_cells[i]; }
 fn to_sky(d: vec3<f32>) -> vec3<f32> { return d; }
+fn least_patch() -> f32 { return 1e-3; }
 ";
 
 /// Every item is four vectors; its result is one.
@@ -51,8 +53,7 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    [BINDINGS, ENTRIES, &StarIndex::shared().wgsl_constants(), SNIPPETS[0], SNIPPETS[1], SNIPPETS[2], SNIPPETS[3]]
-        .concat()
+    [&[BINDINGS, ENTRIES, &StarIndex::wgsl_constants()][..], &SNIPPETS].concat().concat()
 }
 
 #[test]
@@ -122,8 +123,8 @@ impl Gpu {
             mapped_at_creation: false,
         });
         let buffers = [
-            storage(bytemuck::cast_slice(&index.light_tables()), wgpu::BufferUsages::STORAGE),
-            storage(bytemuck::cast_slice(&index.star_cells), wgpu::BufferUsages::STORAGE),
+            storage(bytemuck::cast_slice(&index.light_tables().collect::<Vec<_>>()), wgpu::BufferUsages::STORAGE),
+            storage(bytemuck::cast_slice(&index.cell_tables().collect::<Vec<_>>()), wgpu::BufferUsages::STORAGE),
             storage(bytemuck::cast_slice(items), wgpu::BufferUsages::STORAGE),
             output.clone(),
             storage(bytemuck::bytes_of(&film), wgpu::BufferUsages::UNIFORM),
@@ -243,7 +244,7 @@ fn gpu_stars_agree() {
     let mut lit = 0;
     for (item, bits) in items.iter().zip(gpu.run("run_stars", no_film(), &items)) {
         let g = item[3][0].into();
-        let rgb = index.star_light(widened(item[0]), widened(item[1]), widened(item[2]), g, g);
+        let rgb = index.star_light(widened(item[0]), [widened(item[1]), widened(item[2])], g, g, 1e-3);
         let scale = rgb.iter().fold(1e-6_f64, |a, &b| a.max(b));
         lit += u32::from(scale > 1e-6);
         for c in 0..3 {
@@ -275,7 +276,9 @@ fn gpu_film_agrees() {
             cases.push(FilmParams::new(&film, View::Light, format, format != PixelFormat::Rgba16F));
         }
     }
-    cases.push(FilmParams::new(&Film::default(), View::Redshift, PixelFormat::Rgba8Srgb, false));
+    for view in [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric] {
+        cases.push(FilmParams::new(&Film::default(), view, PixelFormat::Rgba8Srgb, false));
+    }
     cases.push(FilmParams::new(&Film::default(), View::Redshift, PixelFormat::R32F, false));
     for params in cases {
         let tolerance = if params.format <= 2 { 1 } else { 0 };

@@ -1,45 +1,16 @@
 //! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against theory.
 //! The GPU is whatever adapter comes first; without one the tests fail.
 
+mod frames;
+
 use bhr::gpu::{Device, Search, adapters};
-use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::{Camera, Effects, LensTables, Lensing, Motion, Region, Sky, View};
+use frames::{both, cpu, differing, floats, gpu, picture, tiled};
 use glam::DVec3;
 use serde_json::Value;
-
-fn cpu() -> Renderer {
-    Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap()
-}
-
-fn gpu() -> Renderer {
-    let renderer = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    renderer
-}
-
-fn both() -> [(&'static str, Renderer); 2] {
-    [("cpu", cpu()), ("gpu", gpu())]
-}
-
-fn picture(
-    renderer: &mut Renderer,
-    format: PixelFormat,
-    size: [u32; 2],
-    region: Option<Region>,
-    transparent: bool,
-) -> Vec<u8> {
-    let layout = Layout::packed(format, size[0], size[1]);
-    let mut pixels = vec![0; (size[0] * size[1]) as usize * format.bytes_per_pixel()];
-    let mut image = ImageMut::new(layout, &mut pixels).unwrap();
-    renderer.render(&mut image, transparent, region, &mut |_| true).unwrap();
-    pixels
-}
-
-fn floats(bytes: &[u8]) -> Vec<f32> {
-    bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect()
-}
 
 /// A camera that looks at the hole from (r, inclination), azimuth 0.
 fn camera(r: f64, inclination_degrees: f64, fov_degrees: f64, motion: Motion) -> Camera {
@@ -157,8 +128,7 @@ fn gpu_and_cpu_pictures_agree() {
             picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false)
         });
         let [cpu, gpu] = &mut pictures;
-        let pixels = cpu.chunks_exact(4).zip(gpu.chunks_exact(4));
-        let differ = pixels.filter(|(a, b)| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1)).count();
+        let differ = differing(cpu, gpu);
         let share = differ as f64 / f64::from(size[0] * size[1]);
         println!("{name}: {differ} of {} pixels differ by more than one step", size[0] * size[1]);
         assert!(share <= 1e-3, "{name}: {differ} pixels differ by more than one step");
@@ -316,24 +286,6 @@ fn size_of_tables(renderer: &mut Renderer, (spin, camera): (f64, Camera)) -> [u3
     let size = sizes.into_iter().find(looked_up);
     assert!(size.is_some() || spin != 0.0, "no frame without spin is looked up");
     size.unwrap_or(sizes[0])
-}
-
-/// A picture put together from odd tiles.
-fn tiled(renderer: &mut Renderer, format: PixelFormat, [width, height]: [u32; 2]) -> Vec<u8> {
-    let bytes = format.bytes_per_pixel();
-    let mut joined = vec![0; (width * height) as usize * bytes];
-    // 7 and 40 columns, 1 and 30 rows, and what is left: small and large.
-    for (x, w) in [(0, 7), (7, 33), (40, width - 40)] {
-        for (y, h) in [(0, 1), (1, 29), (30, height - 30)] {
-            let region = Region { full_width: width, full_height: height, x, y };
-            let tile = picture(renderer, format, [w, h], Some(region), false);
-            for (row, line) in tile.chunks_exact(w as usize * bytes).enumerate() {
-                let at = ((y as usize + row) * width as usize + x as usize) * bytes;
-                joined[at..at + line.len()].copy_from_slice(line);
-            }
-        }
-    }
-    joined
 }
 
 /// A frame cut into many submissions equals one that is not: 1400 x 1100 pixels exceed one tile.

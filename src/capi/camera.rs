@@ -13,12 +13,18 @@ use glam::DVec3;
 pub type BhrProjection = i32;
 /// A flat picture; fov_y in (0, pi).
 pub const BHR_PROJECTION_PERSPECTIVE: BhrProjection = 0;
-/// Equidistant dome master in the inscribed circle; fov_y is the full angle, to 2 pi. UNSUPPORTED in this version.
+/// Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y / 2
+/// (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in a
+/// TRANSPARENT image, NaN in views, rays without direction.
 pub const BHR_PROJECTION_FISHEYE: BhrProjection = 1;
-/// 360 x 180 degrees, forward in the middle, up at the top; fov_y is ignored. UNSUPPORTED in this version.
+/// 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is ignored.
+/// A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels are far
+/// narrower than high, the light of single stars is not exact.
 pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
-/// 6 faces side by side, width = 6 height: right left up down front back; image up is up, on the up face backward,
-/// on the down face forward. UNSUPPORTED in this version.
+/// 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
+/// forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
+/// ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
+/// Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
 pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
 
 /// How the camera's observer moves. What the hole forbids at the camera's place is INVALID_STATE when a frame or
@@ -48,7 +54,7 @@ pub struct BhrCamera {
     pub forward: [f64; 3],
     /// Any non-zero length, not parallel to forward. Default +z.
     pub up: [f64; 3],
-    /// Full vertical angle, radians: (0, pi) for PERSPECTIVE, (0, 2 pi] for FISHEYE. Default pi / 3.
+    /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi / 3.
     pub fov_y: f64,
     /// BHR_MOTION_*. Default STATIC.
     pub motion: BhrMotion,
@@ -98,12 +104,6 @@ impl TryFrom<BhrCamera> for Camera {
         };
         check_reserved(given.reserved, "camera")?;
         camera.check()?;
-        if camera.projection != Projection::Perspective {
-            return Err(Error::unsupported(format!(
-                "camera projection is {} ({:?}); this version has PERSPECTIVE (0) only",
-                given.projection, camera.projection
-            )));
-        }
         Ok(camera)
     }
 }
@@ -210,8 +210,7 @@ pub unsafe extern "C" fn bhr_camera_orbit(
 }
 
 /// Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
-/// or parallel, fov_y out of range, |velocity| >= 1, an unknown constant; UNSUPPORTED for projections other than
-/// PERSPECTIVE.
+/// or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_camera(context: *mut BhrContext, camera: *const BhrCamera) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

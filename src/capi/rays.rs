@@ -134,10 +134,11 @@ fn frame_pixels(width: u32, height: u32) -> Result<usize> {
 }
 
 /// The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
-/// the pixel centres; out_rays has room for width * height. A zero direction where a projection has none. Errors:
+/// the pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
+/// circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors:
 /// INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
-/// INVALID_STATE where the camera's motion cannot be; UNSUPPORTED inside a spinning hole's horizon. out_rays is
-/// left alone by INVALID_ARGUMENT and cleared by other errors.
+/// INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
+/// UNSUPPORTED inside a spinning hole's horizon. out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_rays(
     context: *const BhrContext,
@@ -167,7 +168,8 @@ pub unsafe extern "C" fn bhr_camera_rays(
 }
 
 /// One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
-/// image). Errors: as bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+/// image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
+/// bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_ray(
     context: *const BhrContext,

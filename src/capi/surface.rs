@@ -119,7 +119,8 @@ pub unsafe extern "C" fn bhr_surface_set_present_mode(surface: *mut BhrSurface, 
 }
 
 /// Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
-/// The frame is traced at BhrQuality.render_scale times the window's size and stretched to it. Returns when the
+/// The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
+/// the window is not 6 times as wide as high. Returns when the
 /// frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
 /// earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
 /// takes another frame, at most a second, and so do calls on the context and the surface from other threads.

@@ -12,7 +12,9 @@ use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{Scene, View};
+use crate::sky::StarIndex;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for prompt
 /// progress, large enough to keep every core busy.
@@ -32,7 +34,6 @@ struct Frame<'a> {
     film: FilmParams,
     request: &'a FrameRequest,
     samples: u32,
-    light: bool,
 }
 
 impl CpuTracer {
@@ -45,7 +46,8 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let lens = scene.lens(&request.region)?;
-        let frame = self.pool.install(|| Frame::new(scene, &lens, &mut self.lenses, request));
+        let stars = self.stars.insert(scene.stars()?).clone();
+        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tiles = tiles(request, frame.expected_steps(scene));
         let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
         let mut stats = FrameStats {
@@ -77,7 +79,8 @@ impl CpuTracer {
     /// The records of a frame, row by row. Errors: as `Scene::lens`.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let lens = scene.lens(&request.region)?;
-        let frame = self.pool.install(|| Frame::new(scene, &lens, &mut self.lenses, request));
+        let stars = self.stars.insert(scene.stars()?).clone();
+        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
         let mut records = vec![Record::captured(); request.width as usize * request.height as usize];
@@ -99,24 +102,29 @@ fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
 }
 
 impl<'a> Frame<'a> {
-    /// On the current pool.
-    fn new(scene: &'a Scene, lens: &'a Lens, cache: &'a mut LensCache, request: &'a FrameRequest) -> Self {
+    /// On the current pool. Errors: OUT_OF_MEMORY.
+    fn new(
+        scene: &'a Scene,
+        lens: &'a Lens,
+        stars: Arc<StarIndex>,
+        cache: &'a mut LensCache,
+        request: &'a FrameRequest,
+    ) -> Result<Self> {
         let light = scene.view == View::Light;
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
         let recorder = Recorder::new(scene, lens);
-        Self {
+        Ok(Self {
             source: match cache.tables(scene, eye, scene.lensing(eye, pixels)) {
                 Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
                 None => Source::Traced(recorder),
             },
-            shader: Shader::new(scene, lens, request.transparent),
+            shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,
             samples: if light { scene.quality.samples_per_pixel } else { 1 },
-            light,
-        }
+        })
     }
 
     /// Of a ray, on average; looking one up takes as long as one.
@@ -134,11 +142,7 @@ impl<'a> Frame<'a> {
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
-            let value = if self.light {
-                self.shader.pixel_light(record)
-            } else {
-                [self.shader.view_value(record, x, y), 0.0, 0.0, 1.0]
-            };
+            let value = self.shader.shade_record(record, x, y);
             (0..4).for_each(|c| pixel[c] += weight * value[c]);
         })
     }
@@ -183,6 +187,7 @@ fn trace_records<T: Send>(
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
     let stride = width as usize;
+    let stranger = Record::captured();
     // In one piece: rows made and freed by many threads leave their allocators in shreds.
     let mut records = vec![Record::captured(); stride * height as usize];
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
@@ -199,7 +204,8 @@ fn trace_records<T: Send>(
             for ((item, (across, (above, below))), column) in out.iter_mut().zip(columns).zip(1..) {
                 let [left, here, right] = across else { continue };
                 let (x, y) = place(column, row);
-                take(&Neighbours { left, right, above, below }.complete(here), x, y, item);
+                let neighbours = Neighbours { left, right, above, below }.apart(&recorder.lens.mapping, x, &stranger);
+                take(&neighbours.complete(here), x, y, item);
             }
         },
     );

@@ -158,7 +158,8 @@ impl<'a> LookedUp<'a> {
         let trace = |dx, dy| self.recorder.trace(x + dx, y + dy);
         let [left, right, above, below] = [trace(-1.0, 0.0), trace(1.0, 0.0), trace(0.0, -1.0), trace(0.0, 1.0)];
         let here = trace(0.0, 0.0);
-        Neighbours { left: &left, right: &right, above: &above, below: &below }.complete(&here)
+        let neighbours = Neighbours { left: &left, right: &right, above: &above, below: &below };
+        neighbours.apart(&self.recorder.lens.mapping, x, &Record::captured()).complete(&here)
     }
 
     /// By tracing the pixel; footprints, which need not be as exact, from the table.

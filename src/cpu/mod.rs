@@ -12,7 +12,9 @@ pub use rays::{trace_path, trace_ray};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Hit, Ray, Scene};
+use crate::sky::StarIndex;
 use lens::LensCache;
+use std::sync::Arc;
 
 /// Most threads a pool may have, whatever the host asks for.
 pub const MAX_THREADS: u32 = 1024;
@@ -21,6 +23,8 @@ pub struct CpuTracer {
     adapter: AdapterInfo,
     pool: rayon::ThreadPool,
     lenses: Box<LensCache>,
+    /// Of the last frame: holds them from frame to frame.
+    stars: Option<Arc<StarIndex>>,
 }
 
 /// What the CPU tracer is listed as.
@@ -52,7 +56,7 @@ impl CpuTracer {
             .thread_name(|i| format!("bhr-cpu-{i}"))
             .build()
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
-        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default() })
+        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default(), stars: None })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {

@@ -5,6 +5,7 @@ use crate::physics::orbit::redshift;
 use crate::physics::trace::{Fate, RayTrace, Settings, trace_look};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
+use crate::scene::projection::Mapping;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
 use crate::scene::turbulence::Place;
 use glam::DVec3;
@@ -66,7 +67,13 @@ impl<'a> Recorder<'a> {
     }
 }
 
-impl Neighbours<'_> {
+impl<'a> Neighbours<'a> {
+    /// Of the position at x: a neighbour on another face of a cube counts as none, for which `stranger`, captured, stands.
+    pub fn apart(self, mapping: &Mapping, x: f64, stranger: &'a Record) -> Self {
+        let or_stranger = |record, there| if mapping.same_face(x, there) { record } else { stranger };
+        Self { left: or_stranger(self.left, x - 1.0), right: or_stranger(self.right, x + 1.0), ..self }
+    }
+
     /// `here` with its footprints.
     pub fn complete(&self, here: &Record) -> Record {
         let mut record = here.clone();

@@ -1,6 +1,7 @@
 //! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and `shaders/disk.wgsl`. How the records were
 //! made it does not know.
 
+use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
@@ -9,8 +10,9 @@ use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::turbulence::Turbulence;
 use crate::scene::{Disk, Effects, Scene, View};
-use crate::sky::StarIndex;
+use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
 use glam::DMat3;
+use std::sync::Arc;
 
 /// How the effects let frequency shifts show: the shift that colours, and the one that beams.
 #[derive(Clone, Copy)]
@@ -29,28 +31,47 @@ pub struct Shader<'a> {
     profile: TemperatureProfile,
     turbulence: Option<Turbulence>,
     /// `None`: no stars.
-    stars: Option<&'static StarIndex>,
+    stars: Option<Arc<StarIndex>>,
+    least_patch: f64,
+    /// The Milky Way and the host's map, where they are shown.
+    maps: [Option<&'a SkyMap>; 2],
+    grid: bool,
     chart_to_sky: DMat3,
     transparent: bool,
 }
 
 impl<'a> Shader<'a> {
-    pub fn new(scene: &'a Scene, lens: &'a Lens, transparent: bool) -> Self {
-        Self {
+    /// Errors: OUT_OF_MEMORY.
+    pub fn new(scene: &'a Scene, lens: &'a Lens, stars: Arc<StarIndex>, transparent: bool) -> Result<Self> {
+        let milky_way = scene.shows_milky_way().then(SkyMap::milky_way).transpose()?;
+        Ok(Self {
             scene,
             lens,
             colours: BlackbodyTable::shared(),
             log_reference: scene.disk.map_or(0.0, |d| BlackbodyTable::shared().ln_luminance(d.temperature)),
             profile: TemperatureProfile::new(scene.matter_spin()),
             turbulence: scene.turbulence(),
-            stars: scene.shows_stars().then(StarIndex::shared),
+            stars: scene.shows_stars().then_some(stars),
+            least_patch: least_patch(lens.mapping.pixel_angle),
+            maps: [milky_way, scene.shown_map().map(|map| &**map)],
+            grid: scene.shows_grid(),
             chart_to_sky: scene.chart_to_sky(),
             transparent,
+        })
+    }
+
+    /// Of the record at (x, y): light and alpha, or the view's value first; nothing where the projection shows nothing.
+    pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
+        match (self.scene.view, self.lens.mapping.has_look(x, y)) {
+            (View::Light, true) => self.pixel_light(here),
+            (View::Light, false) => [0.0; 4],
+            (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
+            (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
         }
     }
 
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
-    pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
+    fn pixel_light(&self, here: &Record) -> [f64; 4] {
         let mut light = [0.0; 3];
         let mut open = 1.0;
         if let Some(disk) = &self.scene.disk {
@@ -68,8 +89,8 @@ impl<'a> Shader<'a> {
         if here.fate != Fate::Escaped {
             return [light[0], light[1], light[2], 1.0];
         }
-        if let Some(stars) = self.stars.filter(|_| !self.transparent && open > 0.0) {
-            let rgb = self.sky_light(stars, here);
+        if !self.transparent && open > 0.0 {
+            let rgb = self.sky_light(here);
             (0..3).for_each(|c| light[c] += open * rgb[c]);
         }
         [light[0], light[1], light[2], 1.0 - open]
@@ -105,15 +126,25 @@ impl<'a> Shader<'a> {
             .map(|v| v * disk.brightness)
     }
 
-    fn sky_light(&self, stars: &StarIndex, here: &Record) -> [f64; 3] {
+    fn sky_light(&self, here: &Record) -> [f64; 3] {
         let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
         let [dx, dy] = here.footprint.map(|change| self.chart_to_sky * change);
-        stars.star_light(d, dx, dy, shift.colour, shift.beaming).map(|v| v * self.scene.sky.stars_brightness)
+        let sky = &self.scene.sky;
+        let mut light = self.stars.as_deref().map_or([0.0; 3], |stars| {
+            stars
+                .star_light(d, [dx, dy], shift.colour, shift.beaming, self.least_patch)
+                .map(|v| v * sky.stars_brightness)
+        });
+        for map in self.maps.iter().flatten() {
+            let rgb = shifted_map_light(map.light(d, dx, dy), shift.colour, shift.beaming);
+            (0..3).for_each(|c| light[c] += rgb[c] * sky.map_brightness);
+        }
+        if self.grid { under_grid(light, d, dx, dy) } else { light }
     }
 
     /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.
-    pub fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
+    fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
         let first = here.crossings.first();
         match (self.scene.view, here.fate) {
             (View::Redshift, fate) => match first {

@@ -20,11 +20,11 @@ pub struct FilmParams {
     pub tone_map: u32,
     /// A `PixelFormat`.
     pub format: u32,
-    /// 1: the red channel holds a view's value, not light.
+    /// A `View`; any but light: the red channel holds its value.
     pub false_colour: u32,
-    /// The view's value that becomes the first colour.
+    /// Scaled as `false_colour` says, the view's value that becomes the first colour.
     pub view_low: f32,
-    /// 1 / (last colour's value - first's).
+    /// 1 / (last colour's scaled value - first's).
     pub view_scale: f32,
     /// 1: alpha is kept; 0: it becomes 1.
     pub transparent: u32,
@@ -34,14 +34,14 @@ pub struct FilmParams {
 impl FilmParams {
     /// `film` has passed its check. `transparent`: keep alpha, radiance being premultiplied by it.
     pub fn new(film: &Film, view: View, format: PixelFormat, transparent: bool) -> Self {
-        let (low, high) = false_colour::range(view);
+        let (low, scale) = false_colour::ends(view);
         Self {
             exposure: film.exposure_ev.exp2() as f32,
             tone_map: film.tone_map as u32,
             format: format as i32 as u32,
-            false_colour: u32::from(view != View::Light),
+            false_colour: view as u32,
             view_low: low,
-            view_scale: 1.0 / (high - low),
+            view_scale: scale,
             transparent: u32::from(transparent),
             reserved: 0,
         }
@@ -52,6 +52,17 @@ impl FilmParams {
             1 => ToneMap::Aces,
             2 => ToneMap::Agx,
             _ => ToneMap::None,
+        }
+    }
+
+    fn view(&self) -> View {
+        match self.false_colour {
+            1 => View::Redshift,
+            2 => View::Order,
+            3 => View::Deflection,
+            4 => View::Steps,
+            5 => View::Metric,
+            _ => View::Light,
         }
     }
 
@@ -126,8 +137,8 @@ fn develop_8bit(
 
 /// Codes of a view's value, rounded without dither.
 fn false_colour_codes(params: &FilmParams, value: f32) -> [u32; 4] {
-    let share = (value - params.view_low) * params.view_scale;
-    let [r, g, b] = false_colour::false_colour(share).map(|v| code(v * 255.0 + 0.5));
+    let ends = (params.view_low, params.view_scale);
+    let [r, g, b] = false_colour::false_colour(params.view(), ends, value).map(|v| code(v * 255.0 + 0.5));
     [r, g, b, 255]
 }
 
@@ -316,7 +327,7 @@ mod tests {
         let redshift = FilmParams::new(&film, View::Redshift, PixelFormat::Rgba8Srgb, true);
         let at = |value: f32| develop(&redshift, [value, 0.0, 0.0, 0.0], 1, 2);
         assert_eq!(at(f32::NAN).as_slice(), [128, 128, 128, 255]);
-        assert_eq!(at(7.0), at(2.0));
-        assert!(at(0.0)[0] < 80 && at(2.0)[0] > 240, "{:?} {:?}", at(0.0), at(2.0));
+        assert_eq!(at(7.0), at(3.0));
+        assert!(at(0.0)[0] > at(0.0)[2] + 100 && at(3.0)[2] > at(3.0)[0] + 100, "{:?} {:?}", at(0.0), at(3.0));
     }
 }

@@ -244,7 +244,7 @@ impl GpuTracer {
             FrameTarget::Host if self.maps_pixels(scene) => PixelTarget::Rows,
             FrameTarget::Host => PixelTarget::Packed,
         };
-        let setup = self.set_up(scene, request, kind)?;
+        let mut setup = self.set_up(scene, request, kind)?;
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
@@ -260,11 +260,8 @@ impl GpuTracer {
         let max_side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
         let plan = Plan::new(request, bytes, max_side, steps, samples);
 
-        if self.tables.is_none() {
-            self.tables = Some(Tables::new(&self.device)?);
-        }
-        let tables = self.tables.as_mut().ok_or_else(|| Error::internal("tables vanished"))?;
-        tables.update(&self.device, scene)?;
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
+        setup.uniform.map_sizes = tables.map_sizes();
         let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
         let size = Size { tile: plan.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
@@ -310,10 +307,14 @@ impl GpuTracer {
             look: Look {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
+                milky_way: scene.shows_milky_way() && !request.transparent,
+                map: scene.shown_map().is_some() && !request.transparent,
+                grid: scene.shows_grid() && !request.transparent,
                 all_effects: scene.effects.all_light(),
                 disk: scene.disk_u().is_some(),
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
+                projection: scene.camera.projection,
             },
             film: FilmLook::new(&film, target),
             several_samples: samples > 1,
@@ -341,7 +342,11 @@ impl GpuTracer {
         let disk_u = scene.disk_u();
         Making {
             source,
-            variant: kernels::Variant { azimuth: pattern, ..variant(scene, settings, inside) },
+            variant: kernels::Variant {
+                azimuth: pattern,
+                projection: scene.camera.projection,
+                ..variant(scene, settings, inside)
+            },
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             eye,
@@ -376,13 +381,12 @@ impl GpuTracer {
             .zip(buffers.sized.as_ref())
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
-        let footprints = setup.looks.look.footprints;
         let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
         let records = buffers.makers.stages(device, &mut self.kernels, &setup.making, &shared)?;
         let group = buffers.makers.group(setup.making.source)?;
         let take = |kernels: &mut Kernels, source| {
-            kernels.export(device, source, footprints)?.stage(device, &[&scene, &group, &exported])
+            kernels.export(device, source, setup.looks.look)?.stage(device, &[&scene, &group, &exported])
         };
         let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.info.software, take)?;
 
@@ -522,9 +526,9 @@ impl FrameBuffers {
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
         let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
         let records = self.makers.group(setup.making.source)?;
-        let [light, cells] = [&tables.light, &tables.star_cells].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let shared = [frame, pass.clone(), light, cells];
+        let shared = [frame, pass.clone(), light, cells, milky_way, map];
         let taking = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &mut Kernels, source| {
                 let compiled = match looks.several_samples {

@@ -4,6 +4,7 @@ use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::physics::integrator::Method;
+use crate::scene::Projection;
 use crate::sky;
 use std::collections::HashMap;
 
@@ -16,6 +17,8 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
+    /// Of pixels; given rays have none.
+    pub projection: Projection,
 }
 
 /// Everything that decides how shading is compiled.
@@ -24,6 +27,9 @@ pub struct Look {
     /// Light, not another view.
     pub light: bool,
     pub stars: bool,
+    pub milky_way: bool,
+    pub map: bool,
+    pub grid: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
     pub disk: bool,
@@ -31,6 +37,7 @@ pub struct Look {
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
+    pub projection: Projection,
 }
 
 /// Everything that decides how development is compiled.
@@ -38,7 +45,8 @@ pub struct Look {
 pub struct FilmLook {
     format: u32,
     tone_map: u32,
-    false_colour: bool,
+    /// Number of the view; 0: light.
+    false_colour: u32,
     target: PixelTarget,
 }
 
@@ -55,7 +63,7 @@ pub enum PixelTarget {
 
 impl FilmLook {
     pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
-        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour != 0, target }
+        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
@@ -67,13 +75,13 @@ impl FilmLook {
     }
 
     /// The WGSL that takes radiance: film, and where its pixels go.
-    fn parts(self) -> [&'static str; 2] {
+    fn parts(self) -> [&'static str; 3] {
         let target = match self.target {
             PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
             PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
             PixelTarget::Rows => include_str!("../../shaders/packed_rows.wgsl"),
         };
-        [include_str!("../../shaders/film.wgsl"), target]
+        [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/false_colour.wgsl"), target]
     }
 
     /// The group of `parts`.
@@ -127,7 +135,7 @@ enum Name {
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
     Develop(FilmLook),
-    Export(Source, bool),
+    Export(Source, bool, Projection),
     SchwarzschildEnds,
     SchwarzschildColumns { delay: bool },
     KerrNodes { delay: bool, pattern: bool },
@@ -176,6 +184,7 @@ const INTEGRATION: [&str; 3] =
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
+const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
 const TRACED_LAYOUT: &str = include_str!("../../shaders/traced_layout.wgsl");
 const RECORD: &str = include_str!("../../shaders/record.wgsl");
 
@@ -188,7 +197,7 @@ fn rays_source() -> String {
 }
 
 fn pixels_source() -> String {
-    let pixels = [PASS, TRACED_LAYOUT, FRAME, CAMERA, include_str!("../../shaders/pixels.wgsl")];
+    let pixels = [PASS, TRACED_LAYOUT, FRAME, PROJECTION, CAMERA, include_str!("../../shaders/pixels.wgsl")];
     join(&[&[MATH, FATE, GEODESIC], &INTEGRATION, &pixels])
 }
 
@@ -276,13 +285,15 @@ fn shade_source(source: Source, target: Option<PixelTarget>, rest: &[&str]) -> S
     let shade = [
         include_str!("../../shaders/blackbody.wgsl"),
         include_str!("../../shaders/stars.wgsl"),
+        include_str!("../../shaders/sky_map.wgsl"),
+        include_str!("../../shaders/sky_grid.wgsl"),
         include_str!("../../shaders/disk.wgsl"),
         include_str!("../../shaders/turbulence.wgsl"),
         include_str!("../../shaders/shade.wgsl"),
     ];
-    let constants = sky::StarIndex::shared().wgsl_constants();
+    let constants = sky::StarIndex::wgsl_constants();
     let (_, driver) = source.driver(target);
-    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, driver], &source.parts(), &shade, rest])
+    join(&[&[constants.as_str(), MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver], &source.parts(), &shade, rest])
 }
 
 fn shade_sample_source(source: Source) -> String {
@@ -290,13 +301,13 @@ fn shade_sample_source(source: Source) -> String {
 }
 
 fn shade_only_source(source: Source, film: FilmLook) -> String {
-    let [develop, put] = film.parts();
-    shade_source(source, Some(film.target), &[develop, put, include_str!("../../shaders/shade_only.wgsl")])
+    let [develop, colour, put] = film.parts();
+    shade_source(source, Some(film.target), &[develop, colour, put, include_str!("../../shaders/shade_only.wgsl")])
 }
 
 fn export_source(source: Source) -> String {
     let (_, driver) = source.driver(None);
-    let parts = [MATH, FATE, PASS, RECORD, FRAME, driver, include_str!("../../shaders/export.wgsl")];
+    let parts = [MATH, FATE, PASS, RECORD, FRAME, PROJECTION, driver, include_str!("../../shaders/export.wgsl")];
     join(&[&parts, &source.parts()])
 }
 
@@ -310,7 +321,7 @@ fn develop_source(film: FilmLook) -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: false, target };
+    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: 0, target };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
@@ -390,11 +401,17 @@ pub const LENS_FLAGS: TextureKind =
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
-/// `light_tables` and `star_cells` of shade.wgsl.
-const TABLES: [TextureKind; 2] = [
+/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade.wgsl.
+const TABLES: [TextureKind; 4] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    SKY_MAP,
+    SKY_MAP,
 ];
+
+/// Pyramids of sky_map.wgsl.
+pub const SKY_MAP: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
 
 impl Slot {
     fn binding_type(self) -> wgpu::BindingType {
@@ -442,8 +459,8 @@ impl Source {
 
 /// Group 0 of shade.wgsl.
 fn shade_slots() -> Vec<Slot> {
-    let [light, cells] = TABLES.map(Slot::Texture);
-    vec![Slot::Uniform, Slot::UniformPart, light, cells]
+    let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
 impl Kernels {
@@ -485,10 +502,11 @@ impl Kernels {
         self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
     }
 
-    pub fn export(&mut self, device: &Device, source: Source, footprints: bool) -> Result<Compiled> {
+    pub fn export(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
         let groups = [vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]];
         let (entry_point, _) = source.driver(None);
-        self.get(device, Name::Export(source, footprints), &groups, entry_point, || export_source(source))
+        let name = Name::Export(source, look.footprints, look.projection);
+        self.get(device, name, &groups, entry_point, || export_source(source))
     }
 
     pub fn find_schwarzschild_ends(&mut self, device: &Device) -> Result<Compiled> {
@@ -572,7 +590,7 @@ impl Kernels {
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
 /// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
-/// there are fewer than 2^31; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
+/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
@@ -589,32 +607,46 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
+fn projection_constant(projection: Projection) -> (&'static str, f64) {
+    ("PROJECTION", f64::from(projection as i32))
+}
+
 fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
     vec![
         ("SHOWS_LIGHT", flag(look.light)),
         ("SHOWS_STARS", flag(look.stars)),
+        ("SHOWS_MILKY_WAY", flag(look.milky_way)),
+        ("SHOWS_MAP", flag(look.map)),
+        ("SHOWS_GRID", flag(look.grid)),
         ("ALL_EFFECTS", flag(look.all_effects)),
         ("DISK", flag(look.disk)),
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
+        projection_constant(look.projection),
     ]
 }
 
 fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
-    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", flag(film.false_colour))]
+    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", film.false_colour.into())]
 }
 
 /// Values of the `override` constants that the kernel's source declares.
 fn constants(name: Name) -> Vec<(&'static str, f64)> {
     match name {
-        Name::Pixels(variant) => [trace_constants(variant), vec![("AZIMUTH", flag(variant.azimuth))]].concat(),
+        Name::Pixels(variant) => {
+            let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
+            [trace_constants(variant), pixels].concat()
+        }
         Name::Rays(variant) => trace_constants(variant),
         Name::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
         Name::Develop(film) => film_constants(film),
-        Name::Export(source, footprints) => [source.constants(), vec![("FOOTPRINTS", flag(footprints))]].concat(),
+        Name::Export(source, footprints, projection) => {
+            let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
+            [source.constants(), export].concat()
+        }
         Name::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
         Name::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
         Name::KerrNodes { delay, pattern } => vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern))],

@@ -15,6 +15,7 @@ mod present;
 mod rays;
 mod readback;
 mod records;
+mod sky_maps;
 mod swapchain;
 mod tables;
 mod texture;
@@ -39,7 +40,7 @@ pub use timer::{GpuTimer, read_time};
 use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;
 use crate::renderer::Backend;
-use crate::scene::{Method, Scene};
+use crate::scene::{Method, Projection, Scene};
 use kernels::{Kernels, Variant};
 use std::sync::Arc;
 use tables::Tables;
@@ -110,5 +111,6 @@ fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant 
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
         azimuth: false,
+        projection: Projection::Perspective,
     }
 }

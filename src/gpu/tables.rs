@@ -1,50 +1,103 @@
-//! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made once), and the disk's temperature profile
-//! (made anew when the matter's spin changes). Textures of TABLE_WIDTH entries a row (shade.wgsl says why).
+//! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other stars), and the disk's temperature
+//! profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH entries a row (shade.wgsl says why).
 
+use super::sky_maps::SkyMaps;
 use super::{Device, Texture};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::scene::Scene;
 use crate::sky::StarIndex;
+use crate::sky::index::{PROFILE_OFFSET, PROFILE_SIZE};
+use std::sync::Arc;
 
 /// Entries of a row: a width that every device takes.
 const TABLE_WIDTH: usize = 2048;
+/// Rows that are written at once: 4 MiB.
+const WRITTEN_ROWS: usize = 128;
+
+const PROFILE_ROW: u32 = (PROFILE_OFFSET / TABLE_WIDTH) as u32;
+const _: () = assert!(PROFILE_OFFSET.is_multiple_of(TABLE_WIDTH) && PROFILE_SIZE == TABLE_WIDTH);
+const _: () = assert!(PROFILE_SIZE == TemperatureProfile::SIZE);
 
 pub struct Tables {
-    /// Blackbodies, stars, mean sky, and in its last row the profile: `light_tables` of the shaders.
-    pub light: Texture,
-    pub star_cells: Texture,
-    profile_row: u32,
+    /// What the textures hold.
+    stars: Arc<StarIndex>,
+    /// Blackbodies, mean sky, profile, stars: `light_tables` of the shaders.
+    light: Texture,
+    star_cells: Texture,
+    sky_maps: SkyMaps,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
 }
 
-/// A table in rows, the last one filled up.
-fn rows<T: Copy + Default>(table: &[T]) -> Vec<T> {
-    let mut rows = table.to_vec();
-    rows.resize(table.len().next_multiple_of(TABLE_WIDTH), T::default());
-    rows
+/// A texture of `size` entries in rows, the last one filled up.
+fn table<T: bytemuck::Pod>(
+    device: &Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    size: usize,
+    entries: impl Iterator<Item = T>,
+) -> Result<Texture> {
+    let (rows, limit) = (size.div_ceil(TABLE_WIDTH), device.limits().max_texture_dimension_2d);
+    if rows > limit as usize {
+        let message = format!("the sky's {label} take a texture of {rows} rows; this device's limit is {limit}");
+        return Err(Error::unsupported(message));
+    }
+    let texture = device.table(label, format, [TABLE_WIDTH as u32, rows as u32])?;
+    let mut entries = entries.take(size).fuse();
+    for first_row in (0..rows).step_by(WRITTEN_ROWS) {
+        let mut written: Vec<T> = entries.by_ref().take(WRITTEN_ROWS * TABLE_WIDTH).collect();
+        written.resize(written.len().next_multiple_of(TABLE_WIDTH), T::zeroed());
+        device.write_rows(&texture, first_row as u32, bytemuck::cast_slice(&written))?;
+    }
+    Ok(texture)
 }
 
 impl Tables {
-    pub fn new(device: &Device) -> Result<Self> {
-        let index = StarIndex::shared();
-        let fixed = rows(&index.light_tables());
-        let cells = rows(&index.star_cells);
-        let profile_row = (fixed.len() / TABLE_WIDTH) as u32;
-        let table = |label: &str, format: wgpu::TextureFormat, rows: u32| {
-            device.table(label, format, [TABLE_WIDTH as u32, rows])
-        };
-        let light = table("light tables", wgpu::TextureFormat::Rgba32Float, profile_row + 1)?;
-        let cell_rows = (cells.len() / TABLE_WIDTH) as u32;
-        let star_cells = table("star cells", wgpu::TextureFormat::R32Uint, cell_rows)?;
-        device.write_rows(&light, 0, bytemuck::cast_slice(&fixed))?;
-        device.write_rows(&star_cells, 0, bytemuck::cast_slice(&cells))?;
-        Ok(Self { light, star_cells, profile_row, profile_spin: None })
+    fn new(device: &Device, stars: Arc<StarIndex>, sky_maps: SkyMaps) -> Result<Self> {
+        let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let light = table(device, "light tables", format, entries, stars.light_tables())?;
+        let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
+        Ok(Self { stars, light, star_cells, sky_maps, profile_spin: None })
     }
 
-    /// Brings the profile up to the scene's disk.
-    pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+    /// Brings the tables up to the scene's stars, maps and disk. Errors: UNSUPPORTED where the device's textures are too small; OUT_OF_MEMORY.
+    pub fn prepare<'a>(tables: &'a mut Option<Self>, device: &Device, scene: &Scene) -> Result<&'a mut Self> {
+        let stars = scene.stars()?;
+        let made = match tables.take() {
+            Some(held) if Arc::ptr_eq(&held.stars, &stars) => held,
+            // The old stars go first: both together need not fit.
+            Some(held) => {
+                let maps = held.into_maps();
+                Self::new(device, stars, maps)?
+            }
+            None => Self::new(device, stars, SkyMaps::new(device)?)?,
+        };
+        let tables = tables.insert(made);
+        tables.update(device, scene)?;
+        Ok(tables)
+    }
+
+    /// The maps; all else is let go.
+    fn into_maps(self) -> SkyMaps {
+        self.sky_maps
+    }
+
+    /// In the order of group 0 of shade.wgsl.
+    pub fn textures(&self) -> [&Texture; 4] {
+        let [milky_way, map] = self.sky_maps.textures();
+        [&self.light, &self.star_cells, milky_way, map]
+    }
+
+    /// `Frame::map_sizes` of frame.wgsl.
+    pub fn map_sizes(&self) -> [u32; 4] {
+        self.sky_maps.sizes()
+    }
+
+    /// Brings the profile up to the scene's disk, and the maps up to its sky.
+    fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+        self.sky_maps.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());
@@ -54,7 +107,7 @@ impl Tables {
         for (out, pair) in row.iter_mut().zip(profile.entries().windows(2)) {
             *out = [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0];
         }
-        device.write_rows(&self.light, self.profile_row, bytemuck::cast_slice(&row))?;
+        device.write_rows(&self.light, PROFILE_ROW, bytemuck::cast_slice(&row))?;
         self.profile_spin = Some(spin);
         Ok(())
     }

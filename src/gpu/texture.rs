@@ -77,7 +77,11 @@ impl Device {
     /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no whole number
     /// of rows; as [`Device::scoped`].
     pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
-        let width = texture.raw.width();
+        self.write_part(texture, [0, first_row], texture.raw.width(), data)
+    }
+
+    /// The same of `width` columns, from the place `first` on.
+    pub fn write_part(&self, texture: &Texture, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
         let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
         if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
             return Err(Error::internal(format!("{} bytes are no rows of {row_bytes}", data.len())));
@@ -86,7 +90,7 @@ impl Device {
         let target = wgpu::TexelCopyTextureInfo {
             texture: &texture.raw,
             mip_level: 0,
-            origin: wgpu::Origin3d { x: 0, y: first_row, z: 0 },
+            origin: wgpu::Origin3d { x: first[0], y: first[1], z: 0 },
             aspect: wgpu::TextureAspect::All,
         };
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None };

@@ -8,6 +8,7 @@ use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
+use crate::sky::least_patch;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 
@@ -39,6 +40,8 @@ pub struct FrameUniform {
     effects: u32,
     view: u32,
     pattern: [u32; 2],
+    /// Known once the textures are there (`Tables::map_sizes`).
+    pub map_sizes: [u32; 4],
 }
 
 #[repr(C)]
@@ -90,7 +93,7 @@ impl FrameUniform {
         let turbulence = scene.turbulence();
         let u = 1.0 / frame.r;
         Ok(Self {
-            right: with(lens.axes.x_axis, 0.0),
+            right: with(lens.axes.x_axis, lens.mapping.pixel_angle),
             up: with(lens.axes.y_axis, 0.0),
             forward: with(lens.axes.z_axis, 0.0),
             beta: with(lens.observer.beta, lens.observer.gamma),
@@ -101,15 +104,15 @@ impl FrameUniform {
             zamo: zamo(frame),
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
             sky_x: with(sky.x_axis, scene.sky.stars_brightness),
-            sky_y: with(sky.y_axis, 0.0),
-            sky_z: with(sky.z_axis, 0.0),
+            sky_y: with(sky.y_axis, scene.sky.map_brightness),
+            sky_z: with(sky.z_axis, least_patch(lens.mapping.pixel_angle)),
             disk: four(
                 disk.temperature,
                 BlackbodyTable::shared().ln_luminance(disk.temperature),
                 disk.opacity,
                 disk.brightness,
             ),
-            size: four(lens.width, lens.height, settings.step, settings.tolerance),
+            size: four(lens.mapping.width, lens.mapping.height, settings.step, settings.tolerance),
             turbulence: turbulence.map_or(Vec4::ZERO, |t| four(t.strength, t.age, t.reference_delay, 0.0)),
             disk_u: range(scene.disk_u()),
             opaque_u: range(settings.opaque_u),
@@ -120,6 +123,7 @@ impl FrameUniform {
             effects: scene.effects.light(),
             view: scene.view as u32,
             pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
+            map_sizes: [1; 4],
         })
     }
 }

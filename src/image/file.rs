@@ -237,7 +237,7 @@ fn decode(path: &Path) -> Result<DynamicImage> {
 }
 
 /// The inverse of the sRGB curve, IEC 61966-2-1.
-fn srgb_to_linear(encoded: f32) -> f32 {
+pub fn srgb_to_linear(encoded: f32) -> f32 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 

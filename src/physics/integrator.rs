@@ -214,6 +214,16 @@ pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     (1.2 * h).clamp(0.03, 0.35) * room / (s.du.abs() + (curvature * room).sqrt())
 }
 
+/// Inside the horizon (spin 0) with u' from the first integral, u'^2 = E^2 - K u^2 (1 - 2 u): its other terms grow so much larger than
+/// E^2 there that what steps leave of their difference would make it another ray's. No ray from inside turns there: u' < 0.
+#[inline]
+pub fn held_inside(c: &Constants, s: State) -> State {
+    if c.a != 0.0 || s.du >= 0.0 || s.u * c.r_plus < 1.0 {
+        return s;
+    }
+    State { du: -(c.energy * c.energy + c.k * s.u * s.u * (2.0 * s.u - 1.0)).sqrt(), ..s }
+}
+
 /// Quintic Hermite interpolation over one step: value, slope and curvature at both ends. Error O(h^6).
 pub struct Quintic {
     coefficients: [f64; 6],

@@ -2,7 +2,7 @@
 //! integrators. Mirrored by `shaders/trace.wgsl`.
 
 use super::geodesic::{Constants, State};
-use super::integrator::{Method, Quintic, step, step_limit};
+use super::integrator::{Method, Quintic, held_inside, step, step_limit};
 use super::observer::LocalFrame;
 use super::orbit::redshift;
 use arrayvec::ArrayVec;
@@ -113,8 +113,16 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     // Sigma-steps of the adaptive method never exceed 0.5: crossings are found by their change of side.
     let h_most = if adaptive { 0.5 / c.scale } else { h_wish };
     for count in 1..=settings.max_steps {
-        let h = h_wish.min(h_most).min(step_limit(c, &state, settings.step));
+        let limit = step_limit(c, &state, settings.step);
+        // Inside, the limit is all: steps in sigma of rays that are nearly radial would take no end of u.
+        let inside = state.u >= u_plus;
+        let h = match (inside, adaptive) {
+            (true, false) => limit,
+            (true, true) => h_wish.min(limit),
+            (false, _) => h_wish.min(h_most).min(limit),
+        };
         let (next, error) = step(settings.method, c, &state, h, settings.delay);
+        let next = held_inside(c, next);
         if adaptive {
             h_wish = next_step(h, error, settings.tolerance);
             // NaN is no error to accept; a step too small to change anything is.

@@ -5,7 +5,7 @@ use super::hole::unit;
 use crate::error::{Error, Result};
 use glam::{DMat3, DVec3};
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(i32)]
 pub enum Projection {
     Perspective = 0,
@@ -49,7 +49,7 @@ pub struct Camera {
     pub forward: DVec3,
     /// Default +z.
     pub up: DVec3,
-    /// Full vertical angle, radians, in (0, pi) for `Perspective`. Default pi / 3.
+    /// Radians. `Perspective`: full vertical angle, in (0, pi); `Fisheye`: angle across the circle, in (0, 2 pi]. Default pi / 3.
     pub fov_y: f64,
     pub motion: Motion,
     /// v / c against the local static observer, |v| < 1; components as for a direction given at `position` (bhr.h).

@@ -1,5 +1,5 @@
 //! What to draw, as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
-//! May use `physics`; may not know of C, of pointers or of the GPU.
+//! May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
 
 pub mod camera;
 pub mod disk;
@@ -8,6 +8,7 @@ pub mod frame;
 pub mod hole;
 pub mod lensing;
 pub mod observer;
+pub mod projection;
 pub mod quality;
 pub mod query;
 pub mod rays;
@@ -25,6 +26,9 @@ pub use lensing::{LensTables, Lensing};
 pub use quality::{Method, Quality};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 pub use sky::Sky;
+
+use crate::sky::{SkyMap, StarIndex};
+use std::sync::Arc;
 
 /// Which relativistic effects colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored.
 /// g = g_gravity g_doppler, split at the local static observer (ZAMO) of emitter and camera.
@@ -82,12 +86,17 @@ pub struct Scene {
     /// `None`: no disk.
     pub disk: Option<Disk>,
     pub sky: Sky,
+    /// What `Sky::MAP` shows; `None`: nothing.
+    pub sky_map: Option<Arc<SkyMap>>,
     pub film: Film,
     pub effects: Effects,
     /// Scene time, in scene lengths; turns the disk.
     pub time: f64,
     pub quality: Quality,
     pub view: View,
+    /// Stars instead of the sky's: for tests.
+    #[doc(hidden)]
+    pub given_stars: Option<Arc<StarIndex>>,
 }
 
 impl Default for Scene {
@@ -97,11 +106,13 @@ impl Default for Scene {
             camera: Camera::default(),
             disk: Some(Disk::default()),
             sky: Sky::default(),
+            sky_map: None,
             film: Film::default(),
             effects: Effects(Effects::ALL),
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
+            given_stars: None,
         }
     }
 }

@@ -2,7 +2,8 @@
 //! pixel. The only place that converts; both tracers and the queries build on it.
 
 use super::hole::unit;
-use super::{Camera, Motion, Projection, Region, Scene};
+use super::projection::Mapping;
+use super::{Camera, Motion, Region, Scene};
 use crate::error::{Error, Result};
 use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
@@ -84,59 +85,45 @@ impl Scene {
         }
     }
 
-    /// The lens of the camera for the frame that `region` describes. Errors: as `observer`; UNSUPPORTED projections.
+    /// The lens of the camera for the frame that `region` describes. Errors: as `observer` and `Mapping::new`.
     pub fn lens(&self, region: &Region) -> Result<Lens> {
         let observer = self.observer()?;
-        if self.camera.projection != Projection::Perspective {
-            return Err(Error::unsupported(format!(
-                "projection {:?} is not rendered by this version; use PERSPECTIVE",
-                self.camera.projection
-            )));
-        }
+        let mapping = Mapping::new(&self.camera, region)?;
         let axes = self.hole.scene_to_chart() * self.camera.axes()?;
         let frame = &observer.frame;
-        let tan = (0.5 * self.camera.fov_y).tan();
-        let (width, height) = (f64::from(region.full_width), f64::from(region.full_height));
         let axes = DMat3::from_cols(
-            frame.components(axes.x_axis) * (tan * width / height),
-            frame.components(axes.y_axis) * tan,
+            frame.components(axes.x_axis) * mapping.plane.x,
+            frame.components(axes.y_axis) * mapping.plane.y,
             frame.components(axes.z_axis),
         );
-        Ok(Lens { observer, axes, width, height })
+        Ok(Lens { observer, axes, mapping })
     }
 }
 
-/// A pinhole at an observer's eye.
+/// The lens before an observer's eye.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     pub observer: Observer,
-    /// Columns: half the image plane's width to the right, half its height up, forward; components in the observer's frame.
+    /// Columns: the units of a point of `mapping`, to the right, up, forward; components in the observer's frame.
     pub axes: DMat3,
-    /// Of the full frame, pixels.
-    pub width: f64,
-    pub height: f64,
+    pub mapping: Mapping,
 }
 
 impl Lens {
     /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0) being
-    /// its top-left corner. Positions outside the frame continue the image plane.
+    /// its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look`).
     pub fn look(&self, x: f64, y: f64) -> DVec3 {
-        self.image_point(x, y).normalize()
+        (self.axes * self.mapping.point(x, y)).normalize()
     }
 
     /// `look`, and its changes to the next pixel right and down, to first order.
     #[inline]
     pub fn look_and_changes(&self, x: f64, y: f64) -> (DVec3, [DVec3; 2]) {
-        let point = self.image_point(x, y);
+        let point = self.axes * self.mapping.point(x, y);
         let inverse = 1.0 / point.length();
         let look = point * inverse;
-        let steps = [self.axes.x_axis * (2.0 / self.width), self.axes.y_axis * (-2.0 / self.height)];
+        let steps = self.mapping.changes(x, y).map(|step| self.axes * step);
         (look, steps.map(|step| (step - look * look.dot(step)) * inverse))
-    }
-
-    /// Where the ray through (x, y) meets the image plane.
-    fn image_point(&self, x: f64, y: f64) -> DVec3 {
-        self.axes * DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0)
     }
 }
 

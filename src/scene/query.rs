@@ -215,7 +215,10 @@ struct Eye {
 
 impl Eye {
     fn ray(&self, scene: &Scene, x: f64, y: f64) -> Ray {
-        let (n, frequency_ratio) = self.aberration.look(self.lens.look(x, y));
+        let (n, frequency_ratio) = match self.lens.mapping.has_look(x, y) {
+            true => self.aberration.look(self.lens.look(x, y)),
+            false => (DVec3::ZERO, 1.0),
+        };
         let chart = self.aberration.frame.vector(n);
         Ray {
             position: scene.camera.position,

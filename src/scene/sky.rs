@@ -1,7 +1,10 @@
 //! What lies at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
+use super::{Scene, View};
 use crate::error::{Error, Result};
+use crate::sky::{StarField, StarIndex};
 use glam::DQuat;
+use std::sync::Arc;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sky {
@@ -13,6 +16,7 @@ pub struct Sky {
     pub map_brightness: f64,
     /// Unit quaternion: sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole) -> scene axes.
     pub orientation: DQuat,
+    /// Of the procedural stars: any. Default 0.
     pub seed: u64,
 }
 
@@ -31,10 +35,13 @@ impl Default for Sky {
 impl Sky {
     /// The real sky: the embedded star catalogue.
     pub const STARS: u32 = 1;
+    /// A random sky of a million stars; with STARS, only those that are fainter than the catalogue's.
     pub const PROCEDURAL: u32 = 2;
-    /// The embedded Milky Way glow. Accepted, being the default; not drawn by this version.
+    /// The embedded Milky Way glow.
     pub const MILKY_WAY: u32 = 4;
+    /// The host's picture: `Scene::sky_map`.
     pub const MAP: u32 = 8;
+    /// The coordinate grid.
     pub const GRID: u32 = 16;
     pub const MAX_BRIGHTNESS: f64 = 1e6;
 
@@ -62,12 +69,30 @@ impl Sky {
         if !length.is_finite() || (length - 1.0).abs() > 1e-3 {
             return Err(Error::argument(format!("sky orientation has length {length}; it must be a unit quaternion")));
         }
-        let later = self.flags & (Self::PROCEDURAL | Self::MAP | Self::GRID);
-        if later != 0 {
-            return Err(Error::unsupported(format!(
-                "sky flags {later:#x} (PROCEDURAL, MAP, GRID) are not drawn by this version; STARS, MILKY_WAY and 0 are accepted"
-            )));
-        }
         Ok(())
+    }
+
+    /// `None`: no stars.
+    pub fn star_field(&self) -> Option<StarField> {
+        match (self.flags & Self::STARS != 0, self.flags & Self::PROCEDURAL != 0) {
+            (true, true) => Some(StarField::Continued(self.seed)),
+            (false, true) => Some(StarField::Procedural(self.seed)),
+            (true, false) => Some(StarField::Catalogue),
+            (false, false) => None,
+        }
+    }
+}
+
+impl Scene {
+    /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as `StarField::index`.
+    pub fn stars(&self) -> Result<Arc<StarIndex>> {
+        if let Some(stars) = &self.given_stars {
+            return Ok(stars.clone());
+        }
+        let field = self.sky.star_field().unwrap_or(StarField::Catalogue);
+        if self.shows_stars() && self.view == View::Light {
+            return field.index();
+        }
+        Ok(field.index_if_made().unwrap_or_else(StarField::catalogue))
     }
 }

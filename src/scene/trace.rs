@@ -8,6 +8,8 @@ use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
 use crate::physics::trace::{self, RayTrace, Settings};
+use crate::sky::SkyMap;
+use std::sync::Arc;
 
 /// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning), of 1e-11.
 pub const RAY_STEP: f64 = 0.025;
@@ -59,7 +61,21 @@ impl Scene {
     }
 
     pub fn shows_stars(&self) -> bool {
-        self.sky.flags & super::Sky::STARS != 0 && self.sky.stars_brightness > 0.0
+        self.sky.star_field().is_some() && self.sky.stars_brightness > 0.0
+    }
+
+    pub fn shows_milky_way(&self) -> bool {
+        self.sky.flags & super::Sky::MILKY_WAY != 0 && self.sky.map_brightness > 0.0
+    }
+
+    /// The host's map, where it is to be seen.
+    pub fn shown_map(&self) -> Option<&Arc<SkyMap>> {
+        let shown = self.sky.flags & super::Sky::MAP != 0 && self.sky.map_brightness > 0.0;
+        self.sky_map.as_ref().filter(|_| shown)
+    }
+
+    pub fn shows_grid(&self) -> bool {
+        self.sky.flags & super::Sky::GRID != 0
     }
 
     /// Steps a ray of a pixel takes on average, for planning: sigma runs to about 6.

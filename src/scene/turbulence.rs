@@ -128,7 +128,7 @@ impl Turbulence {
 }
 
 /// A bijection of 32 bits in which every input bit moves every output bit (Wellons 2018, "lowbias32").
-fn mix(mut x: u32) -> u32 {
+pub fn mix(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
     x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
     x ^ (x >> 16)

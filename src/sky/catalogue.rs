@@ -12,7 +12,10 @@ const DEFAULT_COLOUR: f64 = 0.6;
 /// absorption, not temperature.
 const COLOUR_RANGE: (f64, f64) = (-0.4, 2.0);
 
-/// A star of the catalogue.
+/// V of the faintest stars of the catalogue, which has all that are brighter.
+pub const FAINTEST: f64 = 8.0;
+
+/// A star of the catalogue, or of a random sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Star {
     /// Unit vector in sky axes.
@@ -68,9 +71,9 @@ mod tests {
         let all: Vec<Star> = stars().collect();
         assert_eq!(all.len(), 41411);
         assert!(all.windows(2).all(|pair| pair[0].magnitude <= pair[1].magnitude));
-        assert!(all.iter().all(|s| (s.direction.length() - 1.0).abs() < 1e-12 && s.magnitude <= 8.0));
+        assert!(all.iter().all(|s| (s.direction.length() - 1.0).abs() < 1e-12 && s.magnitude <= FAINTEST));
         assert!(all.iter().all(|s| (3000.0..23000.0).contains(&s.temperature())));
-        assert!(all.last().is_some_and(|s| s.magnitude == 8.0));
+        assert!(all.last().is_some_and(|s| s.magnitude == FAINTEST));
     }
 
     /// J2000 places, V and B-V of well-known stars (Hoffleit and Warren, Bright Star Catalogue, 5th edition).

@@ -1,11 +1,13 @@
 //! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the stars within the cell
 //! enlarged by half its size on every side. Flat arrays, the same ones on the GPU. `shaders/stars.wgsl` has `cell_of` and `level_for` too.
 
-use super::catalogue::{self, Star};
+use super::catalogue::Star;
+use super::field::StarField;
+use super::galaxy::{GALACTIC_POLE, crowded_density, crowding};
 use crate::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable};
 use glam::DVec3;
 use std::f64::consts::PI;
-use std::sync::OnceLock;
+use std::sync::Arc;
 
 /// Levels of the pyramid, finest first; each halves the cells of a cube side.
 pub const STAR_LEVELS: u32 = 6;
@@ -21,12 +23,20 @@ pub const STAR_MARGIN: f64 = 0.545;
 /// Display convention: a star of V = 0 has this radiance when its light is spread over REFERENCE_SOLID_ANGLE.
 pub const STAR_REFERENCE_RADIANCE: f64 = 30.0;
 /// (2 tan(30 degrees) / 720)^2 sr: the central pixel of a frame of 720 rows and 60 degrees.
-const REFERENCE_SOLID_ANGLE: f64 = (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
+pub const REFERENCE_SOLID_ANGLE: f64 =
+    (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
 
 /// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many faint stars
-/// that their mean light stands for them, and no list is long (on average below 10).
-const FAINTEST: [f64; STAR_LEVELS as usize + 1] =
-    [f64::INFINITY, f64::INFINITY, f64::INFINITY, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
+/// that their mean light stands for them. By the number of stars in the real sky no list is long: about 10 on average, with a million stars too.
+const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, 9.6, 8.3, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
+
+/// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for `PROFILE_SIZE` entries of
+/// the disk's, the mean skies, and the stars.
+const MEAN_SKY_TABLES: usize = BLACKBODY_SIZE;
+pub const PROFILE_OFFSET: usize = MEAN_SKY_TABLES + (STAR_LEVELS as usize + 1) * BLACKBODY_SIZE;
+pub const PROFILE_SIZE: usize = 2048;
+const MEAN_SKY_OFFSET: usize = PROFILE_OFFSET + PROFILE_SIZE;
+const STARS_OFFSET: usize = MEAN_SKY_OFFSET + STAR_LEVELS as usize;
 
 /// Blackbodies that stand for the stars that a level leaves out, before their light is put into one table.
 const MEAN_SKY_PARTS: usize = 6;
@@ -94,7 +104,7 @@ struct MeanSkyPart {
 
 /// The mean light of faint stars.
 pub struct MeanSky {
-    /// Luminance at rest.
+    /// Luminance at rest, mean over the sky.
     pub radiance: f64,
     /// Flux, as in `StarIndex::stars`, of the faintest star that is not part of it; infinite if all are.
     pub flux_limit: f32,
@@ -113,13 +123,20 @@ pub struct StarIndex {
     pub star_lists: Vec<[f32; 4]>,
     /// For each level, and one beyond, the mean light of the stars that its lists leave out.
     pub mean_sky: Vec<MeanSky>,
+    /// The share of the stars that crowd towards the Milky Way (`galaxy::crowding`); so does their mean light.
+    pub crowding: f32,
+}
+
+impl std::fmt::Debug for StarIndex {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("StarIndex").field("stars", &(self.stars.len() / 2)).finish_non_exhaustive()
+    }
 }
 
 impl StarIndex {
-    /// The one of this process, made at first use (a few milliseconds).
-    pub fn shared() -> &'static Self {
-        static SHARED: OnceLock<StarIndex> = OnceLock::new();
-        SHARED.get_or_init(|| Self::new(catalogue::stars()))
+    /// The catalogue's.
+    pub fn shared() -> Arc<Self> {
+        StarField::catalogue()
     }
 
     /// Of any stars.
@@ -138,46 +155,67 @@ impl StarIndex {
             stars: packed.map(|v| v.map(|x| x as f32)).collect(),
             star_cells,
             star_lists,
-            mean_sky: FAINTEST.iter().map(|&faintest| mean_sky(&stars, faintest)).collect(),
+            mean_sky: mean_skies(&stars),
+            crowding: crowding(&stars) as f32,
         }
     }
 
-    /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean sky's tables; of each level the temperatures
-    /// that its table and the next one are looked up at (0: no light), and the next one's flux limit; of every star flux, temperature, its ln Y, 0; the lists.
-    pub fn light_tables(&self) -> Vec<[f32; 4]> {
-        let mut tables = BlackbodyTable::shared().gpu_table();
-        for mean in &self.mean_sky {
-            match &mean.light {
-                Some((_, table)) => tables.extend(table.gpu_table()),
-                None => tables.extend([[0.0; 4]; BLACKBODY_SIZE]),
-            }
-        }
+    /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean skies' tables; room for the disk's profile; of each level the
+    /// temperatures that its table and the next one are looked up at (0: no light), the next one's flux limit, and the crowding; of every star
+    /// flux, temperature, its ln Y, 0; the lists.
+    pub fn light_tables(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
+        let of_mean = |mean: &MeanSky| match &mean.light {
+            Some((_, table)) => table.gpu_table(),
+            None => vec![[0.0; 4]; BLACKBODY_SIZE],
+        };
         let temperature = |mean: &MeanSky| mean.light.as_ref().map_or(0.0, |(temperature, _)| *temperature as f32);
-        let pairs = self.mean_sky.windows(2);
-        tables.extend(pairs.map(|pair| [temperature(&pair[0]), temperature(&pair[1]), pair[1].flux_limit, 0.0]));
-        tables.extend(self.stars.as_chunks().0.iter().map(|[star, kind]| [star[3], kind[0], kind[1], 0.0]));
-        tables.extend_from_slice(&self.star_lists);
+        let pair =
+            move |pair: &[MeanSky]| [temperature(&pair[0]), temperature(&pair[1]), pair[1].flux_limit, self.crowding];
+        let tables = BlackbodyTable::shared().gpu_table().into_iter().chain(self.mean_sky.iter().flat_map(of_mean));
+        let stars = self.stars.as_chunks().0.iter().map(|[star, kind]| [star[3], kind[0], kind[1], 0.0]);
         tables
+            .chain(std::iter::repeat_n([0.0; 4], PROFILE_SIZE))
+            .chain(self.mean_sky.windows(2).map(pair))
+            .chain(stars)
+            .chain(self.star_lists.iter().copied())
     }
 
-    /// The constants of `shaders/stars.wgsl` that this index decides, as WGSL.
-    pub fn wgsl_constants(&self) -> String {
-        let mean_tables = BLACKBODY_SIZE;
-        let mean = mean_tables + self.mean_sky.len() * BLACKBODY_SIZE;
-        let stars = mean + STAR_LEVELS as usize;
-        let lists = stars + self.stars.len() / 2;
-        let end = lists + self.star_lists.len();
+    /// Entries of `light_tables`.
+    pub fn light_table_size(&self) -> usize {
+        self.lists_offset() + self.star_lists.len()
+    }
+
+    /// `star_cells` of the GPU: lists by their place in `light_tables`.
+    pub fn cell_tables(&self) -> impl Iterator<Item = u32> + '_ {
+        let first = (self.lists_offset() as u32) << 8;
+        self.star_cells.iter().map(move |list| list.wrapping_add(first))
+    }
+
+    fn lists_offset(&self) -> usize {
+        STARS_OFFSET + self.stars.len() / 2
+    }
+
+    /// The constants of the shaders that this module decides, as WGSL.
+    pub fn wgsl_constants() -> String {
+        let [x, y, z] = GALACTIC_POLE.to_array();
         format!(
-            "const MEAN_SKY_TABLES: u32 = {mean_tables}u;\n\
-             const MEAN_SKY_OFFSET: u32 = {mean}u;\n\
-             const STARS_OFFSET: u32 = {stars}u;\n\
-             const STAR_LISTS_OFFSET: u32 = {lists}u;\n\
-             const FIXED_TABLES: u32 = {end}u;\n\
+            "const MEAN_SKY_TABLES: u32 = {MEAN_SKY_TABLES}u;\n\
+             const PROFILE_OFFSET: u32 = {PROFILE_OFFSET}u;\n\
+             const PROFILE_SIZE: u32 = {PROFILE_SIZE}u;\n\
+             const MEAN_SKY_OFFSET: u32 = {MEAN_SKY_OFFSET}u;\n\
+             const STARS_OFFSET: u32 = {STARS_OFFSET}u;\n\
              const STAR_LEVELS: u32 = {STAR_LEVELS}u;\n\
              const STAR_FINEST: u32 = {STAR_FINEST}u;\n\
              const STAR_WARP: f32 = {STAR_WARP};\n\
-             const STAR_MARGIN: f32 = {STAR_MARGIN};\n"
+             const STAR_MARGIN: f32 = {STAR_MARGIN};\n\
+             const GALACTIC_POLE: vec3<f32> = vec3<f32>({x}, {y}, {z});\n"
         )
+    }
+
+    /// The mean sky's brightness in a direction (a unit vector), relative to its mean over the sky.
+    pub fn mean_sky_density(&self, direction: DVec3) -> f64 {
+        let crowding = f64::from(self.crowding);
+        1.0 + crowding * (crowded_density(direction.dot(GALACTIC_POLE).abs()) - 1.0)
     }
 
     /// The list of a cell: direction and number of each of its stars.
@@ -255,7 +293,7 @@ fn list_cells(stars: &[Star]) -> (Vec<u32>, Vec<[f32; 4]>) {
         end - count
     };
     let mut places = counts.iter().map(begin_and_skip).collect::<Vec<_>>();
-    // A length has 8 bits; no catalogue's lists are that long.
+    // A length has 8 bits; lists are not that long.
     let cells = places.iter().zip(&counts).map(|(begin, &count)| begin << 8 | count.min(255)).collect();
     let mut lists = vec![[0.0; 4]; end as usize];
     for (number, star) in stars.iter().enumerate() {
@@ -268,21 +306,36 @@ fn list_cells(stars: &[Star]) -> (Vec<u32>, Vec<[f32; 4]>) {
     (cells, lists)
 }
 
-/// The stars fainter than V = `faintest`, spread evenly, by temperature. A part's 1 / T is the mean of its stars', weighted by light: to
-/// first order the shifted spectra, whose exponents are in 1 / T, then sum to the part's.
-fn mean_sky(stars: &[Star], faintest: f64) -> MeanSky {
-    let mut sums = [(0.0, 0.0); MEAN_SKY_PARTS];
-    let mut flux_limit = f32::INFINITY;
+/// Light and light / temperature of stars, by temperature.
+type MeanSkySums = [(f64, f64); MEAN_SKY_PARTS];
+
+/// `StarIndex::mean_sky`. A part's 1 / T is the mean of its stars', weighted by light: to first order the shifted spectra, whose
+/// exponents are in 1 / T, then sum to the part's.
+fn mean_skies(stars: &[Star]) -> Vec<MeanSky> {
+    // Of the stars that a level leaves out and the one before it does not.
+    let mut sums = [MeanSkySums::default(); FAINTEST.len()];
+    let mut flux_limits = [f32::INFINITY; FAINTEST.len()];
     for star in stars {
-        if star.magnitude <= faintest {
-            flux_limit = flux_limit.min(scaled_flux(star) as f32);
-            continue;
-        }
+        // Brighter than the last level's limit, minus infinity, is none.
+        let level = FAINTEST.iter().take_while(|&&faintest| star.magnitude <= faintest).count().min(FAINTEST.len() - 1);
         let (flux, temperature) = (scaled_flux(star), star.temperature());
         let part = MEAN_SKY_BOUNDS.iter().take_while(|&&bound| temperature > bound).count();
-        sums[part].0 += flux;
-        sums[part].1 += flux / temperature;
+        sums[level][part].0 += flux;
+        sums[level][part].1 += flux / temperature;
+        flux_limits[level] = flux_limits[level].min(flux as f32);
     }
+    let mut left_out = MeanSkySums::default();
+    let of_level = |(level, sums): (usize, &MeanSkySums)| {
+        for (sum, add) in left_out.iter_mut().zip(sums) {
+            sum.0 += add.0;
+            sum.1 += add.1;
+        }
+        mean_sky(&left_out, flux_limits[level + 1..].iter().copied().fold(f32::INFINITY, f32::min))
+    };
+    sums.iter().enumerate().map(of_level).collect()
+}
+
+fn mean_sky(sums: &MeanSkySums, flux_limit: f32) -> MeanSky {
     let parts = sums.map(|(flux, flux_by_temperature)| {
         if flux == 0.0 {
             return MeanSkyPart::default();
@@ -391,33 +444,64 @@ mod tests {
 
     #[test]
     fn memory_stays_small_and_lists_are_in_order() {
-        let index = StarIndex::shared();
-        let entries = index.stars.len() + index.star_lists.len();
-        assert!(entries * 16 + index.star_cells.len() * 4 < 14_000_000);
-        assert_eq!(index.star_cells.len(), CELL_COUNT);
-        let mut end = 0;
-        for (cell, packed) in (0..).zip(&index.star_cells) {
-            let list = index.cell_stars(cell);
-            assert_eq!(packed >> 8, end, "lists without gaps");
-            end += list.len() as u32;
-            assert!(list.windows(2).all(|w| w[0][3] < w[1][3]));
+        let random = StarField::Procedural(1).index().expect("an index");
+        for (index, megabytes, longest) in [(StarIndex::shared(), 14, 64), (random, 105, 160)] {
+            let entries = index.light_table_size();
+            assert!(entries * 16 + index.star_cells.len() * 4 < megabytes * 1_000_000, "{entries} entries");
+            assert_eq!(index.star_cells.len(), CELL_COUNT);
+            let mut end = 0;
+            for (cell, packed) in (0..).zip(&index.star_cells) {
+                let list = index.cell_stars(cell);
+                assert_eq!(packed >> 8, end, "lists without gaps");
+                end += list.len() as u32;
+                assert!(list.windows(2).all(|w| w[0][3] < w[1][3]));
+                assert!(list.len() < longest, "cell {cell}: {}", list.len());
+            }
+            assert_eq!(end as usize, index.star_lists.len());
+            // The places of lists have 24 bits.
+            assert!(index.light_table_size() < 1 << 24);
+            for level in 0..STAR_LEVELS {
+                let cells = cells_before(level)..cells_before(level + 1);
+                let mean =
+                    cells.clone().map(|cell| index.cell_stars(cell).len()).sum::<usize>() as f64 / cells.len() as f64;
+                assert!(mean < 10.5, "level {level}: {mean} stars a list");
+            }
         }
-        assert_eq!(end as usize, index.star_lists.len());
+    }
+
+    /// The GPU's tables hold what the shaders look for where they look for it.
+    #[test]
+    fn tables_are_where_the_shaders_look() {
+        let index = StarIndex::shared();
+        let tables: Vec<[f32; 4]> = index.light_tables().collect();
+        assert_eq!(tables.len(), index.light_table_size());
+        let last = tables[MEAN_SKY_OFFSET + STAR_LEVELS as usize - 1];
+        assert_eq!(last[2], f32::INFINITY, "beyond the last level no star is left");
+        for (cell, packed) in (0..).zip(index.cell_tables()) {
+            let list = index.cell_stars(cell);
+            let begin = (packed >> 8) as usize;
+            assert_eq!(&tables[begin..begin + (packed & 255) as usize], list);
+            for star in list {
+                assert_eq!(f64::from(tables[STARS_OFFSET + star[3] as usize][0]), index.kind_of(*star)[0]);
+            }
+        }
     }
 
     /// What a level lists and what its mean sky holds is all there is.
     #[test]
     fn every_level_has_the_light_of_all_stars() {
-        let index = StarIndex::shared();
+        every_level_has_the_light_of(&StarIndex::shared());
+        every_level_has_the_light_of(&StarField::Continued(2).index().expect("an index"));
+    }
+
+    fn every_level_has_the_light_of(index: &StarIndex) {
         let sum = |mean: &MeanSky| mean.radiance * 4.0 * PI;
         let all = index.stars.iter().step_by(2).map(|star| f64::from(star[3])).sum::<f64>();
         for mean in &index.mean_sky {
             let bright = index.stars.iter().step_by(2).filter(|star| star[3] >= mean.flux_limit);
             let listed = bright.map(|star| f64::from(star[3])).sum::<f64>();
-            assert!(((listed + sum(mean)) / all - 1.0).abs() < 1e-6, "{listed} + {} of {all}", sum(mean));
+            assert!(((listed + sum(mean)) / all - 1.0).abs() < 1e-5, "{listed} + {} of {all}", sum(mean));
         }
-        let longest = (0..CELL_COUNT as u32).map(|cell| index.cell_stars(cell).len()).max();
-        assert!(longest.is_some_and(|n| n < 64), "longest list {longest:?}");
     }
 
     #[test]

@@ -1,8 +1,21 @@
-//! What lies at infinity: the embedded star catalogue, the index that finds the stars of a pixel, and the rule that draws them.
+//! What lies at infinity: the embedded star catalogue, random stars, the index that finds the stars of a pixel, and the rule that draws them;
+//! pictures of the whole sky, the Milky Way's and the host's, and how they are filtered; the coordinate grid.
 //! Works in sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole); knows nothing of holes, lenses and cameras.
 
 pub mod catalogue;
+mod field;
+mod filter;
+pub mod galaxy;
+mod grid;
 pub mod index;
+mod map;
+mod milky_way;
+pub mod procedural;
 mod stars;
 
+pub use field::StarField;
+pub use filter::shifted_map_light;
+pub use grid::under_grid;
 pub use index::StarIndex;
+pub use map::{Level, MAX_MAP_SIZE, SkyMap};
+pub use stars::least_patch;

@@ -5,10 +5,11 @@ use super::index::{STAR_LEVELS, StarIndex, cell_of, level_for, margin};
 use crate::physics::blackbody::BlackbodyTable;
 use glam::{DVec2, DVec3};
 
-/// A pixel's patch of sky counts as at least this share of the square of its length. On a critical curve of the lens the patch that the derivatives
-/// span has no area and its stars would be infinitely bright; within one pixel that area really varies from 0 to about length^2 / (pixels
-/// around the curve), which is a thousandth.
-const MIN_AREA: f64 = 1e-3;
+/// A pixel's patch of sky counts as at least a share of the square of its length (`least_patch`). On a critical curve of the lens the patch that the
+/// derivatives span has no area and its stars would be infinitely bright; within one pixel that area really varies from 0 to about length^2 / (pixels
+/// around the curve), which is this share for an ordinary frame. Images of higher order are as narrow far from any critical curve, but only
+/// cameras with a narrow field of view see them, whose pixels are small: no less than an f32 can tell.
+const LEAST_PATCH: (f64, f64) = (1e-5, 1e-3);
 /// Keeps the division finite for cameras of no field of view at all.
 const TINY_AREA: f64 = 1e-30;
 /// Brightest sum: finite in f32, whatever the host multiplies it by.
@@ -40,11 +41,11 @@ struct Patch {
 }
 
 impl Patch {
-    fn new(d: DVec3, dx: DVec3, dy: DVec3) -> Self {
+    fn new(d: DVec3, dx: DVec3, dy: DVec3, least_patch: f64) -> Self {
         let area = dx.cross(dy).dot(d);
-        // The sum of the squares of both singular values: that of the larger one wherever MIN_AREA matters.
+        // The sum of the squares of both singular values: that of the larger one wherever the least patch matters.
         let stretch2 = dx.length_squared() + dy.length_squared();
-        let magnification = 1.0 / area.abs().max(MIN_AREA * stretch2).max(TINY_AREA);
+        let magnification = 1.0 / area.abs().max(least_patch * stretch2).max(TINY_AREA);
         Self { d, across: dy.cross(d), down: d.cross(dx), area, magnification }
     }
 
@@ -62,6 +63,11 @@ impl Patch {
     }
 }
 
+/// The least share of a pixel's patch, for pixels of this angle (radians).
+pub fn least_patch(pixel_angle: f64) -> f64 {
+    pixel_angle.clamp(LEAST_PATCH.0, LEAST_PATCH.1)
+}
+
 /// Distance of the footprint's farther corners, (1.5, +-1.5) pixels away.
 fn footprint_radius(dx: DVec3, dy: DVec3) -> f64 {
     1.5 * (dx.length_squared() + dy.length_squared() + 2.0 * dx.dot(dy).abs()).sqrt()
@@ -69,9 +75,16 @@ fn footprint_radius(dx: DVec3, dy: DVec3) -> f64 {
 
 impl StarIndex {
     /// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1. `d`: unit direction in sky axes; `dx`, `dy`: its derivatives by
-    /// pixel; `g_colour`, `g_beaming` as for `BlackbodyTable::shifted_blackbody`. Where the pixel is wider than the index reaches, or
+    /// pixel; `g_colour`, `g_beaming` as for `BlackbodyTable::shifted_blackbody`; `least_patch`: see there. Where the pixel is wider than the index reaches, or
     /// its derivatives are not finite (at the edge of the shadow), the mean light of all stars. Finite for any input.
-    pub fn star_light(&self, d: DVec3, dx: DVec3, dy: DVec3, g_colour: f64, g_beaming: f64) -> [f64; 3] {
+    pub fn star_light(
+        &self,
+        d: DVec3,
+        [dx, dy]: [DVec3; 2],
+        g_colour: f64,
+        g_beaming: f64,
+        least_patch: f64,
+    ) -> [f64; 3] {
         let radius = footprint_radius(dx, dy);
         let mut light = [0.0; 3];
         let mut add = |share: f64, rgb: [f64; 3]| (0..3).for_each(|c| light[c] += share * rgb[c]);
@@ -81,7 +94,7 @@ impl StarIndex {
         let listed = found.map_or(&[][..], |level| self.cell_stars(cell_of(d, level)));
         let fade = if found.is_some() { fade(level, radius) } else { 0.0 };
         let [mean, next] = [0, 1].map(|step| &self.mean_sky[(level + step) as usize]);
-        let patch = Patch::new(d, dx, dy);
+        let patch = Patch::new(d, dx, dy, least_patch);
         for &star in listed {
             let spread = patch.spread(DVec3::new(star[0].into(), star[1].into(), star[2].into()));
             if spread > 0.0 {
@@ -94,7 +107,7 @@ impl StarIndex {
         }
         for (share, mean) in [(fade, mean), (1.0 - fade, next)] {
             if share > 0.0 && !mean.is_dark() {
-                add(share, mean.light(g_colour, g_beaming));
+                add(share * self.mean_sky_density(d), mean.light(g_colour, g_beaming));
             }
         }
         light.map(|v| v.min(MAX_STAR_LIGHT))
@@ -119,6 +132,9 @@ mod tests {
     use crate::sky::catalogue::Star;
     use crate::sky::index::STAR_REFERENCE_RADIANCE;
 
+    /// Of wide fields of view.
+    const LEAST: f64 = LEAST_PATCH.1;
+
     fn luminance(rgb: [f64; 3]) -> f64 {
         (0..3).map(|c| LUMINANCE[c] * rgb[c]).sum()
     }
@@ -141,7 +157,7 @@ mod tests {
             for j in -12..=12 {
                 let (d, dx, dy) = pixel(forward, scale, f64::from(i) + shift.0, f64::from(j) * squeeze + shift.1);
                 let dy = dy * squeeze;
-                sum += luminance(index.star_light(d, dx, dy, 1.0, 1.0)) * dx.cross(dy).length();
+                sum += luminance(index.star_light(d, [dx, dy], 1.0, 1.0, LEAST)) * dx.cross(dy).length();
             }
         }
         sum
@@ -172,9 +188,9 @@ mod tests {
     fn a_star_over_the_reference_pixel_has_the_reference_radiance() {
         let scale = 2.0 * 30.0_f64.to_radians().tan() / 720.0;
         let (d, dx, dy) = pixel(DVec3::Y, scale, 0.0, 0.0);
-        let peak = luminance(single(d, 0.0).star_light(d, dx, dy, 1.0, 1.0));
+        let peak = luminance(single(d, 0.0).star_light(d, [dx, dy], 1.0, 1.0, LEAST));
         assert!((peak / (STAR_REFERENCE_RADIANCE * 0.75 * 0.75) - 1.0).abs() < 1e-4, "{peak}");
-        let magnified = luminance(single(d, 0.0).star_light(d, dx * 0.5, dy, 1.0, 1.0));
+        let magnified = luminance(single(d, 0.0).star_light(d, [dx * 0.5, dy], 1.0, 1.0, LEAST));
         assert!((magnified / peak - 2.0).abs() < 1e-4);
     }
 
@@ -187,7 +203,7 @@ mod tests {
             for star in index.stars.iter().step_by(2 * (997 + i)) {
                 let forward = DVec3::new(star[0].into(), star[1].into(), star[2].into()).normalize();
                 let (d, dx, dy) = pixel(forward, scale, 0.3, -0.6);
-                let patch = Patch::new(d, dx, dy);
+                let patch = Patch::new(d, dx, dy, LEAST);
                 let mut wanted = [0.0; 3];
                 for pair in index.stars.chunks(2) {
                     let s = DVec3::new(pair[0][0].into(), pair[0][1].into(), pair[0][2].into());
@@ -197,7 +213,7 @@ mod tests {
                         (0..3).for_each(|c| wanted[c] += weight * rgb[c]);
                     }
                 }
-                let got = index.star_light(d, dx, dy, 0.8, 0.8);
+                let got = index.star_light(d, [dx, dy], 0.8, 0.8, LEAST);
                 assert!(luminance(wanted) > 0.0);
                 for c in 0..3 {
                     assert!((got[c] - wanted[c]).abs() <= 1e-9 * wanted[c], "{scale} {d}: {got:?} {wanted:?}");
@@ -209,13 +225,13 @@ mod tests {
     #[test]
     fn wide_pixels_blend_into_the_mean() {
         let index = StarIndex::shared();
-        let mean = index.mean_sky[STAR_LEVELS as usize].radiance;
+        let mean = index.mean_sky[STAR_LEVELS as usize].radiance * index.mean_sky_density(DVec3::Z);
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
-        assert!((luminance(index.star_light(d, dx, dy, 1.0, 1.0)) / mean - 1.0).abs() < 1e-3);
+        assert!((luminance(index.star_light(d, [dx, dy], 1.0, 1.0, LEAST)) / mean - 1.0).abs() < 1e-3);
         let mut before: Option<f64> = None;
         for i in 0..4000 {
             let (d, dx, dy) = pixel(DVec3::Z, 0.01 + 1e-5 * f64::from(i), 0.0, 0.0);
-            let now = luminance(index.star_light(d, dx, dy, 1.0, 1.0));
+            let now = luminance(index.star_light(d, [dx, dy], 1.0, 1.0, LEAST));
             if let Some(before) = before {
                 assert!((now - before).abs() < 0.01 * (mean + before), "seam at {i}: {before} {now}, mean {mean}");
             }
@@ -234,22 +250,22 @@ mod tests {
         for dx in tangents {
             for dy in tangents {
                 for g in [0.0, 1.0, 1e-3, 1e6, f64::INFINITY, f64::NAN] {
-                    let light = index.star_light(d, dx, dy, g, g);
+                    let light = index.star_light(d, [dx, dy], g, g, LEAST);
                     assert!(light.iter().all(|v| v.is_finite() && *v >= 0.0), "{dx} {dy} {g}: {light:?}");
                 }
             }
         }
     }
 
-    /// On a critical curve dx and dy are parallel: the star keeps a finite brightness, that of MIN_AREA.
+    /// On a critical curve dx and dy are parallel: the star keeps a finite brightness, that of the least patch.
     #[test]
     fn caustics_are_bounded() {
         let d = DVec3::X;
         let index = single(d, 0.0);
         let flux = f64::from(index.stars[0][3]);
         for squeeze in [1e-2, 1e-4, 1e-8] {
-            let peak = luminance(index.star_light(d, DVec3::Y * 1e-3, DVec3::Z * 1e-3 * squeeze, 1.0, 1.0));
-            let bound = flux / (1e-6 * MIN_AREA);
+            let peak = luminance(index.star_light(d, [DVec3::Y * 1e-3, DVec3::Z * 1e-3 * squeeze], 1.0, 1.0, LEAST));
+            let bound = flux / (1e-6 * LEAST);
             assert!(peak > 0.0 && peak < bound, "{squeeze}: {peak} over {bound}");
         }
     }

@@ -8,7 +8,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
 use crate::image::PixelFormat;
 use crate::renderer::{FrameRequest, FrameStats, SharedTracer, StatsBoard, Tile, Tracer};
-use crate::scene::{Region, Scene};
+use crate::scene::{Projection, Region, Scene};
 use parking_lot::Mutex;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -269,9 +269,16 @@ fn window_gone() -> Error {
     Error::new(ErrorKind::SurfaceLost, "the surface's window is gone")
 }
 
-/// The whole frame of a window of `size`, as large as the scene's quality has it traced.
+/// The whole frame of a window of `size`, as large as the scene's quality has it traced; a cube has a shape of its own.
 fn request(scene: &Scene, size: [u32; 2], format: PixelFormat) -> FrameRequest {
-    let [width, height] = size.map(|side| ((f64::from(side) * scene.quality.render_scale).round() as u32).max(1));
+    let scaled = size.map(|side| ((f64::from(side) * scene.quality.render_scale).round() as u32).max(1));
+    let [width, height] = match scene.camera.projection {
+        Projection::Cube => {
+            let side = (scaled[0] / 6).min(scaled[1]).max(1);
+            [6 * side, side]
+        }
+        _ => scaled,
+    };
     let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
     FrameRequest { width, height, region, format, transparent: false }
 }
@@ -542,5 +549,28 @@ impl Screen {
             pacer.ask()?;
         }
         self.swapchain.show(image)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cube_keeps_its_shape_in_any_window() {
+        let mut scene = Scene::default();
+        for (size, scale) in
+            [([1280, 720], 1.0), ([1280, 720], 0.33), ([600, 100], 1.0), ([9, 900], 1.0), ([1, 1], 0.5)]
+        {
+            scene.quality.render_scale = scale;
+            scene.camera.projection = Projection::Cube;
+            let cube = request(&scene, size, PixelFormat::Rgba8Srgb);
+            assert!(scene.lens(&cube.region).is_ok(), "{size:?}");
+            scene.camera.projection = Projection::Equirect;
+            let other = request(&scene, size, PixelFormat::Rgba8Srgb);
+            let area = |r: &FrameRequest| u64::from(r.width) * u64::from(r.height);
+            assert!(area(&cube) <= area(&other).max(6));
+            assert!(size != [600, 100] || (cube.width, cube.height) == (600, 100));
+        }
     }
 }

@@ -280,6 +280,76 @@ static void impossible_cameras(BhrContext *context) {
     CHECK_OK(bhr_set_mass(context, 1.0));
 }
 
+/* A cube is six faces side by side; whatever the frame's shape, the camera itself can be set. */
+static void cube(Watch *watch, BhrContext *context) {
+    enum { SIDE = 5 };
+    static unsigned char pixels[6 * SIDE * SIDE * 4];
+    BhrImage             image = image_of(BHR_FORMAT_RGBA8_SRGB, 6 * SIDE, SIDE, pixels, sizeof pixels);
+    BhrRay               rays[6 * SIDE * SIDE];
+    BhrCamera            camera = camera_at(8.0, 2.0, 3.0, BHR_MOTION_STATIC);
+    camera.projection = BHR_PROJECTION_CUBE;
+    check_impossible(context, 0.0, &camera, BHR_ERROR_INVALID_STATE, "CUBE", __LINE__);
+    check_impossible(context, 0.9, &camera, BHR_ERROR_INVALID_STATE, "CUBE", __LINE__);
+    memset(rays, UNTOUCHED, sizeof rays);
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "6 times", bhr_camera_rays(context, 6 * SIDE, SIDE - 1, rays));
+    CHECK(rays[0].frequency_ratio == 0.0 && rays[0].direction[0] == 0.0, "the rays of no frame are not cleared");
+    CHECK_OK(bhr_render_image(context, &image));
+    CHECK_OK(bhr_camera_rays(context, 6 * SIDE, SIDE, rays));
+    /* The middles of the faces are the camera's axes: right left up down front back. */
+    for (int i = 0; i < 6; i += 2) {
+        const double *a = rays[2 * 6 * SIDE + i * SIDE + 2].direction;
+        const double *b = rays[2 * 6 * SIDE + (i + 1) * SIDE + 2].direction;
+        CHECK(fabs(a[0] + b[0]) + fabs(a[1] + b[1]) + fabs(a[2] + b[2]) < 1e-12, "faces %d and %d are not opposite", i, i + 1);
+    }
+    /* Of a region the full frame counts, and what is left of it may have any shape. */
+    BhrRegion region = {.struct_size = sizeof region, .full_width = 12 * SIDE, .full_height = 2 * SIDE, .x = 7, .y = 3};
+    CHECK_OK(bhr_set_region(context, &region));
+    CHECK_OK(bhr_render_image(context, &image));
+    region.full_height = 3 * SIDE;
+    CHECK_OK(bhr_set_region(context, &region));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "CUBE", bhr_render_image(context, &image));
+    CHECK_OK(bhr_set_region(context, NULL));
+    CHECK_OK(bhr_set_spin(context, 0.0));
+    CHECK_OK(bhr_set_camera(context, &watch->camera));
+    check_unchanged(watch, __FILE__, __LINE__, "the camera set back after a cube");
+}
+
+/* Outside a fisheye's circle there is no direction: such a ray is INVALID, and the picture transparent. */
+static void fisheye(Watch *watch, BhrContext *context) {
+    enum { SIDE = 8 };
+    static unsigned char pixels[SIDE * SIDE * 4];
+    BhrImage             image = image_of(BHR_FORMAT_RGBA8_SRGB, SIDE, SIDE, pixels, sizeof pixels);
+    BhrRay               rays[SIDE * SIDE], one;
+    BhrHit               hits[SIDE * SIDE];
+    BhrCamera            camera = camera_at(8.0, 2.0, 3.0, BHR_MOTION_STATIC);
+    camera.projection = BHR_PROJECTION_FISHEYE;
+    camera.fov_y = 6.0;
+    image.flags |= BHR_IMAGE_TRANSPARENT;
+    CHECK_OK(bhr_set_camera(context, &camera));
+    CHECK_OK(bhr_render_image(context, &image));
+    CHECK_OK(bhr_camera_rays(context, SIDE, SIDE, rays));
+    CHECK_OK(bhr_trace_rays(context, rays, sizeof rays[0], SIDE * SIDE, hits, sizeof hits[0]));
+    int outside = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        const double *d = rays[i].direction;
+        const int     none = d[0] == 0.0 && d[1] == 0.0 && d[2] == 0.0;
+        const double  x = i % SIDE + 0.5 - SIDE / 2, y = i / SIDE + 0.5 - SIDE / 2;
+        CHECK(none == (sqrt(x * x + y * y) > SIDE / 2), "ray %d: (%g, %g, %g)", i, d[0], d[1], d[2]);
+        CHECK(none == (hits[i].fate == BHR_FATE_INVALID), "ray %d has fate %d", i, (int)hits[i].fate);
+        CHECK(!none || (rays[i].frequency_ratio == 1.0 && pixels[4 * i + 3] == 0), "pixel %d is covered", i);
+        outside += none;
+    }
+    CHECK(outside >= 4, "%d pixels lie outside the circle", outside);
+    CHECK_OK(bhr_camera_ray(context, SIDE, SIDE, -3.0, 1e8, &one));
+    CHECK(one.direction[0] == 0.0 && one.direction[1] == 0.0 && one.direction[2] == 0.0, "a ray far outside the circle");
+    /* An angle does not end a fall: any camera advances. */
+    camera.motion = BHR_MOTION_FREE_FALL;
+    CHECK_OK(bhr_camera_advance(context, &camera, 0.5, NULL));
+    CHECK(camera.projection == BHR_PROJECTION_FISHEYE && camera.fov_y == 6.0, "advancing changed the lens");
+    CHECK_OK(bhr_set_camera(context, &watch->camera));
+    check_unchanged(watch, __FILE__, __LINE__, "the camera set back after a fisheye");
+}
+
 /* The other side of each limit: these observers exist. */
 static void possible_cameras(BhrContext *context) {
     static const struct {
@@ -334,6 +404,8 @@ int main(int argc, char **argv) {
     extreme_masses(&watch, context);
     impossible_cameras(context);
     possible_cameras(context);
+    cube(&watch, context);
+    fisheye(&watch, context);
     CHECK_OK(bhr_set_camera(context, &watch.camera));
     check_unchanged(&watch, __FILE__, __LINE__, "the camera set back");
     bhr_context_destroy(context);

@@ -1,0 +1,236 @@
+//! How a camera's projection takes positions of the frame to directions, in the camera's own axes (right, up, forward). Knows neither
+//! hole nor observer. Mirrored by `shaders/projection.wgsl`.
+
+use super::{Camera, Projection, Region};
+use crate::error::{Error, Result};
+use glam::{DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A projection onto a frame. Every position has a point, which continues the projection outside the frame; where the projection shows
+/// something is for `has_look` to say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mapping {
+    pub projection: Projection,
+    /// Of the full frame, pixels.
+    pub width: f64,
+    pub height: f64,
+    /// Halves of the perspective image plane's sides at distance 1; else 1.
+    pub plane: DVec2,
+    /// Of a pixel in the middle of the frame (of a cube's faces as if one filled its side), radians.
+    pub pixel_angle: f64,
+}
+
+impl Mapping {
+    /// Errors: INVALID_STATE for a cube whose frame is not six times as wide as high.
+    pub fn new(camera: &Camera, region: &Region) -> Result<Self> {
+        let projection = camera.projection;
+        if projection == Projection::Cube && u64::from(region.full_width) != 6 * u64::from(region.full_height) {
+            return Err(Error::state(format!(
+                "frame is {} x {}; the projection CUBE shows six faces side by side, so its width must be 6 times its height, {}",
+                region.full_width,
+                region.full_height,
+                6 * u64::from(region.full_height)
+            )));
+        }
+        let (width, height) = (f64::from(region.full_width), f64::from(region.full_height));
+        let tan = (0.5 * camera.fov_y).tan();
+        let plane =
+            if projection == Projection::Perspective { DVec2::new(tan * width / height, tan) } else { DVec2::ONE };
+        let pixel_angle = match projection {
+            Projection::Perspective => 2.0 * tan / height,
+            Projection::Fisheye => camera.fov_y / width.min(height),
+            Projection::Equirect => PI / height,
+            Projection::Cube => FRAC_PI_2 / height,
+        };
+        Ok(Self { projection, width, height, plane, pixel_angle })
+    }
+
+    /// Whether something is seen at (x, y): all but what lies outside a fisheye's circle.
+    pub fn has_look(&self, x: f64, y: f64) -> bool {
+        let radius = 0.5 * self.width.min(self.height);
+        self.projection != Projection::Fisheye || self.from_centre(x, y).length_squared() <= radius * radius
+    }
+
+    /// Whether no border between two faces of a cube lies between positions of a row.
+    pub fn same_face(&self, x0: f64, x1: f64) -> bool {
+        self.projection != Projection::Cube || self.face(x0) == self.face(x1)
+    }
+
+    /// A point (right, up, forward) in the direction seen at (x, y) of the full frame, (0, 0) being its top-left corner; PERSPECTIVE:
+    /// right and up in units of `plane`. Outside the frame the image plane, the angles or the nearest face continue.
+    pub fn point(&self, x: f64, y: f64) -> DVec3 {
+        match self.projection {
+            Projection::Perspective => DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0),
+            Projection::Fisheye => {
+                let (from_centre, radius) = (self.from_centre(x, y), self.from_centre(x, y).length());
+                let (sin, cos) = (self.pixel_angle * radius).sin_cos();
+                (from_centre * self.across(sin, radius)).extend(cos)
+            }
+            Projection::Equirect => {
+                let [(sin_lon, cos_lon), (sin_lat, cos_lat)] = self.longitude_and_latitude(x, y).map(f64::sin_cos);
+                DVec3::new(cos_lat * sin_lon, sin_lat, cos_lat * cos_lon)
+            }
+            Projection::Cube => {
+                let face = self.face(x);
+                let right = 2.0 * (x - face * self.height) / self.height - 1.0;
+                turned_to_face(face as u8, DVec3::new(right, 1.0 - 2.0 * y / self.height, 1.0))
+            }
+        }
+    }
+
+    /// Changes of `point` to the next pixel right and down, to first order.
+    pub fn changes(&self, x: f64, y: f64) -> [DVec3; 2] {
+        match self.projection {
+            Projection::Perspective => [DVec3::X * (2.0 / self.width), DVec3::Y * (-2.0 / self.height)],
+            Projection::Fisheye => {
+                let from_centre = self.from_centre(x, y);
+                let radius = from_centre.length();
+                let outward = if radius > 0.0 { from_centre / radius } else { DVec2::X };
+                let (sin, cos) = (self.pixel_angle * radius).sin_cos();
+                [DVec2::X, DVec2::NEG_Y].map(|step| {
+                    let along = outward.dot(step);
+                    let across = (step - outward * along) * self.across(sin, radius);
+                    (outward * (self.pixel_angle * along * cos) + across).extend(-self.pixel_angle * along * sin)
+                })
+            }
+            Projection::Equirect => {
+                let [(sin_lon, cos_lon), (sin_lat, cos_lat)] = self.longitude_and_latitude(x, y).map(f64::sin_cos);
+                [
+                    DVec3::new(cos_lon, 0.0, -sin_lon) * (cos_lat * TAU / self.width),
+                    DVec3::new(sin_lat * sin_lon, -cos_lat, sin_lat * cos_lon) * (PI / self.height),
+                ]
+            }
+            Projection::Cube => {
+                let (face, step) = (self.face(x) as u8, 2.0 / self.height);
+                [DVec3::X * step, DVec3::NEG_Y * step].map(|change| turned_to_face(face, change))
+            }
+        }
+    }
+
+    /// Pixels to the right and up.
+    fn from_centre(&self, x: f64, y: f64) -> DVec2 {
+        DVec2::new(x - 0.5 * self.width, 0.5 * self.height - y)
+    }
+
+    /// sin(angle) / radius of a fisheye, which stretches across the radius.
+    fn across(&self, sin: f64, radius: f64) -> f64 {
+        if radius > 0.0 { sin / radius } else { self.pixel_angle }
+    }
+
+    /// From forward to the right, and up, radians; beyond the poles latitudes go on.
+    fn longitude_and_latitude(&self, x: f64, y: f64) -> [f64; 2] {
+        [TAU * (x / self.width - 0.5), FRAC_PI_2 * (1.0 - 2.0 * y / self.height)]
+    }
+
+    /// Number of a cube's face, 0 .. 5. By the middle of the pixel, so that f32 rounds none to another face.
+    fn face(&self, x: f64) -> f64 {
+        ((x.floor() + 0.5) / self.height).floor().clamp(0.0, 5.0)
+    }
+}
+
+/// A point that a 90 degree camera sees, of the camera that looks along a face's middle: right left up down front back. Its right =
+/// forward x up as everywhere; up is up, on the up face backward, on the down face forward.
+fn turned_to_face(face: u8, p: DVec3) -> DVec3 {
+    match face {
+        0 => DVec3::new(p.z, p.y, -p.x),
+        1 => DVec3::new(-p.z, p.y, p.x),
+        2 => DVec3::new(p.x, p.z, -p.y),
+        3 => DVec3::new(p.x, -p.z, p.y),
+        4 => p,
+        _ => DVec3::new(-p.x, p.y, -p.z),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mapping(projection: Projection, [full_width, full_height]: [u32; 2], fov_y: f64) -> Mapping {
+        let camera = Camera { projection, fov_y, ..Camera::default() };
+        Mapping::new(&camera, &Region { full_width, full_height, x: 0, y: 0 }).unwrap()
+    }
+
+    fn mappings() -> [Mapping; 5] {
+        [
+            mapping(Projection::Perspective, [300, 200], 1.0),
+            mapping(Projection::Fisheye, [300, 200], PI),
+            mapping(Projection::Fisheye, [150, 200], TAU),
+            mapping(Projection::Equirect, [300, 200], 1.0),
+            mapping(Projection::Cube, [600, 100], 1.0),
+        ]
+    }
+
+    #[test]
+    fn changes_are_the_derivatives_of_points() {
+        for m in mappings() {
+            // Inside, outside, at the centre, beside the borders of faces.
+            for (x, y) in [(0.3, 0.2), (150.0, 100.0), (99.8, 31.0), (100.2, 70.0), (-3.2, 208.0), (290.0, -0.7)] {
+                let h = 1e-4;
+                let central = |dx: f64, dy: f64| (m.point(x + dx, y + dy) - m.point(x - dx, y - dy)) / (2.0 * h);
+                for (change, truth) in m.changes(x, y).into_iter().zip([central(h, 0.0), central(0.0, h)]) {
+                    assert!(change.abs_diff_eq(truth, 1e-9), "{m:?} ({x}, {y}): {change} {truth}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn every_position_has_a_finite_point() {
+        for m in mappings() {
+            for x in [-1e9, -1.0, 0.0, 75.0, 150.0, 299.5, 600.0, 1e9] {
+                for y in [-1e9, -0.5, 0.0, 50.0, 100.0, 200.0, 1e9] {
+                    let [dx, dy] = m.changes(x, y);
+                    assert!(m.point(x, y).is_finite() && dx.is_finite() && dy.is_finite(), "{m:?} ({x}, {y})");
+                    assert!(m.point(x, y).length() > 0.9, "{m:?} ({x}, {y})");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn directions_are_those_of_the_header() {
+        let near = |a: DVec3, b: DVec3| assert!(a.normalize().abs_diff_eq(b.normalize(), 1e-12), "{a} {b}");
+        let dome = mapping(Projection::Fisheye, [300, 200], PI);
+        near(dome.point(150.0, 100.0), DVec3::Z);
+        near(dome.point(250.0, 100.0), DVec3::X);
+        near(dome.point(150.0, 0.0), DVec3::Y);
+        near(dome.point(150.0, 150.0), DVec3::new(0.0, -1.0, 1.0));
+        assert!(dome.has_look(249.9, 100.0) && !dome.has_look(250.1, 100.0) && !dome.has_look(1.0, 1.0));
+        let all = mapping(Projection::Equirect, [300, 200], 1.0);
+        near(all.point(150.0, 100.0), DVec3::Z);
+        near(all.point(225.0, 100.0), DVec3::X);
+        near(all.point(0.0, 100.0), DVec3::NEG_Z);
+        near(all.point(40.0, 0.0), DVec3::Y);
+        near(all.point(150.0, -50.0), DVec3::new(0.0, 1.0, -1.0));
+        let cube = mapping(Projection::Cube, [600, 100], 1.0);
+        let [right, up, forward] = [DVec3::X, DVec3::Y, DVec3::Z];
+        let faces = [
+            (right, -forward, up),
+            (-right, forward, up),
+            (up, right, -forward),
+            (-up, right, forward),
+            (forward, right, up),
+            (-forward, -right, up),
+        ];
+        for ((ahead, to_right, above), i) in faces.into_iter().zip(0..) {
+            let x = 100.0 * f64::from(i) + 50.0;
+            near(cube.point(x, 50.0), ahead);
+            near(cube.point(x + 49.0, 50.0), ahead + 0.98 * to_right);
+            near(cube.point(x, 1.0), ahead + 0.98 * above);
+            // No mirror image: right = forward x up, with right x up = -forward as in camera axes.
+            assert!(to_right.cross(above).dot(ahead) == right.cross(up).dot(forward));
+            assert_eq!(cube.same_face(x, x + 50.0), i == 5);
+            assert!(cube.same_face(x - 50.0, x + 49.999));
+        }
+        assert!(cube.same_face(-1.0, 0.0));
+    }
+
+    #[test]
+    fn a_cube_wants_six_faces() {
+        let camera = Camera { projection: Projection::Cube, ..Camera::default() };
+        for (full_width, full_height) in [(600, 101), (1, 1), (601, 100), (1 << 20, 174_763)] {
+            let error = Mapping::new(&camera, &Region { full_width, full_height, x: 0, y: 0 }).unwrap_err();
+            assert!(error.message.contains(&(6 * full_height).to_string()), "{error}");
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! The glow of the Milky Way as a sky map, made at first use from an embedded picture of nested outlines (`data/README.md`): smooth
+//! brightness from the picture, colour from the galactic longitude, and dust finer than the picture by noise that is always the same.
+//! Plausible, not measured; where things are is true to about a degree.
+
+use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
+use super::map::SkyMap;
+use crate::error::{Error, Result};
+use crate::physics::blackbody::BlackbodyTable;
+use crate::scene::turbulence::mix;
+use glam::{DMat3, DVec3};
+use std::f64::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+static HEIGHTS: &[u8] = include_bytes!("data/milky_way.png");
+
+/// Outlines' numbers that the picture's code 255 stands for: 1 on the outermost outline, 5 on the innermost.
+const HIGHEST: f64 = 6.0;
+/// Texels of the map.
+const MAP_SIZE: [u32; 2] = [2048, 1024];
+/// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al. 1998, A&AS 127, 1, section 10:
+/// 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the next, and in the end nothing.
+const BRIGHTEST: f64 = 20.6;
+const MAGNITUDES_A_HEIGHT: f64 = 0.3;
+/// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer steps between its white and
+/// its black than a dark-adapted eye sees in the sky.
+const MILKY_WAY_GAIN: f64 = 8.0;
+/// sr.
+const SQUARE_ARC_SECOND: f64 = (PI / 648_000.0) * (PI / 648_000.0);
+
+/// Degrees, J2000: the galactic north pole, and the galactic longitude of the celestial one (ESA 1997, The Hipparcos Catalogue, vol. 1, eq.
+/// 1.5.11 and 1.5.12).
+const GALACTIC_POLE: [f64; 2] = [192.859_48, 27.128_25];
+const LONGITUDE_OF_CELESTIAL_POLE: f64 = 122.931_92;
+
+/// K. Of the light of the bulge, and far from it.
+const BULGE_TEMPERATURE: f64 = 4700.0;
+const ARM_TEMPERATURE: f64 = 6800.0;
+/// rad. How far the bulge reaches.
+const BULGE_RADIUS: f64 = 0.45;
+
+/// Octaves of the dust, the cells of the first per radian, and how much smaller the cells of the next are, and its amplitude.
+const DUST_OCTAVES: u32 = 6;
+const DUST_CELLS: f64 = 7.0;
+const DUST_FINER: f64 = 2.03;
+const DUST_FAINTER: f64 = 0.7;
+/// Magnitudes of extinction in the plane where the noise is 1 above DUST_CLEAR; rad: the layer's height. (The true layer is half as high
+/// in the distance; what is near us reaches to 10 degrees.)
+const DUST_DEPTH: f64 = 1.3;
+const DUST_CLEAR: f64 = 0.0;
+const DUST_HEIGHT: f64 = 0.11;
+/// Extinction at the primaries of Rec. 709, about 610, 550 and 465 nm, over that in V (Cardelli, Clayton & Mathis 1989, R_V = 3.1).
+const EXTINCTION: [f64; 3] = [0.88, 1.0, 1.24];
+const DUST_SEED: u32 = 0x4d57;
+
+impl SkyMap {
+    /// The Milky Way of this process, made at first use (a tenth of a second). Errors: OUT_OF_MEMORY.
+    pub fn milky_way() -> Result<&'static Self> {
+        static SHARED: OnceLock<SkyMap> = OnceLock::new();
+        match SHARED.get() {
+            Some(map) => Ok(map),
+            None => {
+                let map = MilkyWay::decode()?.draw()?;
+                Ok(SHARED.get_or_init(|| map))
+            }
+        }
+    }
+}
+
+/// The picture, and what turns it into light.
+struct MilkyWay {
+    width: u32,
+    height: u32,
+    /// Row by row, of `SkyMap`'s projection.
+    codes: Vec<u8>,
+    to_galactic: DMat3,
+    colours: &'static BlackbodyTable,
+}
+
+/// Takes sky axes to galactic ones: +x towards the galactic centre, +z the galactic north pole.
+fn equatorial_to_galactic() -> DMat3 {
+    let [ra, dec] = GALACTIC_POLE.map(f64::to_radians);
+    let z = DVec3::new(dec.cos() * ra.cos(), dec.cos() * ra.sin(), dec.sin());
+    // At the longitude of the celestial pole, and 90 degrees on.
+    let meridian = z.cross(DVec3::Z.cross(z)).normalize();
+    let next = z.cross(meridian);
+    let (sin, cos) = LONGITUDE_OF_CELESTIAL_POLE.to_radians().sin_cos();
+    let x = meridian * cos - next * sin;
+    DMat3::from_cols(x, z.cross(x), z).transpose()
+}
+
+impl MilkyWay {
+    fn decode() -> Result<Self> {
+        let error = |e| Error::internal(format!("the embedded Milky Way: {e}"));
+        let codes = image::load_from_memory_with_format(HEIGHTS, image::ImageFormat::Png).map_err(error)?.into_luma8();
+        let (width, height) = codes.dimensions();
+        Ok(Self {
+            width,
+            height,
+            codes: codes.into_raw(),
+            to_galactic: equatorial_to_galactic(),
+            colours: BlackbodyTable::shared(),
+        })
+    }
+
+    fn draw(&self) -> Result<SkyMap> {
+        let [width, height] = MAP_SIZE;
+        SkyMap::of_rows(MAP_SIZE, &|y, out| {
+            let v = (f64::from(y) + 0.5) / f64::from(height);
+            let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();
+            for (x, out) in (0..width).zip(out) {
+                let u = (f64::from(x) + 0.5) / f64::from(width);
+                let (sin_ra, cos_ra) = (TAU * (0.5 - u)).sin_cos();
+                let towards = DVec3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
+                *out = self.light(self.outline_height(u, v), self.to_galactic * towards).map(|c| c as f32);
+            }
+        })
+    }
+
+    /// Between the outlines at (u, v) of the picture, bilinear.
+    fn outline_height(&self, u: f64, v: f64) -> f64 {
+        let (x, y) = (u * f64::from(self.width) - 0.5, v * f64::from(self.height) - 0.5);
+        let (left, top) = (x.floor(), y.floor());
+        let code = |x: f64, y: f64| {
+            let column = x.rem_euclid(f64::from(self.width)) as u32;
+            let row = (y.max(0.0) as u32).min(self.height - 1);
+            f64::from(self.codes.get((row * self.width + column) as usize).copied().unwrap_or(0))
+        };
+        let across = |y: f64| {
+            let (low, high) = (code(left, y), code(left + 1.0, y));
+            low + (high - low) * (x - left)
+        };
+        let (above, below) = (across(top), across(top + 1.0));
+        (above + (below - above) * (y - top)) * HIGHEST / 255.0
+    }
+
+    /// Linear Rec. 709 radiance towards a galactic direction.
+    fn light(&self, height: f64, galactic: DVec3) -> [f64; 3] {
+        let radiance = surface_radiance(height);
+        if radiance <= 0.0 {
+            return [0.0; 3];
+        }
+        let from_centre = galactic.x.clamp(-1.0, 1.0).acos() / BULGE_RADIUS;
+        let temperature = ARM_TEMPERATURE + (BULGE_TEMPERATURE - ARM_TEMPERATURE) * (-from_centre * from_centre).exp();
+        let rgb = self.colours.shade(temperature, temperature);
+        let magnitudes = extinction(galactic);
+        std::array::from_fn(|c| radiance * rgb[c] * 10.0_f64.powf(-0.4 * EXTINCTION[c] * magnitudes))
+    }
+}
+
+/// Luminance at a height between the outlines, on the stars' scale.
+fn surface_radiance(height: f64) -> f64 {
+    let flux = 10.0_f64.powf(-0.4 * BRIGHTEST) / SQUARE_ARC_SECOND * REFERENCE_SOLID_ANGLE;
+    let steps = |height: f64| 10.0_f64.powf(0.4 * MAGNITUDES_A_HEIGHT * height) - 1.0;
+    MILKY_WAY_GAIN * STAR_REFERENCE_RADIANCE * flux * steps(height) / steps(5.0)
+}
+
+/// V magnitudes of the dust that the picture does not have.
+fn extinction(galactic: DVec3) -> f64 {
+    let layer = (-(galactic.z / DUST_HEIGHT).powi(2)).exp();
+    if layer < 1e-3 {
+        return 0.0;
+    }
+    let mut noise = 0.0;
+    let mut amplitude = 1.0;
+    // Clouds are drawn out along the plane.
+    let mut place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
+    for octave in 0..DUST_OCTAVES {
+        noise += amplitude * value_noise(place, mix(DUST_SEED + octave));
+        amplitude *= DUST_FAINTER;
+        place *= DUST_FINER;
+    }
+    DUST_DEPTH * layer * (noise - DUST_CLEAR).max(0.0)
+}
+
+/// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them.
+fn value_noise(at: DVec3, key: u32) -> f64 {
+    let low = at.floor();
+    let t = at - low;
+    let s = t * t * (DVec3::splat(3.0) - 2.0 * t);
+    let [x, y, z] = low.to_array().map(|v| v as i32 as u32);
+    let corner = |i: u32, j: u32, k: u32| {
+        let hash = mix(x
+            .wrapping_add(i)
+            .wrapping_add(mix(y.wrapping_add(j).wrapping_add(mix(z.wrapping_add(k).wrapping_add(key))))));
+        f64::from(hash) / 2_147_483_647.5 - 1.0
+    };
+    let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
+    let along_x = |j, k| between(corner(0, j, k), corner(1, j, k), s.x);
+    let along_y = |k| between(along_x(0, k), along_x(1, k), s.y);
+    between(along_y(0), along_y(1), s.z)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::blackbody::LUMINANCE;
+
+    fn towards(ra: f64, dec: f64) -> DVec3 {
+        let (ra, dec) = (ra.to_radians(), dec.to_radians());
+        DVec3::new(dec.cos() * ra.cos(), dec.cos() * ra.sin(), dec.sin())
+    }
+
+    fn seen(ra: f64, dec: f64) -> f64 {
+        let d = towards(ra, dec);
+        let patch = d.any_orthonormal_vector() * 0.03;
+        let rgb = SkyMap::milky_way().unwrap().light(d, patch, d.cross(patch));
+        (0..3).map(|c| LUMINANCE[c] * rgb[c]).sum()
+    }
+
+    /// J2000: the galactic centre, and Vega (l 67.4482, b 19.2372: SIMBAD).
+    #[test]
+    fn galactic_coordinates_are_right() {
+        let galactic = equatorial_to_galactic();
+        assert!((galactic * towards(266.404_996, -28.936_172) - DVec3::X).length() < 1e-5);
+        let vega = galactic * towards(279.234_735, 38.783_689);
+        assert!((vega - towards(67.4482, 19.2372)).length() < 1e-5, "{vega}");
+        assert!((galactic.determinant() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_glow_is_where_it_belongs() {
+        let (cloud, cygnus, anticentre) = (seen(271.0, -28.0), seen(299.0, 35.5), seen(86.0, 28.9));
+        assert!(cloud > cygnus && cygnus > anticentre && anticentre > 0.0, "{cloud} {cygnus} {anticentre}");
+        // The Coalsack and the Great Rift beside bright clouds.
+        assert!(seen(192.0, -62.7) < 0.4 * seen(160.0, -59.7), "Coalsack");
+        assert!(seen(270.0, -6.0) < 0.5 * seen(281.0, -6.0), "Rift");
+        // The galactic poles are dark.
+        assert!(seen(192.86, 27.13) < 0.01 * anticentre && seen(12.86, -27.13) < 0.01 * anticentre);
+    }
+
+    #[test]
+    fn brightness_is_on_the_stars_scale() {
+        // A square degree of height 5 is as bright as a star of 20.6 - 2.5 log10(3600^2) magnitudes, times the gain.
+        let degree = (PI / 180.0) * (PI / 180.0);
+        let star = 10.0_f64.powf(-0.4 * (BRIGHTEST - 5.0 * 3600.0_f64.log10()));
+        let flux = surface_radiance(5.0) * degree / (STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE);
+        assert!((flux / (MILKY_WAY_GAIN * star) - 1.0).abs() < 1e-9);
+        assert_eq!(surface_radiance(0.0), 0.0);
+    }
+
+    /// Nested outlines leave no steps: along the galactic equator and across it the glow changes smoothly.
+    #[test]
+    fn there_are_no_contours() {
+        let map = MilkyWay::decode().unwrap();
+        let mut steepest = 0.0_f64;
+        for y in 0..400 {
+            for x in 0..800 {
+                let (u, v) = (f64::from(x) / 800.0, f64::from(y) / 400.0);
+                let here = map.outline_height(u, v);
+                // 0.1 degrees on.
+                let there = map.outline_height(u, v + 0.1 / 180.0);
+                steepest = steepest.max((here - there).abs());
+            }
+        }
+        assert!(steepest < 0.35, "{steepest} heights in 0.1 degrees");
+    }
+}
