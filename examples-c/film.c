@@ -68,6 +68,7 @@ static BhrStatus begin_fall(Scene *scene, const Settings *s) {
     scene->camera.motion = BHR_MOTION_FREE_FALL;
     scene->camera.projection = s->projection;
     scene->film.tone_map = BHR_TONE_MAP_AGX;
+    scene->film.bloom = 0.15;
     scene->quality.samples_per_pixel = s->samples;
     camera_make_orthonormal(&scene->camera);
     camera_turn(&scene->camera, s->look == LOOK_OUT ? PI : s->look == LOOK_SIDE ? -0.5 * PI : 0.0, 0.0);

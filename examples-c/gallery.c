@@ -33,7 +33,7 @@ static const SceneOptions BEGINNING = {
     .view = BHR_VIEW_LIGHT,
 };
 
-static const double BLOOM = 0.25;
+static const double BLOOM = 0.2;
 
 /* Puts the camera there, looking at the hole. */
 static BhrStatus stand(Scene *scene, double distance, double azimuth, double elevation, double fov) {
@@ -118,7 +118,7 @@ static BhrStatus galactic_centre(Scene *scene) {
 }
 
 static BhrStatus fall(Scene *scene, double radius) {
-    scene->film.exposure_ev = -1.5; /* ahead all light is bluer and brighter */
+    scene->film.exposure_ev = -2.0; /* ahead all light is bluer and brighter */
     scene->camera.motion = BHR_MOTION_FREE_FALL;
     return stand(scene, radius, -90.0, 25.0, 110.0);
 }
@@ -164,15 +164,9 @@ static BhrStatus cube(Scene *scene) {
 
 static BhrStatus grid(Scene *scene) {
     scene->has_disk = 0;
-    scene->sky.flags |= BHR_SKY_GRID;
-    return stand(scene, 20.0, -90.0, 20.0, 80.0);
-}
-
-static BhrStatus procedural(Scene *scene) {
-    scene->has_disk = 0;
-    scene->sky.flags = BHR_SKY_PROCEDURAL;
+    scene->sky.flags = BHR_SKY_GRID | BHR_SKY_PROCEDURAL | BHR_SKY_MILKY_WAY;
     scene->sky.seed = 5;
-    return stand(scene, 20.0, -90.0, 0.0, 80.0);
+    return stand(scene, 20.0, -90.0, 20.0, 80.0);
 }
 
 /* The views of one scene, whose disk is opaque: false colour is legible without stars behind it. */
@@ -218,6 +212,7 @@ static const Exhibit EXHIBITS[] = {
     {"orion", "the constellation with no hole before it", {16, 9}, orion},
     {"einstein-ring", "the same, with a hole 100 M away before its centre", {16, 9}, einstein_ring},
     {"galactic-centre", "the middle of the Milky Way behind a hole", {16, 9}, galactic_centre},
+    {"grid", "the coordinates of a random sky: all of them again within the Einstein ring", {16, 9}, grid},
     {"fall-4", "free fall, at r = 4 M, looking in", {16, 9}, fall_4},
     {"fall-2.5", "free fall, at r = 2.5 M", {16, 9}, fall_2_5},
     {"fall-1.5", "free fall, inside the horizon, at r = 1.5 M", {16, 9}, fall_1_5},
@@ -225,8 +220,6 @@ static const Exhibit EXHIBITS[] = {
     {"dome-master", "half the sky for a planetarium", {1, 1}, dome_master},
     {"equirect", "the whole sky, 360 x 180 degrees", {2, 1}, equirect},
     {"cube", "the whole sky as the faces of a cube: right left up down front back", {6, 1}, cube},
-    {"grid", "the sky's coordinates: all of them again within the Einstein ring", {16, 9}, grid},
-    {"procedural", "a random sky", {16, 9}, procedural},
     {"view-redshift", "false colour: frequency here over frequency there", {16, 9}, view_redshift},
     {"view-order", "false colour: which image of the disk", {16, 9}, view_order},
     {"view-deflection", "false colour: how far the light was bent", {16, 9}, view_deflection},
