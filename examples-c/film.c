@@ -59,7 +59,7 @@ static double time_left(double radius) {
 
 static BhrStatus begin_fall(Scene *scene, const Settings *s) {
     static const SceneOptions BEGINNING = {.mass = 1.0, .azimuth = -90.0, .disk_outer = 16.0, .turbulence = 0.8,
-                                           .exposure = -1.0, .view = BHR_VIEW_LIGHT};
+                                           .exposure = -1.5, .view = BHR_VIEW_LIGHT};
     SceneOptions              options = BEGINNING;
     options.distance = s->from;
     options.elevation = s->elevation;
