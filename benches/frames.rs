@@ -3,7 +3,7 @@
 //! 5 % and 95 % quantiles of all frames measured.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
-use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
 use bhr::scene::{Camera, LensTables, Method, Sky};
 use criterion::Criterion;
 use glam::DQuat;
@@ -72,6 +72,12 @@ impl Stage {
         }
     }
 
+    /// Seconds of the passes of the last frame, if it has bloom and the GPU's timestamps mean something.
+    fn passes(&self) -> Option<[f64; PASSES]> {
+        let passes = self.renderer.stats().pass_ns;
+        (self.timestamps && passes[1] > 0).then(|| passes.map(|ns| 1e-9 * ns as f64))
+    }
+
     fn frame(&mut self) -> Duration {
         self.move_on();
         let started = Instant::now();
@@ -88,7 +94,16 @@ fn measure(criterion: &mut Criterion, times: &Times, name: &str, mut stage: Stag
     }
     criterion.bench_function(name, |bencher| {
         bencher.iter_custom(|iterations| {
-            let each = (0..iterations).map(|_| stage.frame()).collect::<Vec<_>>();
+            let mut frame = || {
+                let took = stage.frame();
+                for (pass, seconds) in
+                    ["shading", "bloom", "development"].iter().zip(stage.passes().into_iter().flatten())
+                {
+                    times.borrow_mut().entry(format!("{name}: {pass}")).or_default().push(seconds);
+                }
+                took
+            };
+            let each = (0..iterations).map(|_| frame()).collect::<Vec<_>>();
             let seconds = each.iter().map(Duration::as_secs_f64);
             times.borrow_mut().entry(name.into()).or_default().extend(seconds);
             each.iter().sum()
@@ -98,6 +113,10 @@ fn measure(criterion: &mut Criterion, times: &Times, name: &str, mut stage: Stag
 
 fn spin(a: f64) -> impl FnOnce(&mut Renderer) {
     move |renderer| renderer.scene.hole.spin = a
+}
+
+fn bloom(a: f64) -> impl FnOnce(&mut Renderer) {
+    move |renderer| (renderer.scene.hole.spin, renderer.scene.film.bloom) = (a, 0.5)
 }
 
 fn method(a: f64, method: Method) -> impl FnOnce(&mut Renderer) {
@@ -120,6 +139,7 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
         measured(&format!("spin {a}, view turning"), size, Change::View, Box::new(spin(a)));
         measured(&format!("spin {a}, eye moving"), size, Change::Eye, Box::new(spin(a)));
         measured(&format!("spin {a}, each ray integrated"), size, Change::Nothing, Box::new(traced(a)));
+        measured(&format!("spin {a}, bloom"), size, Change::Nothing, Box::new(bloom(a)));
         measured(&format!("spin {a}, RK4"), size, Change::Nothing, Box::new(method(a, Method::Rk4)));
     }
     for a in [0.5, 0.998] {

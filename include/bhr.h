@@ -626,7 +626,10 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 
 /* ---- images in the host's memory ---- */
 
-/** BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. */
+/**
+ * BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom adds light
+ * and leaves alpha: glare over the host's own picture.
+ */
 #define BHR_IMAGE_TRANSPARENT 1u
 
 /** A pixel's bytes in memory order; row 0 is at the top. */
@@ -797,7 +800,8 @@ typedef int32_t BhrToneMap;
 
 /**
  * Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
- * tone map.
+ * tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone map, the
+ * sRGB curve, dithering.
  */
 typedef struct BhrFilm {
     /** sizeof(BhrFilm). */
@@ -806,7 +810,17 @@ typedef struct BhrFilm {
     BhrToneMap tone_map;
     /** Stops, -20 .. 20. Default 0. */
     double exposure_ev;
-    /** 0 off (default) .. 1. UNSUPPORTED above 0 in this version. */
+    /**
+     * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
+     * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of integral 1,
+     * falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about H / 4: the eye's
+     * 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from 2 H away, with r0 = H / 180,
+     * r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
+     * reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
+     * and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
+     * they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
+     * borders interrupt it. Frames above 25 megapixels (12 on the CPU) are traced twice, as their light is not kept.
+     */
     double bloom;
 } BhrFilm;
 
@@ -825,10 +839,7 @@ typedef struct BhrFilm {
  */
 BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
 
-/**
- * Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map; UNSUPPORTED
- * for bloom.
- */
+/** Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map. */
 BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
 
 /** The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
@@ -877,7 +888,10 @@ typedef struct BhrQuality {
     uint32_t struct_size;
     /** BHR_METHOD_*. Default AUTO. */
     BhrMethod method;
-    /** 1 (default) .. 256. */
+    /**
+     * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
+     * centre. Views other than BHR_VIEW_LIGHT take one.
+     */
     uint32_t samples_per_pixel;
     /** Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
     uint32_t max_steps;
@@ -994,11 +1008,13 @@ typedef struct BhrRegion {
 } BhrRegion;
 
 /**
- * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. An image
+ * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes from
+ * the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image
  * that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
  * INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
+BhrStatus bhr_set_region(BhrContext *context,
+                         const BhrRegion *region);
 
 /* ---- rendering into memory ---- */
 
@@ -1018,12 +1034,13 @@ BhrStatus bhr_set_progress(BhrContext *context,
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
  * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
- * UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST, OUT_OF_MEMORY.
- * Until the first pixels are written an error leaves the target alone; after that the message says so, and what is
- * not yet rendered is untouched.
+ * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for bloom
+ * with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST,
+ * OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the message says so, and
+ * what is not yet rendered is untouched.
  */
-BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
+BhrStatus bhr_render_image(BhrContext *context,
+                           const BhrImage *target);
 
 /* ---- rendering in the background ---- */
 

@@ -1,7 +1,6 @@
 // Kernel: as develop.wgsl, for packed_rows.wgsl.
 
 @group(0) @binding(0) var<uniform> pass_: Pass;
-@group(1) @binding(0) var radiance: texture_2d<f32>;
 
 @compute @workgroup_size(32, 4)
 fn develop_tile(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) i: u32) {
@@ -9,7 +8,7 @@ fn develop_tile(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocati
     let id = corner + vec2<u32>(i % ROWS_WIDTH, i / ROWS_WIDTH);
     rows_index = i;
     if !outside_tile(id) {
-        put_pixel(id, textureLoad(radiance, id, 0));
+        put_pixel(id, tile_light(id));
     }
     workgroupBarrier();
     write_rows(corner, i);

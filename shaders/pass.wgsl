@@ -13,6 +13,8 @@ struct Pass {
     // Of this sample among those of the submission.
     slot: u32,
     reserved: u32,
+    // Where in the full frame the texture of a frame's light begins (light.wgsl).
+    light_origin: vec2<i32>,
 }
 
 fn outside_tile(id: vec2<u32>) -> bool {

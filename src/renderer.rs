@@ -3,6 +3,7 @@
 
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
+use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, GpuTracer, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::job::{Job, Order, ThreadScope, Worker};
@@ -66,6 +67,9 @@ pub struct RendererOptions {
     pub compatible_window: Option<NativeWindow>,
 }
 
+/// Of `FrameStats::pass_ns`.
+pub const PASSES: usize = 3;
+
 /// Numbers about the last finished frame. Times in nanoseconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
@@ -76,6 +80,8 @@ pub struct FrameStats {
     pub cpu_ns: u64,
     /// 0: the adapter has no timestamps.
     pub gpu_ns: u64,
+    /// What `gpu_ns` is the sum of: tracing and shading, without bloom with development; bloom; development.
+    pub pass_ns: [u64; PASSES],
     pub readback_ns: u64,
     /// Device memory held by this renderer.
     pub device_bytes: u64,
@@ -355,12 +361,20 @@ impl Renderer {
         *self.stats.0.lock()
     }
 
-    /// What a tracer is asked for. Errors: a region that the image overruns, or a format that does not go with the view.
+    /// What a tracer is asked for. Errors: a region that the image overruns; a region with bloom; a format that does not go with the view.
     fn request(&self, target: &ImageMut<'_>, transparent: bool, region: Option<Region>) -> Result<FrameRequest> {
         let (width, height) = (target.width(), target.height());
+        let set = region.is_some();
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
         let format = target.format();
+        let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
+        if blooms && set {
+            return Err(Error::state(format!(
+                "film bloom is {}: glare comes from the whole frame, and a region is set; set no region, or bloom 0",
+                self.scene.film.bloom
+            )));
+        }
         match (self.scene.view, format) {
             (View::Light, PixelFormat::R32F) => {
                 return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
@@ -383,7 +397,7 @@ impl Renderer {
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
-    /// INVALID_STATE where the camera's motion cannot be, or for a cube of another shape; CANCELLED when `progress` returns false (tiles not yet begun are
+    /// INVALID_STATE where the camera's motion cannot be, for a cube of another shape, or for bloom with a region; CANCELLED when `progress` returns false (tiles not yet begun are
     /// untouched); whatever the device reports.
     pub fn render(
         &mut self,

@@ -6,7 +6,7 @@ use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::physics::trace;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::record::Record;
-use bhr::scene::{Camera, Fate, Hit, LensTables, Method, Motion, Ray};
+use bhr::scene::{Camera, Fate, Hit, LensTables, Method, Motion, Projection, Ray};
 use glam::DVec3;
 use random::{Random, count_from};
 
@@ -18,6 +18,8 @@ fn both() -> [Renderer; 2] {
 }
 
 const SPINS: [f64; 7] = [0.0, 1e-9, 0.5, 0.998, 0.999, -0.999, -1e-3];
+const PROJECTIONS: [Projection; 5] =
+    [Projection::Perspective, Projection::Perspective, Projection::Fisheye, Projection::Equirect, Projection::Cube];
 const MASSES: [f64; 5] = [1.0, 1e-12, 1e12, 1e-100, 1e100];
 
 /// A place in units of M outside the horizon, often beside it, on the axis, or in the plane.
@@ -100,6 +102,7 @@ fn frames_at_the_extremes() {
         let velocity = random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]);
         let forward = random.direction();
         let fov_y = random.pick(&FIELDS);
+        let projection = random.pick(&PROJECTIONS);
         let camera = Camera {
             position: position * mass,
             forward,
@@ -107,12 +110,13 @@ fn frames_at_the_extremes() {
             fov_y,
             motion,
             velocity,
-            ..Camera::default()
+            projection,
         };
+        let height = if projection == Projection::Cube { 4 } else { 16 };
         for renderer in &mut renderers {
             (renderer.scene.hole.spin, renderer.scene.hole.mass, renderer.scene.camera) = (spin, mass, camera);
-            let mut pixels = vec![0; 24 * 16 * 16];
-            let layout = Layout::packed(PixelFormat::Rgba32F, 24, 16);
+            let mut pixels = vec![0; 24 * height as usize * 16];
+            let layout = Layout::packed(PixelFormat::Rgba32F, 24, height);
             let mut image = ImageMut::new(layout, &mut pixels).unwrap();
             renderer
                 .render(&mut image, false, None, &mut |_| true)
@@ -124,7 +128,7 @@ fn frames_at_the_extremes() {
     }
 }
 
-/// BHR_EXTREME_SCENES frames of 101 x 99 rays, most of them looked up: the middle one is exactly radial where the camera looks at the hole or
+/// BHR_EXTREME_SCENES frames of 101 x 99 rays (cubes: fewer), most of them looked up: the middle one is exactly radial where the camera looks at the hole or
 /// away from it.
 #[test]
 fn table_frames_at_the_extremes() {
@@ -147,8 +151,9 @@ fn table_frames_at_the_extremes() {
             fov_y: random.pick(&FIELDS),
             motion,
             velocity: random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]),
-            ..Camera::default()
+            projection: random.pick(&PROJECTIONS),
         };
+        let [width, height] = if camera.projection == Projection::Cube { [102, 17] } else { [101, 99] };
         let disk = [random.pick(&[20.0, 1e6]), random.pick(&[0.5, 1.0]), random.pick(&[0.0, 1.0])];
         let tables = random.pick(&[LensTables::Always, LensTables::Always, LensTables::Auto]);
         for renderer in &mut renderers {
@@ -158,7 +163,7 @@ fn table_frames_at_the_extremes() {
             let matter = renderer.scene.disk.as_mut().unwrap();
             [matter.outer_radius, matter.opacity, matter.turbulence] = disk;
             let case = || format!("scene {scene} spin {spin} mass {mass} disk {disk:?} {tables:?} {camera:?}");
-            let records = renderer.ray_records(101, 99).unwrap_or_else(|e| panic!("{e}: {}", case()));
+            let records = renderer.ray_records(width, height).unwrap_or_else(|e| panic!("{e}: {}", case()));
             let bad = records.iter().enumerate().find(|(_, record)| !is_sound(record));
             assert!(bad.is_none(), "{} {}: {bad:?}", renderer.adapter().name, case());
         }

@@ -1,46 +1,30 @@
 //! Stars in whole frames, CPU and GPU: their light against the lens equation, image by image; its steadiness while the camera turns; their places;
 //! tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the tests fail.
 
+mod frames;
 mod random;
 
-use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{LUMINANCE, radiance_xyz};
-use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, Region, Sky};
+use bhr::renderer::Renderer;
+use bhr::scene::{Camera, Effects, Sky};
 use bhr::sky::StarIndex;
 use bhr::sky::catalogue::{self, Star};
 use bhr::sky::galaxy::GALACTIC_POLE;
 use bhr::sky::procedural;
+use frames::{cpu, differing, floats, gpu, picture, tiled};
 use glam::{DQuat, DVec2, DVec3};
 use random::Random;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-fn cpu() -> Renderer {
-    Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap()
-}
-
-fn gpu() -> Renderer {
-    let renderer = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    renderer
-}
-
 /// Renderers of the sky alone, seen by an eye at rest.
 fn both() -> [(&'static str, Renderer); 2] {
-    [("cpu", cpu()), ("gpu", gpu())].map(|(name, mut renderer)| {
+    frames::both().map(|(name, mut renderer)| {
         renderer.scene.disk = None;
         renderer.scene.sky.flags = Sky::STARS;
         (name, renderer)
     })
-}
-
-fn picture(renderer: &mut Renderer, format: PixelFormat, size: [u32; 2], region: Option<Region>) -> Vec<u8> {
-    let layout = Layout::packed(format, size[0], size[1]);
-    let mut pixels = vec![0; (size[0] * size[1]) as usize * format.bytes_per_pixel()];
-    let mut image = ImageMut::new(layout, &mut pixels).unwrap();
-    renderer.render(&mut image, false, region, &mut |_| true).unwrap();
-    pixels
 }
 
 // ---- the screen ----
@@ -96,8 +80,8 @@ struct Light {
 impl Light {
     fn new(renderer: &mut Renderer, size: [u32; 2]) -> Self {
         let screen = Screen::new(&renderer.scene.camera, size);
-        let bytes = picture(renderer, PixelFormat::Rgba32F, size, None);
-        let values: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap())).collect();
+        let bytes = picture(renderer, PixelFormat::Rgba32F, size, None, false);
+        let values = floats(&bytes);
         let pixels = values.chunks_exact(4).enumerate().map(|(i, pixel)| {
             let luminance = (0..3).map(|c| LUMINANCE[c] * f64::from(pixel[c])).sum::<f64>();
             luminance * screen.solid_angle(centre(i, size))
@@ -477,30 +461,15 @@ fn no_star_is_cut_at_the_borders_of_tiles() {
     let mut random = Random(3);
     let stars = (0..40_000).map(|_| Star { direction: random.direction(), magnitude: 2.0, colour: 0.3 });
     let stars = Some(Arc::new(StarIndex::new(stars)));
-    let (columns, rows) = ([0, 61, 64, 201, 320], [0, 1, 90, 133, 200]);
+    // The borders of `tiled`.
+    let (columns, rows) = ([7, 40], [1, 30]);
     for (name, mut renderer) in both() {
         renderer.scene.given_stars = stars.clone();
-        let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None);
-        let row_bytes = size[0] as usize * 4;
-        let lit = |x: u32, y: u32| whole[y as usize * row_bytes + x as usize * 4] > 100;
-        assert!(
-            columns[1..4].iter().all(|&x| (0..size[1]).any(|y| lit(x - 1, y) && lit(x, y))),
-            "{name}: no star is cut"
-        );
-        assert!(rows[1..4].iter().all(|&y| (0..size[0]).any(|x| lit(x, y - 1) && lit(x, y))), "{name}: no star is cut");
-        let mut joined = vec![0; whole.len()];
-        for x in columns.windows(2) {
-            for y in rows.windows(2) {
-                let (w, h) = (x[1] - x[0], y[1] - y[0]);
-                let region = Region { full_width: size[0], full_height: size[1], x: x[0], y: y[0] };
-                let tile = picture(&mut renderer, PixelFormat::Rgba8Srgb, [w, h], Some(region));
-                for (line, row) in tile.chunks_exact(w as usize * 4).zip(y[0]..) {
-                    let begin = row as usize * row_bytes + x[0] as usize * 4;
-                    joined[begin..begin + line.len()].copy_from_slice(line);
-                }
-            }
-        }
-        assert!(joined == whole, "{name}: tiles differ from the frame");
+        let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
+        let lit = |x: u32, y: u32| whole[(y * size[0] + x) as usize * 4] > 100;
+        assert!(columns.iter().all(|&x| (0..size[1]).any(|y| lit(x - 1, y) && lit(x, y))), "{name}: no star is cut");
+        assert!(rows.iter().all(|&y| (0..size[0]).any(|x| lit(x, y - 1) && lit(x, y))), "{name}: no star is cut");
+        assert!(tiled(&mut renderer, PixelFormat::Rgba8Srgb, size) == whole, "{name}: tiles differ from the frame");
     }
 }
 
@@ -513,7 +482,7 @@ fn a_seed_gives_the_same_bytes_in_every_context_and_order() {
     for make in [cpu, gpu] {
         let show = |renderer: &mut Renderer, flags: u32, seed: u64| {
             (renderer.scene.sky.flags, renderer.scene.sky.seed) = (flags, seed);
-            picture(renderer, PixelFormat::Rgba8Srgb, size, None)
+            picture(renderer, PixelFormat::Rgba8Srgb, size, None, false)
         };
         let (mut first, mut second) = (make(), make());
         let there = seeds.map(|seed| show(&mut first, Sky::PROCEDURAL, seed));
@@ -536,10 +505,9 @@ fn procedural_pictures_agree() {
     for (spin, flags, seed) in [(0.0, Sky::PROCEDURAL, 3), (0.9, Sky::STARS | Sky::PROCEDURAL, 4)] {
         let [cpu, gpu] = both().map(|(_, mut renderer)| {
             (renderer.scene.hole.spin, renderer.scene.sky.flags, renderer.scene.sky.seed) = (spin, flags, seed);
-            picture(&mut renderer, PixelFormat::Rgba8Srgb, [640, 360], None)
+            picture(&mut renderer, PixelFormat::Rgba8Srgb, [640, 360], None, false)
         });
-        let differ = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 1);
-        let wrong = cpu.chunks_exact(4).zip(gpu.chunks_exact(4)).filter(|pair| differ(*pair)).count();
+        let wrong = differing(&cpu, &gpu);
         assert!(wrong * 1000 <= cpu.len() / 4, "spin {spin}: {wrong} of {} pixels", cpu.len() / 4);
     }
 }
@@ -572,11 +540,11 @@ fn procedural_light_is_that_of_all_its_stars() {
 fn a_4k_frame_of_a_procedural_sky_stays_within_its_memory() {
     let mut renderer = gpu();
     renderer.scene.sky.flags = Sky::STARS | Sky::PROCEDURAL;
-    picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160], None);
+    picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160], None, false);
     let bytes = renderer.stats().device_bytes;
     assert!(bytes < 400 << 20, "{bytes} bytes");
     renderer.scene.sky.flags = Sky::STARS;
-    picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160], None);
+    picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160], None, false);
     let without = renderer.stats().device_bytes;
     println!("{bytes} bytes, {without} without procedural stars");
     assert!(bytes - without > 50 << 20 && bytes - without < 115 << 20, "{} bytes of stars", bytes - without);

@@ -27,7 +27,8 @@ pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
 /// 1 float: views other than BHR_VIEW_LIGHT.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
 
-/// BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1.
+/// BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom adds light
+/// and leaves alpha: glare over the host's own picture.
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by

@@ -30,7 +30,8 @@ pub struct BhrQuality {
     pub struct_size: u32,
     /// BHR_METHOD_*. Default AUTO.
     pub method: BhrMethod,
-    /// 1 (default) .. 256.
+    /// 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
+    /// centre. Views other than BHR_VIEW_LIGHT take one.
     pub samples_per_pixel: u32,
     /// Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
     pub max_steps: u32,
@@ -91,6 +92,7 @@ impl TryFrom<BhrQuality> for Quality {
             render_scale: given.render_scale,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
+            keep_light: None,
         };
         quality.check()?;
         Ok(quality)

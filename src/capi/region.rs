@@ -46,7 +46,8 @@ impl TryFrom<BhrRegion> for Region {
     }
 }
 
-/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. An image
+/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes from
+/// the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image
 /// that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
 /// INVALID_ARGUMENT.
 #[unsafe(no_mangle)]

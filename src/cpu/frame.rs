@@ -2,10 +2,12 @@
 //! the sink.
 
 use super::CpuTracer;
+use super::delivery::Delivery;
 use super::lens::{LensCache, LookedUp};
 use super::record::{Neighbours, Recorder};
 use super::shade::Shader;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::Result;
+use crate::film::bloom::Bloom;
 use crate::film::{FilmParams, develop_row};
 use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
@@ -28,12 +30,12 @@ enum Source<'a> {
 }
 
 /// A frame being rendered.
-struct Frame<'a> {
+pub struct Frame<'a> {
     source: Source<'a>,
     shader: Shader<'a>,
-    film: FilmParams,
+    pub film: FilmParams,
     request: &'a FrameRequest,
-    samples: u32,
+    pub samples: u32,
 }
 
 impl CpuTracer {
@@ -49,29 +51,13 @@ impl CpuTracer {
         let stars = self.stars.insert(scene.stars()?).clone();
         let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tiles = tiles(request, frame.expected_steps(scene));
-        let total = (tiles.len() as u64 * u64::from(frame.samples)) as f64;
-        let mut stats = FrameStats {
-            rays: u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples),
-            ..FrameStats::default()
-        };
-        let mut done = 0.0;
-        for tile in tiles {
-            let mut sum = vec![[0.0; 4]; (tile.width * tile.height) as usize];
-            for sample in 0..frame.samples {
-                stats.steps += self.pool.install(|| frame.add_sample(tile, sample, &mut sum));
-                done += 1.0;
-                if sample + 1 == frame.samples {
-                    let pixels = self.pool.install(|| frame.develop(tile, &sum));
-                    sink(tile, &pixels, tile.width as usize * request.format.bytes_per_pixel())?;
-                }
-                // The last tile is complete: nothing is left to cancel.
-                if done < total && !progress(done / total) {
-                    return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
-                }
-            }
+        let mut delivery = Delivery::new(&self.pool, &frame, sink, progress);
+        match Bloom::new(scene, request.format, [request.width, request.height]) {
+            None => delivery.plain(&tiles)?,
+            Some(bloom) => delivery.with_glare(&tiles, &bloom, scene.quality.keep_light)?,
         }
-        progress(1.0);
-        Ok(stats)
+        let rays = u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples);
+        Ok(FrameStats { rays, steps: delivery.steps, ..FrameStats::default() })
     }
 }
 
@@ -136,7 +122,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
-    fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
+    pub fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
         let region = self.request.region;
         let offset = sample_offset(sample, self.samples);
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
@@ -163,13 +149,13 @@ impl<'a> Frame<'a> {
     }
 
     /// Packed pixels, rows without gaps.
-    fn develop(&self, tile: Tile, sum: &[[f64; 4]]) -> Vec<u8> {
+    pub fn develop(&self, film: &FilmParams, tile: Tile, sum: &[[f64; 4]]) -> Vec<u8> {
         let region = self.request.region;
         let width = tile.width as usize;
         let row_bytes = width * self.request.format.bytes_per_pixel();
         let mut pixels = vec![0; row_bytes * tile.height as usize];
         pixels.par_chunks_mut(row_bytes).zip(sum.par_chunks(width)).enumerate().for_each(|(row, (out, sum))| {
-            develop_row(&self.film, sum, region.x + tile.x, region.y + tile.y + row as u32, out);
+            develop_row(film, sum, region.x + tile.x, region.y + tile.y + row as u32, out);
         });
         pixels
     }

@@ -1,6 +1,7 @@
 //! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the GPU tracer
 //! is held against. Calls `physics`; knows no pixel memory and nothing of C.
 
+mod delivery;
 mod frame;
 mod lens;
 mod rays;

@@ -7,11 +7,11 @@ use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
-use crate::scene::record::Record;
+use crate::scene::record::{Record, UNKNOWN_DIRECTION};
 use crate::scene::turbulence::Turbulence;
 use crate::scene::{Disk, Effects, Scene, View};
 use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 use std::sync::Arc;
 
 /// How the effects let frequency shifts show: the shift that colours, and the one that beams.
@@ -129,7 +129,12 @@ impl<'a> Shader<'a> {
     fn sky_light(&self, here: &Record) -> [f64; 3] {
         let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
-        let [dx, dy] = here.footprint.map(|change| self.chart_to_sky * change);
+        // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings them back too.
+        let tangent = |change: DVec3| change - d * d.dot(change);
+        let [dx, dy] = here.footprint.map(|change| match change == UNKNOWN_DIRECTION {
+            true => change,
+            false => tangent(self.chart_to_sky * change),
+        });
         let sky = &self.scene.sky;
         let mut light = self.stars.as_deref().map_or([0.0; 3], |stars| {
             stars

@@ -2,6 +2,7 @@
 //! formats get the radiance as it is. Views other than light get false colour, or their value. In f32, so that
 //! `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how light was made.
 
+pub mod bloom;
 mod false_colour;
 mod tone_map;
 
@@ -45,6 +46,20 @@ impl FilmParams {
             transparent: u32::from(transparent),
             reserved: 0,
         }
+    }
+
+    /// Of a frame with bloom, whose light is exposed before it spreads: what develops the sum.
+    pub fn of_exposed(self) -> Self {
+        Self { exposure: 1.0, ..self }
+    }
+
+    /// Light as bloom spreads it: exposed, and limited as it will be when it is developed, so that no pixel spreads more than
+    /// the brightest that films tell apart, nor NaN. Alpha within [0, 1].
+    #[inline(always)]
+    pub fn exposed_light(&self, radiance: [f64; 4]) -> [f32; 4] {
+        let [r, g, b, a] = radiance.map(|v| v as f32);
+        let [r, g, b] = [r, g, b].map(|v| limited(v * self.exposure, MAX_SCENE_LIGHT));
+        [r, g, b, limited(a, 1.0)]
     }
 
     fn tone_map_kind(&self) -> ToneMap {
@@ -259,6 +274,28 @@ mod tests {
             }
             let mean = sum / (128.0 * 128.0);
             assert!((mean - wanted).abs() < 0.01, "mean {mean} for {wanted}");
+        }
+    }
+
+    /// A gradient so slow that without dithering its steps would be bands of 64 columns: the mean of any 8 x 8 pixels follows it, and no
+    /// row has a step's code for long.
+    #[test]
+    fn slow_gradients_show_no_bands() {
+        let params = params(ToneMap::None, PixelFormat::Rgba8Srgb);
+        let level = |x: u32| 40.0 + f64::from(x) / 64.0;
+        let code = |x: u32, y: u32| {
+            let light = srgb_decode(level(x) / 255.0) as f32;
+            f64::from(develop(&params, [light; 4], x, y)[0])
+        };
+        let mut longest = 0;
+        for y in 0..64 {
+            let row = (0..1024).map(|x| code(x, y)).collect::<Vec<_>>();
+            longest = row.chunk_by(|a, b| a == b).map(<[f64]>::len).fold(longest, usize::max);
+        }
+        assert!(longest < 24, "{longest} equal pixels in a row");
+        for (x, y) in (0..1016).step_by(4).flat_map(|x| (0..56).step_by(8).map(move |y| (x, y))) {
+            let mean = (0..64).map(|i| code(x + i % 8, y + i / 8) - level(x + i % 8)).sum::<f64>() / 64.0;
+            assert!(mean.abs() < 0.1, "({x}, {y}): {mean} of a step off");
         }
     }
 

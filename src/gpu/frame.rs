@@ -1,30 +1,47 @@
-//! A frame on the GPU: tile by tile, sample by sample, records -> shade -> develop -> readback, or a window's texture. A frame is
+//! A frame on the GPU: tile by tile, sample by sample, records -> shade (-> bloom) -> develop -> readback, or a window's texture. A frame is
 //! prepared ([`GpuTracer::begin`]), submitted step by step, and each step read when it has run, so that readback overlaps the work
 //! of the next steps and frames. Knows no host memory: finished tiles go to the sink.
 
+use super::bloom::{BloomBuffers, BloomStages, LIGHT_BYTES};
 use super::export::{EXPORT_BYTES, imported};
-use super::kernels::{FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups};
+use super::kernels::{
+    Compiled, FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups,
+};
 use super::lens_kerr::Wanted;
 use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
+use super::steps::{Step, Steps};
 use super::tables::Tables;
-use super::tiles::{MAX_BATCH, Plan};
+use super::tiles::{MAX_BATCH, MEMORY, Plan};
 use super::uniforms::{FrameUniform, PassUniform};
-use super::{Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, timer, variant};
+use super::{
+    Buffer, Copied, Device, GpuTimer, GpuTracer, Readback, Texture, for_f32, kernels, timer, uniform_stride, variant,
+};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
+use crate::film::bloom::Bloom;
 use crate::physics::trace::Settings;
-use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
+use crate::renderer::{Backend, FrameRequest, FrameStats, PASSES, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{Lensing, Region, Scene, View};
+use arrayvec::ArrayVec;
 use glam::DVec3;
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::slice;
 use std::time::Instant;
 use wgpu::BufferUsages as Usage;
 
+/// Passes of a submission, at most one of each kind.
+#[derive(Clone, Copy)]
+enum PassKind {
+    Shading,
+    Bloom,
+    Development,
+}
+
+/// Of a step that gathers none.
+const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 /// Largest side of a tile, pixels.
 const MAX_TILE_SIDE: u32 = 4096;
 /// Bytes of a pixel's radiance.
@@ -35,6 +52,7 @@ const RADIANCE_BYTES: u64 = 16;
 pub struct FrameBuffers {
     fixed: Option<FixedBuffers>,
     sized: Option<SizedBuffers>,
+    bloom: BloomBuffers,
     makers: RecordMakers,
     readback: Readback,
     /// Where kernels put pixels row by row.
@@ -45,7 +63,9 @@ pub struct FrameBuffers {
 struct FixedBuffers {
     frame: Written,
     film: Written,
-    /// One `PassUniform` for each sample of a batch, `pass_stride` apart.
+    /// The same for light that is exposed already.
+    film_of_exposed: Written,
+    /// One `PassUniform` for what is developed in frames with bloom, and one for each sample of a batch, `pass_stride` apart.
     passes: Written,
     step_sum: Buffer,
 }
@@ -60,7 +80,7 @@ impl Default for Mapped {
 }
 
 /// A buffer of uniforms, and what was written to its begin last.
-struct Written {
+pub struct Written {
     buffer: Buffer,
     bytes: Vec<u8>,
 }
@@ -104,9 +124,18 @@ struct Stages {
     records: RecordStages,
     shading: Shading,
     put: Put,
+    /// In frames with bloom: what follows shading, which then puts light.
+    glare: Option<GlareStages>,
 }
 
-/// Group 2 of the kernel that puts pixels.
+/// What spreads light, and turns it into pixels.
+struct GlareStages {
+    bloom: BloomStages,
+    develop: Stage,
+    put: Put,
+}
+
+/// Group 2 of a kernel that puts pixels, or light.
 enum Put {
     /// In the same place in every submission.
     Here(wgpu::BindGroup),
@@ -117,7 +146,10 @@ enum Put {
 /// How a frame's shading is compiled.
 struct Looks {
     look: Look,
+    /// Of the kernel that ends shading.
     film: FilmLook,
+    /// Of development, in frames with bloom.
+    developed: Option<FilmLook>,
     several_samples: bool,
     /// Whether pixels are put row by row into the host's memory.
     rows: bool,
@@ -144,7 +176,8 @@ pub struct BegunFrame {
     target: PixelTarget,
     samples: u32,
     source: Source,
-    plan: Plan,
+    steps: Steps,
+    bloom: Option<Bloom>,
     /// Submitted so far.
     submitted: u64,
 }
@@ -158,6 +191,7 @@ pub struct Submitted {
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
     copied: Copied,
     tick_bytes: u64,
+    passes: ArrayVec<PassKind, PASSES>,
     /// Whether steps were counted: none are taken where rays are looked up and nothing else.
     counts: bool,
     tile: Option<Tile>,
@@ -176,6 +210,7 @@ struct Setup {
     samples: u32,
     uniform: FrameUniform,
     film: FilmParams,
+    bloom: Option<Bloom>,
 }
 
 /// Steps under way at once while a frame is rendered for a caller who waits: one is read while the next runs.
@@ -250,25 +285,47 @@ impl GpuTracer {
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them in a view
         // of nothing but the shadow's edge.
-        let steps = match setup.making.source {
+        let ray_steps = match setup.making.source {
             Source::Traced => scene.expected_steps(),
             Source::Schwarzschild { .. } => 2,
             Source::Kerr { .. } => 8,
         };
         // Packed pixels have two staging buffers.
         let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes;
-        let max_side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
-        let plan = Plan::new(request, bytes, max_side, steps, samples);
+        let steps = self.steps(scene, request, &setup, bytes, ray_steps);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
         setup.uniform.map_sizes = tables.map_sizes();
         let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
-        let size = Size { tile: plan.largest(), pixel_bytes: packed, several_samples: samples > 1 };
+        let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };
+        if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
+            self.buffers.bloom.prepare(&self.device, bloom, light)?;
+        }
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
         let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
-        Ok(BegunFrame { stages, request: *request, target: kind, samples, source, plan, submitted: 0 })
+        let bloom = setup.bloom;
+        Ok(BegunFrame { stages, request: *request, target: kind, samples, source, steps, bloom, submitted: 0 })
+    }
+
+    /// `bytes` that a pixel of a tile takes, and steps of its ray.
+    fn steps(&self, scene: &Scene, request: &FrameRequest, setup: &Setup, bytes: u64, ray_steps: u64) -> Steps {
+        let longest = self.device.limits().max_texture_dimension_2d;
+        let side = longest.min(MAX_TILE_SIDE);
+        let (samples, size) = (setup.samples, [request.width, request.height]);
+        let Some(bloom) = &setup.bloom else {
+            return Steps::plain(Plan::new(request, bytes, side, ray_steps, samples), samples);
+        };
+        let light = LIGHT_BYTES * size.map(u64::from).iter().product::<u64>();
+        let fits = size.iter().all(|side| *side <= longest) && light <= MEMORY;
+        if fits && scene.quality.keep_light.unwrap_or(true) {
+            return Steps::kept(Plan::new(request, bytes, side, ray_steps, samples), samples, bloom);
+        }
+        Steps::twice(request, samples, bloom, |request, pixels| {
+            let side = (u64::from(side) / pixels.isqrt()) as u32;
+            Plan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, samples)
+        })
     }
 
     /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are then forgotten.
@@ -303,6 +360,8 @@ impl GpuTracer {
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
+        let bloom = Bloom::new(scene, request.format, [request.width, request.height]);
+        let developed = FilmLook::new(&film, target);
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,
@@ -316,13 +375,14 @@ impl GpuTracer {
                 footprints: scene.turbulence().is_some(),
                 projection: scene.camera.projection,
             },
-            film: FilmLook::new(&film, target),
+            film: if bloom.is_some() { FilmLook::of_light() } else { developed },
+            developed: bloom.is_some().then_some(developed),
             several_samples: samples > 1,
             rows: target == PixelTarget::Rows,
         };
         let making = self.making(scene, &lens, &settings, &request.region);
         let uniform = FrameUniform::new(scene, &lens, &settings)?;
-        Ok(Setup { making, looks, samples, uniform, film })
+        Ok(Setup { making, looks, samples, uniform, film, bloom })
     }
 
     /// How the records of a frame are made.
@@ -392,7 +452,7 @@ impl GpuTracer {
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed.passes.write(device, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0)))?;
+        fixed.passes.write(device, bytemuck::bytes_of(&pass_of(request, whole, 0, 1, 0, [0, 0])))?;
         let mut encoder = device.encoder("records")?;
         buffers.makers.reset(setup.making.source, &fixed.step_sum, &mut encoder);
         {
@@ -440,18 +500,27 @@ impl Size {
 }
 
 impl Written {
-    fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
+    pub fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
         Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
     }
 
     /// Before the next submission runs, unless it is there already. Errors: as [`Device::write`].
-    fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
+    pub fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
         if self.bytes != bytes {
             self.bytes.clear();
             device.write(&self.buffer, 0, bytes)?;
             self.bytes.extend_from_slice(bytes);
         }
         Ok(())
+    }
+
+    pub fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    /// After a submission that failed, nobody knows what the buffer holds.
+    pub fn forget(&mut self) {
+        self.bytes.clear();
     }
 }
 
@@ -473,11 +542,16 @@ impl FrameBuffers {
             self.fixed = Some(FixedBuffers {
                 frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
                 film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
-                passes: Written::new(device, "passes", u64::from(MAX_BATCH) * pass_stride(device))?,
+                film_of_exposed: Written::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
+                passes: Written::new(
+                    device,
+                    "passes",
+                    u64::from(1 + MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                )?,
                 step_sum: step_sum(device)?,
             });
             // The clocks of software drivers tell nothing about their threads.
-            self.timer = if software { None } else { GpuTimer::new(device, 1)? };
+            self.timer = if software { None } else { GpuTimer::new(device, PASSES as u32)? };
         }
         if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.
@@ -495,15 +569,17 @@ impl FrameBuffers {
         self.makers.prepare(device, &setup.making, size.tile)?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
-        fixed.film.write(device, bytemuck::bytes_of(&setup.film))
+        fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
+        fixed.film_of_exposed.write(device, bytemuck::bytes_of(&setup.film.of_exposed()))
     }
 
     /// After a submission that failed, nobody knows what the buffers hold.
     fn forget(&mut self) {
         self.makers.forget();
+        self.bloom.forget();
         if let Some(fixed) = &mut self.fixed {
-            for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.passes] {
-                written.bytes.clear();
+            for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.film_of_exposed, &mut fixed.passes] {
+                written.forget();
             }
         }
     }
@@ -541,7 +617,7 @@ impl FrameBuffers {
             Taking::new(kernels, &setup.making, software, take)
         };
         let puts = match looks.several_samples {
-            true => kernels.develop(device, looks.film)?,
+            true => kernels.develop(device, looks.film, None)?,
             false => kernels.shade_only(device, setup.making.source, looks.look, looks.film)?,
         };
         let shading = if looks.several_samples {
@@ -554,14 +630,59 @@ impl FrameBuffers {
         } else {
             Shading::Only(taking(kernels, &[])?)
         };
-        let film = &fixed.film.buffer;
-        let here = |pixels| device.bind(puts.target()?, &[film.as_entire_binding(), pixels]).map(Put::Here);
-        let put = match target {
-            FrameTarget::Screen(texture) => here(wgpu::BindingResource::TextureView(&texture.view))?,
-            FrameTarget::Host if looks.rows => Put::Staged(puts.target()?.clone(), (**film).clone()),
-            FrameTarget::Host => here(sized.packed.as_entire_binding())?,
+        let group = |puts: &Compiled, film: &Written, pixels| {
+            device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels])
         };
-        Ok(Stages { records: made, shading, put })
+        let put_pixels = |puts: &Compiled, film: &Written| match target {
+            FrameTarget::Screen(texture) => {
+                group(puts, film, wgpu::BindingResource::TextureView(&texture.view)).map(Put::Here)
+            }
+            FrameTarget::Host if looks.rows => Ok(Put::Staged(puts.target()?.clone(), (*film.buffer).clone())),
+            FrameTarget::Host => group(puts, film, sized.packed.as_entire_binding()).map(Put::Here),
+        };
+        let (put, glare) = match (&setup.bloom, looks.developed) {
+            (Some(bloom), Some(look)) => {
+                let develops = kernels.develop(device, look, Some(bloom.factor))?;
+                let glare = GlareStages {
+                    bloom: self.bloom.stages(device, kernels, bloom)?,
+                    develop: develops.stage(device, &[slice::from_ref(&pass), &self.bloom.group(bloom)?])?,
+                    put: put_pixels(&develops, &fixed.film_of_exposed)?,
+                };
+                (Put::Here(group(&puts, &fixed.film, self.bloom.light()?)?), Some(glare))
+            }
+            _ => (put_pixels(&puts, &fixed.film)?, None),
+        };
+        Ok(Stages { records: made, shading, put, glare })
+    }
+}
+
+impl Stages {
+    /// Shades samples of a tile; the last one is followed by the sum's development, or, with bloom, by giving it to the light.
+    fn shade(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        step: &Step,
+        samples: u32,
+        begins: bool,
+        stride: u32,
+        put: Option<&wgpu::BindGroup>,
+    ) {
+        let tile = [step.shades.width, step.shades.height];
+        for (sample, slot) in step.samples.clone().zip(1..) {
+            let offset = slot * stride;
+            self.records.encode(pass, begins && slot == 1, offset, tile);
+            match &self.shading {
+                Shading::Only(stage) => {
+                    pass.set_bind_group(2, put, &[]);
+                    stage.dispatch(pass, offset, tile);
+                }
+                Shading::Samples { shade, .. } => shade[sample as usize % 2].dispatch(pass, offset, tile),
+            }
+        }
+        if let (Shading::Samples { develop, .. }, true) = (&self.shading, step.samples.end == samples) {
+            pass.set_bind_group(2, put, &[]);
+            develop[(samples as usize - 1) % 2].dispatch(pass, stride, tile);
+        }
     }
 }
 
@@ -578,20 +699,10 @@ impl Put {
     }
 }
 
-/// Distance of two `PassUniform`s in their buffer.
-fn pass_stride(device: &Device) -> u64 {
-    let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
-    (size_of::<PassUniform>() as u64).next_multiple_of(alignment)
-}
-
 impl BegunFrame {
-    fn batches(&self) -> u64 {
-        u64::from(self.samples.div_ceil(self.plan.batch))
-    }
-
     /// Of steps.
     pub fn count(&self) -> u64 {
-        self.plan.count() * self.batches()
+        self.steps.count()
     }
 
     /// Whether no step is left.
@@ -605,74 +716,83 @@ impl BegunFrame {
         FrameStats { rays, ..FrameStats::default() }
     }
 
-    /// The next step: a tile, and samples of it.
-    fn next(&self) -> Option<(Tile, Range<u32>)> {
-        if self.submitted == self.count() {
-            return None;
-        }
-        let tile = self.plan.tile(self.submitted / self.batches());
-        let begin = (self.submitted % self.batches()) as u32 * self.plan.batch;
-        Some((tile, begin..(begin + self.plan.batch).min(self.samples)))
+    /// The next one.
+    fn next(&self) -> Option<Step> {
+        (!self.is_submitted()).then(|| self.steps.step(self.submitted))
     }
 }
 
 impl FrameBuffers {
-    /// Starts the frame's next step; the last samples of a tile are followed by development and the copy to the host.
+    /// Starts the frame's next step; what it develops is copied to the host.
     fn submit(
         &mut self,
         device: &Device,
         frame: &mut BegunFrame,
         then: &mut Recording<'_>,
     ) -> Result<Option<Submitted>> {
-        let Some((tile, range)) = frame.next() else { return Ok(None) };
+        let Some(step) = frame.next() else { return Ok(None) };
         let begins = frame.submitted == 0;
         let stages = &frame.stages;
-        let stride = pass_stride(device);
-        let slots = range.clone().zip(0..);
-        let passes = slots.map(|(sample, slot)| pass_of(&frame.request, tile, sample, frame.samples, slot));
-        let mut bytes = vec![0; range.len() * stride as usize];
-        for (slot, pass) in bytes.chunks_exact_mut(stride as usize).zip(passes) {
+        let stride = uniform_stride::<PassUniform>(device);
+        let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
+        let mut places = vec![0; (1 + step.samples.len()) * stride as usize];
+        // The first is what is developed, which with bloom may be another tile than the shaded one.
+        let developed = (step.develops.unwrap_or(step.shades), 0, 0);
+        for (slot, (tile, sample, i)) in
+            places.chunks_exact_mut(stride as usize).zip([developed].into_iter().chain(shaded))
+        {
+            let pass = pass_of(&frame.request, tile, sample, frame.samples, i, step.light_origin);
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
-        let size_of_tile = [tile.width, tile.height];
+        let size_of_tile = [step.shades.width, step.shades.height];
         check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
-        let last = range.end == frame.samples;
-        let row_bytes = tile.width as usize * frame.request.format.bytes_per_pixel();
-        let pixel_bytes = match frame.target {
-            PixelTarget::Packed | PixelTarget::Rows if last => row_bytes as u64 * u64::from(tile.height),
-            _ => 0,
-        };
+        let developed = step.develops.filter(|_| frame.target != PixelTarget::Screen);
+        let row_bytes = developed.map_or(0, |tile| tile.width as usize * frame.request.format.bytes_per_pixel());
+        let pixel_bytes = developed.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
         let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
         let staging = match frame.target {
-            PixelTarget::Rows if last => self.mapped.0.staging(device, size)?,
+            PixelTarget::Rows if pixel_bytes > 0 => self.mapped.0.staging(device, size)?,
             _ => self.readback.staging(device, size)?,
         };
         let to = staging.buffer()?;
-        let put = if last { Some(stages.put.group(device, to)?) } else { None };
         let mut encoder = device.encoder("frame")?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed.passes.write(device, &bytes)?;
+        fixed.passes.write(device, &places)?;
+        if let Some(bloom) = &frame.bloom {
+            self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
+        }
         let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
-        {
-            let timestamps = self.timer.as_mut().and_then(GpuTimer::next_pass);
-            let descriptor = wgpu::ComputePassDescriptor { label: Some("frame"), timestamp_writes: timestamps };
-            let mut pass = encoder.begin_compute_pass(&descriptor);
-            for (i, sample) in range.enumerate() {
-                let offset = i as u32 * stride as u32;
-                stages.records.encode(&mut pass, begins && i == 0, offset, size_of_tile);
-                match &stages.shading {
-                    Shading::Only(stage) => {
-                        pass.set_bind_group(2, put.as_ref(), &[]);
-                        stage.dispatch(&mut pass, offset, size_of_tile);
+        let puts = stages.glare.is_some() || step.develops.is_some();
+        let put = if puts { Some(stages.put.group(device, to)?) } else { None };
+        let timer = &mut self.timer;
+        let mut passes = ArrayVec::new();
+        let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
+            passes.push(kind);
+            let timestamp_writes = timer.as_mut().and_then(GpuTimer::next_pass);
+            record(
+                &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes }),
+            );
+        };
+        if !step.samples.is_empty() {
+            in_pass(PassKind::Shading, "frame", &mut |pass| {
+                stages.shade(pass, &step, frame.samples, begins, stride as u32, put.as_ref())
+            });
+        }
+        if let Some(glare) = &stages.glare {
+            if let Some(cells) = step.gathers {
+                in_pass(PassKind::Bloom, "bloom", &mut |pass| {
+                    glare.bloom.gather(pass, cells);
+                    if step.spreads {
+                        glare.bloom.spread(pass);
                     }
-                    Shading::Samples { shade, .. } => {
-                        shade[sample as usize % 2].dispatch(&mut pass, offset, size_of_tile);
-                    }
-                }
+                });
             }
-            if let (Shading::Samples { develop, .. }, true) = (&stages.shading, last) {
-                pass.set_bind_group(2, put.as_ref(), &[]);
-                develop[(frame.samples as usize - 1) % 2].dispatch(&mut pass, 0, size_of_tile);
+            if let Some(tile) = step.develops {
+                let put = glare.put.group(device, to)?;
+                in_pass(PassKind::Development, "develop", &mut |pass| {
+                    pass.set_bind_group(2, &put, &[]);
+                    glare.develop.dispatch(pass, 0, [tile.width, tile.height]);
+                });
             }
         }
         let counts = steps.is_some();
@@ -680,7 +800,7 @@ impl FrameBuffers {
             encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
         }
         let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
-        if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, last) {
+        if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, pixel_bytes > 0) {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
         let mut copied = staging.filled(size);
@@ -690,14 +810,7 @@ impl FrameBuffers {
         let submission = device.submit(encoder)?;
         copied.request(device)?;
         frame.submitted += 1;
-        Ok(Some(Submitted {
-            submission,
-            copied,
-            tick_bytes,
-            counts,
-            tile: (pixel_bytes > 0).then_some(tile),
-            row_bytes,
-        }))
+        Ok(Some(Submitted { submission, copied, tick_bytes, passes, counts, tile: developed, row_bytes }))
     }
 }
 
@@ -720,7 +833,11 @@ impl Submitted {
                 let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
                 stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
             }
-            stats.gpu_ns += timer::nanoseconds(device, part(bytes, TICKS, self.tick_bytes)?)?;
+            let ticks = part(bytes, TICKS, self.tick_bytes)?;
+            stats.gpu_ns += timer::nanoseconds(device, ticks)?;
+            for (kind, ticks) in self.passes.iter().zip(ticks.chunks(timer::PASS_BYTES as usize)) {
+                stats.pass_ns[*kind as usize] += timer::nanoseconds(device, ticks)?;
+            }
             if let (Some(tile), Some(pixels)) = (self.tile, bytes.get(PIXELS as usize..)) {
                 sink(tile, pixels, self.row_bytes)?;
             }
@@ -737,7 +854,14 @@ fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
 }
 
 /// `slot`: of the sample in its submission.
-fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32, slot: u32) -> PassUniform {
+fn pass_of(
+    request: &FrameRequest,
+    tile: Tile,
+    sample: u32,
+    samples: u32,
+    slot: u32,
+    light_origin: [u32; 2],
+) -> PassUniform {
     let region = request.region;
     let [dx, dy] = sample_offset(sample, samples);
     PassUniform {
@@ -748,5 +872,6 @@ fn pass_of(request: &FrameRequest, tile: Tile, sample: u32, samples: u32, slot: 
         first: u32::from(sample == 0),
         slot,
         reserved: 0,
+        light_origin: light_origin.map(|v| v as i32),
     }
 }

@@ -59,11 +59,18 @@ pub enum PixelTarget {
     Packed,
     /// Into a buffer in the host's memory, packed, row by row.
     Rows,
+    /// Not pixels yet: exposed light, for bloom to spread.
+    Light,
 }
 
 impl FilmLook {
     pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
         Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
+    }
+
+    /// Of light that bloom is to spread.
+    pub fn of_light() -> Self {
+        Self { format: 1, tone_map: 0, false_colour: 0, target: PixelTarget::Light }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered and make no rows.
@@ -80,6 +87,9 @@ impl FilmLook {
             PixelTarget::Screen => include_str!("../../shaders/screen.wgsl"),
             PixelTarget::Packed => include_str!("../../shaders/packed.wgsl"),
             PixelTarget::Rows => include_str!("../../shaders/packed_rows.wgsl"),
+            PixelTarget::Light => {
+                concat!(include_str!("../../shaders/f16.wgsl"), "\n", include_str!("../../shaders/light.wgsl"))
+            }
         };
         [include_str!("../../shaders/film.wgsl"), include_str!("../../shaders/false_colour.wgsl"), target]
     }
@@ -89,6 +99,7 @@ impl FilmLook {
         let pixels = match self.target {
             PixelTarget::Screen => Slot::TextureWrite(SCREEN),
             PixelTarget::Packed | PixelTarget::Rows => Slot::Write,
+            PixelTarget::Light => Slot::TextureWrite(LIGHT),
         };
         vec![Slot::Uniform, pixels]
     }
@@ -96,7 +107,7 @@ impl FilmLook {
     /// Threads of a workgroup of the kernels that put pixels.
     fn group(self) -> [u32; 2] {
         match self.target {
-            PixelTarget::Screen | PixelTarget::Packed => GROUP,
+            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => GROUP,
             PixelTarget::Rows => ROWS_GROUP,
         }
     }
@@ -134,12 +145,24 @@ enum Name {
     Count,
     ShadeSample(Source, Look),
     ShadeOnly(Source, Look, FilmLook),
-    Develop(FilmLook),
+    /// Of a sum of samples; or of light that has spread over a grid of cells of so many pixels' side.
+    Develop(FilmLook, Option<u32>),
+    /// Finer cells, or pixels, along a cell's side; whether they are cells.
+    Gather(u32, bool),
+    GatherBase,
+    GiveBack,
     Export(Source, bool, Projection),
     SchwarzschildEnds,
-    SchwarzschildColumns { delay: bool },
-    KerrNodes { delay: bool, pattern: bool },
-    KerrFlags { pattern: bool },
+    SchwarzschildColumns {
+        delay: bool,
+    },
+    KerrNodes {
+        delay: bool,
+        pattern: bool,
+    },
+    KerrFlags {
+        pattern: bool,
+    },
 }
 
 /// The pipelines of one device.
@@ -311,12 +334,35 @@ fn export_source(source: Source) -> String {
     join(&[&parts, &source.parts()])
 }
 
-fn develop_source(film: FilmLook) -> String {
+fn develop_source(film: FilmLook, glare: bool) -> String {
     let driver = match film.target {
-        PixelTarget::Screen | PixelTarget::Packed => include_str!("../../shaders/develop.wgsl"),
+        PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => include_str!("../../shaders/develop.wgsl"),
         PixelTarget::Rows => include_str!("../../shaders/develop_rows.wgsl"),
     };
-    join(&[&[PASS], &film.parts(), &[driver]])
+    let light: &[&str] = match glare {
+        true => &[BLOOM, include_str!("../../shaders/glare.wgsl")],
+        false => &[include_str!("../../shaders/summed.wgsl")],
+    };
+    join(&[&[PASS], light, &film.parts(), &[driver]])
+}
+
+const BLOOM: &str = include_str!("../../shaders/bloom.wgsl");
+
+/// A kernel of bloom.
+fn bloom_source(kernel: &str) -> String {
+    join(&[&[BLOOM, include_str!("../../shaders/f16.wgsl"), kernel]])
+}
+
+fn gather_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_gather.wgsl"))
+}
+
+fn gather_base_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_base.wgsl"))
+}
+
+fn give_back_source() -> String {
+    bloom_source(include_str!("../../shaders/bloom_return.wgsl"))
 }
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
@@ -343,9 +389,17 @@ pub fn shader_sources() -> Vec<(&'static str, String)> {
         ("pixels", pixels_source()),
         ("count", count_source()),
         ("present", super::present::present_source()),
-        ("develop", develop_source(film(PixelTarget::Packed))),
-        ("develop for a window", develop_source(film(PixelTarget::Screen))),
-        ("develop by rows", develop_source(film(PixelTarget::Rows))),
+        ("develop", develop_source(film(PixelTarget::Packed), false)),
+        ("develop for a window", develop_source(film(PixelTarget::Screen), false)),
+        ("develop by rows", develop_source(film(PixelTarget::Rows), false)),
+        ("develop for bloom", develop_source(FilmLook::of_light(), false)),
+        ("develop with glare", develop_source(film(PixelTarget::Packed), true)),
+        ("develop with glare for a window", develop_source(film(PixelTarget::Screen), true)),
+        ("develop with glare by rows", develop_source(film(PixelTarget::Rows), true)),
+        ("bloom, gather", gather_source()),
+        ("bloom, gather pixels", gather_base_source()),
+        ("bloom, give back", give_back_source()),
+        ("shade only for bloom", shade_only_source(kerr(false), FilmLook::of_light())),
         ("shade only for a window", shade_only_source(kerr(false), film(PixelTarget::Screen))),
         ("shade only by rows", shade_only_source(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", schwarzschild_ends_source()),
@@ -365,6 +419,9 @@ enum Slot {
     Read,
     Write,
     Texture(TextureKind),
+    /// A texture that a sampler filters.
+    Filtered(TextureKind),
+    Sampler,
     TextureWrite(TextureKind),
 }
 
@@ -385,6 +442,10 @@ pub const TRACED: [TextureKind; 3] = [
 /// Radiance of shade_sample.wgsl and develop.wgsl.
 pub const RADIANCE: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// Light that bloom spreads, of frames and of grids: exposed_light, finer, coarser and glare of the shaders.
+pub const LIGHT: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba16Float, dimension: wgpu::TextureViewDimension::D2 };
 
 /// What a window is filled from: 8-bit codes, whatever curve they follow.
 pub const SCREEN: TextureKind =
@@ -430,6 +491,12 @@ impl Slot {
                 view_dimension: of.dimension,
                 multisampled: false,
             },
+            Self::Filtered(of) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: of.dimension,
+                multisampled: false,
+            },
+            Self::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
             Self::TextureWrite(of) => wgpu::BindingType::StorageTexture {
                 access: wgpu::StorageTextureAccess::WriteOnly,
                 format: of.format,
@@ -496,10 +563,32 @@ impl Kernels {
         self.get(device, Name::ShadeOnly(source, look, film), &groups, entry_point, wgsl)
     }
 
-    /// Group 2, which puts the pixels, is for the caller to set.
-    pub fn develop(&mut self, device: &Device, film: FilmLook) -> Result<Compiled> {
-        let groups = [vec![Slot::UniformPart], vec![Slot::Texture(RADIANCE)], film.slots()];
-        self.get(device, Name::Develop(film), &groups, "develop_tile", || develop_source(film))
+    /// `glare`: with bloom, pixels along a cell's side. Group 2, which puts the pixels, is for the caller to set.
+    pub fn develop(&mut self, device: &Device, film: FilmLook, glare: Option<u32>) -> Result<Compiled> {
+        let light = match glare {
+            Some(_) => vec![Slot::Texture(LIGHT), Slot::Filtered(LIGHT), Slot::Sampler, Slot::Uniform],
+            None => vec![Slot::Texture(RADIANCE)],
+        };
+        let groups = [vec![Slot::UniformPart], light, film.slots()];
+        self.get(device, Name::Develop(film, glare), &groups, "develop_tile", || develop_source(film, glare.is_some()))
+    }
+
+    /// For cells of `step` x `step` pixels, or of finer cells.
+    pub fn gather(&mut self, device: &Device, step: u32, grid: bool) -> Result<Compiled> {
+        let slots = vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::Gather(step, grid), &[slots], "gather", gather_source)
+    }
+
+    /// For cells of 2 x 2 pixels.
+    pub fn gather_base(&mut self, device: &Device) -> Result<Compiled> {
+        let slots = vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::GatherBase, &[slots], "gather", gather_base_source)
+    }
+
+    pub fn give_back(&mut self, device: &Device) -> Result<Compiled> {
+        let [finer, coarser] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
+        let slots = vec![Slot::UniformPart, finer, coarser, Slot::Sampler, Slot::TextureWrite(LIGHT)];
+        self.get(device, Name::GiveBack, &[slots], "give_back", give_back_source)
     }
 
     pub fn export(&mut self, device: &Device, source: Source, look: Look) -> Result<Compiled> {
@@ -558,7 +647,7 @@ impl Kernels {
             groups: &layouts.iter().collect::<Vec<_>>(),
         })?;
         let group = match name {
-            Name::ShadeOnly(_, _, film) | Name::Develop(film) => film.group(),
+            Name::ShadeOnly(_, _, film) | Name::Develop(film, _) => film.group(),
             _ => GROUP,
         };
         let compiled = Compiled { pipeline, layouts, group };
@@ -589,7 +678,7 @@ impl Kernels {
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
 /// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants, over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
+/// loops counted over constants (of a pipeline or of all), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less) or over deferred pixels, of which
 /// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
 /// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
@@ -642,7 +731,10 @@ fn constants(name: Name) -> Vec<(&'static str, f64)> {
         Name::ShadeOnly(source, look, film) => {
             [source.constants(), look_constants(look), film_constants(film)].concat()
         }
-        Name::Develop(film) => film_constants(film),
+        Name::Develop(film, None) => film_constants(film),
+        Name::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
+        Name::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
+        Name::GatherBase | Name::GiveBack => Vec::new(),
         Name::Export(source, footprints, projection) => {
             let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
             [source.constants(), export].concat()

@@ -3,6 +3,7 @@
 
 mod adapter;
 mod bindings;
+mod bloom;
 mod buffer;
 mod device;
 mod export;
@@ -16,6 +17,7 @@ mod rays;
 mod readback;
 mod records;
 mod sky_maps;
+mod steps;
 mod swapchain;
 mod tables;
 mod texture;
@@ -87,6 +89,12 @@ impl GpuTracer {
     pub fn device(&self) -> Arc<Device> {
         self.device.clone()
     }
+}
+
+/// Distance of two uniforms of a buffer of which dispatches choose one.
+fn uniform_stride<T>(device: &Device) -> u64 {
+    let alignment = u64::from(device.limits().min_uniform_buffer_offset_alignment);
+    (size_of::<T>() as u64).next_multiple_of(alignment)
 }
 
 /// Settings of the f64 tracer brought to what f32 can do.

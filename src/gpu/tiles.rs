@@ -4,8 +4,8 @@ use crate::renderer::{FrameRequest, Tile};
 
 /// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog fires.
 const STEPS_PER_SUBMISSION: u64 = 96 << 20;
-/// Bytes that the records and the radiance of a tile may take.
-const MEMORY: u64 = 192 << 20;
+/// Bytes that the records and the radiance of a tile may take; and, in frames with bloom, the light that is kept.
+pub const MEMORY: u64 = 192 << 20;
 /// Samples of one submission at most.
 pub const MAX_BATCH: u32 = 16;
 
@@ -36,6 +36,11 @@ impl Plan {
         let traced = u64::from(tile[0] + 2) * u64::from(tile[1] + 2);
         let batch = (STEPS_PER_SUBMISSION / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(samples.max(1)))) as u32;
         Self { frame: [request.width, request.height], tile, batch }
+    }
+
+    /// Width and height of all tiles together.
+    pub fn frame(&self) -> [u32; 2] {
+        self.frame
     }
 
     /// Width and height of the largest tile.

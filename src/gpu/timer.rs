@@ -6,7 +6,7 @@ use super::readback::{Copied, Readback};
 use crate::error::{Error, Result};
 
 /// Each pass writes one tick count when it begins and one when it ends.
-const PASS_BYTES: u64 = 2 * wgpu::QUERY_SIZE as u64;
+pub(super) const PASS_BYTES: u64 = 2 * wgpu::QUERY_SIZE as u64;
 
 /// Times the compute passes of one submission after another.
 pub struct GpuTimer {

@@ -54,6 +54,7 @@ pub struct PassUniform {
     pub first: u32,
     pub slot: u32,
     pub reserved: u32,
+    pub light_origin: [i32; 2],
 }
 
 fn with(v: DVec3, w: f64) -> Vec4 {

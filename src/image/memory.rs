@@ -47,6 +47,11 @@ impl PixelFormat {
         }
     }
 
+    /// Codes of 8 bits, which film makes; the others hold numbers as they are.
+    pub fn is_8bit(self) -> bool {
+        self.channel_bytes() == 1
+    }
+
     /// Of one channel; pixels and rows are aligned to it.
     pub fn channel_bytes(self) -> usize {
         match self {

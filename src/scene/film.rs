@@ -16,7 +16,7 @@ pub struct Film {
     pub tone_map: ToneMap,
     /// Stops, -20 .. 20. Default 0.
     pub exposure_ev: f64,
-    /// 0 off (default) .. 1.
+    /// Glare, 0 off (default) .. 1: see `crate::film::bloom`.
     pub bloom: f64,
 }
 
@@ -27,16 +27,13 @@ impl Default for Film {
 }
 
 impl Film {
-    /// Errors: exposure or bloom out of range; bloom > 0 (UNSUPPORTED in this version).
+    /// Errors: exposure or bloom out of range.
     pub fn check(&self) -> Result<()> {
         if !(-20.0..=20.0).contains(&self.exposure_ev) {
             return Err(Error::argument(format!("film exposure_ev is {}; it must lie in [-20, 20]", self.exposure_ev)));
         }
         if !(0.0..=1.0).contains(&self.bloom) {
             return Err(Error::argument(format!("film bloom is {}; it must lie in [0, 1]", self.bloom)));
-        }
-        if self.bloom > 0.0 {
-            return Err(Error::unsupported(format!("film bloom is {}; this version has none: set 0", self.bloom)));
         }
         Ok(())
     }

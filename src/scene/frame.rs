@@ -49,12 +49,112 @@ impl Region {
     }
 }
 
-/// Where in its pixel sample `index` of `count` lies, 0 .. 1 each way: the centre for one sample, else even steps in x and
-/// steps of the golden ratio, modulo 1, in y: evenly spread for any count, the same for every pixel and machine.
+/// Where about its pixel sample `index` of `count` lies, the pixel being 0 .. 1 each way: the centre for one sample, else by the
+/// filter that a picture is reconstructed with, so that all samples weigh the same (importance sampling of the filter: M. Ernst,
+/// M. Stamminger, G. Greiner, IEEE Ray Tracing 2006). The same for every pixel and machine.
+///
+/// The filter is the quadratic B-spline, 3 pixels wide, sigma 1/2. A box, which a pixel is, lets through 30 % of what repeats every 4/3
+/// pixels, which then shows as a pattern 4 pixels long; the spline 3 %, and 26 % of the finest detail that pixels can show (box: 64 %). Filters
+/// that keep more of it have negative lobes, which make dark rings around stars and the photon ring.
+///
+/// The lattice: even steps in x and steps of the golden ratio, modulo 1, in y, spread evenly for any count.
 pub fn sample_offset(index: u32, count: u32) -> [f64; 2] {
     let (i, n) = (f64::from(index), f64::from(count));
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-    // The lattice's mean lies at the pixel's centre in x exactly, in y by the turn that centres it.
+    // Point symmetric: the mean lies at the pixel's centre exactly.
     let turn = 0.5 - golden * (n - 1.0) / 2.0;
-    [(i + 0.5) / n, (i * golden + turn).rem_euclid(1.0)]
+    [(i + 0.5) / n, (i * golden + turn).rem_euclid(1.0)].map(|share| 0.5 + spline_quantile(share))
+}
+
+/// Where the integral of the quadratic B-spline from -3/2 on is `share`, 0 .. 1.
+fn spline_quantile(share: f64) -> f64 {
+    let from_middle = share - 0.5;
+    if from_middle.abs() > 1.0 / 3.0 {
+        // (3/2 - |x|)^3 / 6 is beyond x.
+        let beyond = 0.5 - from_middle.abs();
+        return (1.5 - (6.0 * beyond).max(0.0).cbrt()).copysign(from_middle);
+    }
+    // 3/4 x - x^3 / 3, which x = sqrt(3) sin(phi) makes sqrt(3)/4 sin(3 phi).
+    3.0_f64.sqrt() * ((4.0 / 3.0_f64.sqrt() * from_middle).asin() / 3.0).sin()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn offsets(count: u32) -> Vec<[f64; 2]> {
+        (0..count).map(|i| sample_offset(i, count)).collect()
+    }
+
+    #[test]
+    fn one_sample_lies_at_the_centre() {
+        assert_eq!(sample_offset(0, 1), [0.5, 0.5]);
+    }
+
+    #[test]
+    fn samples_are_centred_and_have_the_spline_s_spread() {
+        for count in 2..=256 {
+            for c in 0..2 {
+                let at = offsets(count).iter().map(|o| o[c] - 0.5).collect::<Vec<_>>();
+                let mean = at.iter().sum::<f64>() / f64::from(count);
+                let variance = at.iter().map(|v| v * v).sum::<f64>() / f64::from(count);
+                assert!(mean.abs() < 1e-9, "{count}: mean {mean}");
+                assert!(at.iter().all(|v| v.abs() < 1.5), "{count}: {at:?}");
+                // Of few samples the tails' are missing.
+                let off = 1.5 / f64::from(count);
+                assert!((variance - 0.25).abs() < off, "{count}: variance {variance} in {c}");
+            }
+        }
+    }
+
+    /// The share of samples before x is the spline's integral.
+    #[test]
+    fn samples_are_distributed_as_the_spline() {
+        let integral = |x: f64| match x.abs() {
+            y if y >= 1.5 => f64::from(x > 0.0),
+            y if y > 0.5 => (0.5 + (0.5 - (1.5 - y).powi(3) / 6.0).copysign(x)).clamp(0.0, 1.0),
+            _ => 0.5 + 0.75 * x - x.powi(3) / 3.0,
+        };
+        for c in 0..2 {
+            let offsets = offsets(256);
+            for i in -16..=16 {
+                let x = f64::from(i) / 10.0;
+                let before = offsets.iter().filter(|o| o[c] - 0.5 < x).count() as f64 / 256.0;
+                assert!((before - integral(x)).abs() < 0.01, "{before} of the samples before {x}: {}", integral(x));
+            }
+        }
+        for i in 0..=1000 {
+            let share = f64::from(i) / 1000.0;
+            assert!((integral(spline_quantile(share)) - share).abs() < 1e-12, "{share}");
+        }
+    }
+
+    /// A straight edge through the pixel at any angle and place: what samples see of it comes near what the filter does, and the nearer
+    /// the more they are.
+    #[test]
+    fn edges_converge() {
+        let exact = offsets_of_a_grid(512);
+        let error = |count: u32| {
+            let mut worst = 0.0_f64;
+            for (angle, place) in
+                (0..24).flat_map(|a| (-10..=10).map(move |p| (f64::from(a) * 0.13, f64::from(p) * 0.1)))
+            {
+                let seen = |at: &[[f64; 2]]| {
+                    let below = at.iter().filter(|o| (o[0] - 0.5) * angle.cos() + (o[1] - 0.5) * angle.sin() < place);
+                    below.count() as f64 / at.len() as f64
+                };
+                worst = worst.max((seen(&offsets(count)) - seen(&exact)).abs());
+            }
+            worst
+        };
+        let errors = [4, 16, 64, 256].map(error);
+        println!("{errors:?}");
+        assert!(errors[0] < 0.3 && errors[1] < 0.12 && errors[2] < 0.05 && errors[3] < 0.02, "{errors:?}");
+    }
+
+    /// The filter by a grid of `side` x `side`.
+    fn offsets_of_a_grid(side: u32) -> Vec<[f64; 2]> {
+        let at = |i: u32| 0.5 + spline_quantile((f64::from(i) + 0.5) / f64::from(side));
+        (0..side).flat_map(|y| (0..side).map(move |x| [at(x), at(y)])).collect()
+    }
 }

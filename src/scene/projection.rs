@@ -48,7 +48,7 @@ impl Mapping {
     /// Whether something is seen at (x, y): all but what lies outside a fisheye's circle.
     pub fn has_look(&self, x: f64, y: f64) -> bool {
         let radius = 0.5 * self.width.min(self.height);
-        self.projection != Projection::Fisheye || self.from_centre(x, y).length_squared() <= radius * radius
+        self.projection != Projection::Fisheye || self.offset(x, y).length_squared() <= radius * radius
     }
 
     /// Whether no border between two faces of a cube lies between positions of a row.
@@ -62,7 +62,7 @@ impl Mapping {
         match self.projection {
             Projection::Perspective => DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0),
             Projection::Fisheye => {
-                let (from_centre, radius) = (self.from_centre(x, y), self.from_centre(x, y).length());
+                let (from_centre, radius) = (self.offset(x, y), self.offset(x, y).length());
                 let (sin, cos) = (self.pixel_angle * radius).sin_cos();
                 (from_centre * self.across(sin, radius)).extend(cos)
             }
@@ -83,7 +83,7 @@ impl Mapping {
         match self.projection {
             Projection::Perspective => [DVec3::X * (2.0 / self.width), DVec3::Y * (-2.0 / self.height)],
             Projection::Fisheye => {
-                let from_centre = self.from_centre(x, y);
+                let from_centre = self.offset(x, y);
                 let radius = from_centre.length();
                 let outward = if radius > 0.0 { from_centre / radius } else { DVec2::X };
                 let (sin, cos) = (self.pixel_angle * radius).sin_cos();
@@ -107,8 +107,8 @@ impl Mapping {
         }
     }
 
-    /// Pixels to the right and up.
-    fn from_centre(&self, x: f64, y: f64) -> DVec2 {
+    /// From the centre, pixels to the right and up.
+    fn offset(&self, x: f64, y: f64) -> DVec2 {
         DVec2::new(x - 0.5 * self.width, 0.5 * self.height - y)
     }
 

@@ -50,7 +50,7 @@ impl Sky {
         Self { flags: 0, ..Self::default() }
     }
 
-    /// Errors: unknown flags; flags of a later version (UNSUPPORTED); brightness out of range; orientation not of unit length
+    /// Errors: unknown flags; brightness out of range; orientation not of unit length
     /// to within 1e-3.
     pub fn check(&self) -> Result<()> {
         let known = Self::STARS | Self::PROCEDURAL | Self::MILKY_WAY | Self::MAP | Self::GRID;

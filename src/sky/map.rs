@@ -231,22 +231,28 @@ impl Scratch {
             add(&mut sum, 1.0, *light);
             *up_to = sum;
         }
-        // The sum over [0, x), x in columns, may lie beyond the seam.
+        if texels >= width as f64 {
+            self.row.fill(sum.map(|v| v / width as f64));
+            return;
+        }
+        // The sum from column 0 to `share` of column x, which may lie one turn away.
         let (row, up_to) = (&self.row, &self.up_to);
-        let sum_to = |x: f64| {
-            let turns = (x / width as f64).floor();
-            let x = x - turns * width as f64;
-            let column = (x as usize).min(width - 1);
-            let mut part = up_to[column];
-            add(&mut part, x - column as f64, row[column]);
-            add(&mut part, turns, sum);
-            part
+        let sum_to = |x: isize, share: f64| {
+            let (turn, column) = match usize::try_from(x) {
+                Ok(x) if x < width => (0.0, x),
+                Ok(x) => (1.0, x - width),
+                Err(_) => (-1.0, x.wrapping_add_unsigned(width) as usize),
+            };
+            // In bounds, as no more than a turn is averaged; a row is not longer than its sums.
+            let (Some(up_to), Some(light)) = (up_to.get(column), row.get(column)) else { return sum };
+            std::array::from_fn::<f64, 3, _>(|c| up_to[c] + share * light[c] + turn * sum[c])
         };
+        let [begin, end] = [0.5 - 0.5 * texels, 0.5 + 0.5 * texels].map(|at| (at.floor() as isize, at - at.floor()));
         let blurred = |x: usize| {
-            let middle = x as f64 + 0.5;
-            let (begin, end) = (sum_to(middle - 0.5 * texels), sum_to(middle + 0.5 * texels));
+            let from = sum_to(begin.0.wrapping_add_unsigned(x), begin.1);
+            let to = sum_to(end.0.wrapping_add_unsigned(x), end.1);
             // Rounding may leave less than nothing.
-            std::array::from_fn(|c| ((end[c] - begin[c]) / texels).max(0.0))
+            std::array::from_fn(|c| ((to[c] - from[c]) / texels).max(0.0))
         };
         self.row = (0..width).map(blurred).collect();
     }
@@ -278,7 +284,7 @@ fn pack(rgb: [f32; 3]) -> u32 {
     let top = rgb[0].max(rgb[1]).max(rgb[2]);
     // floor(log2(top)) + 16, at least 0; multiplied by 2^(24 - exponent) the mantissas come out.
     let exponent = ((top.to_bits() >> 23).max(111) - 111).min(31);
-    let rounded = |v: f32, exponent: u32| (v * f32::from_bits((151 - exponent) << 23)).round() as u32;
+    let rounded = |v: f32, exponent: u32| (v * f32::from_bits((151 - exponent) << 23) + 0.5) as u32;
     let exponent = if rounded(top, exponent) > 511 { exponent + 1 } else { exponent };
     let [r, g, b] = rgb.map(|v| rounded(v, exponent).min(511));
     r | g << 9 | b << 18 | exponent << 27

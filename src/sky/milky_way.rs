@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::scene::turbulence::mix;
 use glam::{DMat3, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{LN_10, PI, TAU};
 use std::sync::OnceLock;
 
 static HEIGHTS: &[u8] = include_bytes!("data/milky_way.png");
@@ -43,10 +43,9 @@ const DUST_OCTAVES: u32 = 6;
 const DUST_CELLS: f64 = 7.0;
 const DUST_FINER: f64 = 2.03;
 const DUST_FAINTER: f64 = 0.7;
-/// Magnitudes of extinction in the plane where the noise is 1 above DUST_CLEAR; rad: the layer's height. (The true layer is half as high
-/// in the distance; what is near us reaches to 10 degrees.)
+/// Magnitudes of extinction in the plane where the noise is 1, none where it is negative; rad: the layer's height. (The true layer is
+/// half as high in the distance; what is near us reaches to 10 degrees.)
 const DUST_DEPTH: f64 = 1.3;
-const DUST_CLEAR: f64 = 0.0;
 const DUST_HEIGHT: f64 = 0.11;
 /// Extinction at the primaries of Rec. 709, about 610, 550 and 465 nm, over that in V (Cardelli, Clayton & Mathis 1989, R_V = 3.1).
 const EXTINCTION: [f64; 3] = [0.88, 1.0, 1.24];
@@ -74,6 +73,15 @@ struct MilkyWay {
     codes: Vec<u8>,
     to_galactic: DMat3,
     colours: &'static BlackbodyTable,
+    /// Luminance at height 5.
+    brightest: f64,
+}
+
+/// What all texels of a column share: the picture's columns that it lies between, where, and cosine and sine of the right ascension.
+struct Column {
+    between: [u32; 2],
+    share: f64,
+    right_ascension: [f64; 2],
 }
 
 /// Takes sky axes to galactic ones: +x towards the galactic centre, +z the galactic north pole.
@@ -99,35 +107,45 @@ impl MilkyWay {
             codes: codes.into_raw(),
             to_galactic: equatorial_to_galactic(),
             colours: BlackbodyTable::shared(),
+            brightest: brightest(),
         })
     }
 
     fn draw(&self) -> Result<SkyMap> {
         let [width, height] = MAP_SIZE;
+        let place = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
+        let columns = (0..width).map(|x| self.column(place(x, width))).collect::<Vec<_>>();
         SkyMap::of_rows(MAP_SIZE, &|y, out| {
-            let v = (f64::from(y) + 0.5) / f64::from(height);
+            let v = place(y, height);
             let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();
-            for (x, out) in (0..width).zip(out) {
-                let u = (f64::from(x) + 0.5) / f64::from(width);
-                let (sin_ra, cos_ra) = (TAU * (0.5 - u)).sin_cos();
-                let towards = DVec3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
-                *out = self.light(self.outline_height(u, v), self.to_galactic * towards).map(|c| c as f32);
+            for (column, out) in columns.iter().zip(out) {
+                let outline_height = self.outline_height(column, v);
+                if outline_height > 0.0 {
+                    let [cos_ra, sin_ra] = column.right_ascension;
+                    let towards = DVec3::new(cos_dec * cos_ra, cos_dec * sin_ra, sin_dec);
+                    *out = self.light(outline_height, self.to_galactic * towards).map(|c| c as f32);
+                }
             }
         })
     }
 
-    /// Between the outlines at (u, v) of the picture, bilinear.
-    fn outline_height(&self, u: f64, v: f64) -> f64 {
-        let (x, y) = (u * f64::from(self.width) - 0.5, v * f64::from(self.height) - 0.5);
-        let (left, top) = (x.floor(), y.floor());
-        let code = |x: f64, y: f64| {
-            let column = x.rem_euclid(f64::from(self.width)) as u32;
-            let row = (y.max(0.0) as u32).min(self.height - 1);
-            f64::from(self.codes.get((row * self.width + column) as usize).copied().unwrap_or(0))
-        };
+    fn column(&self, u: f64) -> Column {
+        let x = u * f64::from(self.width) - 0.5;
+        let left = x.floor();
+        let wrapped = |x: f64| x.rem_euclid(f64::from(self.width)) as u32;
+        let (sin_ra, cos_ra) = (TAU * (0.5 - u)).sin_cos();
+        Column { between: [wrapped(left), wrapped(left + 1.0)], share: x - left, right_ascension: [cos_ra, sin_ra] }
+    }
+
+    /// Between the outlines at a column and at v of the picture, bilinear.
+    fn outline_height(&self, column: &Column, v: f64) -> f64 {
+        let y = v * f64::from(self.height) - 0.5;
+        let top = y.floor();
         let across = |y: f64| {
-            let (low, high) = (code(left, y), code(left + 1.0, y));
-            low + (high - low) * (x - left)
+            let row = (y.max(0.0) as u32).min(self.height - 1) * self.width;
+            let code = |x: u32| self.codes.get((row + x) as usize).copied().map_or(0.0, f64::from);
+            let [low, high] = column.between.map(code);
+            low + (high - low) * column.share
         };
         let (above, below) = (across(top), across(top + 1.0));
         (above + (below - above) * (y - top)) * HIGHEST / 255.0
@@ -135,29 +153,35 @@ impl MilkyWay {
 
     /// Linear Rec. 709 radiance towards a galactic direction.
     fn light(&self, height: f64, galactic: DVec3) -> [f64; 3] {
-        let radiance = surface_radiance(height);
-        if radiance <= 0.0 {
-            return [0.0; 3];
-        }
+        let radiance = self.brightest * steps(height);
         let from_centre = galactic.x.clamp(-1.0, 1.0).acos() / BULGE_RADIUS;
         let temperature = ARM_TEMPERATURE + (BULGE_TEMPERATURE - ARM_TEMPERATURE) * (-from_centre * from_centre).exp();
         let rgb = self.colours.shade(temperature, temperature);
         let magnitudes = extinction(galactic);
-        std::array::from_fn(|c| radiance * rgb[c] * 10.0_f64.powf(-0.4 * EXTINCTION[c] * magnitudes))
+        if magnitudes == 0.0 {
+            return rgb.map(|v| radiance * v);
+        }
+        std::array::from_fn(|c| radiance * rgb[c] * (-0.4 * LN_10 * EXTINCTION[c] * magnitudes).exp())
     }
 }
 
-/// Luminance at a height between the outlines, on the stars' scale.
-fn surface_radiance(height: f64) -> f64 {
+/// Luminance at a height between the outlines over that at height 5.
+fn steps(height: f64) -> f64 {
+    const LN_RATIO: f64 = 0.4 * MAGNITUDES_A_HEIGHT * LN_10;
+    (LN_RATIO * height).exp_m1() / (LN_RATIO * 5.0).exp_m1()
+}
+
+/// Luminance at height 5, on the stars' scale.
+fn brightest() -> f64 {
     let flux = 10.0_f64.powf(-0.4 * BRIGHTEST) / SQUARE_ARC_SECOND * REFERENCE_SOLID_ANGLE;
-    let steps = |height: f64| 10.0_f64.powf(0.4 * MAGNITUDES_A_HEIGHT * height) - 1.0;
-    MILKY_WAY_GAIN * STAR_REFERENCE_RADIANCE * flux * steps(height) / steps(5.0)
+    MILKY_WAY_GAIN * STAR_REFERENCE_RADIANCE * flux
 }
 
 /// V magnitudes of the dust that the picture does not have.
 fn extinction(galactic: DVec3) -> f64 {
-    let layer = (-(galactic.z / DUST_HEIGHT).powi(2)).exp();
-    if layer < 1e-3 {
+    // Nothing is left of it from 2 heights on.
+    let layer = ((-(galactic.z / DUST_HEIGHT).powi(2)).exp() - 0.02).max(0.0);
+    if layer == 0.0 {
         return 0.0;
     }
     let mut noise = 0.0;
@@ -165,25 +189,24 @@ fn extinction(galactic: DVec3) -> f64 {
     // Clouds are drawn out along the plane.
     let mut place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
     for octave in 0..DUST_OCTAVES {
-        noise += amplitude * value_noise(place, mix(DUST_SEED + octave));
+        noise += amplitude * value_noise(place + DVec3::splat(1024.0), mix(DUST_SEED + octave));
         amplitude *= DUST_FAINTER;
         place *= DUST_FINER;
     }
-    DUST_DEPTH * layer * (noise - DUST_CLEAR).max(0.0)
+    DUST_DEPTH * layer * noise.max(0.0)
 }
 
-/// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them.
+/// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them. Coordinates are positive.
 fn value_noise(at: DVec3, key: u32) -> f64 {
-    let low = at.floor();
-    let t = at - low;
+    let low = at.as_uvec3();
+    let t = at - low.as_dvec3();
     let s = t * t * (DVec3::splat(3.0) - 2.0 * t);
-    let [x, y, z] = low.to_array().map(|v| v as i32 as u32);
-    let corner = |i: u32, j: u32, k: u32| {
-        let hash = mix(x
-            .wrapping_add(i)
-            .wrapping_add(mix(y.wrapping_add(j).wrapping_add(mix(z.wrapping_add(k).wrapping_add(key))))));
-        f64::from(hash) / 2_147_483_647.5 - 1.0
+    // Of a lattice point; odd numbers without a common pattern, so that each point has another.
+    let point = |x: u32, y: u32, z: u32| {
+        x.wrapping_mul(0x9e37_79b1).wrapping_add(y.wrapping_mul(0x85eb_ca77)).wrapping_add(z.wrapping_mul(0xc2b2_ae3d))
     };
+    let first = point(low.x, low.y, low.z).wrapping_add(key);
+    let corner = |i, j, k| f64::from(mix(first.wrapping_add(point(i, j, k)))) / 2_147_483_647.5 - 1.0;
     let between = |a: f64, b: f64, s: f64| a + (b - a) * s;
     let along_x = |j, k| between(corner(0, j, k), corner(1, j, k), s.x);
     let along_y = |k| between(along_x(0, k), along_x(1, k), s.y);
@@ -233,9 +256,9 @@ mod tests {
         // A square degree of height 5 is as bright as a star of 20.6 - 2.5 log10(3600^2) magnitudes, times the gain.
         let degree = (PI / 180.0) * (PI / 180.0);
         let star = 10.0_f64.powf(-0.4 * (BRIGHTEST - 5.0 * 3600.0_f64.log10()));
-        let flux = surface_radiance(5.0) * degree / (STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE);
+        let flux = brightest() * degree / (STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE);
         assert!((flux / (MILKY_WAY_GAIN * star) - 1.0).abs() < 1e-9);
-        assert_eq!(surface_radiance(0.0), 0.0);
+        assert!(steps(0.0) == 0.0 && (steps(5.0) - 1.0).abs() < 1e-12);
     }
 
     /// Nested outlines leave no steps: along the galactic equator and across it the glow changes smoothly.
@@ -246,9 +269,10 @@ mod tests {
         for y in 0..400 {
             for x in 0..800 {
                 let (u, v) = (f64::from(x) / 800.0, f64::from(y) / 400.0);
-                let here = map.outline_height(u, v);
+                let column = map.column(u);
+                let here = map.outline_height(&column, v);
                 // 0.1 degrees on.
-                let there = map.outline_height(u, v + 0.1 / 180.0);
+                let there = map.outline_height(&column, v + 0.1 / 180.0);
                 steepest = steepest.max((here - there).abs());
             }
         }

@@ -79,6 +79,9 @@ static void scenes(BhrContext *context, BhrSurface *surface, const Host *host) {
     film.tone_map = BHR_TONE_MAP_AGX;
     CHECK_OK(bhr_set_film(context, &film));
     check_shows(context, surface, host, WIDTH, HEIGHT, "a film");
+    film.bloom = 0.7;
+    CHECK_OK(bhr_set_film(context, &film));
+    check_shows(context, surface, host, WIDTH, HEIGHT, "bloom");
     CHECK_OK(bhr_film_init(&film, sizeof film));
     CHECK_OK(bhr_set_film(context, &film));
     set_samples(context, 5, 1.0);
@@ -87,16 +90,22 @@ static void scenes(BhrContext *context, BhrSurface *surface, const Host *host) {
     CHECK_OK(bhr_set_spin(context, 0.0));
 }
 
-/* Windows do not obey the region. */
+/* Windows do not obey the region, and so bloom while one is set. */
 static void region(BhrContext *context, BhrSurface *surface, const Host *host) {
     static unsigned char whole[WIDTH * HEIGHT * 4];
     const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, whole, sizeof whole);
     const BhrRegion      part = {.struct_size = sizeof part, .full_width = 1000, .full_height = 999, .x = 3, .y = 5};
+    BhrFilm              film;
+    CHECK_OK(bhr_film_init(&film, sizeof film));
+    film.bloom = 0.5;
+    CHECK_OK(bhr_set_film(context, &film));
     CHECK_OK(bhr_render_image(context, &image));
     CHECK_OK(bhr_set_region(context, &part));
     CHECK_OK(bhr_render_surface(context, surface));
     CHECK(host_difference(host, WIDTH, HEIGHT, whole, ONE_STEP) <= ONE_STEP, "a window obeys the region");
     CHECK_OK(bhr_set_region(context, NULL));
+    CHECK_OK(bhr_film_init(&film, sizeof film));
+    CHECK_OK(bhr_set_film(context, &film));
 }
 
 /* The half-size image by bilinear interpolation between its pixels' centres. */

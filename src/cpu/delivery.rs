@@ -1,0 +1,131 @@
+//! How the tiles of a frame go to the sink: each as soon as it has its light, or, with bloom, once all have theirs, as every pixel
+//! gets a little of every other's. Knows neither how light is made nor host memory.
+
+use super::frame::Frame;
+use crate::error::{Error, ErrorKind, Result};
+use crate::film::FilmParams;
+use crate::film::bloom::{Bloom, Glare};
+use crate::renderer::{Progress, Tile, TileSink};
+use rayon::prelude::*;
+
+/// Bytes of a whole frame's light; a frame with bloom that needs more is traced twice instead.
+const LIGHT_MEMORY: u64 = 192 << 20;
+/// Bytes of a pixel's light.
+const LIGHT_BYTES: u64 = size_of::<[f32; 4]>() as u64;
+
+/// A frame on its way to the sink.
+pub struct Delivery<'a, 'b, 'c> {
+    pool: &'a rayon::ThreadPool,
+    frame: &'a Frame<'a>,
+    sink: &'a mut TileSink<'b>,
+    progress: &'a mut Progress<'c>,
+    /// Parts of the frame's work.
+    done: u64,
+    total: u64,
+    /// Of all rays so far.
+    pub steps: u64,
+}
+
+impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
+    pub fn new(
+        pool: &'a rayon::ThreadPool,
+        frame: &'a Frame<'a>,
+        sink: &'a mut TileSink<'b>,
+        progress: &'a mut Progress<'c>,
+    ) -> Self {
+        Self { pool, frame, sink, progress, done: 0, total: 0, steps: 0 }
+    }
+
+    /// Without bloom. Errors: those of the sink; CANCELLED.
+    pub fn plain(&mut self, tiles: &[Tile]) -> Result<()> {
+        self.total = tiles.len() as u64 * u64::from(self.frame.samples);
+        for tile in tiles {
+            let light = self.light(*tile)?;
+            self.put(*tile, &self.frame.film, &light)?;
+            self.tick()?;
+        }
+        Ok(())
+    }
+
+    /// With bloom. `keep`: whether light is kept; `None`: as its size allows. Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
+    pub fn with_glare(&mut self, tiles: &[Tile], bloom: &Bloom, keep: Option<bool>) -> Result<()> {
+        let [width, height] = bloom.frame.map(|side| side as usize);
+        let keep = keep.unwrap_or((width * height) as u64 * LIGHT_BYTES <= LIGHT_MEMORY);
+        let samples = u64::from(self.frame.samples);
+        self.total = tiles.len() as u64 * (samples + if keep { 1 } else { samples });
+        let mut kept = Vec::new();
+        kept.try_reserve_exact(if keep { width * height } else { 0 })
+            .map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("light of {width} x {height}: {error}")))?;
+        kept.resize(kept.capacity().min(width * height), [0.0; 4]);
+        let mut gathering = bloom.gathering();
+        for tile in tiles {
+            let light = self.exposed_light(*tile)?;
+            self.pool.install(|| gathering.add([tile.x, tile.y], tile.width, &light));
+            for (row, light) in rows(*tile, width).zip(light.chunks_exact(tile.width as usize)) {
+                if let Some(row) = kept.get_mut(row) {
+                    row.copy_from_slice(light);
+                }
+            }
+            self.tick()?;
+        }
+        let glare = self.pool.install(|| gathering.spread());
+        let film = self.frame.film.of_exposed();
+        for tile in tiles {
+            let light = match keep {
+                true => rows(*tile, width).filter_map(|row| kept.get(row)).flatten().copied().collect(),
+                false => self.exposed_light(*tile)?,
+            };
+            let light = self.pool.install(|| with_glare(&glare, *tile, &light));
+            self.put(*tile, &film, &light)?;
+            self.tick()?;
+        }
+        Ok(())
+    }
+
+    /// Errors: CANCELLED.
+    fn light(&mut self, tile: Tile) -> Result<Vec<[f64; 4]>> {
+        let mut sum = vec![[0.0; 4]; (tile.width * tile.height) as usize];
+        for sample in 0..self.frame.samples {
+            if sample > 0 {
+                self.tick()?;
+            }
+            self.steps += self.pool.install(|| self.frame.add_sample(tile, sample, &mut sum));
+        }
+        Ok(sum)
+    }
+
+    /// Light as bloom spreads it. Errors: CANCELLED.
+    fn exposed_light(&mut self, tile: Tile) -> Result<Vec<[f32; 4]>> {
+        let light = self.light(tile)?;
+        Ok(light.into_iter().map(|radiance| self.frame.film.exposed_light(radiance)).collect())
+    }
+
+    fn put(&mut self, tile: Tile, film: &FilmParams, light: &[[f64; 4]]) -> Result<()> {
+        let pixels = self.pool.install(|| self.frame.develop(film, tile, light));
+        (self.sink)(tile, &pixels, pixels.len() / tile.height.max(1) as usize)
+    }
+
+    /// A part is done. Errors: CANCELLED; but at the last one the frame is complete, and nothing is left to cancel.
+    fn tick(&mut self) -> Result<()> {
+        self.done += 1;
+        if !(self.progress)(self.done as f64 / self.total as f64) && self.done < self.total {
+            return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
+        }
+        Ok(())
+    }
+}
+
+/// Where a tile's rows lie in a frame of `width`.
+fn rows(tile: Tile, width: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    let begin = tile.y as usize * width + tile.x as usize;
+    (0..tile.height as usize).map(move |row| begin + row * width..begin + row * width + tile.width as usize)
+}
+
+fn with_glare(glare: &Glare<'_>, tile: Tile, light: &[[f32; 4]]) -> Vec<[f64; 4]> {
+    let place = |i: usize| (tile.x + i as u32 % tile.width, tile.y + i as u32 / tile.width);
+    let pixel = |(i, light): (usize, &[f32; 4])| {
+        let (x, y) = place(i);
+        glare.over(*light, x, y).map(f64::from)
+    };
+    light.par_iter().enumerate().map(pixel).collect()
+}
