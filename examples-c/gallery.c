@@ -13,7 +13,7 @@
 #define SHEET_COLUMNS 4u
 #define SHEET_MARGIN 8u
 #define LEAST_CELL 132u    /* pixels across: the longest name */
-#define MOST_CELL 240u
+#define MOST_CELL 208u
 #define SHEET_GREY 40      /* of 255 */
 #define LEAST_WIDTH 16u    /* of a picture: of shape 16 : 9 that is 9 rows */
 #define MOST_WIDTH 16384u
