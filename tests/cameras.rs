@@ -39,6 +39,8 @@ const PROJECTIONS: [(Projection, [u32; 2]); 4] = [
 fn set(renderer: &mut Renderer, projection: Projection, (spin, tables): (f64, LensTables)) {
     renderer.scene = Scene::default();
     renderer.scene.camera = camera(projection);
+    // Of the sky the part with the smallest detail.
+    renderer.scene.sky.flags = Sky::STARS;
     if projection == Projection::Perspective {
         renderer.scene.camera.fov_y = 2.0;
     }
@@ -83,9 +85,10 @@ fn faces_of_the_cube_are_perspective_views() {
                     let alone = floats(&picture(&mut renderer, format, [SIDE, SIDE], None, false));
                     let found = face(&cube, i, side, words);
                     for (pixel, (a, b)) in found.chunks_exact(words).zip(alone.chunks_exact(words)).enumerate() {
-                        // Traced derivatives are one-sided at the border of a face, and light of stars goes by them.
+                        // Derivatives of traced pixels, of which Kerr tables leave some, are one-sided at the border of a face, and
+                        // light of the sky goes by them.
                         let border = [0, side - 1].contains(&(pixel % side));
-                        if view == View::Light && way.1 == LensTables::Never && border {
+                        if view == View::Light && way != (0.0, LensTables::Always) && border {
                             continue;
                         }
                         wrong += usize::from(!a.iter().zip(b).all(|(a, b)| close(*a, *b, 2e-4)));

@@ -138,7 +138,7 @@ fn swept(u_p: f64, r: f64) -> f64 {
 /// Angle from the hole, for a static eye at r, at which light is seen that has swept `phi`.
 fn seen_at(phi: f64, r: f64) -> f64 {
     let (mut far, mut near) = (1.0 / r, 1.0 / 3.0 - 1e-15);
-    for _ in 0..200 {
+    for _ in 0..60 {
         let middle = 0.5 * (far + near);
         if swept(middle, r) < phi { far = middle } else { near = middle }
     }
@@ -166,7 +166,8 @@ fn image(order: u32, beta: f64, r: f64) -> Image {
     let psi = |beta: f64| seen_at(phi(beta), r);
     let h = 1e-5;
     let slope = (psi(beta + h) - psi(beta - h)) / (2.0 * h);
-    Image { psi: psi(beta), opposite, magnification: psi(beta).sin() / beta.sin() * slope.abs() }
+    let psi = psi(beta);
+    Image { psi, opposite, magnification: psi.sin() / beta.sin() * slope.abs() }
 }
 
 #[test]

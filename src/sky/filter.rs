@@ -62,8 +62,9 @@ impl SkyMap {
     fn taps(&self, d: DVec3, dx: DVec3, dy: DVec3) -> Taps {
         let last = self.levels().len() as f64 - 1.0;
         let stretch2 = dx.length_squared() + dy.length_squared();
-        // As a negated condition: for NaN too.
-        if !(stretch2 < WHOLE_SKY) {
+        // As a positive condition: false for NaN.
+        let known = stretch2 < WHOLE_SKY;
+        if !known {
             return Taps { level: last, step: DVec3::ZERO, spread: 0.0 };
         }
         // Singular values of (dx, dy) from those of its square: s1^2 + s2^2 and s1^2 - s2^2.
