@@ -75,15 +75,26 @@ static BhrStatus begin_fall(Scene *scene, const Settings *s) {
     return status;
 }
 
-/* v = t + r + 2 ln(r/2 - 1), which light that falls in along the radius keeps, less the proper time of an observer who
- * falls from rest at infinity; regular at the horizon (Martel & Poisson 2001). */
+/* r + 2 ln(r/2 - 1): light that falls in along the radius keeps v = t + tortoise(r). */
+static double tortoise(double radius) {
+    return radius + 2.0 * log(0.5 * radius - 1.0);
+}
+
+/* v less the proper time of an observer who falls from rest at infinity, but for a constant; regular at the horizon
+ * (Martel & Poisson 2001). */
 static double infall_offset(double radius) {
     return radius - 2.0 * sqrt(2.0 * radius) + 4.0 * log(1.0 + sqrt(0.5 * radius));
 }
 
+/* When the light left the disk's inner edge that falls in beside the observer. */
+static double time_seen(const Film *film, double radius) {
+    const double from = film->settings->from;
+    const double first = from > HORIZON ? tortoise(from) : infall_offset(from); /* v in the first frame, at t = 0 */
+    return first + film->proper_time + infall_offset(radius) - infall_offset(from) - tortoise(INNER_EDGE);
+}
+
 /* On to the next frame. The scene's time is the chart's, with which the library shows the disk at its retarded time.
- * The chart's time does not reach the inside of the horizon, where the disk is shown at the scene's time itself: there
- * that is when the light left the disk's inner edge that falls in beside the observer. */
+ * The chart's time does not reach the inside of the horizon, where the disk is shown at the scene's time itself. */
 static BhrStatus fall_on(Film *film, double proper_time) {
     double    elapsed;
     BhrStatus status = bhr_camera_advance(film->context, &film->scene.camera, proper_time, &elapsed);
@@ -94,10 +105,7 @@ static BhrStatus fall_on(Film *film, double proper_time) {
     film->scene.time += elapsed;
     double radius = length(film->scene.camera.position);
     if (radius <= HORIZON) {
-        const double from = film->settings->from;
-        double start = from > HORIZON ? from + 2.0 * log(0.5 * from - 1.0) : infall_offset(from);
-        film->scene.time = start + film->proper_time + infall_offset(radius) - infall_offset(from) -
-                           (INNER_EDGE + 2.0 * log(0.5 * INNER_EDGE - 1.0));
+        film->scene.time = time_seen(film, radius);
     }
     return BHR_OK;
 }
