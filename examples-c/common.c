@@ -1,4 +1,4 @@
-/* common.c -- see common.h. The only file of the examples that asks more of the system than C99: a monotonic clock,
+/* common.c -- see common.h. Asks more of the system than C99, which else only video.c does: a monotonic clock,
  * whether a stream is a terminal, a new folder. */
 #ifndef _WIN32
 #define _POSIX_C_SOURCE 199506L /* clock_gettime, isatty, fileno */

@@ -1,6 +1,7 @@
 /* render_frame.c -- one frame of a black hole into a file: what a host does from context to pixels, each step with its
  * check. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
 #include "common.h"
+#include "picture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -175,27 +176,6 @@ static BhrFormat format_for(const char *path) {
     return length >= 4 && strcmp(path + length - 4, ".exr") == 0 ? BHR_FORMAT_RGBA32F : BHR_FORMAT_RGBA8_SRGB;
 }
 
-/* Allocates image->pixels, which the caller frees. 0, or EXIT_FAILURE after a message. */
-static int allocate_image(const Settings *s, BhrImage *image) {
-    BhrStatus status = bhr_image_init(image, sizeof *image);
-    if (status < 0) {
-        return report_failure("prepare the image", status);
-    }
-    image->format = format_for(s->output);
-    image->width = s->size[0];
-    image->height = s->size[1];
-    uint64_t bytes_per_pixel = image->format == BHR_FORMAT_RGBA32F ? 16 : 4;
-    /* Two 32-bit numbers multiply without overflow in 64 bits; the bytes per pixel may not fit any more. */
-    uint64_t pixels = (uint64_t)s->size[0] * s->size[1];
-    image->byte_size = pixels <= SIZE_MAX / bytes_per_pixel ? pixels * bytes_per_pixel : 0;
-    image->pixels = image->byte_size != 0 ? malloc((size_t)image->byte_size) : NULL;
-    if (image->pixels == NULL) {
-        fprintf(stderr, "cannot hold an image of %u x %u pixels\n", (unsigned)s->size[0], (unsigned)s->size[1]);
-        return EXIT_FAILURE;
-    }
-    return 0;
-}
-
 static void print_report(const Settings *s, const BhrAdapterInfo *adapter, const BhrFrameStats *stats) {
     printf("adapter   ");
     print_adapter(stdout, adapter);
@@ -251,11 +231,10 @@ static int make_frame(BhrContext *context, const Settings *s) {
         return report_failure("set the scene", status);
     }
     BhrImage image;
-    int      result = allocate_image(s, &image);
-    if (result != 0) {
-        return result;
+    if (!picture_allocate(&image, format_for(s->output), s->size[0], s->size[1])) {
+        return EXIT_FAILURE;
     }
-    result = render_and_save(context, s, &image);
+    int result = render_and_save(context, s, &image);
     free(image.pixels);
     return result;
 }

@@ -2,6 +2,7 @@
  * fate. The light is followed backward, from the eye of a static observer (ZAMO) into the direction it looks. Asks for
  * rays; makes no image. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
 #include "common.h"
+#include "vectors.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,19 +23,12 @@ typedef struct Settings {
     int      help;
 } Settings;
 
-/* ---- vectors ---- */
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double length(const double a[3]) {
-    return sqrt(dot(a, a));
-}
+/* ---- angles ---- */
 
 static double angle_between(const double a[3], const double b[3]) {
-    const double cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    return atan2(length(cross), dot(a, b)); /* exact for small angles and near pi, as acos is not */
+    double normal[3];
+    cross(a, b, normal);
+    return atan2(length(normal), dot(a, b)); /* exact for small angles and near pi, as acos is not */
 }
 
 static double degrees(double radians) {

@@ -4,10 +4,10 @@
 #define EXAMPLES_VIEWER_H
 
 #include "glfw_window.h"
+#include "scene.h"
 #include "viewer_camera.h"
 #include "viewer_pictures.h"
 #include "viewer_quality.h"
-#include "viewer_scene.h"
 
 #define SAID 96
 #define FIRST_PACE 3.0 /* M per second: the disk's inner edge turns in half a minute */

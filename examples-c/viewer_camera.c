@@ -1,6 +1,8 @@
 /* viewer_camera.c -- see viewer_camera.h. */
 #include "viewer_camera.h"
 
+#include "vectors.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -31,38 +33,7 @@
 #define EDGE_AT_REST 0.3       /* of the view's height: how far the shadow reaches before the gaze rises */
 #define GAZE_PER_SHADOW 1.3
 
-/* ---- vectors ---- */
-
-static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    const double c[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, c, sizeof c);
-}
-
-/* a += s b */
-static void add(double a[3], double s, const double b[3]) {
-    for (int i = 0; i < 3; i++) {
-        a[i] += s * b[i];
-    }
-}
-
-static void scale(double a[3], double s) {
-    for (int i = 0; i < 3; i++) {
-        a[i] *= s;
-    }
-}
-
-static double length(const double a[3]) { return sqrt(dot(a, a)); }
-
-/* Turns v by an angle about a unit axis (Rodrigues 1840). */
-static void rotate(double v[3], const double axis[3], double angle) {
-    double side[3], along = dot(axis, v) * (1.0 - cos(angle));
-    cross(axis, v, side);
-    scale(v, cos(angle));
-    add(v, sin(angle), side);
-    add(v, along, axis);
-}
+/* ---- directions ---- */
 
 /* Towards growing azimuth at a place; on the axis +y, as the library has it. */
 static void east(const double position[3], double out[3]) {
@@ -73,12 +44,6 @@ static void east(const double position[3], double out[3]) {
 }
 
 /* ---- the camera's axes ---- */
-
-static void make_orthonormal(BhrCamera *camera) {
-    scale(camera->forward, 1.0 / length(camera->forward));
-    add(camera->up, -dot(camera->up, camera->forward), camera->forward);
-    scale(camera->up, 1.0 / length(camera->up));
-}
 
 static void camera_right(const BhrCamera *camera, double out[3]) { cross(camera->forward, camera->up, out); }
 
@@ -125,15 +90,12 @@ static void zoom_by_hand(Pilot *pilot, BhrCamera *camera, const BhrHoleInfo *inf
 }
 
 static void look_by_hand(Pilot *pilot, BhrCamera *camera, double part) {
-    double right[3], yaw = take(&pilot->look[0], part), pitch = take(&pilot->look[1], part);
+    double yaw = take(&pilot->look[0], part), pitch = take(&pilot->look[1], part);
     if (yaw != 0.0 || pitch != 0.0) {
         pilot->looked_away = 1;
         pilot->centring = 0;
     }
-    rotate(camera->forward, camera->up, -yaw);
-    camera_right(camera, right);
-    rotate(camera->forward, right, pitch);
-    rotate(camera->up, right, pitch);
+    camera_turn(camera, yaw, pitch);
 }
 
 /* The speed goes with the distance to the horizon, so that a flight is as fine near it as it is swift far away. */
@@ -365,7 +327,7 @@ static void upright(Pilot *pilot, Scene *scene, double seconds) {
         orbit_normal(pilot, vertical);
     }
     pilot->settling |= level(&scene->camera, vertical, share(seconds, EASE_VIEW));
-    make_orthonormal(&scene->camera);
+    camera_make_orthonormal(&scene->camera);
 }
 
 BhrStatus pilot_step(Pilot *pilot, Scene *scene, const BhrContext *context, double seconds, double proper_time) {

@@ -3,7 +3,7 @@
 #ifndef EXAMPLES_VIEWER_CAMERA_H
 #define EXAMPLES_VIEWER_CAMERA_H
 
-#include "viewer_scene.h"
+#include "scene.h"
 
 /* What the user's hand has asked for and is not done yet, and how the observer moves. All zero is a camera at rest. */
 typedef struct Pilot {

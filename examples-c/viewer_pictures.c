@@ -2,6 +2,7 @@
 #include "viewer_pictures.h"
 
 #include "common.h"
+#include "picture.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -16,21 +17,11 @@ static BhrStatus render_and_save(BhrContext *context, const BhrImage *image, con
 }
 
 int picture_save(BhrContext *context, uint32_t width, uint32_t height, const char *path) {
-    BhrImage  image;
-    BhrStatus status = bhr_image_init(&image, sizeof image);
-    if (status < 0) {
-        report_failure("prepare a picture", status);
+    BhrImage image;
+    if (!picture_allocate(&image, BHR_FORMAT_RGBA8_SRGB, width, height)) {
         return 0;
     }
-    image.width = width;
-    image.height = height;
-    image.byte_size = 4 * (uint64_t)width * height;
-    image.pixels = image.byte_size <= SIZE_MAX ? malloc((size_t)image.byte_size) : NULL;
-    if (image.pixels == NULL) {
-        fprintf(stderr, "cannot hold a picture of %u x %u pixels\n", (unsigned)width, (unsigned)height);
-        return 0;
-    }
-    status = render_and_save(context, &image, path);
+    BhrStatus status = render_and_save(context, &image, path);
     free(image.pixels);
     if (status < 0) {
         report_failure("save a picture", status);

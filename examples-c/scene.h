@@ -1,7 +1,7 @@
-/* viewer_scene.h -- everything that a frame of the viewer shows, as plain values that are copied to try a change and
- * thrown away when bhr refuses it. Knows no window and no input. */
-#ifndef EXAMPLES_VIEWER_SCENE_H
-#define EXAMPLES_VIEWER_SCENE_H
+/* scene.h -- everything that a frame of viewer, gallery or film shows, as plain values that are copied to try a change
+ * and thrown away when bhr refuses it. Knows no window and no input. */
+#ifndef EXAMPLES_SCENE_H
+#define EXAMPLES_SCENE_H
 
 #include "common.h"
 
@@ -39,6 +39,12 @@ BhrStatus scene_init(Scene *scene, const SceneOptions *options);
 
 /* Sets all of it in a context; at the first failure stops and returns it. What was the same before costs nothing. */
 BhrStatus scene_apply(const Scene *scene, BhrContext *context);
+
+/* Makes forward and up unit vectors, up turned until it stands on forward. */
+void camera_make_orthonormal(BhrCamera *camera);
+
+/* Turns the look of an orthonormal camera to the right, then upwards; radians. */
+void camera_turn(BhrCamera *camera, double right, double up);
 
 /* Whether frames differ while time goes by and the camera stands still. */
 int scene_changes_with_time(const Scene *scene);

@@ -1,5 +1,7 @@
-/* viewer_scene.c -- see viewer_scene.h. */
-#include "viewer_scene.h"
+/* scene.c -- see scene.h. */
+#include "scene.h"
+
+#include "vectors.h"
 
 /* The first look: a fast hole seen from a little above a disk with structure, so that its light turns and bends. */
 const SceneOptions SCENE_DEFAULTS = {
@@ -92,6 +94,20 @@ BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
         status = bhr_set_quality(context, &scene->quality);
     }
     return status;
+}
+
+void camera_make_orthonormal(BhrCamera *camera) {
+    scale(camera->forward, 1.0 / length(camera->forward));
+    add(camera->up, -dot(camera->up, camera->forward), camera->forward);
+    scale(camera->up, 1.0 / length(camera->up));
+}
+
+void camera_turn(BhrCamera *camera, double right, double up) {
+    double axis[3];
+    rotate(camera->forward, camera->up, -right);
+    cross(camera->forward, camera->up, axis);
+    rotate(camera->forward, axis, up);
+    rotate(camera->up, axis, up);
 }
 
 int scene_changes_with_time(const Scene *scene) {

@@ -1,0 +1,327 @@
+/* film.c -- a fall into a black hole without spin, through the horizon to near its centre, as numbered pictures or as a
+ * video: the frames are evenly spaced in the time of the one who falls, whose clock and radius each of them shows. Two
+ * jobs are under way at a time, so that one frame is written while the next is rendered. Lengths in units of M, angles
+ * in degrees. */
+#include "common.h"
+#include "picture.h"
+#include "scene.h"
+#include "vectors.h"
+#include "video.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define JOBS 2
+#define MOST_FRAMES 99999u /* what five digits number */
+#define MOST_RATE 1000u
+#define MOST_RADIUS 1e6
+#define LEAST_RADIUS 1e-3
+#define HORIZON 2.0
+#define INNER_EDGE 6.0
+
+typedef enum Look { LOOK_IN, LOOK_OUT, LOOK_SIDE } Look;
+
+static const Choice LOOKS[] = {{"in", LOOK_IN}, {"out", LOOK_OUT}, {"side", LOOK_SIDE}, {NULL, 0}};
+
+typedef struct Settings {
+    const char *output, *video;
+    uint32_t    frames, rate, size[2], samples;
+    double      from, to, elevation, fov;
+    int32_t     look, projection, backend;
+    int         no_clock, help;
+} Settings;
+
+/* A frame under way: job is NULL when there is none. */
+typedef struct Slot {
+    BhrJob  *job;
+    BhrImage image;
+    uint32_t number;
+    double   proper_time, radius;
+} Slot;
+
+typedef struct Film {
+    const Settings *settings;
+    BhrContext     *context;
+    Scene           scene;
+    double          proper_time; /* since the first frame */
+    Slot            slots[JOBS];
+    Video           video;
+} Film;
+
+/* ---- the fall ---- */
+
+/* Proper time from r to the centre, falling from rest at infinity: (2/3) sqrt(r^3 / 2). */
+static double time_left(double radius) {
+    return 2.0 / 3.0 * sqrt(0.5 * radius * radius * radius);
+}
+
+static BhrStatus begin_fall(Scene *scene, const Settings *s) {
+    static const SceneOptions BEGINNING = {.mass = 1.0, .azimuth = -90.0, .disk_outer = 16.0, .turbulence = 0.8,
+                                           .exposure = -1.5, .view = BHR_VIEW_LIGHT};
+    SceneOptions              options = BEGINNING;
+    options.distance = s->from;
+    options.elevation = s->elevation;
+    options.fov = s->fov;
+    BhrStatus status = scene_init(scene, &options);
+    scene->camera.motion = BHR_MOTION_FREE_FALL;
+    scene->camera.projection = s->projection;
+    scene->film.tone_map = BHR_TONE_MAP_AGX;
+    scene->film.bloom = 0.15;
+    scene->quality.samples_per_pixel = s->samples;
+    camera_make_orthonormal(&scene->camera);
+    camera_turn(&scene->camera, s->look == LOOK_OUT ? PI : s->look == LOOK_SIDE ? -0.5 * PI : 0.0, 0.0);
+    return status;
+}
+
+/* r + 2 ln(r/2 - 1): light that falls in along the radius keeps v = t + tortoise(r). */
+static double tortoise(double radius) {
+    return radius + 2.0 * log(0.5 * radius - 1.0);
+}
+
+/* v less the proper time of an observer who falls from rest at infinity, but for a constant; regular at the horizon
+ * (Martel & Poisson 2001). */
+static double infall_offset(double radius) {
+    return radius - 2.0 * sqrt(2.0 * radius) + 4.0 * log(1.0 + sqrt(0.5 * radius));
+}
+
+/* When the light left the disk's inner edge that falls in beside the observer. */
+static double time_seen(const Film *film, double radius) {
+    const double from = film->settings->from;
+    const double first = from > HORIZON ? tortoise(from) : infall_offset(from); /* v in the first frame, at t = 0 */
+    return first + film->proper_time + infall_offset(radius) - infall_offset(from) - tortoise(INNER_EDGE);
+}
+
+/* On to the next frame. The scene's time is the chart's, with which the library shows the disk at its retarded time.
+ * The chart's time does not reach the inside of the horizon, where the disk is shown at the scene's time itself. */
+static BhrStatus fall_on(Film *film, double proper_time) {
+    double    elapsed;
+    BhrStatus status = bhr_camera_advance(film->context, &film->scene.camera, proper_time, &elapsed);
+    if (status < 0) {
+        return status;
+    }
+    film->proper_time += proper_time;
+    film->scene.time += elapsed;
+    double radius = length(film->scene.camera.position);
+    if (radius <= HORIZON) {
+        film->scene.time = time_seen(film, radius);
+    }
+    return BHR_OK;
+}
+
+/* ---- frames ---- */
+
+static void write_clock(Slot *slot) {
+    char     text[96];
+    uint32_t scale = slot->image.width / 480 > 1 ? slot->image.width / 480 : 1; /* the text is 300 wide at 1 */
+    snprintf(text, sizeof text, "tau = %.2f M   r = %.2f M%s", slot->proper_time, slot->radius,
+             slot->radius < HORIZON ? "   inside the horizon" : "");
+    picture_write(&slot->image, 4 * scale, slot->image.height - CELL_HEIGHT * scale, scale, text);
+}
+
+/* Waits for the slot's frame and puts it where the film goes. 1, or 0 after a message. */
+static int finish(Film *film, Slot *slot) {
+    const Settings *s = film->settings;
+    BhrStatus       status = bhr_job_wait(slot->job, UINT64_MAX, NULL);
+    if (status < 0) {
+        report_failure("render a frame", status);
+        return 0;
+    }
+    bhr_job_destroy(slot->job);
+    slot->job = NULL;
+    if (!s->no_clock) {
+        write_clock(slot);
+    }
+    if (is_terminal(stderr)) {
+        fprintf(stderr, "\rframe %u of %u", (unsigned)slot->number + 1, (unsigned)s->frames);
+    }
+    if (s->video != NULL) {
+        return video_add(&film->video, &slot->image);
+    }
+    char name[32];
+    snprintf(name, sizeof name, "frame-%05u.png", (unsigned)slot->number);
+    return picture_save_into(&slot->image, s->output, name);
+}
+
+/* Begins the frame of the scene as it is now. 1, or 0 after a message. */
+static int begin(Film *film, Slot *slot, uint32_t number) {
+    BhrStatus status = scene_apply(&film->scene, film->context);
+    if (status >= 0) {
+        status = bhr_render_image_async(film->context, &slot->image, &slot->job);
+    }
+    if (status < 0) {
+        report_failure("begin a frame", status);
+        return 0;
+    }
+    slot->number = number;
+    slot->proper_time = film->proper_time;
+    slot->radius = length(film->scene.camera.position);
+    return 1;
+}
+
+/* 1, or 0 after a message. */
+static int make_frames(Film *film) {
+    const Settings *s = film->settings;
+    double          step = s->frames > 1 ? (time_left(s->from) - time_left(s->to)) / (s->frames - 1) : 0.0;
+    for (uint32_t i = 0; i < s->frames; i++) {
+        Slot     *slot = &film->slots[i % JOBS];
+        BhrStatus status = i > 0 ? fall_on(film, step) : BHR_OK;
+        if (status < 0) {
+            report_failure("fall on", status);
+            return 0;
+        }
+        if ((slot->job != NULL && !finish(film, slot)) || !begin(film, slot, i)) {
+            return 0;
+        }
+    }
+    for (uint32_t i = s->frames; i < s->frames + JOBS; i++) { /* the last ones, in their order */
+        Slot *slot = &film->slots[i % JOBS];
+        if (slot->job != NULL && !finish(film, slot)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* ---- the film ---- */
+
+/* 1, or 0 after a message. */
+static int prepare(Film *film) {
+    const Settings *s = film->settings;
+    for (int i = 0; i < JOBS; i++) {
+        if (!picture_allocate(&film->slots[i].image, BHR_FORMAT_RGBA8_SRGB, s->size[0], s->size[1])) {
+            return 0;
+        }
+    }
+    BhrContextOptions options;
+    BhrStatus         status = bhr_context_options_init(&options, sizeof options);
+    if (status >= 0) {
+        options.backend = s->backend;
+        status = bhr_context_create(BHR_ABI_VERSION, &options, &film->context);
+    }
+    if (status >= 0) {
+        status = begin_fall(&film->scene, s);
+    }
+    if (status >= 0) {
+        status = scene_apply(&film->scene, film->context);
+    }
+    if (status < 0) {
+        report_failure("prepare the film", status);
+    }
+    return status >= 0;
+}
+
+/* 1, or 0 after a message. */
+static int make_film(Film *film) {
+    const Settings *s = film->settings;
+    if (s->video != NULL) {
+        if (!video_open(&film->video, s->video, s->size[0], s->size[1], s->rate)) {
+            return 0;
+        }
+        int made = make_frames(film);
+        return video_close(&film->video) && made;
+    }
+    if (!make_folder(s->output) && errno != EEXIST) {
+        fprintf(stderr, "cannot make the folder %s: %s\n", s->output, strerror(errno));
+        return 0;
+    }
+    return make_frames(film);
+}
+
+/* Jobs first: until then the pixels are theirs. */
+static void give_back(Film *film) {
+    for (int i = 0; i < JOBS; i++) {
+        bhr_job_destroy(film->slots[i].job);
+    }
+    bhr_context_destroy(film->context);
+    for (int i = 0; i < JOBS; i++) {
+        free(film->slots[i].image.pixels);
+    }
+}
+
+/* An exit status. */
+static int film_fall(const Settings *s) {
+    Film   film = {.settings = s};
+    double start = wall_seconds();
+    int    made = prepare(&film) && make_film(&film);
+    give_back(&film);
+    if (is_terminal(stderr)) {
+        fputc('\n', stderr);
+    }
+    if (!made) {
+        return EXIT_FAILURE;
+    }
+    printf("%u frame%s of %u x %u in %.1f s: %s%s\n", (unsigned)s->frames, s->frames == 1 ? "" : "s",
+           (unsigned)s->size[0], (unsigned)s->size[1], wall_seconds() - start, s->video != NULL ? s->video : s->output,
+           s->video != NULL ? "" : "/frame-00000.png and on");
+    return EXIT_SUCCESS;
+}
+
+/* ---- command line ---- */
+
+/* 1 when it is in the range; else 0 after a message. */
+static int in_range(const char *option, double value, double least, double most) {
+    if (value >= least && value <= most) {
+        return 1;
+    }
+    fprintf(stderr, "film: %s is %g; it must be %g to %g\n", option, value, least, most);
+    return 0;
+}
+
+/* 0, or EXIT_USAGE after a message. What is not checked here the library checks. */
+static int check(const Settings *s) {
+    if (!in_range("--frames", s->frames, 1.0, MOST_FRAMES) || !in_range("--fps", s->rate, 1.0, MOST_RATE) ||
+        !in_range("--to", s->to, LEAST_RADIUS, MOST_RADIUS) || !in_range("--from", s->from, s->to, MOST_RADIUS)) {
+        return EXIT_USAGE;
+    }
+    if (s->video != NULL && (s->size[0] % 2 != 0 || s->size[1] % 2 != 0)) {
+        fprintf(stderr, "film: --size is %ux%u; a video's width and height must be even\n", (unsigned)s->size[0],
+                (unsigned)s->size[1]);
+        return EXIT_USAGE;
+    }
+    return 0;
+}
+
+static int run(int argc, char **argv) {
+    Settings s = {.output = "film-out", .frames = 240, .rate = 24, .size = {640, 360}, .samples = 4, .from = 12.0,
+                  .to = 0.05, .elevation = 20.0, .fov = 100.0, .look = LOOK_IN,
+                  .projection = BHR_PROJECTION_PERSPECTIVE, .backend = BHR_BACKEND_AUTO};
+    const Option options[] = {
+        {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be; default film-out", NULL},
+        {"--video", OPTION_TEXT, &s.video, "FILE", "a video instead of pictures, by ffmpeg; overwritten", NULL},
+        {"--frames", OPTION_UINT, &s.frames, "N", "1 to 99999, evenly spaced in proper time; default 240", NULL},
+        {"--fps", OPTION_UINT, &s.rate, "N", "frames per second of the video; default 24", NULL},
+        {"--size", OPTION_SIZE, s.size, "WxH", "pixels; default 640x360", NULL},
+        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256; default 4", NULL},
+        {"--from", OPTION_DOUBLE, &s.from, "R", "the first frame's radius in M; default 12", NULL},
+        {"--to", OPTION_DOUBLE, &s.to, "R", "the last frame's radius in M; default 0.05", NULL},
+        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "above the disk's plane; default 20", NULL},
+        {"--fov", OPTION_DOUBLE, &s.fov, "DEG", "vertical field of view; default 100", NULL},
+        {"--projection", OPTION_CHOICE, &s.projection, NULL, "default perspective; fisheye for domes", PROJECTIONS},
+        {"--look", OPTION_CHOICE, &s.look, NULL, "to the hole, from it, or across; default in", LOOKS},
+        {"--no-clock", OPTION_FLAG, &s.no_clock, NULL, "writes no proper time and radius into the picture", NULL},
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+    };
+    int result = options_parse(options, COUNT_OF(options), argc, argv);
+    if (result != 0) {
+        return result;
+    }
+    if (s.help) {
+        printf("Usage: film [options]\nA fall into a black hole, as numbered pictures or as a video.\n\n");
+        options_print(stdout, options, COUNT_OF(options));
+        return EXIT_SUCCESS;
+    }
+    result = check(&s);
+    return result != 0 ? result : film_fall(&s);
+}
+
+int main(int argc, char **argv) {
+    int result = run(argc, argv);
+    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
+        fprintf(stderr, "cannot write to standard output\n");
+        return EXIT_FAILURE;
+    }
+    return result;
+}

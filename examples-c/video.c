@@ -1,0 +1,153 @@
+/* video.c -- see video.h. ffmpeg is started without a shell: no name of a file can be taken for a command. */
+#ifndef _WIN32
+#define _POSIX_C_SOURCE 200112L /* posix_spawnp, waitpid, fcntl */
+#endif
+
+#include "video.h"
+
+#include <stdio.h>
+
+#ifdef _WIN32
+
+int video_open(Video *video, const char *path, uint32_t width, uint32_t height, uint32_t rate) {
+    (void)video, (void)path, (void)width, (void)height, (void)rate;
+    fprintf(stderr, "cannot make a video: not on Windows; make pictures, and a video of them by ffmpeg\n");
+    return 0;
+}
+
+int video_add(Video *video, const BhrImage *image) {
+    (void)video, (void)image;
+    return 0;
+}
+
+int video_close(Video *video) {
+    (void)video;
+    return 0;
+}
+
+#else
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+/* ffmpeg, its standard input being `input`. 0, or the number of the error. */
+static int start(pid_t *process, int input, char *const arguments[]) {
+    posix_spawn_file_actions_t actions;
+    int                        error = posix_spawn_file_actions_init(&actions);
+    if (error != 0) {
+        return error;
+    }
+    error = posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+    if (error == 0) {
+        error = posix_spawnp(process, arguments[0], &actions, NULL, arguments, environ);
+    }
+    posix_spawn_file_actions_destroy(&actions);
+    return error;
+}
+
+/* Neither end may stay open in ffmpeg (it would never see the end of its input) nor in what else is started. */
+static int make_pipe(int ends[2]) {
+    if (pipe(ends) != 0) {
+        return errno;
+    }
+    if (fcntl(ends[0], F_SETFD, FD_CLOEXEC) != 0 || fcntl(ends[1], F_SETFD, FD_CLOEXEC) != 0) {
+        int error = errno;
+        close(ends[0]);
+        close(ends[1]);
+        return error;
+    }
+    return 0;
+}
+
+static int start_with_pipe(Video *video, char *const arguments[]) {
+    int   ends[2];
+    int   error = make_pipe(ends);
+    pid_t process = 0;
+    if (error != 0) {
+        return error;
+    }
+    /* A write to an ffmpeg that has ended shall fail, not end this program. */
+    signal(SIGPIPE, SIG_IGN);
+    error = start(&process, ends[0], arguments);
+    close(ends[0]);
+    if (error != 0) {
+        close(ends[1]);
+        return error;
+    }
+    video->process = (long)process;
+    video->pipe = ends[1];
+    return 0;
+}
+
+int video_open(Video *video, const char *path, uint32_t width, uint32_t height, uint32_t rate) {
+    char   frame_size[32], frame_rate[16];
+    size_t length = strlen(path) + sizeof "file:";
+    char  *file = malloc(length);
+    if (file == NULL) {
+        fprintf(stderr, "cannot make a video: no memory for its name\n");
+        return 0;
+    }
+    snprintf(frame_size, sizeof frame_size, "%ux%u", (unsigned)width, (unsigned)height);
+    snprintf(frame_rate, sizeof frame_rate, "%u", (unsigned)rate);
+    /* "file:" keeps ffmpeg from reading a protocol or an option into the name. Most players want 4:2:0; the primaries
+     * of sRGB are those of Rec. 709. */
+    snprintf(file, length, "file:%s", path);
+    char *arguments[] = {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
+                         "-f", "rawvideo", "-pixel_format", "rgba", "-video_size", frame_size,
+                         "-framerate", frame_rate, "-i", "pipe:0",
+                         "-vf", "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
+                         "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
+                         file, NULL};
+    int   error = start_with_pipe(video, arguments);
+    free(file);
+    if (error == ENOENT) {
+        fprintf(stderr, "cannot make a video: ffmpeg was not found; install it, or make pictures without --video\n");
+    } else if (error != 0) {
+        fprintf(stderr, "cannot make a video: ffmpeg did not start: %s\n", strerror(error));
+    }
+    return error == 0;
+}
+
+int video_add(Video *video, const BhrImage *image) {
+    const char *bytes = image->pixels;
+    size_t      left = 4 * (size_t)image->width * image->height;
+    while (left > 0) {
+        ssize_t written = write(video->pipe, bytes, left);
+        if (written < 0 && errno == EINTR) {
+            continue;
+        }
+        if (written < 0) {
+            fprintf(stderr, "cannot add a frame to the video: %s\n", strerror(errno));
+            return 0;
+        }
+        bytes += written;
+        left -= (size_t)written;
+    }
+    return 1;
+}
+
+int video_close(Video *video) {
+    int status = 0;
+    close(video->pipe);
+    while (waitpid((pid_t)video->process, &status, 0) < 0) {
+        if (errno != EINTR) {
+            fprintf(stderr, "cannot wait for ffmpeg: %s\n", strerror(errno));
+            return 0;
+        }
+    }
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+        fprintf(stderr, "ffmpeg failed; what it said is above\n");
+        return 0;
+    }
+    return 1;
+}
+
+#endif
