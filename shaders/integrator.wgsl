@@ -134,12 +134,12 @@ fn error_norm(c: Constants, s: State, error: State) -> f32 {
 fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     let u_plus = 1.0 / c.r_plus;
     let curvature = abs(u_acceleration(c, s.u));
-    if s.u > u_plus * (1.0 + HORIZON_ROOM) {
+    let leaves = !SPINNING && c.clock == CLOCK_RAIN && s.du < 0.0;
+    if s.u >= select(u_plus * (1.0 + HORIZON_ROOM), u_plus, leaves) {
         return h * s.u / (abs(s.du) + sqrt(curvature * s.u));
     }
     let room = max(u_plus - s.u, HORIZON_ROOM * u_plus);
     let limit = clamp(1.2 * h, 0.03, 0.35) * room / (abs(s.du) + sqrt(curvature * room));
-    let leaves = !SPINNING && c.clock == CLOCK_RAIN && s.du < 0.0;
     return select(1e30, limit, s.u > 0.3 * u_plus && !leaves);
 }
 
