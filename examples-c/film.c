@@ -19,7 +19,6 @@
 #define MOST_RADIUS 1e6
 #define LEAST_RADIUS 1e-3
 #define HORIZON 2.0
-#define INNER_EDGE 6.0
 
 typedef enum Look { LOOK_IN, LOOK_OUT, LOOK_SIDE } Look;
 
@@ -75,39 +74,16 @@ static BhrStatus begin_fall(Scene *scene, const Settings *s) {
     return status;
 }
 
-/* r + 2 ln(r/2 - 1): light that falls in along the radius keeps v = t + tortoise(r). */
-static double tortoise(double radius) {
-    return radius + 2.0 * log(0.5 * radius - 1.0);
-}
-
-/* v less the proper time of an observer who falls from rest at infinity, but for a constant; regular at the horizon
- * (Martel & Poisson 2001). */
-static double infall_offset(double radius) {
-    return radius - 2.0 * sqrt(2.0 * radius) + 4.0 * log(1.0 + sqrt(0.5 * radius));
-}
-
-/* When the light left the disk's inner edge that falls in beside the observer. */
-static double time_seen(const Film *film, double radius) {
-    const double from = film->settings->from;
-    const double first = from > HORIZON ? tortoise(from) : infall_offset(from); /* v in the first frame, at t = 0 */
-    return first + film->proper_time + infall_offset(radius) - infall_offset(from) - tortoise(INNER_EDGE);
-}
-
-/* On to the next frame. The scene's time is the chart's, with which the library shows the disk at its retarded time.
- * The chart's time does not reach the inside of the horizon, where the disk is shown at the scene's time itself. */
+/* On to the next frame. What the library says went by is added to the scene's time, outside the horizon and inside: so
+ * the disk is seen at its retarded time all the way. */
 static BhrStatus fall_on(Film *film, double proper_time) {
     double    elapsed;
     BhrStatus status = bhr_camera_advance(film->context, &film->scene.camera, proper_time, &elapsed);
-    if (status < 0) {
-        return status;
+    if (status >= 0) {
+        film->proper_time += proper_time;
+        film->scene.time += elapsed;
     }
-    film->proper_time += proper_time;
-    film->scene.time += elapsed;
-    double radius = length(film->scene.camera.position);
-    if (radius <= HORIZON) {
-        film->scene.time = time_seen(film, radius);
-    }
-    return BHR_OK;
+    return status;
 }
 
 /* ---- frames ---- */
