@@ -39,6 +39,10 @@ fn integrated_record(id: vec2<u32>) -> Record {
             let end = escape(begin.c, traced);
             record.sky = chart_direction(end.n, end.drag);
             record.sky_redshift = begin.frequency_ratio / record.energy;
+            // Unknown, but in directions that exist.
+            record.footprint = footprint_of(record.sky, vec3<f32>(0.0), vec3<f32>(0.0));
+            record.footprint.dx = vec2<f32>(1e30);
+            record.footprint.dy = vec2<f32>(1e30);
         }
     }
     return record;

@@ -8,8 +8,11 @@ fn ray_record(id: vec2<u32>) -> Record {
     integrated = record.fate == FATE_PENDING;
     if integrated {
         let footprint = record.footprint;
+        let known = record.sky_redshift != 0.0;
         record = integrated_record(id);
-        record.footprint = footprint;
+        if known {
+            record.footprint = footprint;
+        }
     }
     return record;
 }

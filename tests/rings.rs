@@ -202,8 +202,9 @@ fn edges_of_the_disk_are_filtered_over_the_pixel() {
                 println!(
                     "{tracer} a = {spin} r = {distance} i = {inclination}: {edges} pixels, off {off:.4}, worst {worst:.3}"
                 );
-                // Without thin rings, which the disk with the inner edge at 9 M makes, it is 1 %.
-                assert!(edges > 100 && off < if inner > 0.0 { 0.02 } else { 0.01 });
+                // Rays of thin rings (the disk with its inner edge at 9 M has such) count as they fall.
+                let limit = if inner == 0.0 { 0.01 } else { 0.04 };
+                assert!(edges > 100 && off < limit);
             }
         }
     }
