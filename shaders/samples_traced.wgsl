@@ -5,7 +5,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     var record = integrated_record(id);
     let sky = textureLoad(record_sky, traced_pixel, 0);
     if record.fate == FATE_ESCAPED && sky.w != 0.0 {
-        record.footprint = sky_footprint(sky.xyz);
+        record.footprint = sky_footprint(sky.xyz, record.sky);
     }
     return record;
 }

@@ -14,7 +14,7 @@ fn ray_record(id: vec2<u32>) -> Record {
         let sky = textureLoad(record_sky, traced_pixel, 0);
         record.sky = sky.xyz;
         record.sky_redshift = sky.w;
-        record.footprint = sky_footprint(sky.xyz);
+        record.footprint = sky_footprint(sky.xyz, sky.xyz);
     }
     return record;
 }

@@ -22,9 +22,10 @@ fn traced_neighbours(step: vec2<u32>) -> vec2<bool> {
     return select(traced_joined, vec2<bool>(true), step.x == 0u);
 }
 
-fn sky_footprint(sky: vec3<f32>) -> Footprint {
-    let dx = derivative_of_direction(sky, vec2<u32>(1u, 0u));
-    let dy = derivative_of_direction(sky, vec2<u32>(0u, 1u));
+// Of the pixel, whose own ray goes to `here`, about the direction `sky` of one of its samples.
+fn sky_footprint(here: vec3<f32>, sky: vec3<f32>) -> Footprint {
+    let dx = derivative_of_direction(here, vec2<u32>(1u, 0u));
+    let dy = derivative_of_direction(here, vec2<u32>(0u, 1u));
     var footprint = footprint_of(sky, dx.xyz, dy.xyz);
     footprint.dx = select(vec2<f32>(1e30), footprint.dx, dx.w != 0.0);
     footprint.dy = select(vec2<f32>(1e30), footprint.dy, dy.w != 0.0);

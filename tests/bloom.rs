@@ -181,7 +181,8 @@ fn transparent_pictures_keep_their_alpha() {
             try_picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, true).unwrap()
         });
         let alpha = |pixels: &[u8]| pixels.chunks_exact(4).map(|p| p[3]).collect::<Vec<_>>();
-        assert!(alpha(&without) == alpha(&with), "{tracer}");
+        // Light that spreads is kept in f16, alpha with it: a fraction may round to the next code.
+        assert!(alpha(&without).iter().zip(alpha(&with)).all(|(a, b)| a.abs_diff(b) <= 1), "{tracer}");
         let open = without.chunks_exact(4).zip(with.chunks_exact(4)).filter(|(a, _)| a[3] == 0);
         let glowing = open.clone().filter(|(_, b)| b[0] > 2).count();
         assert!(open.clone().all(|(a, b)| a[0] <= b[0]) && glowing > 500, "{tracer}: glare on {glowing} open pixels");
