@@ -119,6 +119,14 @@ fn bloom(a: f64) -> impl FnOnce(&mut Renderer) {
     move |renderer| (renderer.scene.hole.spin, renderer.scene.film.bloom) = (a, 0.5)
 }
 
+/// Disk, turbulence, stars, Milky Way and bloom.
+fn everything(a: f64) -> impl FnOnce(&mut Renderer) {
+    move |renderer| {
+        bloom(a)(renderer);
+        renderer.scene.disk.iter_mut().for_each(|disk| disk.turbulence = 1.0);
+    }
+}
+
 fn method(a: f64, method: Method) -> impl FnOnce(&mut Renderer) {
     move |renderer| (renderer.scene.hole.spin, renderer.scene.quality.method) = (a, method)
 }
@@ -142,12 +150,18 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
         measured(&format!("spin {a}, bloom"), size, Change::Nothing, Box::new(bloom(a)));
         measured(&format!("spin {a}, RK4"), size, Change::Nothing, Box::new(method(a, Method::Rk4)));
     }
+    for a in [0.0, 0.9] {
+        measured(&format!("spin {a}, everything"), size, Change::Nothing, Box::new(everything(a)));
+        measured(&format!("spin {a}, everything"), [640, 360], Change::Nothing, Box::new(everything(a)));
+        measured(&format!("spin {a}, everything, eye moving"), size, Change::Eye, Box::new(everything(a)));
+    }
     for a in [0.5, 0.998] {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
     }
     measured("spin 0, ADAPTIVE", size, Change::Nothing, Box::new(method(0.0, Method::Adaptive)));
     measured("spin 0, no disk", size, Change::Nothing, Box::new(|r| r.scene.disk = None));
     measured("spin 0, no stars", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = 0));
+    measured("spin 0, no Milky Way", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = Sky::STARS));
     let procedural = |r: &mut Renderer| r.scene.sky.flags |= Sky::PROCEDURAL;
     measured("spin 0, procedural stars too", size, Change::Nothing, Box::new(procedural));
     measured("spin 0, neither", size, Change::Nothing, Box::new(|r| (r.scene.disk, r.scene.sky.flags) = (None, 0)));

@@ -789,10 +789,11 @@ BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
  * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
  * that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
  * Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
- * Pictures of more than 16384 x 8192 are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
+ * Pictures of more than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
  * a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
  */
-BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
+BhrStatus bhr_set_sky_map(BhrContext *context,
+                          const BhrImage *equirect);
 
 /* ---- film ---- */
 

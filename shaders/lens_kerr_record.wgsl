@@ -175,6 +175,7 @@ fn next_looked_up() -> Crossing {
         return crossing;
     }
     var orders = looked.flags & 0xffffu;
+    var found: Interpolated;
     while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
         orders &= orders - 1u;
@@ -185,6 +186,7 @@ fn next_looked_up() -> Crossing {
         if is_wanted(u) && u < KERR_NO_CROSSING {
             crossing.u = u;
             crossing.order = order;
+            found = at;
         }
     }
     looked.flags = orders;
@@ -193,7 +195,7 @@ fn next_looked_up() -> Crossing {
         crossing.g = looked.seen.frequency_ratio * redshift_of(c, crossing.u);
     }
     if PATTERN && crossing.u > 0.0 {
-        put_pattern(&crossing, interpolate(crossing.order));
+        put_pattern(&crossing, found);
     }
     return crossing;
 }

@@ -1,5 +1,8 @@
 // Ray records of samples with spin: as the tables of lens_kerr.wgsl have them, else integrated. The sky's footprint is the tables'
-// in either case; integrated crossings have none.
+// in either case; those of integrated crossings, too, or there are none.
+
+// Relative difference of u of crossings up to which the footprint of one serves for the other (src/cpu/lens.rs).
+const LIKE: f32 = 1e-2;
 
 var<private> integrated: bool;
 
@@ -18,10 +21,19 @@ fn ray_record(id: vec2<u32>) -> Record {
 }
 
 fn next_crossing() -> Crossing {
-    if integrated {
-        return next_integrated();
+    if !integrated {
+        return next_looked_up();
     }
-    return next_looked_up();
+    var crossing = next_integrated();
+    if PATTERN && crossing.u > 0.0 {
+        // Footprints need not be as exact: the tables' serve where they hold the same crossing.
+        let alike = interpolate(crossing.order);
+        if abs(alike.value.x / crossing.u - 1.0) < LIKE {
+            crossing.dx = place_change(crossing.u, alike, looked.dx);
+            crossing.dy = place_change(crossing.u, alike, looked.dy);
+        }
+    }
+    return crossing;
 }
 
 // Gives the crossings once more from the first.

@@ -16,6 +16,7 @@ override SHOWS_MILKY_WAY: bool = true;
 override SHOWS_MAP: bool = true;
 override SHOWS_GRID: bool = true;
 override OPAQUE: bool = false;
+override REFINES: bool = true;
 
 const TABLE_WIDTH: u32 = 2048u;
 

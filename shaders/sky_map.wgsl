@@ -93,6 +93,10 @@ fn map_bilinear(map: texture_2d<f32>, finest: vec2<u32>, uv: vec2<f32>, level: u
 }
 
 fn shifted_map_light(rgb: vec3<f32>, g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    // Of the Milky Way most is.
+    if all(rgb == vec3<f32>(0.0)) {
+        return vec3<f32>(0.0);
+    }
     let temperature = colour_temperature(log(max(rgb.z, TINY_LIGHT) / max(rgb.x, TINY_LIGHT)));
     let rest = blackbody_lookup(BLACKBODY_OFFSET, temperature);
     let log_reference = rest.w + log(temperature);

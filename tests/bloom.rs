@@ -171,6 +171,30 @@ fn no_light_is_lost_on_its_way_to_pixels() {
     }
 }
 
+/// Whatever was rendered before: grids of another size round otherwise.
+#[test]
+fn bytes_do_not_depend_on_larger_frames_before() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.film.bloom = 1.0;
+        let mut at = |size| try_picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false).unwrap();
+        let before = at([160, 90]);
+        at([401, 301]);
+        assert!(at([160, 90]) == before, "{tracer}");
+    }
+}
+
+/// Frames whose one side is beyond every device's textures.
+#[test]
+fn very_long_frames_have_bloom() {
+    for (tracer, mut renderer) in both() {
+        renderer.scene.film.bloom = 1.0;
+        for size in [[40_000, 1], [1, 40_000]] {
+            let pixels = try_picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false);
+            assert!(pixels.is_ok_and(|p| p.iter().any(|code| *code > 0)), "{tracer} {size:?}");
+        }
+    }
+}
+
 /// Glare is added light; coverage stays what it was.
 #[test]
 fn transparent_pictures_keep_their_alpha() {

@@ -92,6 +92,7 @@ impl TryFrom<BhrQuality> for Quality {
             render_scale: given.render_scale,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
+            refines: true,
             keep_light: None,
         };
         quality.check()?;

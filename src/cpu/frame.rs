@@ -113,7 +113,8 @@ impl<'a> Frame<'a> {
         Ok(Self {
             lens,
             source: source(Recorder::new(scene, lens)),
-            refiner: light.then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
+            refiner: (light && scene.quality.refines)
+                .then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,

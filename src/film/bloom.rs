@@ -31,6 +31,8 @@ const CUT: f64 = 0.25;
 const WIDEST: f64 = 1.0 / 3.0;
 /// Cells of the finest grid at most.
 const MOST_CELLS: u64 = 1 << 21;
+/// Cells along a side of it at most: what textures of small devices hold.
+const MOST_SIDE: u64 = 4000;
 /// Grids at most: twice as wide each, from a pixel's size to the largest frame's.
 pub const MOST_LEVELS: usize = 20;
 /// Cells at each far edge of a grid that may cover less than the others.
@@ -169,7 +171,7 @@ impl Bloom {
     pub fn of(bloom: f64, frame: [u32; 2]) -> Self {
         let cells = |factor: u32| frame.map(|side| u64::from(side.div_ceil(factor)));
         let mut factor = 2;
-        while cells(factor).iter().product::<u64>() > MOST_CELLS {
+        while cells(factor).iter().product::<u64>() > MOST_CELLS || cells(factor).iter().any(|&side| side > MOST_SIDE) {
             factor += 2;
         }
         let height = f64::from(frame[1]);
@@ -549,9 +551,10 @@ mod tests {
     /// A coarser finest grid, as frames of more than 2^21 cells have: the same glare, but for what is smaller than its cells.
     #[test]
     fn the_finest_grid_is_bounded_and_glare_hardly_depends_on_it() {
-        for frame in [[3840, 2160], [7680, 4320], [16384, 16384], [1 << 14, 1]] {
+        for frame in [[3840, 2160], [7680, 4320], [16384, 16384], [1 << 14, 1], [1 << 20, 1], [7, 1 << 20]] {
             let bloom = Bloom::of(0.5, frame);
             assert!(bloom.levels[0].cells() as u64 <= MOST_CELLS && bloom.factor.is_multiple_of(2), "{frame:?}");
+            assert!(bloom.levels[0].size.iter().all(|&side| u64::from(side) <= MOST_SIDE + 2), "{frame:?}");
         }
         let bloom = Bloom::of(1.0, [7680, 4320]);
         assert_eq!(bloom.factor, 4);

@@ -60,11 +60,6 @@ fn finer(bloom: &Bloom) -> impl Iterator<Item = [u32; 2]> {
     std::iter::once(bloom.frame).chain(bloom.levels.iter().map(|level| level.size))
 }
 
-fn serves(texture: &Texture, size: [u32; 2]) -> bool {
-    let [width, height] = texture.size();
-    width >= size[0] && height >= size[1]
-}
-
 impl Made {
     fn new(device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<Self> {
         let TextureKind { format, dimension } = kernels::LIGHT;
@@ -85,14 +80,10 @@ impl Made {
         })
     }
 
+    /// Textures of exactly these sizes: how samplers round depends on them, and bytes must not depend on earlier frames.
     fn serves(&self, bloom: &Bloom, light: [u32; 2]) -> bool {
-        let grids = |textures: &[Texture], count: usize| {
-            textures.len() >= count
-                && textures.iter().zip(&bloom.levels).take(count).all(|(t, level)| serves(t, level.size))
-        };
-        serves(&self.light, light)
-            && grids(&self.gathered, bloom.levels.len())
-            && grids(&self.spread, bloom.levels.len().saturating_sub(1))
+        let sizes = self.gathered.iter().map(Texture::size);
+        self.light.size() == light && sizes.eq(bloom.levels.iter().map(|level| level.size))
     }
 
     fn smooth(&self) -> wgpu::BindingResource<'_> {

@@ -389,6 +389,7 @@ impl GpuTracer {
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
                 projection: scene.camera.projection,
+                refines: scene.view == View::Light && scene.quality.refines,
             },
             film: if bloom.is_some() { FilmLook::of_light() } else { developed },
             developed: bloom.is_some().then_some(developed),
@@ -585,7 +586,7 @@ impl FrameBuffers {
             });
         }
         self.makers.prepare(device, &setup.making, size.tile)?;
-        self.edges.prepare(device, if setup.looks.look.light { size.tile } else { [1, 1] })?;
+        self.edges.prepare(device, if setup.looks.look.refines { size.tile } else { [1, 1] })?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
         fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
@@ -640,7 +641,7 @@ impl FrameBuffers {
                 let groups = if film.is_some() { &groups[..2] } else { &groups };
                 Refining::new(device, kernels, (source, making.variant), (looks.look, film), groups, software)
             };
-            let refining = if looks.look.light { Some(refine(kernels)?) } else { None };
+            let refining = if looks.look.refines { Some(refine(kernels)?) } else { None };
             Ok::<_, Error>(Shades { taking: Taking::new(kernels, making, software, take)?, refining })
         };
         let puts = match looks.several_samples {

@@ -38,6 +38,8 @@ pub struct Look {
     /// Whether crossings need their footprint.
     pub footprints: bool,
     pub projection: Projection,
+    /// Whether pixels with edges get more rays; values of views are not to be averaged.
+    pub refines: bool,
 }
 
 /// Everything that decides how development is compiled.
@@ -805,6 +807,7 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
         projection_constant(look.projection),
+        ("REFINES", flag(look.refines)),
     ]
 }
 

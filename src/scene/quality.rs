@@ -35,6 +35,9 @@ pub struct Quality {
     /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. Not the host's to choose.
     #[doc(hidden)]
     pub mapped_pixels: Option<bool>,
+    /// Whether pixels that edges run through get more rays; not the host's to choose.
+    #[doc(hidden)]
+    pub refines: bool,
     /// Whether a frame with bloom keeps its light instead of being traced twice; `None`: as its size allows. Not the host's to choose.
     #[doc(hidden)]
     pub keep_light: Option<bool>,
@@ -52,6 +55,7 @@ impl Default for Quality {
             render_scale: 1.0,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
+            refines: true,
             keep_light: None,
         }
     }

@@ -16,6 +16,8 @@ const TEXELS_A_THREAD: usize = 1 << 15;
 
 /// Largest level, texels: larger pictures are reduced to it.
 pub const MAX_MAP_SIZE: [u32; 2] = [16384, 8192];
+/// Rows that any map may have; beyond, at most four times its columns, since texels are as wide as high at least.
+const TALL: u32 = 1024;
 
 /// A picture of the whole sky.
 pub struct SkyMap {
@@ -81,7 +83,8 @@ impl SkyMap {
 
     /// Of `size`, not 0, and its rows. Errors: OUT_OF_MEMORY.
     pub fn of_rows(size: [u32; 2], row: &RowReader<'_>) -> Result<Self> {
-        let height = size[1].min(MAX_MAP_SIZE[1]);
+        let tall = size[0].saturating_mul(4).max(TALL);
+        let height = size[1].min(MAX_MAP_SIZE[1]).min(tall);
         let finest = [size[0].clamp(height, MAX_MAP_SIZE[0]), height];
         let mut levels = vec![Level::new(&Source { size, row }, finest)?];
         while let Some(last) = levels.last().filter(|level| level.size != [1, 1]) {
