@@ -27,6 +27,8 @@ struct Looked {
     all_flags: u32,
     // Whether an edge of the disk runs through the pixel at a crossing given so far.
     on_edge: bool,
+    // beyond_right_angle(t).
+    beyond: f32,
     // Weights of interpolation and their derivatives, by column and by row.
     columns: vec4<f32>,
     columns_slope: vec4<f32>,
@@ -72,6 +74,7 @@ fn look_up(id: vec2<u32>) -> Record {
     looked.all_flags = textureLoad(kerr_flags, looked.cell, 0).x;
     looked.flags = looked.all_flags;
     looked.on_edge = false;
+    looked.beyond = beyond_right_angle(t);
     looked.columns = lagrange(around - f32(column));
     looked.columns_slope = lagrange_slope(around - f32(column));
     looked.rows = lagrange(place.share);
@@ -164,7 +167,7 @@ fn looked_up_change(at: Interpolated, lane: u32) -> vec2<f32> {
 fn edges_of_pixel(through: f32) -> u32 {
     // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
     let rows = length(vec2<f32>(looked.dx.y, looked.dy.y));
-    let curve = f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
+    let curve = looked.beyond * f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
     return edges_looked_up(looked.on_edge, curve, looked.cell.y < lens.outer_rows, through);
 }
 
@@ -175,7 +178,6 @@ fn next_looked_up() -> Crossing {
         return crossing;
     }
     var orders = looked.flags & 0xffffu;
-    var found: Interpolated;
     while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
         orders &= orders - 1u;
@@ -186,7 +188,6 @@ fn next_looked_up() -> Crossing {
         if is_wanted(u) && u < KERR_NO_CROSSING {
             crossing.u = u;
             crossing.order = order;
-            found = at;
         }
     }
     looked.flags = orders;
@@ -195,7 +196,7 @@ fn next_looked_up() -> Crossing {
         crossing.g = looked.seen.frequency_ratio * redshift_of(c, crossing.u);
     }
     if PATTERN && crossing.u > 0.0 {
-        put_pattern(&crossing, found);
+        put_pattern(&crossing, interpolate(crossing.order));
     }
     return crossing;
 }

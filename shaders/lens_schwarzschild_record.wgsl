@@ -24,6 +24,8 @@ struct Looked {
     first_change: vec2<f32>,
     // Whether an edge of the disk runs through the pixel at a crossing given so far.
     on_edge: bool,
+    // beyond_right_angle(t).
+    beyond: f32,
     // Unit vectors of the ray's plane (with e_r) and across it, chart.
     along: vec3<f32>,
     across: vec3<f32>,
@@ -73,6 +75,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     looked.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
     looked.first = first_crossing_angle(tangent.x);
     looked.on_edge = false;
+    looked.beyond = beyond_right_angle(t);
     if DISK {
         // N_z stays 0 (OrbitPlane::image_change); both factors change sign from crossing to crossing.
         let turn = sincos(min(looked.first, PI));
@@ -214,7 +217,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
 
 fn edges_of_pixel(through: f32) -> u32 {
     // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
-    let curve = f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(looked.change), 1e-30);
+    let curve = looked.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(looked.change), 1e-30);
     return edges_looked_up(looked.on_edge, curve, looked.branch == 0u, through);
 }
 

@@ -93,6 +93,13 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }
 
+// What d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large by beyond 90 degrees from the curve, whose
+// antipode is not near it.
+fn beyond_right_angle(t: f32) -> f32 {
+    let most = max(abs(t), 1.0);
+    return 0.5 * (most + 1.0 / most);
+}
+
 // Of a looked-up pixel `curve` pixels from the critical curve; the rings lie outside it.
 fn edges_looked_up(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
     let near_ring = DISK && outside && through > 0.0 && curve < RINGS_REACH;

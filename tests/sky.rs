@@ -134,6 +134,8 @@ fn lensed_radiance_is_that_of_the_map() {
         renderer.scene.disk = None;
         renderer.scene.camera.fov_y = 0.9;
         renderer.scene.effects.0 = 0;
+        // At the shadow's edge a pixel's mean is darker.
+        renderer.scene.quality.refines = false;
         for spin in [0.0, 0.9] {
             renderer.scene.hole.spin = spin;
             shown(&mut renderer, Sky::MAP, Some(&flat));

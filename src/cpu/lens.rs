@@ -136,6 +136,16 @@ impl<'a> LookedUp<'a> {
 
     /// Makes `record` that of position (x, y) of the full frame, with footprints.
     pub fn record(&self, x: f64, y: f64, record: &mut Record) {
+        self.find(x, y, record, |_| self.traced(x, y));
+    }
+
+    /// The same of one of many samples of a pixel: footprints that the tables do not hold are unknown.
+    pub fn sample(&self, x: f64, y: f64, record: &mut Record) {
+        self.find(x, y, record, |found| found.unwrap_or_else(|| self.recorder.trace(x, y)));
+    }
+
+    /// `rest`: what becomes of a ray that the tables do not hold; given its record, if some footprints are known.
+    fn find(&self, x: f64, y: f64, record: &mut Record, rest: impl Fn(Option<Record>) -> Record) {
         record.clear();
         let seen = self.see(x, y);
         let energy = self.momenta.energy(seen.n);
@@ -148,8 +158,11 @@ impl<'a> LookedUp<'a> {
             Tables::Schwarzschild(lens) => self.look_in_plane(lens, &seen, record),
             Tables::Kerr(lens) => match lens.look(seen.n) {
                 Some(found) if found.crossings_are_good() => self.look_in_grid(&found, &seen, record),
-                Some(found) => *record = self.traced_once(x, y, &found, &seen),
-                None => *record = self.traced(x, y),
+                Some(found) => {
+                    let (traced, complete) = self.traced_once(x, y, &found, &seen);
+                    *record = if complete { traced } else { rest(Some(traced)) };
+                }
+                None => *record = rest(None),
             },
         }
     }
@@ -162,8 +175,8 @@ impl<'a> LookedUp<'a> {
         Neighbours::of(&self.recorder.lens.mapping, x, [&left, &right, &above, &below]).complete(&here)
     }
 
-    /// By tracing the pixel; footprints, which need not be as exact, from the table.
-    fn traced_once(&self, x: f64, y: f64, found: &kerr::Seen, seen: &Seen) -> Record {
+    /// By tracing the pixel; footprints, which need not be as exact, from the table. And whether all are known.
+    fn traced_once(&self, x: f64, y: f64, found: &kerr::Seen, seen: &Seen) -> (Record, bool) {
         let mut record = self.recorder.trace(x, y);
         let steps = seen.changes.map(|change| found.place.step(change));
         if let (Some(sky), Fate::Escaped) = (found.sky(), record.fate) {
@@ -173,16 +186,17 @@ impl<'a> LookedUp<'a> {
         let on_edge = orders.filter_map(|order| found.crossing(order)).any(|c| self.is_near_edge(&c, &steps));
         self.note_edge(&mut record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
         if !self.pattern {
-            return record;
+            return (record, true);
         }
+        let mut complete = true;
         for crossing in &mut record.crossings {
             let near = |other: &kerr::Crossing| (other.image.u / crossing.u - 1.0).abs() < LIKE;
-            let Some(alike) = found.crossing(crossing.order as usize).filter(near) else {
-                return self.traced(x, y);
-            };
-            crossing.footprint = steps.map(|step| change_of_place(crossing.u, &alike.change(&step)));
+            match found.crossing(crossing.order as usize).filter(near) {
+                Some(alike) => crossing.footprint = steps.map(|step| change_of_place(crossing.u, &alike.change(&step))),
+                None => complete = false,
+            }
         }
-        record
+        (record, complete)
     }
 
     /// With spin.

@@ -95,7 +95,7 @@ fn sample(source: &Source<'_>, here: &Record, [x, y]: [f64; 2]) -> Record {
     match source {
         Source::LookedUp(lookup) => {
             let mut record = Record::captured();
-            lookup.record(x, y, &mut record);
+            lookup.sample(x, y, &mut record);
             record
         }
         Source::Traced(recorder) => {

@@ -124,7 +124,7 @@ enum Shading {
     Only(Shades),
     Samples {
         /// Of even and of odd samples.
-        shade: [Shades; 2],
+        shade: Box<[Shades; 2]>,
         /// After an even and after an odd last sample.
         develop: [Stage; 2],
     },
@@ -652,7 +652,10 @@ impl FrameBuffers {
             let develop =
                 |from: wgpu::BindingResource<'_>| puts.stage(device, &[slice::from_ref(&pass), slice::from_ref(&from)]);
             Shading::Samples {
-                shade: [shades(kernels, &[odd.clone(), even.clone()])?, shades(kernels, &[even.clone(), odd.clone()])?],
+                shade: Box::new([
+                    shades(kernels, &[odd.clone(), even.clone()])?,
+                    shades(kernels, &[even.clone(), odd.clone()])?,
+                ]),
                 develop: [develop(even)?, develop(odd)?],
             }
         } else {

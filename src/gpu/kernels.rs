@@ -189,6 +189,8 @@ enum Name {
 #[derive(Default)]
 pub struct Kernels {
     made: HashMap<Name, Compiled>,
+    /// Of `made`, what was used last comes last.
+    used: Vec<Name>,
     /// Kernels that bind the same share the layout, so that they can share groups.
     layouts: HashMap<Vec<Slot>, wgpu::BindGroupLayout>,
 }
@@ -208,6 +210,9 @@ pub struct Stage {
     groups: Vec<wgpu::BindGroup>,
     group: [u32; 2],
 }
+
+/// Pipelines that a device keeps: those of some ten kinds of frames.
+const MOST_KERNELS: usize = 48;
 
 /// Threads of a workgroup of the kernels that go over pixels.
 const GROUP: [u32; 2] = [8, 16];
@@ -721,8 +726,15 @@ impl Kernels {
         entry_point: &str,
         source: impl FnOnce() -> String,
     ) -> Result<Compiled> {
+        self.used.retain(|used| *used != name);
+        self.used.push(name);
         if let Some(compiled) = self.made.get(&name) {
             return Ok(compiled.clone());
+        }
+        // The oldest go first: on software drivers each takes megabytes of the host's memory.
+        let too_many = self.used.len().saturating_sub(MOST_KERNELS);
+        for old in self.used.drain(..too_many) {
+            self.made.remove(&old);
         }
         let layouts = groups.iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
         let constants = constants(name);

@@ -171,6 +171,8 @@ pub struct Place {
     pub row: usize,
     pub column_fraction: f64,
     pub row_fraction: f64,
+    /// tan((psi - R) / 2): infinite at the critical curve's antipode.
+    pub t: f64,
     /// S and its gradient.
     pub side: f64,
     pub side_gradient: DVec3,
@@ -283,6 +285,7 @@ impl Grid {
             row: row_floor,
             column_fraction: column - column_floor as f64,
             row_fraction: row - row_floor as f64,
+            t,
             side,
             side_gradient: n.with_x(0.0) / side,
             column_gradient,
@@ -718,7 +721,9 @@ impl Seen<'_> {
     /// Distance to the critical curve, in the unit that `steps` go at right angles.
     pub fn curve_distance(&self, steps: &[Step; 2]) -> f64 {
         let rows = steps[0].row.hypot(steps[1].row).max(f64::MIN_POSITIVE);
-        self.grid.nodes_per_octave[self.place.branch as usize] / (LN_2 * rows)
+        // Beyond 90 degrees from the curve d ln |t| rises again: its antipode is not near it.
+        let t = self.place.t.abs().max(1.0);
+        self.grid.nodes_per_octave[self.place.branch as usize] / (LN_2 * rows) * (0.5 * (t + 1.0 / t))
     }
 
     /// False: only a ray's integration tells its crossings well enough.

@@ -154,9 +154,10 @@ impl Look<'_> {
         self.family.coordinate.sin_critical
     }
 
-    /// d ln |t| / d psi, t = tan((psi - psi_c) / 2).
+    /// d ln |t| / d psi, t = tan((psi - psi_c) / 2): 1 over the angle from the critical curve, nearly. Beyond 90 degrees from it 1, as its
+    /// antipode is not near it.
     pub fn curve_slope(&self) -> f64 {
-        let t = self.t_hat * self.family.coordinate.scale;
+        let t = (self.t_hat * self.family.coordinate.scale).clamp(-1.0, 1.0);
         (1.0 + t * t) / (2.0 * t)
     }
 
