@@ -212,7 +212,10 @@ fn gpu_and_cpu_pictures_of_every_projection_agree() {
                 let differ = differing(&cpu, &gpu);
                 let pixels = (size[0] * size[1]) as usize;
                 println!("{projection:?}, {way:?}, {region:?}: {differ} of {pixels} pixels differ");
-                assert!(differ * 1000 <= pixels, "{projection:?}, {way:?}, {region:?}: {differ} differ");
+                // The part is full of the shadow's edge, where the turbulence of integrated samples is filtered otherwise; of the whole frame
+                // it is a hundredth.
+                let limit = if region.is_some() { 3 } else { 1 };
+                assert!(differ * 1000 <= limit * pixels, "{projection:?}, {way:?}, {region:?}: {differ} differ");
                 assert!(cpu.chunks_exact(4).filter(|p| p[0] > 8).count() > 20, "{projection:?} is dark");
             }
         }
