@@ -27,6 +27,8 @@ fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 fn star_cell(i: u32) -> u32 { return star_cells[i]; }
 fn to_sky(d: vec3<f32>) -> vec3<f32> { return d; }
 fn least_patch() -> f32 { return 1e-3; }
+struct Frame { disk_u: vec2<f32> }
+var<private> frame: Frame;
 ";
 
 /// Every item is four vectors; its result is one.

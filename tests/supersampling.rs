@@ -71,6 +71,8 @@ fn more_samples_come_nearer() {
 fn edges_are_as_sharp_as_the_filter() {
     for (tracer, mut renderer) in both() {
         show_disk(&mut renderer);
+        // The filter alone.
+        renderer.scene.quality.refines = false;
         let frame = light(&mut renderer, 64);
         let width = SIZE[0] as usize;
         // Through the middle column, from the top down: the first light, and where it is full.
