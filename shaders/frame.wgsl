@@ -9,7 +9,7 @@ struct Frame {
     forward: vec4<f32>,
     // Velocity against the local frame, and gamma.
     beta: vec4<f32>,
-    // Unit vectors of the local frame, chart.
+    // Unit vectors of the local frame, chart; w: components of the shadow's centre in it (critical.rs).
     e_r: vec4<f32>,
     e_theta: vec4<f32>,
     e_phi: vec4<f32>,

@@ -2,7 +2,7 @@
 // the pixel's light.
 // Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
-// Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 64 where the critical curve runs, as
+// Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 32 where the critical curve runs, as
 // what lies beside it is too thin for that.
 var<private> samples: u32;
 
@@ -39,7 +39,11 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
 // The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and puts nothing.
 fn refine_sample(entry: u32, count: u32) {
     let id = listed_pixel(list_kind(), min(entry, count - 1u));
-    sample_shift = sample_place() - 0.5;
+    if whole_plane {
+        sample_shift = quarter_place() - 0.5;
+    } else {
+        sample_shift = curve_place(across_curve(id)) - 0.5;
+    }
     let record = ray_record(id);
     lane_fate[lane] = record.fate;
     for (var k = 0u; k < LANE_ORDERS; k += 1u) {
@@ -77,15 +81,48 @@ fn sample_index() -> u32 {
     return lane % samples;
 }
 
-// Of this thread's sample in its pixel, 0 .. 1: the middle of its quarter, or that of the lattice of src/scene/frame.rs.
-fn sample_place() -> vec2<f32> {
-    if whole_plane {
-        return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;
-    }
+// Of this thread's sample in its pixel, 0 .. 1: the middle of its quarter.
+fn quarter_place() -> vec2<f32> {
+    return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;
+}
+
+// The same in strips at right angles to `across`.
+fn curve_place(across: vec2<f32>) -> vec2<f32> {
     const GOLDEN: f32 = 0.618033988749895;
     let i = f32(sample_index());
     let n = f32(samples);
-    return vec2<f32>((i + 0.5) / n, fract((i - 0.5 * (n - 1.0)) * GOLDEN + 0.5));
+    let along = fract((i - 0.5 * (n - 1.0)) * GOLDEN + 0.5);
+    let normal = select(vec2<f32>(1.0, 0.0), across * inverseSqrt(dot(across, across)), dot(across, across) > 0.0);
+    let tangent = vec2<f32>(-normal.y, normal.x);
+    let foot = normal * level_of_share((i + 0.5) / n, normal);
+    let wide = select(vec2<f32>(1e-6), tangent, abs(tangent) > vec2<f32>(1e-6));
+    let one = (-0.5 - foot) / wide;
+    let other = (0.5 - foot) / wide;
+    let begins = max(min(one, other), vec2<f32>(-1.0));
+    let ends = min(max(one, other), vec2<f32>(1.0));
+    return 0.5 + foot + tangent * mix(max(begins.x, begins.y), min(ends.x, ends.y), along);
+}
+
+// The level of which `share` is share_below.
+fn level_of_share(share: f32, slope: vec2<f32>) -> f32 {
+    let most = max(abs(slope.x), abs(slope.y));
+    let least = min(abs(slope.x), abs(slope.y));
+    let rest = min(share, 1.0 - share);
+    let corner = sqrt(2.0 * most * least * rest);
+    let size = select(0.5 * (most + least) - corner, (0.5 - rest) * most, 2.0 * most * rest >= least);
+    return select(size, -size, share < 0.5);
+}
+
+// At right angles to the circle about the shadow's centre that runs through the pixel, in pixels right and down.
+fn across_curve(id: vec2<u32>) -> vec2<f32> {
+    sample_shift = vec2<f32>(0.0);
+    let at = pixel_place(id);
+    let view = camera_view(at.x, at.y);
+    let seen = local_look(view.look);
+    let centre = vec3<f32>(frame.e_r.w, frame.e_theta.w, frame.e_phi.w);
+    // What the changes of a look direction hold along it is not its change.
+    let across_sight = centre - seen.n * dot(centre, seen.n);
+    return vec2<f32>(dot(across_sight, local_change(seen, view.dx)), dot(across_sight, local_change(seen, view.dy)));
 }
 
 fn mean_light() -> vec4<f32> {

@@ -122,9 +122,7 @@ fn rings_have_no_gaps_and_as_much_light_as_many_rays_find() {
                 profile[0] / profile[profile.len() / 2]
             });
             println!("{tracer} a = {spin} r = {distance}: light {error:+.4}, least / median of n = 1, 2: {shares:.3?}");
-            // From 100 M the second ring is 0.015 pixels wide: 64 rays in a pixel meet it once.
-            let continuous = if distance < 50.0 { 2 } else { 1 };
-            assert!(error.abs() < 0.02 && shares.iter().take(continuous).all(|share| *share > 0.5));
+            assert!(error.abs() < 0.02 && shares.iter().all(|share| *share > 0.5));
         }
     }
 }

@@ -114,7 +114,7 @@ impl<'a> Frame<'a> {
             lens,
             source: source(Recorder::new(scene, lens)),
             refiner: (light && scene.quality.refines)
-                .then(|| Refiner::new(scene, source(Recorder::whole_plane(scene, lens)))),
+                .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
             request,

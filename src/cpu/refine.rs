@@ -3,10 +3,13 @@
 
 use super::frame::Source;
 use super::shade::Shader;
+use crate::physics::lens::critical::shadow_centre;
 use crate::physics::trace::CROSSINGS_KEPT;
 use crate::scene::Scene;
+use crate::scene::observer::Lens;
 use crate::scene::record::{Record, UNKNOWN_PLACE};
-use crate::scene::refine::{CURVE_SAMPLES, Crossings, EDGE_SAMPLES, Edge, sample_place};
+use crate::scene::refine::{CURVE_SAMPLES, Crossings, Edge, curve_place, quarter_place};
+use glam::DVec3;
 
 /// What refines the pixels of a frame.
 pub struct Refiner<'a> {
@@ -14,12 +17,16 @@ pub struct Refiner<'a> {
     plane: Source<'a>,
     disk_u: Option<[f64; 2]>,
     opaque: bool,
+    lens: &'a Lens,
+    /// Its centre.
+    shadow: DVec3,
 }
 
 impl<'a> Refiner<'a> {
     /// `plane`: of records of the whole plane (`Recorder::whole_plane`).
-    pub fn new(scene: &Scene, plane: Source<'a>) -> Self {
-        Self { plane, disk_u: scene.disk_u(), opaque: scene.disk.is_some_and(|disk| disk.opacity >= 1.0) }
+    pub fn new(scene: &Scene, lens: &'a Lens, plane: Source<'a>) -> Self {
+        let opaque = scene.disk.is_some_and(|disk| disk.opacity >= 1.0);
+        Self { plane, disk_u: scene.disk_u(), opaque, lens, shadow: shadow_centre(&lens.observer.frame) }
     }
 
     /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`: nothing runs
@@ -30,17 +37,12 @@ impl<'a> Refiner<'a> {
             Edge::Disk => self.smooth_light(shader, here, at),
             Edge::Curve => None,
         };
-        let light = |index| {
-            let place = place_about(at, index, CURVE_SAMPLES);
-            shader.shade_record(&sample(source, here, place), place[0], place[1])
-        };
-        let counted = || mean((0..CURVE_SAMPLES).map(light));
-        Some(smooth.unwrap_or_else(counted))
+        Some(smooth.unwrap_or_else(|| self.counted_light(shader, source, here, at)))
     }
 
     /// From the cover of few samples' cells. `None`: what they show cannot change evenly from one to the next.
     fn smooth_light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
-        let places = [0, 1, 2, 3].map(|index| place_about(at, index, EDGE_SAMPLES));
+        let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
         let mut records = places.map(|place| sample(&self.plane, here, place));
         let orders = self.orders(&records);
         if self.are_ragged(&records, &orders) {
@@ -57,6 +59,15 @@ impl<'a> Refiner<'a> {
             record.crossings.retain(|crossing| crossing.share > 0.0);
         }
         Some(mean(records.iter().zip(places).map(|(record, [x, y])| shader.shade_record(record, x, y))))
+    }
+
+    /// From many samples, as they fall.
+    fn counted_light(&self, shader: &Shader<'_>, source: &Source<'_>, here: &Record, at: [f64; 2]) -> [f64; 4] {
+        let across = self.lens.across(self.shadow, at);
+        mean((0..CURVE_SAMPLES).map(|index| {
+            let [x, y] = place_about(at, curve_place(index, across));
+            shader.shade_record(&sample(source, here, [x, y]), x, y)
+        }))
     }
 
     /// The samples' crossings by order. `None`: there is no disk.
@@ -84,9 +95,8 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// Of a sample of the pixel about `at`.
-fn place_about(at: [f64; 2], index: u32, count: u32) -> [f64; 2] {
-    let place = sample_place(index, count);
+/// Of a sample at `place`, 0 .. 1, of the pixel about `at`.
+fn place_about(at: [f64; 2], place: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| at[i] + place[i] - 0.5)
 }
 

@@ -4,6 +4,7 @@
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::geodesic::Clock;
+use crate::physics::lens::critical::shadow_centre;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
@@ -95,14 +96,15 @@ impl FrameUniform {
         let isco = scene.disk_isco();
         let turbulence = scene.turbulence();
         let u = 1.0 / frame.r;
+        let shadow = shadow_centre(frame);
         Ok(Self {
             right: with(lens.axes.x_axis, lens.mapping.pixel_angle),
             up: with(lens.axes.y_axis, 0.0),
             forward: with(lens.axes.z_axis, 0.0),
             beta: with(lens.observer.beta, lens.observer.gamma),
-            e_r: with(frame.e_r, 0.0),
-            e_theta: with(frame.e_theta, 0.0),
-            e_phi: with(frame.e_phi, 0.0),
+            e_r: with(frame.e_r, shadow.x),
+            e_theta: with(frame.e_theta, shadow.y),
+            e_phi: with(frame.e_phi, shadow.z),
             place: four(u, frame.sin, frame.cos, if frame.rain { (2.0 * u).sqrt() } else { frame.lapse }),
             zamo: zamo(frame),
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),

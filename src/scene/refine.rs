@@ -22,9 +22,9 @@ pub enum Edge {
     Curve,
 }
 
-/// Samples of a pixel of either kind. The many count as they fall.
+/// Samples of a pixel of either kind.
 pub const EDGE_SAMPLES: u32 = 4;
-pub const CURVE_SAMPLES: u32 = 64;
+pub const CURVE_SAMPLES: u32 = 32;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
 const EDGE_REACH: f64 = 0.75;
@@ -67,12 +67,41 @@ pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
     }
 }
 
-/// Where in its pixel sample `index` of `count` lies, 0 .. 1.
-pub fn sample_place(index: u32, count: u32) -> [f64; 2] {
-    if count == EDGE_SAMPLES {
-        return [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side));
+/// Where in its pixel the middle of quarter `index` lies, 0 .. 1.
+pub fn quarter_place(index: u32) -> [f64; 2] {
+    [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side))
+}
+
+/// Where in its pixel sample `index` of `CURVE_SAMPLES` lies, 0 .. 1: the strips between samples at right angles to `across` are of equal
+/// area, so that of a thin ring at right angles to it each pixel gets the same share of its samples; along the strips steps of the
+/// golden ratio.
+pub fn curve_place(index: u32, across: [f64; 2]) -> [f64; 2] {
+    let [share, along] = lattice(index, CURVE_SAMPLES);
+    let length = across[0].hypot(across[1]);
+    let normal = if length > 0.0 { across.map(|c| c / length) } else { [1.0, 0.0] };
+    let tangent = [-normal[1], normal[0]];
+    let foot = normal.map(|c| c * level_of_share(share, normal));
+    // Where the line leaves the pixel.
+    let (mut begin, mut end) = (-1.0_f64, 1.0_f64);
+    for c in 0..2 {
+        if tangent[c].abs() > 1e-6 {
+            let [one, other] = [-0.5, 0.5].map(|side| (side - foot[c]) / tangent[c]);
+            begin = begin.max(one.min(other));
+            end = end.min(one.max(other));
+        }
     }
-    lattice(index, count)
+    let at = begin + (end - begin) * along;
+    [0, 1].map(|c| 0.5 + foot[c] + tangent[c] * at)
+}
+
+/// The level of which `share` is `share_below`; `slope` is not 0.
+fn level_of_share(share: f64, slope: [f64; 2]) -> f64 {
+    let [x, y] = slope.map(f64::abs);
+    let (most, least) = (x.max(y), x.min(y));
+    let rest = share.min(1.0 - share);
+    let corner = (2.0 * most * least * rest).sqrt();
+    let size = if 2.0 * most * rest >= least { (0.5 - rest) * most } else { 0.5 * (most + least) - corner };
+    size.copysign(share - 0.5)
 }
 
 /// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or two sides.
@@ -140,6 +169,8 @@ impl Crossings {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec2;
+    use std::f64::consts::TAU;
 
     /// By counting points.
     fn counted(level: f64, slope: [f64; 2]) -> f64 {
@@ -162,11 +193,41 @@ mod tests {
     }
 
     #[test]
+    fn levels_are_those_of_shares() {
+        for slope in [[1.0, 0.0], [0.3, -1.0], [-0.7, -0.7], [0.0, 1e-3], [2.0, 0.01]] {
+            for share in [1e-6, 0.002, 0.1, 0.3, 0.5, 0.7, 0.999] {
+                let found = share_below(level_of_share(share, slope), slope);
+                assert!((found - share).abs() < 1e-12, "{slope:?} {share}: {found}");
+            }
+        }
+    }
+
+    /// Of any half-plane the samples tell the area, and the best across the curve.
+    #[test]
+    fn samples_across_the_curve_are_even_in_all_directions() {
+        for turn in 0..36 {
+            let across = DVec2::from_angle(TAU * f64::from(turn) / 36.0 + 0.01);
+            let places = [0; CURVE_SAMPLES as usize].iter().zip(0..).map(|(_, i)| curve_place(i, across.into()));
+            let places: Vec<_> = places.map(|place| DVec2::from(place) - 0.5).collect();
+            assert!(places.iter().all(|place| place.abs().max_element() < 0.5));
+            for other in 0..36 {
+                let normal = DVec2::from_angle(TAU * f64::from(other) / 36.0 + 0.01);
+                for level in [-0.4, -0.2, 0.0, 0.1, 0.3] {
+                    let counted = places.iter().filter(|place| place.dot(normal) <= level).count() as f64;
+                    let error = counted / places.len() as f64 - share_below(level, normal.into());
+                    let limit = if other == turn { 0.5 } else { 3.0 } / places.len() as f64;
+                    assert!(error.abs() <= limit + 1e-9, "across {across} along {normal} {level}: {error}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn the_cover_of_an_even_edge_is_exact_and_of_one_that_jumps_is_counted() {
         let disk_u = [0.05, 0.15];
         // u = 0.05 where x + 0.4 y = 0.7.
         let plane = |[x, y]: [f64; 2]| 0.05 + 0.02 * (x + 0.4 * y - 0.7);
-        let u = [0, 1, 2, 3].map(|index| plane(sample_place(index, EDGE_SAMPLES)));
+        let u = [0, 1, 2, 3].map(|index| plane(quarter_place(index)));
         let crossings = Crossings { u, disk_u };
         let mean = (0..4).map(|index| crossings.covered_share(index)).sum::<f64>() / 4.0;
         assert!((mean - 0.5).abs() < 1e-12, "{mean}");

@@ -36,6 +36,12 @@ pub fn reaches(frame: &LocalFrame) -> bool {
     !frame.rain && frame.r > nearest && frame.r <= FARTHEST_EYE
 }
 
+/// The middle of the shadow on the sky of `frame`'s observer, and of circles much like its edge: a unit look direction. Outside the reach of
+/// curves the hole's own, which without spin it is everywhere.
+pub fn shadow_centre(frame: &LocalFrame) -> DVec3 {
+    if reaches(frame) { CriticalCurve::centred(frame).k } else { DVec3::NEG_X }
+}
+
 /// P(u) = u'^2.
 pub fn radial_potential(c: &Constants, u: f64) -> f64 {
     let quadratic = c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter));
