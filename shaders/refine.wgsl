@@ -64,7 +64,8 @@ fn refine_sample(entry: u32, count: u32) {
     workgroupBarrier();
     if entry < count && sample_index() == 0u {
         if whole_plane && is_ragged() {
-            note_ragged(id);
+            // It turns out to need the samples of EDGE_CURVE.
+            note_edges(id, EDGE_CURVE);
         } else {
             take_light(id, mean_light());
         }
@@ -131,16 +132,6 @@ fn mean_light() -> vec4<f32> {
         sum += lane_light[lane + k];
     }
     return sum / f32(samples);
-}
-
-// A pixel of EDGE_DISK turns out to need the samples of EDGE_CURVE. (The list has room for all but a million such pixels more than a
-// tile's: those keep what they have.)
-fn note_ragged(id: vec2<u32>) {
-    if atomicLoad(&edges.counts[list_place(0u)]) + atomicLoad(&edges.counts[list_place(1u)]) < arrayLength(&edges.pixels) {
-        note_edges(id, EDGE_CURVE);
-    } else {
-        take_light(id, mean_light());
-    }
 }
 
 fn seen_crossing() -> Crossing {

@@ -459,7 +459,7 @@ fn records_agree_with_integration() {
     let mut renderers = both();
     let mut random = Random(23);
     let mut found: [[Comparison; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 120) {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 60) {
         let mut scene = random_eye(&mut random, index);
         aim(&mut scene, &mut random);
         let truth = Truth::new(&scene, width, height);
@@ -497,7 +497,7 @@ fn footprints_agree_with_differences() {
     let mut random = Random(29);
     // By tracer, and whether the record was looked up or integrated.
     let mut found: [[Footprints; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 120) {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 60) {
         let mut scene = random_eye(&mut random, index);
         scene.disk.as_mut().unwrap().turbulence = 1.0;
         let edge = shadow_edge(&scene, &mut random);

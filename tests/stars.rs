@@ -344,13 +344,16 @@ fn a_field_has_the_flux_that_the_lens_equation_gives() {
 
 // ---- steadiness ----
 
-/// Calls `see` with the light of each of 64 frames, the camera turning by a sixteenth of a pixel from frame to frame.
-fn turning(renderer: &mut Renderer, size: [u32; 2], mut see: impl FnMut(&Light)) {
+/// Frames of the CPU and of the GPU that the camera turns for; the pictures are the same (tests/pictures.rs).
+const TURNS: [usize; 2] = [17, 64];
+
+/// Calls `see` with the light of each of `frames`, the camera turning by a sixteenth of a pixel from one to the next.
+fn turning(renderer: &mut Renderer, size: [u32; 2], frames: usize, mut see: impl FnMut(&Light)) {
     let still = renderer.scene.camera;
     let step = 1.0 / (16.0 * Screen::new(&still, size).scale);
     // Neither along rows nor along columns.
     let axis = (Screen::new(&still, size).up + Screen::new(&still, size).right * 0.6).normalize();
-    for frame in 0..64 {
+    for frame in 0..frames {
         let turn = DQuat::from_axis_angle(axis, step * frame as f64);
         renderer.scene.camera = Camera { forward: turn * still.forward, up: turn * still.up, ..still };
         see(&Light::new(renderer, size));
@@ -369,19 +372,19 @@ fn each_star_is_steady_while_the_camera_turns() {
     let mut stars = isolated_stars();
     // And some far from the hole, where the lens does little.
     stars.extend([(0.5, 0.3), (0.55, 2.9), (0.6, 3.4), (0.7, 6.1)].map(|(beta, turn)| Lensed::new(beta, turn, 0.2, 1)));
-    for (name, mut renderer) in both() {
+    for ((name, mut renderer), frames) in both().into_iter().zip(TURNS) {
         renderer.scene.camera = looking_at_the_hole(1.0);
         renderer.scene.given_stars = given(&stars);
         let images = isolated_images(&stars, &Screen::new(&renderer.scene.camera, size), 13.0);
         assert!(images.len() > 16, "{} images", images.len());
         let mut sums = vec![Vec::new(); images.len()];
-        turning(&mut renderer, size, |light| {
+        turning(&mut renderer, size, frames, |light| {
             for (sums, (_, _, d)) in sums.iter_mut().zip(&images) {
                 sums.push(light.near(light.screen.place(*d).unwrap(), 4));
             }
         });
         for (sums, (_, image, _)) in sums.iter().zip(&images) {
-            assert_eq!(sums.len(), 64);
+            assert_eq!(sums.len(), frames);
             let change = largest_change(sums);
             println!("{name} {image:?}: {change}");
             assert!(change < 0.02, "{name} {image:?}: {change}");
@@ -397,11 +400,11 @@ fn nothing_sparkles_while_the_camera_turns() {
     let windows = [(0.17, 1.0), (0.2, 3.0), (0.36, 0.1), (0.36, 4.0), (0.7, 0.2), (0.75, 3.0)];
     let windows = windows.map(|(psi, turn)| around_the_hole(psi, turn));
     for flags in [Sky::STARS, Sky::PROCEDURAL] {
-        for (name, mut renderer) in both() {
+        for ((name, mut renderer), frames) in both().into_iter().zip(TURNS) {
             renderer.scene.sky.flags = flags;
             renderer.scene.camera = looking_at_the_hole(1.0);
             let mut sums = windows.map(|_| Vec::new());
-            turning(&mut renderer, size, |light| {
+            turning(&mut renderer, size, frames, |light| {
                 let mut frame = windows.map(|_| 0.0);
                 for (i, pixel) in light.pixels.iter().enumerate() {
                     let d = light.screen.direction(centre(i, size));

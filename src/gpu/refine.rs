@@ -7,11 +7,8 @@ use super::{Buffer, Device};
 use crate::error::{Error, Result};
 use wgpu::BufferUsages as Usage;
 
-/// `Edges` of edges.wgsl: bytes before the pixels, two counts for each sample of a submission, and of a pixel.
+/// `Edges` of edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
-const PIXEL: u64 = 4;
-/// Room for pixels that are listed twice: at first as an edge of the disk and then as the critical curve's.
-const LISTED_TWICE: u64 = 1 << 20;
 
 /// Workgroups that share the list: as `REST_GROUPS` of frame.rs.
 const GROUPS: u32 = 2048;
@@ -24,13 +21,12 @@ pub struct EdgeList {
 }
 
 impl EdgeList {
-    /// Bytes of a tile's pixel on the device.
-    pub const BYTES_PER_PIXEL: u64 = PIXEL;
+    /// Bytes of a tile's pixel on the device. A pixel may be listed twice: at first as an edge of the disk and then as the critical curve's.
+    pub const BYTES_PER_PIXEL: u64 = 2 * 4;
 
     /// Makes room for the pixels of a tile.
     pub fn prepare(&mut self, device: &Device, tile: [u32; 2]) -> Result<()> {
-        let pixels = u64::from(tile[0]) * u64::from(tile[1]);
-        let size = HEAD + (pixels + pixels.min(LISTED_TWICE)) * PIXEL;
+        let size = HEAD + u64::from(tile[0]) * u64::from(tile[1]) * Self::BYTES_PER_PIXEL;
         if self.buffer.as_ref().is_none_or(|b| b.size() < size) {
             self.buffer = None;
             self.buffer = Some(device.buffer("edges", size, Usage::STORAGE | Usage::COPY_DST)?);
