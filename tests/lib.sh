@@ -58,10 +58,17 @@ without_drivers() {
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} "$@"
 }
 
+# The library with every check on and with symbols, for valgrind: the one that cargo builds for the Rust tests, not another one without what
+# only those need.
+checked_library=$target/checked/deps/libbhr.so
+build_checked_library() {
+    cargo test --profile checked --no-run --test symbols --locked --manifest-path "$root/Cargo.toml"
+}
+
 # under_valgrind COMMAND...: of the CPU backend, in the checked library, which has symbols; for at most $seconds. Without
 # drivers: their own leaks and unknown instructions are not the library's. LD_LIBRARY_PATH goes before a runpath.
 under_valgrind() {
-    LD_LIBRARY_PATH=$target/checked without_drivers timeout "${seconds:-600}" \
+    LD_LIBRARY_PATH=${checked_library%/*} without_drivers timeout "${seconds:-600}" \
         valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite \
         --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }

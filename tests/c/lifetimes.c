@@ -1,5 +1,5 @@
 /* lifetimes.c -- creates, renders and destroys again and again, and watches what the process holds. Its second
- * argument is the number of cycles (default 200); below 100 nothing is measured, for valgrind, which counts better.
+ * argument is the number of cycles (default 120); below 100 nothing is measured, for valgrind, which counts better.
  *
  * The CPU tracer must not grow. A Vulkan driver may leak by itself, so there the bound is its own:
  * MAX_GROWTH_OF_DRIVER a cycle. */
@@ -43,7 +43,7 @@ static void cycle(BhrBackend backend) {
 
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
-    const int        cycles = argc > 2 ? atoi(argv[2]) : 200;
+    const int        cycles = argc > 2 ? atoi(argv[2]) : 120;
     long             before = 0;
     for (int i = 0; i < cycles; i++) {
         if (i == WARM_UP) {
