@@ -151,9 +151,10 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
         measured(&format!("spin {a}, RK4"), size, Change::Nothing, Box::new(method(a, Method::Rk4)));
     }
     for a in [0.0, 0.9] {
-        measured(&format!("spin {a}, everything"), size, Change::Nothing, Box::new(everything(a)));
-        measured(&format!("spin {a}, everything"), [640, 360], Change::Nothing, Box::new(everything(a)));
-        measured(&format!("spin {a}, everything, eye moving"), size, Change::Eye, Box::new(everything(a)));
+        for size in [size, [640, 360]] {
+            measured(&format!("spin {a}, everything"), size, Change::Nothing, Box::new(everything(a)));
+            measured(&format!("spin {a}, everything, eye moving"), size, Change::Eye, Box::new(everything(a)));
+        }
     }
     for a in [0.5, 0.998] {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));

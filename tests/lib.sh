@@ -68,7 +68,7 @@ build_checked_library() {
 # under_valgrind COMMAND...: of the CPU backend, in the checked library, which has symbols; for at most $seconds. Without
 # drivers: their own leaks and unknown instructions are not the library's. LD_LIBRARY_PATH goes before a runpath.
 under_valgrind() {
-    LD_LIBRARY_PATH=${checked_library%/*} without_drivers timeout "${seconds:-600}" \
+    CHECK_WITHOUT_MILKY_WAY=1 LD_LIBRARY_PATH=${checked_library%/*} without_drivers timeout "${seconds:-600}" \
         valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite \
         --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }

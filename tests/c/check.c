@@ -39,6 +39,14 @@ int check_end(void) {
     return failed_count == 0 && passed_count > 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+void check_set_sky(BhrContext *context) {
+    BhrSky sky;
+    if (getenv("CHECK_WITHOUT_MILKY_WAY") != NULL && CHECK_OK(bhr_sky_init(&sky, sizeof sky))) {
+        sky.flags &= ~(uint32_t)BHR_SKY_MILKY_WAY;
+        CHECK_OK(bhr_set_sky(context, &sky));
+    }
+}
+
 BhrContext *check_context(BhrBackend backend) {
     BhrContextOptions options;
     BhrContext       *context = NULL;
@@ -46,6 +54,7 @@ BhrContext *check_context(BhrBackend backend) {
         options.backend = backend;
         if (CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context)) &&
             CHECK(context != NULL, "success without a context")) {
+            check_set_sky(context);
             return context;
         }
     }

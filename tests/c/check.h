@@ -19,6 +19,10 @@ BhrBackend  check_begin(int argc, char **argv); /* exits with 2 when there is no
 int         check_end(void);                    /* prints the count; the exit status of main */
 BhrContext *check_context(BhrBackend backend);  /* a new one, silent; ends the program when there is none */
 
+/* What check_context does to the sky: with CHECK_WITHOUT_MILKY_WAY in the environment no Milky Way, which takes valgrind long to make in
+ * every program anew. */
+void check_set_sky(BhrContext *context);
+
 /* ---- checks: the condition, then a printf message that says what was seen. Any thread may check. ---- */
 #define CHECK(condition, ...) check_that((condition) != 0, __FILE__, __LINE__, #condition, __VA_ARGS__)
 /* The call succeeds. Its value is whether it did. */
