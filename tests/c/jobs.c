@@ -13,8 +13,8 @@
 #include <string.h>
 #include <time.h>
 
-#define WIDTH 64u
-#define HEIGHT 48u
+#define WIDTH 40u
+#define HEIGHT 30u
 #define BYTES (WIDTH * HEIGHT * 4u)
 #define FLIGHT 8        /* jobs under way at once */
 #define MAX_JOBS 64     /* unfinished ones of a context, by the header */
