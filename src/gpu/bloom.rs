@@ -2,7 +2,8 @@
 //! where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
 use super::frame::Written;
-use super::kernels::{self, Kernels, Stage, TextureKind};
+use super::kernels::{Kernels, Stage};
+use super::slots::{LIGHT, TextureKind};
 use super::{Device, Texture, uniform_stride};
 use crate::error::{Error, Result};
 use crate::film::bloom::{Bloom, Level, MOST_LEVELS, TAIL};
@@ -62,7 +63,7 @@ fn finer(bloom: &Bloom) -> impl Iterator<Item = [u32; 2]> {
 
 impl Made {
     fn new(device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<Self> {
-        let TextureKind { format, dimension } = kernels::LIGHT;
+        let TextureKind { format, dimension } = LIGHT;
         let texture = |label: &str, size: [u32; 2]| device.texture(label, format, dimension, size, 1);
         let grids = |label: &str, levels: &[Level]| {
             levels.iter().map(|level| texture(label, level.size)).collect::<Result<Vec<_>>>()

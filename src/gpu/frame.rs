@@ -4,12 +4,11 @@
 
 use super::bloom::{BloomBuffers, BloomStages, LIGHT_BYTES};
 use super::export::{EXPORT_BYTES, imported};
-use super::kernels::{
-    Compiled, FilmLook, Kernels, Look, PixelTarget, Source, Stage, TextureKind, check_groups, pixel_groups,
-};
+use super::kernels::{Compiled, FilmLook, Kernels, Look, PixelTarget, Source, Stage, check_groups, pixel_groups};
 use super::lens_kerr::Wanted;
 use super::records::{Making, RecordMakers, RecordStages, STEP_SUM, Shared, step_sum};
 use super::refine::{EdgeList, Refining};
+use super::slots::{RADIANCE, TextureKind};
 use super::steps::{Step, Steps};
 use super::tables::Tables;
 use super::tiles::{MAX_BATCH, MEMORY, Plan};
@@ -575,7 +574,7 @@ impl FrameBuffers {
         if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.
             self.sized = None;
-            let TextureKind { format, dimension } = kernels::RADIANCE;
+            let TextureKind { format, dimension } = RADIANCE;
             let summed = if size.several_samples { size.tile } else { [1, 1] };
             let radiance = || device.texture("radiance", format, dimension, summed, 1);
             let bytes = (u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes).max(4);

@@ -2,6 +2,7 @@
 //! by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels, no scene.
 
 use super::kernels::{self, Kernels, Stage};
+use super::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind};
 use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
 use crate::physics::lens::critical::CRITICAL_NODES;
@@ -221,7 +222,7 @@ impl KerrTables {
 
 impl Made {
     fn new(device: &Device, rows: [u32; 2], layers: u32) -> Result<Self> {
-        let texture = |kind: kernels::TextureKind, label: &str, height: u32, layers: u32| {
+        let texture = |kind: TextureKind, label: &str, height: u32, layers: u32| {
             device.texture(label, kind.format, kind.dimension, [COLUMNS, height], layers)
         };
         // wgpu makes no array texture of one layer on GL.
@@ -230,10 +231,10 @@ impl Made {
             rows,
             layers,
             uniform: device.buffer("lens", size_of::<KerrUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST)?,
-            curve: device.table("critical curve", kernels::LENS_ROWS.format, [COLUMNS, 2])?,
-            sky: texture(kernels::LENS_ROWS, "lens sky", rows[0], 1)?,
-            crossings: texture(kernels::LENS_COLUMNS, "lens crossings", rows[1], layers)?,
-            flags: texture(kernels::LENS_FLAGS, "lens flags", rows[1], 1)?,
+            curve: device.table("critical curve", LENS_ROWS.format, [COLUMNS, 2])?,
+            sky: texture(LENS_ROWS, "lens sky", rows[0], 1)?,
+            crossings: texture(LENS_COLUMNS, "lens crossings", rows[1], layers)?,
+            flags: texture(LENS_FLAGS, "lens flags", rows[1], 1)?,
             traced: None,
             flagged: None,
         })

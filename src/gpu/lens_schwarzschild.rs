@@ -1,7 +1,8 @@
 //! The tables of a spin-0 lens on the device: built by compute passes when the eye's radius has changed, read by
 //! lens_schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
 
-use super::kernels::{self, Kernels, Stage, TextureKind};
+use super::kernels::{self, Kernels, Stage};
+use super::slots::{LENS_COLUMNS, LENS_ROWS, TextureKind};
 use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
 use crate::physics::observer::{LocalFrame, Observer};
@@ -139,9 +140,7 @@ impl Made {
         let texture = |kind: TextureKind, label: &str, size: [u32; 2]| {
             device.texture(label, kind.format, kind.dimension, size, BRANCHES)
         };
-        let row = |label| {
-            device.texture(label, kernels::LENS_ROWS.format, kernels::LENS_ROWS.dimension, [nodes, BRANCHES], 1)
-        };
+        let row = |label| device.texture(label, LENS_ROWS.format, LENS_ROWS.dimension, [nodes, BRANCHES], 1);
         let columns = [nodes, INTERVALS];
         Ok(Self {
             nodes,
@@ -153,8 +152,8 @@ impl Made {
             )?,
             ends: row("lens ends")?,
             swept: row("lens swept")?,
-            u: texture(kernels::LENS_COLUMNS, "lens u", columns)?,
-            delays: texture(kernels::LENS_COLUMNS, "lens delay", if delay { columns } else { [1, 1] })?,
+            u: texture(LENS_COLUMNS, "lens u", columns)?,
+            delays: texture(LENS_COLUMNS, "lens delay", if delay { columns } else { [1, 1] })?,
             filled: None,
         })
     }

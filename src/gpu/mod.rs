@@ -18,6 +18,7 @@ mod readback;
 mod records;
 mod refine;
 mod sky_maps;
+mod slots;
 mod steps;
 mod swapchain;
 mod tables;
@@ -25,13 +26,12 @@ mod texture;
 mod tiles;
 mod timer;
 mod uniforms;
+mod wgsl;
 
 pub use adapter::{Adapter, Search, adapters, forget_drivers};
 pub use buffer::Buffer;
 pub use device::Device;
 pub use frame::{BegunFrame, FrameTarget, Recording, Submitted};
-#[doc(hidden)]
-pub use kernels::shader_sources;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
@@ -39,6 +39,8 @@ pub use readback::{Copied, Readback};
 pub use swapchain::{Acquired, Swapchain};
 pub use texture::Texture;
 pub use timer::{GpuTimer, read_time};
+#[doc(hidden)]
+pub use wgsl::shader_sources;
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;

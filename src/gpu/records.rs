@@ -1,9 +1,10 @@
 //! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens. Gives shading
 //! its group 1 and knows nothing else of it.
 
-use super::kernels::{self, Kernels, Source, Stage, TextureKind, Variant};
+use super::kernels::{Kernels, Source, Stage, Variant};
 use super::lens_kerr::{KerrStages, KerrTables, Wanted};
 use super::lens_schwarzschild::{LensStages, SchwarzschildTables};
+use super::slots::{TRACED, TextureKind};
 use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
 use crate::physics::observer::LocalFrame;
@@ -180,7 +181,7 @@ impl TracedRecords {
         let texture = |kind: TextureKind, label: &str, layers: u32| {
             device.texture(label, kind.format, kind.dimension, size, layers)
         };
-        let [sky, meta, disk] = kernels::TRACED;
+        let [sky, meta, disk] = TRACED;
         let textures = [
             texture(sky, "record sky", 1)?,
             texture(meta, "record meta", 1)?,

@@ -1,6 +1,6 @@
 //! The sky maps of a scene as textures: the Milky Way's, made when it is first shown, and the host's, made anew when it is another.
 
-use super::kernels::SKY_MAP;
+use super::slots::SKY_MAP;
 use super::{Device, Texture};
 use crate::error::{Error, Result};
 use crate::scene::Scene;

@@ -1,7 +1,7 @@
 //! Textures on a device: counted while they exist, like buffers.
 
 use super::device::Device;
-use super::kernels::{SCREEN, TextureKind};
+use super::slots::{SCREEN, TextureKind};
 use crate::error::{Error, Result};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
