@@ -1,7 +1,7 @@
 //! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that spread it. What goes
 //! where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
-use super::frame::Written;
+use super::frame_buffers::Written;
 use super::kernels::{Kernels, Stage};
 use super::slots::{LIGHT, TextureKind};
 use super::{Device, Texture, uniform_stride};

@@ -8,6 +8,7 @@ mod buffer;
 mod device;
 mod export;
 mod frame;
+mod frame_buffers;
 mod kernels;
 mod lens_kerr;
 mod lens_schwarzschild;
@@ -19,7 +20,9 @@ mod records;
 mod refine;
 mod sky_maps;
 mod slots;
+mod stages;
 mod steps;
+mod submission;
 mod swapchain;
 mod tables;
 mod texture;
@@ -31,11 +34,12 @@ mod wgsl;
 pub use adapter::{Adapter, Search, adapters, forget_drivers};
 pub use buffer::Buffer;
 pub use device::Device;
-pub use frame::{BegunFrame, FrameTarget, Recording, Submitted};
+pub use frame::{BegunFrame, FrameTarget, Recording};
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
 pub use readback::{Copied, Readback};
+pub use submission::Submitted;
 pub use swapchain::{Acquired, Swapchain};
 pub use texture::Texture;
 pub use timer::{GpuTimer, read_time};
@@ -62,7 +66,7 @@ pub struct GpuTracer {
     kernels: Kernels,
     /// Made when light is first shaded.
     tables: Option<Tables>,
-    buffers: frame::FrameBuffers,
+    buffers: frame_buffers::FrameBuffers,
     ray_buffers: rays::RayBuffers,
 }
 

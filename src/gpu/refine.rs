@@ -10,7 +10,7 @@ use wgpu::BufferUsages as Usage;
 /// `Edges` of edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
 
-/// Workgroups that share the list: as `REST_GROUPS` of frame.rs.
+/// Workgroups that share the list: as `REST_GROUPS` of stages.rs.
 const GROUPS: u32 = 2048;
 const GROUPS_SOFTWARE: u32 = 16;
 

@@ -1,0 +1,201 @@
+//! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
+
+use super::frame::{BegunFrame, Recording};
+use super::frame_buffers::FrameBuffers;
+use super::kernels::{PixelTarget, check_groups, pixel_groups};
+use super::records::STEP_SUM;
+use super::uniforms::PassUniform;
+use super::{Copied, Device, GpuTimer, timer, uniform_stride};
+use crate::error::{Error, Result};
+use crate::renderer::{FrameRequest, FrameStats, PASSES, Tile, TileSink};
+use crate::scene::Projection;
+use crate::scene::frame::sample_offset;
+use crate::scene::refine::{CURVE_SAMPLES, EDGE_SAMPLES};
+use arrayvec::ArrayVec;
+use std::time::Instant;
+
+/// Passes of a submission, at most one of each kind.
+#[derive(Clone, Copy)]
+pub enum PassKind {
+    Shading,
+    Bloom,
+    Development,
+}
+
+/// Of a step that gathers none.
+pub const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
+
+/// A submission that has not been read yet.
+pub struct Submitted {
+    pub submission: wgpu::SubmissionIndex,
+    /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
+    pub copied: Copied,
+    pub tick_bytes: u64,
+    pub passes: ArrayVec<PassKind, PASSES>,
+    /// Whether steps were counted: none are taken where rays are looked up and nothing else.
+    pub counts: bool,
+    pub tile: Option<Tile>,
+    pub row_bytes: usize,
+}
+
+/// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device.
+pub const TICKS: u64 = 0;
+pub const STEPS: u64 = 64;
+pub const PIXELS: u64 = 256;
+
+impl FrameBuffers {
+    /// Starts the frame's next step; what it develops is copied to the host.
+    pub fn submit(
+        &mut self,
+        device: &Device,
+        frame: &mut BegunFrame,
+        then: &mut Recording<'_>,
+    ) -> Result<Option<Submitted>> {
+        let Some(step) = frame.next() else { return Ok(None) };
+        let begins = frame.submitted == 0;
+        let stages = &frame.stages;
+        let stride = uniform_stride::<PassUniform>(device);
+        let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
+        // The first is what is developed, which with bloom may be another tile than the shaded one.
+        let developed = (step.develops.unwrap_or(step.shades), 0, 0);
+        let of = |(tile, sample, i)| {
+            pass_of(&frame.request, tile, (sample, frame.samples), frame.projection, i, step.light_origin)
+        };
+        let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
+        let passes = [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice));
+        let mut places = vec![0; (1 + 2 * step.samples.len()) * stride as usize];
+        for (slot, pass) in places.chunks_exact_mut(stride as usize).zip(passes) {
+            slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
+        }
+        let size_of_tile = [step.shades.width, step.shades.height];
+        check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
+        let developed = step.develops.filter(|_| frame.target != PixelTarget::Screen);
+        let row_bytes = developed.map_or(0, |tile| tile.width as usize * frame.request.format.bytes_per_pixel());
+        let pixel_bytes = developed.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
+        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
+        let staging = match frame.target {
+            PixelTarget::Rows if pixel_bytes > 0 => self.mapped.0.staging(device, size)?,
+            _ => self.readback.staging(device, size)?,
+        };
+        let to = staging.buffer()?;
+        let mut encoder = device.encoder("frame")?;
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.passes.write(device, &places)?;
+        if let Some(bloom) = &frame.bloom {
+            self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
+        }
+        let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
+        self.edges.reset(&mut encoder);
+        let puts = stages.glare.is_some() || step.develops.is_some();
+        let put = if puts { Some(stages.put.group(device, to)?) } else { None };
+        let timer = &mut self.timer;
+        let mut passes = ArrayVec::new();
+        let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
+            passes.push(kind);
+            let timestamp_writes = timer.as_mut().and_then(GpuTimer::next_pass);
+            record(
+                &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes }),
+            );
+        };
+        if !step.samples.is_empty() {
+            in_pass(PassKind::Shading, "frame", &mut |pass| {
+                stages.shade(pass, &step, frame.samples, begins, stride as u32, put.as_ref())
+            });
+        }
+        if let Some(glare) = &stages.glare {
+            if let Some(cells) = step.gathers {
+                in_pass(PassKind::Bloom, "bloom", &mut |pass| {
+                    glare.bloom.gather(pass, cells);
+                    if step.spreads {
+                        glare.bloom.spread(pass);
+                    }
+                });
+            }
+            if let Some(tile) = step.develops {
+                let put = glare.put.group(device, to)?;
+                in_pass(PassKind::Development, "develop", &mut |pass| {
+                    pass.set_bind_group(2, &put, &[]);
+                    glare.develop.dispatch(pass, 0, [tile.width, tile.height]);
+                });
+            }
+        }
+        let counts = steps.is_some();
+        if let Some(steps) = steps {
+            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
+        }
+        let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
+        if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, pixel_bytes > 0) {
+            encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
+        }
+        let mut copied = staging.filled(size);
+        if frame.submitted + 1 == frame.count() {
+            then(&mut encoder)?;
+        }
+        let submission = device.submit(encoder)?;
+        copied.request(device)?;
+        frame.submitted += 1;
+        Ok(Some(Submitted { submission, copied, tick_bytes, passes, counts, tile: developed, row_bytes }))
+    }
+}
+
+impl Submitted {
+    /// What to wait for.
+    pub fn submission(&self) -> &wgpu::SubmissionIndex {
+        &self.submission
+    }
+
+    /// Whether it has run, so that [`Self::finish`] does not wait. Errors: as [`Device::wait`].
+    pub fn is_done(&self, device: &Device) -> Result<bool> {
+        device.is_done(&self.submission)
+    }
+
+    /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as [`Device::wait`].
+    pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
+        self.copied.read(device, &self.submission, |bytes| {
+            let started = Instant::now();
+            if self.counts {
+                let steps = bytemuck::try_pod_read_unaligned::<u32>(part(bytes, STEPS, STEP_SUM)?);
+                stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+            }
+            let ticks = part(bytes, TICKS, self.tick_bytes)?;
+            stats.gpu_ns += timer::nanoseconds(device, ticks)?;
+            for (kind, ticks) in self.passes.iter().zip(ticks.chunks(timer::PASS_BYTES as usize)) {
+                stats.pass_ns[*kind as usize] += timer::nanoseconds(device, ticks)?;
+            }
+            if let (Some(tile), Some(pixels)) = (self.tile, bytes.get(PIXELS as usize..)) {
+                sink(tile, pixels, self.row_bytes)?;
+            }
+            stats.readback_ns += started.elapsed().as_nanos() as u64;
+            Ok(())
+        })
+    }
+}
+
+/// Of what a submission left in its staging buffer.
+pub fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
+    let found = bytes.get(begin as usize..(begin + size) as usize);
+    found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
+}
+
+/// Of the sample of so many, the `slot`th of its submission.
+pub fn pass_of(
+    request: &FrameRequest,
+    tile: Tile,
+    (sample, samples): (u32, u32),
+    projection: Projection,
+    slot: u32,
+    light_origin: [u32; 2],
+) -> PassUniform {
+    let region = request.region;
+    let [dx, dy] = sample_offset(sample, samples, projection);
+    PassUniform {
+        origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
+        size: [tile.width + 2, tile.height + 2],
+        offset: [dx as f32, dy as f32],
+        weight: 1.0 / samples as f32,
+        first: u32::from(sample == 0),
+        slot,
+        refined: EDGE_SAMPLES,
+        light_origin: light_origin.map(|v| v as i32),
+    }
+}
