@@ -903,7 +903,7 @@ typedef struct BhrQuality {
      * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
      * centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than BHR_VIEW_LIGHT take one.
      * Where an edge of the disk, a steep change or the edge of the shadow runs through the pixel, each sample is the mean of 4
-     * or 64 rays over a pixel's area; BhrFrameStats does not count those.
+     * or 32 rays over a pixel's area; BhrFrameStats does not count those.
      */
     uint32_t samples_per_pixel;
     /** Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
