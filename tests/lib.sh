@@ -73,20 +73,55 @@ under_valgrind() {
         --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }
 
-# check NAME COMMAND...: one test, in a subshell. Says ok or FAIL and the time; shows what it printed only when it
-# failed.
-check() {
-    local name=$1 begin=$SECONDS
-    shift
-    if ("$@") >"$scratch/output" 2>&1 </dev/null; then
+# count NAME STATUS SECONDS FILE: one test's end. Says ok or FAIL and the time; shows what it printed only when it failed.
+count() {
+    if [ "$2" -eq 0 ]; then
         passed=$((passed + 1))
-        printf 'ok    %s (%d s)\n' "$name" $((SECONDS - begin))
+        printf 'ok    %s (%d s)\n' "$1" "$3"
     else
-        local status=$?
         failed=$((failed + 1))
-        printf 'FAIL  %s (exit status %d, %d s)\n' "$name" "$status" $((SECONDS - begin))
-        tail -n 100 -- "$scratch/output" | sed 's/^/      /'
+        printf 'FAIL  %s (exit status %d, %d s)\n' "$1" "$2" "$3"
+        tail -n 100 -- "$4" | sed 's/^/      /'
     fi
+}
+
+# check NAME COMMAND...: one test, in a subshell.
+check() {
+    local name=$1 begin=$SECONDS status=0
+    shift
+    ("$@") >"$scratch/output" 2>&1 </dev/null || status=$?
+    count "$name" "$status" $((SECONDS - begin)) "$scratch/output"
+}
+
+# begin NAME COMMAND...: as check, but as many at a time as there are cores, for what keeps one of them busy. count_begun waits for all
+# of them and counts.
+begun=()
+begun_pids=()
+begin() {
+    local name=$1 file=$scratch/begun-${#begun[@]} pid running
+    shift
+    while running=0; for pid in "${begun_pids[@]}"; do kill -0 "$pid" 2>/dev/null && running=$((running + 1)); done
+        [ "$running" -ge "$(nproc)" ]; do
+        sleep 0.2
+    done
+    (
+        status=0 since=$SECONDS
+        ("$@") >"$file" 2>&1 </dev/null || status=$?
+        printf '%d %d\n' "$status" $((SECONDS - since)) >"$file.end"
+    ) &
+    begun+=("$name")
+    begun_pids+=($!)
+}
+count_begun() {
+    local i status seconds
+    for i in "${!begun[@]}"; do
+        wait "${begun_pids[i]}"
+        status=1 seconds=0
+        [ -s "$scratch/begun-$i.end" ] && read -r status seconds <"$scratch/begun-$i.end"
+        count "${begun[i]}" "$status" "$seconds" "$scratch/begun-$i"
+    done
+    begun=()
+    begun_pids=()
 }
 
 # Ends a script: the count as a plain line, and the exit status.
