@@ -93,7 +93,8 @@ fn curve_place(across: vec2<f32>) -> vec2<f32> {
     let i = f32(sample_index());
     let n = f32(samples);
     let along = fract((i - 0.5 * (n - 1.0)) * GOLDEN + 0.5);
-    let normal = select(vec2<f32>(1.0, 0.0), across * inverseSqrt(dot(across, across)), dot(across, across) > 0.0);
+    // Less is rounding, at the shadow's very centre.
+    let normal = select(vec2<f32>(1.0, 0.0), across * inverseSqrt(dot(across, across)), dot(across, across) > 1e-30);
     let tangent = vec2<f32>(-normal.y, normal.x);
     let foot = normal * level_of_share((i + 0.5) / n, normal);
     let wide = select(vec2<f32>(1e-6), tangent, abs(tangent) > vec2<f32>(1e-6));

@@ -16,6 +16,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const WAYS: [(f64, LensTables); 4] =
     [(0.0, LensTables::Always), (0.0, LensTables::Never), (0.9, LensTables::Always), (0.9, LensTables::Never)];
 
+/// One of them with spin, one without: of what they have little part in. (A kernel takes lavapipe half a second to compile.)
+const TWO_WAYS: [(f64, LensTables); 2] = [WAYS[1], WAYS[2]];
+
 /// A camera that has the hole beside, not before it, its axes no axes of the scene.
 fn camera(projection: Projection) -> Camera {
     Camera {
@@ -174,7 +177,7 @@ fn tiles_of_every_projection_join() {
     let sizes = [[75, 50], [61, 50], [75, 50], [300, 50]];
     for (tracer, mut renderer) in both() {
         for ((projection, _), size) in PROJECTIONS.into_iter().zip(sizes) {
-            for way in WAYS {
+            for way in TWO_WAYS {
                 set(&mut renderer, projection, way);
                 renderer.scene.disk.as_mut().unwrap().turbulence = 1.0;
                 let format = PixelFormat::Rgba16F;
@@ -199,7 +202,10 @@ fn gpu_and_cpu_pictures_of_every_projection_agree() {
         let width = size[0].min(100);
         let part = Region { full_width, full_height, x: middle - width / 2, y: full_height / 2 - size[1] / 2 };
         for way in WAYS {
-            for (size, region) in [(size, None), ([width, size[1]], Some(part))] {
+            // Each ray by itself is small frames' way.
+            let looked_up = way.1 == LensTables::Always;
+            let part = looked_up.then_some(([width, size[1]], Some(part)));
+            for (size, region) in [(size, None)].into_iter().chain(part) {
                 let [cpu, gpu] = renderers.each_mut().map(|(_, renderer)| {
                     set(renderer, projection, way);
                     if region.is_some() {
@@ -254,7 +260,7 @@ fn outside_the_circle_there_is_nothing() {
     let size = [70, 50];
     let inside = |x: u32, y: u32| (f64::from(x) - 34.5).hypot(f64::from(y) - 24.5) <= 25.0;
     for (tracer, mut renderer) in both() {
-        for way in WAYS {
+        for way in TWO_WAYS {
             set(&mut renderer, Projection::Fisheye, way);
             // Of a translucent disk, the sky and the hole in all directions.
             renderer.scene.camera.fov_y = TAU;
@@ -326,7 +332,7 @@ fn stars_keep_their_light_across_the_borders_of_faces() {
     const SIDE: u32 = 128;
     let star = catalogue::stars().next().unwrap().direction;
     for (tracer, mut renderer) in both() {
-        for way in WAYS {
+        for way in TWO_WAYS {
             set(&mut renderer, Projection::Cube, way);
             renderer.scene.disk = None;
             renderer.scene.camera.position = DVec3::new(2e5, 3e5, -1e5);

@@ -18,7 +18,7 @@ pub struct Refiner<'a> {
     disk_u: Option<[f64; 2]>,
     opaque: bool,
     lens: &'a Lens,
-    /// Its centre.
+    /// The shadow's centre.
     shadow: DVec3,
 }
 

@@ -27,7 +27,8 @@ use crate::scene::{Lensing, Projection, Region, Scene, View};
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// Largest side of a tile, pixels.
+/// Largest side of a tile with the border that is traced, pixels. The list of edges of a tile this large is all but the 128 MiB that each
+/// device can bind.
 const MAX_TILE_SIDE: u32 = 4096;
 /// Bytes of a pixel's radiance.
 const RADIANCE_BYTES: u64 = 16;

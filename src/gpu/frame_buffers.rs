@@ -50,11 +50,11 @@ impl Default for Mapped {
 /// A buffer of uniforms, and what was written to its begin last.
 pub struct Written {
     pub buffer: Buffer,
-    pub bytes: Vec<u8>,
+    bytes: Vec<u8>,
 }
 
 pub struct SizedBuffers {
-    pub size: Size,
+    size: Size,
     /// Samples are added by turns: from one to the other; as large as a tile only for several samples.
     pub radiance: [Texture; 2],
     pub packed: Buffer,

@@ -16,25 +16,25 @@ use std::slice;
 
 /// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where each costs its
 /// share of a loop's body however little there is to do, few.
-pub const REST_GROUPS: u32 = 512;
-pub const REST_GROUPS_SOFTWARE: u32 = 16;
+const REST_GROUPS: u32 = 512;
+const REST_GROUPS_SOFTWARE: u32 = 16;
 
 /// A kernel that takes records: over all pixels, and over those that it deferred.
 pub struct Taking {
-    pub all: Stage,
-    pub rest: Option<Stage>,
+    all: Stage,
+    rest: Option<Stage>,
     /// Workgroups over the deferred pixels, however many they are.
-    pub rest_groups: u32,
+    rest_groups: u32,
 }
 
 /// The kernels that shade a sample: of all pixels, and then more rays of those that were listed for their edges.
-pub struct Shades {
-    pub taking: Taking,
-    pub refining: Option<Refining>,
+struct Shades {
+    taking: Taking,
+    refining: Option<Refining>,
 }
 
 /// What turns ray records into packed pixels.
-pub enum Shading {
+enum Shading {
     /// Of the only sample.
     Only(Shades),
     Samples {
@@ -46,10 +46,10 @@ pub enum Shading {
 }
 
 pub struct Stages {
-    pub records: RecordStages,
-    pub shading: Shading,
+    records: RecordStages,
+    shading: Shading,
     /// Group 3 of the kernels that shade: the list of pixels with edges.
-    pub edges: wgpu::BindGroup,
+    edges: wgpu::BindGroup,
     pub put: Put,
     /// In frames with bloom: what follows shading, which then puts light.
     pub glare: Option<GlareStages>,

@@ -16,31 +16,31 @@ use std::time::Instant;
 
 /// Passes of a submission, at most one of each kind.
 #[derive(Clone, Copy)]
-pub enum PassKind {
+enum PassKind {
     Shading,
     Bloom,
     Development,
 }
 
 /// Of a step that gathers none.
-pub const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
+const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 
 /// A submission that has not been read yet.
 pub struct Submitted {
-    pub submission: wgpu::SubmissionIndex,
+    submission: wgpu::SubmissionIndex,
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
-    pub copied: Copied,
-    pub tick_bytes: u64,
-    pub passes: ArrayVec<PassKind, PASSES>,
+    copied: Copied,
+    tick_bytes: u64,
+    passes: ArrayVec<PassKind, PASSES>,
     /// Whether steps were counted: none are taken where rays are looked up and nothing else.
-    pub counts: bool,
-    pub tile: Option<Tile>,
-    pub row_bytes: usize,
+    counts: bool,
+    tile: Option<Tile>,
+    row_bytes: usize,
 }
 
 /// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device.
-pub const TICKS: u64 = 0;
-pub const STEPS: u64 = 64;
+const TICKS: u64 = 0;
+const STEPS: u64 = 64;
 pub const PIXELS: u64 = 256;
 
 impl FrameBuffers {
@@ -172,7 +172,7 @@ impl Submitted {
 }
 
 /// Of what a submission left in its staging buffer.
-pub fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
+fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
     let found = bytes.get(begin as usize..(begin + size) as usize);
     found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
 }

@@ -67,3 +67,24 @@ impl Scene {
         Lensing::Traced
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_for_frames_that_pay_for_them() {
+        let mut scene = Scene::default();
+        let eye = |scene: &Scene| scene.observer().unwrap().frame;
+        assert_eq!(scene.lensing(&eye(&scene), SCHWARZSCHILD_WORTH), Lensing::Schwarzschild);
+        assert_eq!(scene.lensing(&eye(&scene), SCHWARZSCHILD_WORTH - 1), Lensing::Traced);
+        scene.hole.spin = 0.9;
+        assert_eq!(scene.lensing(&eye(&scene), KERR_WORTH), Lensing::Kerr);
+        assert_eq!(scene.lensing(&eye(&scene), KERR_WORTH - 1), Lensing::Traced);
+        // Samples count as pixels do.
+        scene.quality.samples_per_pixel = 2;
+        assert_eq!(scene.lensing(&eye(&scene), KERR_WORTH / 2), Lensing::Kerr);
+        scene.quality.method = Method::Rk4;
+        assert_eq!(scene.lensing(&eye(&scene), KERR_WORTH), Lensing::Traced);
+    }
+}

@@ -203,10 +203,14 @@ static void run_order(const int order[ENDS], BhrBackend backend, BhrWindowKind k
 
 /* Every permutation of order[first ..]; how many there are. */
 static int run_orders(int order[ENDS], int first, BhrBackend backend, BhrWindowKind kind) {
-    static int index;
+    static int found;
     int        count = first == ENDS;
-    if (first == ENDS && index++ % 2 != 1 - half) {
-        run_order(order, backend, kind);
+    if (first == ENDS) {
+        /* Two neighbours end with the same two: of a pair one in turn, so that in both halves each of them is last at times. */
+        const int which = found++;
+        if ((which + which / 2) % 2 != 1 - half) {
+            run_order(order, backend, kind);
+        }
     }
     for (int i = first; i < ENDS; i++) {
         const int kept = order[first];

@@ -68,7 +68,8 @@ sdl_shows() { import -window "$sdl_window_id" "$1" && [ "$(identify -format '%k'
 
 # sdl_shows_held AREA: what the window shows now is the screenshot, in an area of both.
 sdl_shows_held() {
-    sdl_shows "$scratch/sdl-shown.png" 200 || return 1
+    sdl_shows "$scratch/sdl-shown.png" 200 &&
+        [ "$(identify -format '%wx%h' "$scratch/sdl-shown.png")" = "$(identify -format '%wx%h' "$scratch/sdl-held.png")" ] || return 1
     local name
     for name in held shown; do
         convert "$scratch/sdl-$name.png" -crop "$1" +repage "$scratch/sdl-$name-area.png" || return 1
