@@ -118,19 +118,23 @@ viewer_takes_keys() {
 
 # Dragging turns the picture, the wheel brings the hole nearer, W flies on to it.
 viewer_takes_mouse() {
-    viewer_open --size 320x180 && xdotool key space && sleep 1 || return 1
+    # At rest nothing but the mouse changes the picture.
+    viewer_open --size 320x180 && xdotool key space && viewer_until 60 viewer_title_says 'at rest' || return 1
     viewer_grab "$scratch/mouse-1.png" && xdotool mousedown 1 || return 1
     local step
     for step in 1 2 3 4 5 6; do
         xdotool mousemove_relative -- 8 6 && sleep 0.1
     done
-    xdotool mouseup 1 && sleep 2 && viewer_grab "$scratch/mouse-2.png" || return 1
-    viewer_equal "$scratch/mouse-1.png" "$scratch/mouse-2.png" && return 1
+    xdotool mouseup 1 && viewer_until 20 viewer_has_turned || return 1
     viewer_until 10 viewer_title_says 'r 34 M' || return 1
     xdotool click 4 click 4 click 4 && viewer_until 20 viewer_title_says 'r 20.* M' || { viewer_title; return 1; }
     xdotool key f keydown w && sleep 2 && xdotool keyup w &&
         viewer_until 20 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' || { viewer_title; return 1; }
     viewer_close
+}
+
+viewer_has_turned() {
+    viewer_grab "$scratch/mouse-2.png" && ! viewer_equal "$scratch/mouse-1.png" "$scratch/mouse-2.png"
 }
 
 # With time stopped the picture is refined, and then costs nothing: less than a tenth of a core.
