@@ -27,6 +27,7 @@ pub struct FrameBuffers {
     pub timer: Option<GpuTimer>,
 }
 
+/// What does not depend on a frame's size.
 pub struct FixedBuffers {
     pub frame: Written,
     pub film: Written,
@@ -53,6 +54,7 @@ pub struct Written {
     bytes: Vec<u8>,
 }
 
+/// What does.
 pub struct SizedBuffers {
     size: Size,
     /// Samples are added by turns: from one to the other; as large as a tile only for several samples.

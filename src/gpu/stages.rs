@@ -45,6 +45,7 @@ enum Shading {
     },
 }
 
+/// The kernels of a frame, from its records to its pixels.
 pub struct Stages {
     records: RecordStages,
     shading: Shading,
