@@ -126,10 +126,17 @@ impl Device {
         lock(&self.health.stray).take().map_or(Ok(()), Err)
     }
 
-    /// [`Self::check`] after a failure: of a loss wgpu tells only once all that was submitted has ended.
+    /// [`Self::check`] after a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and
+    /// the poll of another thread may be about to.
     pub(super) fn check_anew(&self) -> Result<()> {
         let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
         let _ = self.poll(all)?;
+        self.check()?;
+        let nothing = self.queue()?.submit([]);
+        let look = wgpu::PollType::Wait { submission_index: Some(nothing), timeout: Some(Duration::ZERO) };
+        if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = self.poll(look)? {
+            self.refuses_work();
+        }
         self.check()
     }
 
@@ -193,9 +200,9 @@ impl Device {
             match self.poll(wait)? {
                 Ok(_) => return self.check(),
                 Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
-                    // wgpu drops a submission silently only when its device is gone; this poll calls the callback.
+                    // This poll calls the callback that tells why.
                     let _ = self.poll(wgpu::PollType::Poll)?;
-                    self.health.lose("it no longer takes work");
+                    self.refuses_work();
                 }
                 Err(wgpu::PollError::Timeout) if Instant::now() >= deadline => {
                     self.health.hung.store(true, Ordering::Relaxed);
@@ -205,6 +212,11 @@ impl Device {
             }
             self.check()?;
         }
+    }
+
+    /// A submission was dropped silently, which wgpu does only when its device is gone.
+    fn refuses_work(&self) {
+        self.health.lose("it no longer takes work");
     }
 
     /// An error that may come from the device's loss: the loss, if so.
