@@ -322,6 +322,16 @@ fn a_lost_device_is_an_error_in_every_call() {
 }
 
 #[test]
+fn what_a_lost_device_reports_is_its_loss() {
+    let device = device();
+    device.scoped("destroy", |d| d.destroy()).unwrap();
+    // wgpu has not told of it yet: nothing was waited for.
+    let invalid = device.buffer("after", 4, BufferUsages::COPY_DST).unwrap();
+    invalid.unmap();
+    assert_eq!(device.check().unwrap_err().kind, ErrorKind::DeviceLost);
+}
+
+#[test]
 fn a_device_lost_during_a_readback_is_an_error() {
     let device = device();
     let scaling = Scaling::new(&device, &[1; 16], &[]).unwrap();

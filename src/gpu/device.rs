@@ -120,24 +120,27 @@ impl Device {
 
     /// Errors: `DeviceLost` once the device is gone; an error that came outside every other call.
     pub fn check(&self) -> Result<()> {
-        if let Some(reason) = &*lock(&self.health.lost) {
-            return Err(lost(reason));
-        }
-        lock(&self.health.stray).take().map_or(Ok(()), Err)
+        self.check_known_loss()?;
+        let stray = lock(&self.health.stray).take();
+        stray.map_or(Ok(()), |error| Err(self.explain(error)))
     }
 
-    /// [`Self::check`] after a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and
-    /// the poll of another thread may be about to.
-    pub(super) fn check_anew(&self) -> Result<()> {
+    fn check_known_loss(&self) -> Result<()> {
+        lock(&self.health.lost).as_deref().map_or(Ok(()), |reason| Err(lost(reason)))
+    }
+
+    /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and the poll of
+    /// another thread may be about to. Errors: `DeviceLost`.
+    pub(super) fn check_loss_anew(&self) -> Result<()> {
         let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
         let _ = self.poll(all)?;
-        self.check()?;
+        self.check_known_loss()?;
         let nothing = self.queue()?.submit([]);
         let look = wgpu::PollType::Wait { submission_index: Some(nothing), timeout: Some(Duration::ZERO) };
         if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = self.poll(look)? {
             self.refuses_work();
         }
-        self.check()
+        self.check_known_loss()
     }
 
     /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins the
@@ -221,7 +224,7 @@ impl Device {
 
     /// An error that may come from the device's loss: the loss, if so.
     pub(super) fn explain(&self, error: Error) -> Error {
-        self.check_anew().err().unwrap_or(error)
+        self.check_loss_anew().err().unwrap_or(error)
     }
 
     /// Whether `submission` has run. Errors: `DeviceLost`.

@@ -167,11 +167,11 @@ impl Swapchain {
                 Acquired::Outdated
             }
             Current::Lost => {
-                self.device.check_anew()?;
+                self.device.check_loss_anew()?;
                 Acquired::Lost
             }
             Current::Validation => {
-                self.device.check_anew()?;
+                self.device.check_loss_anew()?;
                 return Err(Error::new(ErrorKind::SurfaceLost, "the window's image was refused by validation"));
             }
         })
