@@ -85,7 +85,8 @@ fn coordinate_delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     let frame = c.a * c.a * c.energy * n_z * n_z;
     let horizon = (4.0 * c.energy - 2.0 * c.a * c.angular_momentum * u) / horizon_function(c, u);
     if !delay_by_parts(c) {
-        return c.energy * (1.0 / (u * u) + 2.0 / u) + frame + horizon;
+        let r = 1.0 / u;
+        return c.energy * r * (r + 2.0) + frame + horizon;
     }
     let l = log(max(u / c.u_eye, 1e-30));
     let by_parts = (c.k - c.a2e2) * u * (1.0 + l) - c.b * u * u * (2.0 + 3.0 * l) + c.a2q * u * u * u * (1.0 + 2.0 * l);

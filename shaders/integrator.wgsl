@@ -135,7 +135,8 @@ fn step_limit(c: Constants, s: State, h: f32) -> f32 {
     let u_plus = 1.0 / c.r_plus;
     let curvature = abs(u_acceleration(c, s.u));
     let leaves = !SPINNING && c.clock == CLOCK_RAIN && s.du < 0.0;
-    if s.u >= select(u_plus * (1.0 + HORIZON_ROOM), u_plus, leaves) {
+    // With spin nothing is traced inside.
+    if !SPINNING && s.u >= select(u_plus * (1.0 + HORIZON_ROOM), u_plus, leaves) {
         return h * s.u / (abs(s.du) + sqrt(curvature * s.u));
     }
     let room = max(u_plus - s.u, HORIZON_ROOM * u_plus);

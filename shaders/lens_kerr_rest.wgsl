@@ -7,6 +7,8 @@ const REST_ORDERS: u32 = 16u;
 var<private> rest_crossings: array<vec3<f32>, 48>;
 var<private> rest_ray: u32;
 var<private> rest_order: u32;
+// Of the pixel itself, which is traced last: orders up to that of the last crossing.
+var<private> rest_count: u32;
 // Of the second ray from the pixel: 1 or -1.
 var<private> rest_step: f32;
 
@@ -15,6 +17,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if PATTERN {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
+    rest_count = min(crossing.order + 1u, REST_ORDERS);
     rest_crossings[rest_ray * REST_ORDERS + min(crossing.order, REST_ORDERS - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
@@ -29,6 +32,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     // The pixel itself comes last.
     for (var k = select(1u, 3u, FOOTPRINTS); k > 0u; k -= 1u) {
         rest_ray = k - 1u;
+        rest_count = 0u;
         let place = pixel_place(id) + vec2<f32>(f32(rest_ray & 1u) * rest_step, f32(rest_ray >> 1u));
         let begin = begin_local(local_look(camera_look(place.x, place.y)).n);
         let traced = trace(begin.c, begin.state, settings);
@@ -47,7 +51,7 @@ fn ray_record(id: vec2<u32>) -> Record {
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
-    while rest_order < min(frame.max_crossings, REST_ORDERS) && crossing.u <= 0.0 {
+    while more_crossings() && crossing.u <= 0.0 {
         let u = rest_crossings[rest_order].x;
         if u > 0.0 {
             // The tables' slope is nearly right all the same.
@@ -71,6 +75,10 @@ fn next_crossing() -> Crossing {
         }
     }
     return crossing;
+}
+
+fn more_crossings() -> bool {
+    return rest_order < rest_count;
 }
 
 fn rest_change(here: vec3<f32>, next: vec3<f32>, step: f32) -> Place {

@@ -150,6 +150,11 @@ fn next_crossing() -> Crossing {
     return crossing;
 }
 
+// Only looking tells.
+fn more_crossings() -> bool {
+    return true;
+}
+
 // Of u to the next pixel right and down, where the table of u has `at` at the crossing `phi`.
 fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
     let y = phi / looked.swept;

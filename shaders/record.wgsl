@@ -3,6 +3,7 @@
 //
 //     fn ray_record(id: vec2<u32>) -> Record      of the tile's pixel `id`
 //     fn next_crossing() -> Crossing              of that record, front to back, within the disk's radii
+//     fn more_crossings() -> bool                 whether next_crossing may give one more
 //     fn defer_pixel(id: vec2<u32>)               leaves a pixel whose record is FATE_PENDING to a later kernel
 //     fn edges_of_pixel(through: f32) -> u32      EDGE_*: what runs through the pixel of that record, once its crossings have been
 //                                                 given; through: what the disk lets pass of the light behind it

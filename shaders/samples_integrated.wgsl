@@ -5,6 +5,8 @@
 const KEPT_ORDERS: u32 = 16u;
 var<private> kept_crossings: array<vec3<f32>, 16>;
 var<private> kept_order: u32;
+// Orders up to that of the last crossing.
+var<private> kept_count: u32;
 // Of the ray.
 var<private> kept_constants: Constants;
 var<private> kept_ratio: f32;
@@ -14,6 +16,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if FOOTPRINTS {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
+    kept_count = min(crossing.order + 1u, KEPT_ORDERS);
     kept_crossings[min(crossing.order, KEPT_ORDERS - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
@@ -23,6 +26,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
         kept_crossings[i] = vec3<f32>(0.0);
     }
     kept_order = 0u;
+    kept_count = 0u;
     let place = pixel_place(id);
     let begin = begin_ray(camera_look(place.x, place.y));
     kept_constants = begin.c;
@@ -48,13 +52,17 @@ fn integrated_record(id: vec2<u32>) -> Record {
     return record;
 }
 
+fn more_integrated() -> bool {
+    return kept_order < kept_count;
+}
+
 // Without footprint.
 fn next_integrated() -> Crossing {
     var crossing: Crossing;
     if !DISK {
         return crossing;
     }
-    while kept_order < min(frame.max_crossings, KEPT_ORDERS) && crossing.u <= 0.0 {
+    while more_integrated() && crossing.u <= 0.0 {
         let at = kept_crossings[kept_order];
         if is_wanted(at.x) {
             crossing.u = at.x;

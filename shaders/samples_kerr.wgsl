@@ -36,6 +36,10 @@ fn next_crossing() -> Crossing {
     return crossing;
 }
 
+fn more_crossings() -> bool {
+    return !integrated || more_integrated();
+}
+
 // Gives the crossings once more from the first.
 fn rewind_crossings() {
     kept_order = 0u;

@@ -64,24 +64,31 @@ fn pixel_light(here: Record) -> vec4<f32> {
         if crossing.u <= 0.0 {
             break;
         }
-        var shift = Shift(crossing.g, crossing.g);
-        if !ALL_EFFECTS {
-            let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(crossing.u, here.energy, here.angular_momentum);
-            shift = visible_shift(crossing.g, gravity);
-        }
         var structure = 1.0;
         if FOOTPRINTS {
             structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
         }
         let opacity = frame.disk.z * crossing.share;
-        light += open * opacity * structure * disk_light(crossing.u, shift);
+        light += open * opacity * structure * disk_light(crossing.u, crossing_shift(here, crossing));
         open *= 1.0 - opacity;
+        // To find at the loop's begin that there is none lavapipe would run all of the body once more.
+        if !more_crossings() {
+            break;
+        }
     }
     seen_through = open;
     if (SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID) && here.fate == FATE_ESCAPED && open > 0.0 {
         light += open * sky_light(here);
     }
     return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
+}
+
+fn crossing_shift(here: Record, crossing: Crossing) -> Shift {
+    if ALL_EFFECTS {
+        return Shift(crossing.g, crossing.g);
+    }
+    let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(crossing.u, here.energy, here.angular_momentum);
+    return visible_shift(crossing.g, gravity);
 }
 
 fn sky_light(here: Record) -> vec3<f32> {

@@ -38,6 +38,10 @@ fn next_crossing() -> Crossing {
     return crossing;
 }
 
+fn more_crossings() -> bool {
+    return traced_orders != 0u;
+}
+
 // A pixel whose neighbour's ray meets other things, or the same inside the disk's edge and not outside: one that misses a thin ring
 // on one side of it and one that does on the other differ, too.
 fn edges_of_pixel(through: f32) -> u32 {
