@@ -332,6 +332,15 @@ fn what_a_lost_device_reports_is_its_loss() {
 }
 
 #[test]
+fn work_that_a_lost_device_drops_is_its_loss() {
+    let device = device();
+    device.scoped("destroy", |d| d.destroy()).unwrap();
+    let encoder = device.encoder("after").unwrap();
+    let dropped = device.submit(encoder).unwrap();
+    assert_eq!(device.is_done(&dropped).unwrap_err().kind, ErrorKind::DeviceLost);
+}
+
+#[test]
 fn a_device_lost_during_a_readback_is_an_error() {
     let device = device();
     let scaling = Scaling::new(&device, &[1; 16], &[]).unwrap();

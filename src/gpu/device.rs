@@ -132,13 +132,15 @@ impl Device {
     /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and the poll of
     /// another thread may be about to. Errors: `DeviceLost`.
     pub(super) fn check_loss_anew(&self) -> Result<()> {
+        self.check_known_loss()?;
         let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
         let _ = self.poll(all)?;
         self.check_known_loss()?;
-        let nothing = self.queue()?.submit([]);
+        let queue = self.queue()?;
+        let nothing = self.unpanicked(|| queue.submit([]))?;
         let look = wgpu::PollType::Wait { submission_index: Some(nothing), timeout: Some(Duration::ZERO) };
         if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = self.poll(look)? {
-            self.refuses_work();
+            self.learn_loss()?;
         }
         self.check_known_loss()
     }
@@ -203,9 +205,7 @@ impl Device {
             match self.poll(wait)? {
                 Ok(_) => return self.check(),
                 Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
-                    // This poll calls the callback that tells why.
-                    let _ = self.poll(wgpu::PollType::Poll)?;
-                    self.refuses_work();
+                    self.learn_loss()?;
                 }
                 Err(wgpu::PollError::Timeout) if Instant::now() >= deadline => {
                     self.health.hung.store(true, Ordering::Relaxed);
@@ -217,9 +217,12 @@ impl Device {
         }
     }
 
-    /// A submission was dropped silently, which wgpu does only when its device is gone.
-    fn refuses_work(&self) {
+    /// After a submission was dropped silently, which wgpu does only when its device is gone. Errors: `DeviceLost` if the driver panics.
+    fn learn_loss(&self) -> Result<()> {
+        // Calls the callback that tells why.
+        let _ = self.poll(wgpu::PollType::Poll)?;
         self.health.lose("it no longer takes work");
+        Ok(())
     }
 
     /// An error that may come from the device's loss: the loss, if so.
@@ -231,6 +234,9 @@ impl Device {
     pub fn is_done(&self, submission: &wgpu::SubmissionIndex) -> Result<bool> {
         let look = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(Duration::ZERO) };
         let looked = self.poll(look)?;
+        if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = looked {
+            self.learn_loss()?;
+        }
         self.check()?;
         Ok(looked.is_ok())
     }
@@ -241,9 +247,13 @@ impl Device {
         self.wait(&submission)
     }
 
-    /// wgpu panics here when the driver reports that the device is lost.
     fn poll(&self, how: wgpu::PollType) -> Result<Result<wgpu::PollStatus, wgpu::PollError>> {
-        catch_unwind(AssertUnwindSafe(|| self.raw.poll(how))).map_err(|panic| {
+        self.unpanicked(|| self.raw.poll(how))
+    }
+
+    /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
+    fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+        catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
             self.health.lose(panic_text(&*panic));
             lost(panic_text(&*panic))
         })
