@@ -3,6 +3,7 @@
 
 use super::adapter::{Adapter, required_limits};
 use crate::error::{Error, ErrorKind, Result};
+use parking_lot::{ReentrantMutex, const_reentrant_mutex};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -46,6 +47,10 @@ struct Health {
     hung: AtomicBool,
 }
 
+/// Held while a device is opened: NVIDIA's Vulkan driver (580.159.04) often hangs for ever when several threads do so at once. Reentrant, as
+/// what is logged meanwhile goes to the host, who may open another.
+static OPENING: ReentrantMutex<()> = const_reentrant_mutex(());
+
 impl Device {
     /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
     ///
@@ -70,7 +75,10 @@ impl Device {
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
         };
-        let (raw, queue) = pollster::block_on(raw.request_device(&descriptor)).map_err(|error| {
+        let opening = OPENING.lock();
+        let opened = pollster::block_on(raw.request_device(&descriptor));
+        drop(opening);
+        let (raw, queue) = opened.map_err(|error| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {error}", adapter.info.name))
         })?;
         let health = Arc::new(Health::default());
