@@ -144,6 +144,14 @@ impl Tracer {
         }
     }
 
+    /// Makes all that such frames need, and keeps it. Errors: as `Renderer::render`.
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+        match self {
+            Self::Cpu(t) => t.prepare(scene, request),
+            Self::Gpu(t) => t.prepare(scene, request),
+        }
+    }
+
     fn info(&self) -> &AdapterInfo {
         match self {
             Self::Cpu(t) => t.adapter(),
@@ -361,13 +369,18 @@ impl Renderer {
         *self.stats.0.lock()
     }
 
-    /// What a tracer is asked for. Errors: a region that the image overruns; a region with bloom; a format that does not go with the view.
-    fn request(&self, target: &ImageMut<'_>, transparent: bool, region: Option<Region>) -> Result<FrameRequest> {
-        let (width, height) = (target.width(), target.height());
+    /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a format that
+    /// does not go with the view.
+    fn request(
+        &self,
+        format: PixelFormat,
+        [width, height]: [u32; 2],
+        transparent: bool,
+        region: Option<Region>,
+    ) -> Result<FrameRequest> {
         let set = region.is_some();
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
-        let format = target.format();
         let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
         if blooms && set {
             return Err(Error::state(format!(
@@ -407,7 +420,7 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let start = Instant::now();
-        let request = self.request(target, transparent, region)?;
+        let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
         self.help_to_write(target);
         let mut written = 0_u64;
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
@@ -426,6 +439,21 @@ impl Renderer {
         Ok(())
     }
 
+    /// Makes all that frames of the present scene need as images of this format and size, and as windows' frames of this size: the next
+    /// ones then wait for nothing but themselves.
+    ///
+    /// Errors: as [`Self::render`].
+    pub fn prepare(
+        &mut self,
+        format: PixelFormat,
+        size: [u32; 2],
+        transparent: bool,
+        region: Option<Region>,
+    ) -> Result<()> {
+        let request = self.request(format, size, transparent, region)?;
+        self.tracer.lock().prepare(&self.scene, &request)
+    }
+
     /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is
     /// written until the job has its outcome. `scope` is entered by the thread that makes the renderer's jobs, if this is the
     /// first.
@@ -439,7 +467,7 @@ impl Renderer {
         region: Option<Region>,
         scope: impl FnOnce() -> ThreadScope,
     ) -> Result<Job> {
-        let request = self.request(&target, transparent, region)?;
+        let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
         self.scene.lens(&request.region)?;
         self.check_device()?;
         self.help_to_write(&mut target);
