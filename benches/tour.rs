@@ -1,5 +1,5 @@
 //! How long a host waits for frames that are the first of their kind: from the context on, through a tour of spins, effects, views,
-//! projections and formats. `cargo bench --bench tour -- [WxH] [hold ms] [cpu|vulkan|gl]`. For each step the slowest frame and the
+//! projections and formats. `cargo bench --bench tour -- [WxH] [hold ms] [cpu|vulkan|gl] [--verbose]`. For each step the slowest frame and the
 //! one in the middle, by wall time from the call to the pixels in memory; the host asks for 60 frames a second meanwhile. To see what
 //! users see once, run it with the driver's cache of shaders off: MESA_SHADER_CACHE_DISABLE=true, __GL_SHADER_DISK_CACHE=0.
 
@@ -31,9 +31,10 @@ const TOUR: [(&str, Change); 20] = [
     }),
     ("FISHEYE", |scene, _| scene.camera.projection = Projection::Fisheye),
     ("EQUIRECT", |scene, _| scene.camera.projection = Projection::Equirect),
-    ("PERSPECTIVE, in orbit", |scene, _| {
+    ("PERSPECTIVE, moving", |scene, _| {
         scene.camera.projection = Projection::Perspective;
-        scene.camera.motion = Motion::Orbit;
+        scene.camera.motion = Motion::Velocity;
+        scene.camera.velocity.x = 0.3;
     }),
     ("RGBA16F", |_, format| *format = PixelFormat::Rgba16F),
     ("RGBA32F", |_, format| *format = PixelFormat::Rgba32F),
@@ -47,11 +48,32 @@ const TOUR: [(&str, Change); 20] = [
     ("no disk", |scene, _| scene.disk = None),
 ];
 
+/// Prints what bhr logs, for `--verbose`.
+struct Printer;
+
+impl log::Log for Printer {
+    fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
+        metadata.target().starts_with("bhr")
+    }
+
+    fn log(&self, record: &log::Record<'_>) {
+        if self.enabled(record.metadata()) {
+            println!("    {}", record.args());
+        }
+    }
+
+    fn flush(&self) {}
+}
+
 /// What a display asks for.
 const FRAME_TIME: Duration = Duration::from_nanos(16_666_667);
 
 fn main() {
     let arguments = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect::<Vec<_>>();
+    if std::env::args().any(|word| word == "--verbose") {
+        log::set_logger(&Printer).expect("no other logger");
+        log::set_max_level(log::LevelFilter::Debug);
+    }
     let size = arguments.first().map_or("1920x1080", String::as_str);
     let hold = arguments.get(1).map_or(1000, |ms| ms.parse().expect("milliseconds"));
     let backend = arguments.get(2).map(|name| match name.as_str() {

@@ -329,6 +329,15 @@ impl Renderer {
         self.gpu.as_ref().map_or(Ok(()), |(_, device)| device.scoped("destroying the device", |raw| raw.destroy()))
     }
 
+    /// How often frames found pipelines missing, once those that are made in the background are there; for tests. `None` on the CPU.
+    #[doc(hidden)]
+    pub fn settled_waits(&self) -> Option<gpu::KernelWaits> {
+        match &*self.tracer.lock() {
+            Tracer::Cpu(_) => None,
+            Tracer::Gpu(t) => Some(t.settled_waits()),
+        }
+    }
+
     fn end_surfaces(&mut self, reason: &'static str) {
         for surface in self.surfaces.drain(..).filter_map(|surface| surface.upgrade()) {
             surface.end(reason);

@@ -43,9 +43,8 @@ impl Compilers {
         Self { threads, queue: Arc::default() }
     }
 
-    /// Makes those of `keys` that are not there, and waits. Errors: the first one's.
-    pub fn make_now(&self, store: &Store, device: &Device, keys: &[KernelKey]) -> Result<()> {
-        let missing = keys.iter().copied().filter(|key| !store.has(*key)).collect::<Vec<_>>();
+    /// Makes `missing`, and waits. Errors: the first one's.
+    pub fn make_now(&self, store: &Store, device: &Device, missing: Vec<KernelKey>) -> Result<()> {
         let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE).saturating_sub(1) } else { 0 };
         let next = Mutex::new(missing.into_iter());
         let work = || -> Result<()> {
@@ -87,19 +86,21 @@ impl Compilers {
             queue.started.push(thread);
         }
     }
-}
 
-impl Drop for Compilers {
-    fn drop(&mut self) {
-        let started = {
-            let mut queue = lock(&self.queue);
-            queue.keys.clear();
-            std::mem::take(&mut queue.started)
-        };
+    /// Waits until the queue is empty and its threads have ended.
+    pub fn settle(&self) {
+        let started = std::mem::take(&mut lock(&self.queue).started);
         for thread in started {
             // It catches its panics itself.
             let _ = thread.join();
         }
+    }
+}
+
+impl Drop for Compilers {
+    fn drop(&mut self) {
+        lock(&self.queue).keys.clear();
+        self.settle();
     }
 }
 

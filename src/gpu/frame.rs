@@ -251,10 +251,8 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height]);
-        let developed = match self.adapter.info.software {
-            true => FilmLook::new(&film, target),
-            false => FilmLook::of_any(target),
-        };
+        let any_film = scene.quality.kernels_for_any_film.unwrap_or(!self.adapter.info.software);
+        let developed = if any_film { FilmLook::of_any(target) } else { FilmLook::new(&film, target) };
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,

@@ -7,6 +7,7 @@ use super::slots::{Slot, edge_slots};
 use super::{Device, Kernel, Loops, ProvenFinite};
 use crate::error::{Error, Result};
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 /// A pipeline and the layouts of its groups.
@@ -34,6 +35,17 @@ pub struct Kernels {
     compilers: Compilers,
     store: Arc<Store>,
     device: Arc<Device>,
+    waits: AtomicU64,
+    late: AtomicU64,
+}
+
+/// How often frames found pipelines missing; for tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KernelWaits {
+    /// Pipelines that were not there when a frame began.
+    pub waits: u64,
+    /// Pipelines that a frame had not listed, and that were made one after the other.
+    pub late: u64,
 }
 
 /// The pipelines that are there or being made; shared with the threads that make them.
@@ -163,17 +175,40 @@ impl Drop for Settling<'_> {
 impl Kernels {
     pub fn new(device: Arc<Device>, threads: bool) -> Self {
         let store = Arc::new(Store { state: Mutex::default(), settled: Condvar::new() });
-        Self { compilers: Compilers::new(threads), store, device }
+        Self {
+            compilers: Compilers::new(threads),
+            store,
+            device,
+            waits: AtomicU64::new(0),
+            late: AtomicU64::new(0),
+        }
+    }
+
+    pub fn waits(&self) -> KernelWaits {
+        KernelWaits { waits: self.waits.load(Ordering::Relaxed), late: self.late.load(Ordering::Relaxed) }
+    }
+
+    /// Waits until nothing is left to be made in the background; for tests.
+    pub fn settle(&self) {
+        self.compilers.settle();
     }
 
     /// The kernel's pipeline, made now unless it is there. Errors: as [`Device::compute_pipeline`].
     pub fn get(&self, key: KernelKey) -> Result<Compiled> {
+        if !self.store.has(key) {
+            self.late.fetch_add(1, Ordering::Relaxed);
+        }
         self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
     /// Makes all of `keys` that are not there, several at a time. Errors: as [`Self::get`], the first one.
     pub fn make_all(&self, keys: &[KernelKey]) -> Result<()> {
-        let made = self.compilers.make_now(&self.store, &self.device, keys);
+        let missing = keys.iter().copied().filter(|key| !self.store.has(*key)).collect::<Vec<_>>();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
+        let made = self.compilers.make_now(&self.store, &self.device, missing);
         made.map_err(|error| self.device.explain(error))
     }
 
@@ -181,11 +216,6 @@ impl Kernels {
     /// call asked for and that were not begun. Without effect where a device may be used from one thread only.
     pub fn anticipate(&self, keys: Vec<KernelKey>) {
         self.compilers.make_later(&self.store, &self.device, keys);
-    }
-
-    /// Whether all of `keys` are there.
-    pub fn have_all(&self, keys: &[KernelKey]) -> bool {
-        keys.iter().all(|key| self.store.has(*key))
     }
 
     /// The layout of group 3 of kernels that shade.

@@ -38,6 +38,7 @@ pub use adapter::{Adapter, Search, adapters, forget_drivers};
 pub use buffer::Buffer;
 pub use device::Device;
 pub use frame::{BegunFrame, FrameTarget, Recording};
+pub use kernels::KernelWaits;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
@@ -98,6 +99,12 @@ impl GpuTracer {
         };
         tracer.expect_first_frame();
         Ok(tracer)
+    }
+
+    /// For tests: waits until the pipelines that are made in the background are there, and tells how often frames found some missing.
+    pub fn settled_waits(&self) -> KernelWaits {
+        self.kernels.settle();
+        self.kernels.waits()
     }
 
     pub fn adapter(&self) -> &Arc<Adapter> {

@@ -4,6 +4,7 @@ use super::device::Device;
 use crate::error::Result;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// The modules of a device by their source, so that pipelines which differ in constants share one translation.
 /// Each has a lock of its own, so that several are translated at a time.
@@ -53,9 +54,11 @@ impl Device {
     /// Errors: `Internal` with wgpu's message for source that is not valid, an unknown entry point or constant, or a layout
     /// that does not fit, or when the device was lost a moment ago ([`Device::explain`] tells); `OutOfMemory`; `DeviceLost`.
     pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
+        let started = Instant::now();
         let module = self.module(kernel)?;
+        let translated = started.elapsed();
         let groups = kernel.groups.iter().map(|group| Some(*group)).collect::<Vec<_>>();
-        self.beside(kernel.label, |device| {
+        let pipeline = self.beside(kernel.label, |device| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(kernel.label),
                 bind_group_layouts: &groups,
@@ -72,7 +75,14 @@ impl Device {
                 },
                 cache: None,
             })
-        })
+        })?;
+        log::debug!(
+            "kernel {}: module {} ms, pipeline {} ms",
+            kernel.label,
+            translated.as_millis(),
+            (started.elapsed() - translated).as_millis()
+        );
+        Ok(pipeline)
     }
 
     fn module(&self, kernel: &Kernel<'_>) -> Result<wgpu::ShaderModule> {
