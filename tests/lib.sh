@@ -1,4 +1,5 @@
-# lib.sh -- what the scripts of tests/ share: folders, the Vulkan driver, building, counting. Sourced by them; runs no test.
+# lib.sh -- what the scripts of tests/ share: folders, the Vulkan driver, building, counting. Sourced by them; runs no
+# test.
 # shellcheck shell=bash
 
 tests=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
@@ -58,8 +59,9 @@ without_drivers() {
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} "$@"
 }
 
-# Cargo tells checkouts that share a target folder apart by nothing but the age of their files, and a checkout that was moved not at all: it
-# takes what the other one built, which looks for its files there. What is bhr's in the target folder goes when another checkout built it.
+# Cargo tells checkouts that share a target folder apart by nothing but the age of their files, and a checkout that was
+# moved not at all: it takes what the other one built, which looks for its files there. What is bhr's in the target
+# folder goes when another checkout built it.
 own_target_folder() {
     local mark=$target/bhr-checkout profile
     if [ -f "$mark" ] && [ "$(cat -- "$mark")" != "$root" ]; then

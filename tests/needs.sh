@@ -1,9 +1,10 @@
-# needs.sh -- what the tests need of the machine: finding it, and installing it on Debian and Ubuntu. Sourced by tests/run after lib.sh; runs
-# no test. Its functions answer by their exit status, or print the Debian packages of what is missing.
+# needs.sh -- what the tests need of the machine: finding it, and installing it on Debian and Ubuntu. Sourced by
+# tests/run after lib.sh; runs no test. Its functions answer by their exit status, or print the Debian packages of what
+# is missing.
 # shellcheck shell=bash
 
-# No pipe into grep -q here or in any script: grep ends at its first match, what feeds it is killed by SIGPIPE as soon as it has more to say
-# than a pipe holds, and pipefail makes a failure of that.
+# No pipe into grep -q, here or in any script: grep ends at its first match, what feeds it is killed by SIGPIPE as soon
+# as it has more to say than a pipe holds, and pipefail makes a failure of that.
 
 # has_library NAME: the dynamic linker knows the library.
 has_library() { [[ $(ldconfig -p 2>/dev/null) == *"$1"* ]]; }

@@ -1,5 +1,6 @@
-//! THIRD-PARTY.txt is made here, from Cargo.lock and the crates' own licence files: it names all that a built library contains, on one
-//! platform or another. A licence that nobody has agreed to fails, as does a noted advisory that no longer holds.
+//! THIRD-PARTY.txt is made here, from Cargo.lock and the crates' own licence files: it names all that a built library
+//! contains, on one platform or another. A licence that nobody has agreed to fails, as does a noted advisory that no
+//! longer holds.
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -41,10 +42,9 @@ const ALLOWED: [&str; 20] = [
 ];
 
 /// Those of crates that only build or test the library.
-const ALLOWED_TOOLS: [(&str, &str); 2] =
-    [("cbindgen", "MPL-2.0"), ("r-efi", "MIT OR Apache-2.0 OR LGPL-2.1-or-later")];
+const ALLOWED_TOOLS: [(&str, &str); 2] = [("cbindgen", "MPL-2.0"), ("r-efi", "MIT OR Apache-2.0 OR LGPL-2.1-or-later")];
 
-/// What RustSec's database held against a crate of Cargo.lock when it was last asked (2026-11-22): crate, version, advisory, why it stays.
+/// What RustSec's database, as of 2026-08-21, holds against Cargo.lock: crate, version, advisory, why the crate stays.
 const ADVISORIES: [(&str, &str, &str, &str); 1] = [(
     "paste",
     "1.0.15",
@@ -55,16 +55,18 @@ const ADVISORIES: [(&str, &str, &str, &str); 1] = [(
 const HEAD: &str = "\
 Third-party notices of bhr
 
-A library that is built from this repository (libbhr.so, libbhr.dylib, bhr.dll, libbhr.a) contains the works named here, on one platform or
-another, and these notices go where it goes. Made from Cargo.lock by tests/third_party.rs; do not edit.
+A library that is built from this repository (libbhr.so, libbhr.dylib, bhr.dll, libbhr.a) contains the works named
+here, on one platform or another, and these notices go where it goes. Made from Cargo.lock by tests/third_party.rs; do
+not edit.
 
-The Rust standard library is of the compiler that builds bhr, and linked in as well: Apache-2.0 OR MIT, copyright The Rust Project Developers
-(https://thanks.rust-lang.org), with parts under Unicode-3.0 (copyright Unicode, Inc.) and, in compiler_builtins, Apache-2.0 WITH
-LLVM-exception. These licences are below; the notices of its own parts are the compiler's file share/doc/rust/COPYRIGHT-library.html.
+It also contains the Rust standard library, in the version of the compiler that built it: Apache-2.0 OR MIT, copyright
+The Rust Project Developers (https://thanks.rust-lang.org), with parts under Unicode-3.0 (copyright Unicode, Inc.) and,
+in compiler_builtins, Apache-2.0 WITH LLVM-exception. The texts of these licences are below; the notices of its own
+parts are the compiler's file share/doc/rust/COPYRIGHT-library.html.
 ";
 
-const DATA: &str =
-    "d3-celestial 0.7.35 (the stars and the Milky Way in src/sky/data)  BSD-3-Clause  https://github.com/ofrohn/d3-celestial";
+/// The embedded stars and Milky Way (src/sky/data).
+const DATA: &str = "d3-celestial 0.7.35  BSD-3-Clause  https://github.com/ofrohn/d3-celestial";
 
 struct Crate {
     name: String,
