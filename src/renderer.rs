@@ -208,7 +208,8 @@ impl Drop for Renderer {
 }
 
 impl Renderer {
-    /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), whatever opening a device gives.
+    /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), `Unsupported` for one that
+    /// the library was built without, whatever opening a device gives.
     pub fn new(options: RendererOptions) -> Result<Self> {
         let tracer = Self::open(&options)?;
         // The window need not be there any more when the device is opened again.
@@ -227,6 +228,7 @@ impl Renderer {
     }
 
     fn open(options: &RendererOptions) -> Result<Tracer> {
+        gpu::check_built(options.backend)?;
         let window = options.compatible_window.map(Window::open).transpose()?;
         let cpu = || CpuTracer::new(options.cpu_threads).map(Tracer::Cpu);
         if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {

@@ -155,7 +155,8 @@ pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOption
 /// 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
 /// BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
 /// why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
-/// INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's; NO_ADAPTER when
+/// INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's, and for a window or
+/// BHR_BACKEND_GL in a library that was built without (cargo features window, gl); NO_ADAPTER when
 /// the backend or adapter asked for is not there, or cannot present to compatible_window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create(

@@ -34,7 +34,7 @@ mod timer;
 mod uniforms;
 mod wgsl;
 
-pub use adapter::{Adapter, Search, adapters, forget_drivers};
+pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
 pub use buffer::Buffer;
 pub use device::Device;
 pub use frame::{BegunFrame, FrameTarget, Recording};
