@@ -9,9 +9,11 @@ mod device;
 mod export;
 mod frame;
 mod frame_buffers;
+mod gl_thread;
 mod kernels;
 mod lens_kerr;
 mod lens_schwarzschild;
+mod loader;
 mod pipeline;
 mod present;
 mod rays;
@@ -33,8 +35,9 @@ mod wgsl;
 
 pub use adapter::{Adapter, Search, adapters, forget_drivers};
 pub use buffer::Buffer;
-pub use device::Device;
+pub use device::{Device, Loss};
 pub use frame::{BegunFrame, FrameTarget, Recording};
+pub use gl_thread::GlTracer;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
@@ -71,7 +74,8 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Opens a device. Pipelines and sky follow with the first frame. Errors: as `Device::open`.
+    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). Pipelines and sky follow with the
+    /// first frame. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Device::open(&adapter)?;
         let mut kernels = Kernels::default();
