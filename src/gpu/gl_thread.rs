@@ -193,3 +193,56 @@ impl GpuTracer {
         self.device.loss().check()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::thread::current;
+
+    #[test]
+    fn work_runs_on_one_thread_of_its_own_and_what_goes_beside_it_here() {
+        let thread = GlThread::start().unwrap();
+        let name = || current().name().map(str::to_owned);
+        assert_eq!(thread.run(name).unwrap().as_deref(), Some("bhr-gl"));
+        let (here, there) = (current().id(), thread.run(|| current().id()).unwrap());
+        let mut beside = None;
+        let again = thread.run_beside(|| current().id(), || beside = Some(current().id())).unwrap();
+        assert_eq!((again, beside), (there, Some(here)));
+        // Work that asks for more of it gets it at once: an adapter may go inside a call.
+        assert_eq!(thread.run(|| thread.run(|| current().id())).unwrap().unwrap(), there);
+    }
+
+    #[test]
+    fn a_panic_is_an_error_and_the_thread_goes_on() {
+        let thread = GlThread::start().unwrap();
+        let error = thread.run(|| panic!("deliberate")).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Internal);
+        assert!(error.message.contains("deliberate"), "{error}");
+        assert_eq!(thread.run(|| 7).unwrap(), 7);
+        // The other way round nothing is left at work.
+        let unwound = catch_unwind(AssertUnwindSafe(|| thread.run_beside(|| 7, || panic!("deliberate"))));
+        assert!(unwound.is_err());
+        assert_eq!(thread.run(|| 7).unwrap(), 7);
+    }
+
+    #[test]
+    fn the_thread_has_ended_when_its_last_clone_is_dropped() {
+        struct Ending(Arc<AtomicBool>);
+        impl Drop for Ending {
+            fn drop(&mut self) {
+                self.0.store(true, Ordering::Relaxed);
+            }
+        }
+        thread_local!(static ENDING: RefCell<Option<Ending>> = const { RefCell::new(None) });
+        let (thread, ended) = (GlThread::start().unwrap(), Arc::new(AtomicBool::new(false)));
+        let clone = thread.clone();
+        let ending = Ending(ended.clone());
+        thread.run(|| ENDING.with(|place| *place.borrow_mut() = Some(ending))).unwrap();
+        drop(thread);
+        assert!(!ended.load(Ordering::Relaxed));
+        drop(clone);
+        assert!(ended.load(Ordering::Relaxed));
+    }
+}

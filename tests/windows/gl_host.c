@@ -1,7 +1,7 @@
 /* gl_host.c -- hosts that draw with OpenGL themselves, by GLX and by EGL: a context that is current on the thread that
  * calls bhr stays so through everything that a context of bhr's does, and draws as before. The second argument is the
- * host's way to GL: glx, egl (both GLFW's), surfaceless (EGL's display without windows, which bhr uses too)
- * or none. With auto as the first no software GL may trace. */
+ * host's way to GL: glx, egl (both GLFW's), sdl (EGL on Wayland), surfaceless (EGL's display without windows, which bhr
+ * uses too) or none. With auto as the first no software GL may trace. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "host.h"
@@ -15,13 +15,15 @@
 
 #define GLFW_INCLUDE_NONE /* what is needed of OpenGL is loaded by name */
 #include <GLFW/glfw3.h>
+#define SDL_MAIN_HANDLED
+#include <SDL2/SDL.h>
 
 #define WIDTH 48u
 #define HEIGHT 32u
 #define BYTES (WIDTH * HEIGHT * 4u)
 #define THREADS 2
 
-enum Way { NONE, GLX, EGL, SURFACELESS };
+enum Way { NONE, GLX, EGL, SDL, SURFACELESS };
 
 static enum Way   way;
 static BhrBackend asked;
@@ -50,7 +52,7 @@ static void load(void *function, const char *library, const char *name) {
 }
 
 #define EGL(function, name) load(&(function), "libEGL.so.1", (name))
-#define GL(function, name) load(&(function), way == GLX ? "libGL.so.1" : "libGLESv2.so.2", (name))
+#define GL(function, name) load(&(function), "libGL.so.1", (name)) /* libglvnd's, which serves every current context */
 
 /* What GLX and EGL call current on this thread. */
 typedef struct Current {
@@ -90,9 +92,11 @@ static Current current(void) {
 /* ---- the host's own context ---- */
 
 typedef struct HostGl {
-    GLFWwindow *window;
-    void       *display, *context, *surface; /* of SURFACELESS */
-    Current     current;
+    GLFWwindow   *window;
+    SDL_Window   *sdl;
+    SDL_GLContext sdl_context;
+    void         *display, *context, *surface; /* of SURFACELESS */
+    Current       current;
 } HostGl;
 
 static void give_up(const char *why) {
@@ -111,6 +115,14 @@ static void open_window(HostGl *host) {
         const char *why = "no window with a GL context";
         glfwGetError(&why);
         give_up(why);
+    }
+}
+
+static void open_sdl(HostGl *host) {
+    host->sdl = SDL_CreateWindow("host", 0, 0, (int)WIDTH, (int)HEIGHT, SDL_WINDOW_OPENGL);
+    host->sdl_context = host->sdl != NULL ? SDL_GL_CreateContext(host->sdl) : NULL;
+    if (host->sdl_context == NULL || SDL_GL_MakeCurrent(NULL, NULL) != 0) {
+        give_up(SDL_GetError());
     }
 }
 
@@ -148,13 +160,15 @@ static void make_current(HostGl *host, int is) {
     MakeCurrent make;
     if (way == GLX || way == EGL) {
         glfwMakeContextCurrent(is ? host->window : NULL);
+    } else if (way == SDL) {
+        CHECK(SDL_GL_MakeCurrent(is ? host->sdl : NULL, is ? host->sdl_context : NULL) == 0, "%s", SDL_GetError());
     } else if (way == SURFACELESS) {
         EGL(make, "eglMakeCurrent");
         void *surface = is ? host->surface : NULL;
         CHECK(make(host->display, surface, surface, is ? host->context : NULL), "the host's context stays out");
     }
     host->current = current();
-    CHECK(!is || way == NONE || (way == GLX ? host->current.glx_context : host->current.egl_context) != NULL,
+    CHECK(!is || way == NONE || host->current.glx_context != NULL || host->current.egl_context != NULL,
           "the host's context is not current");
 }
 
@@ -163,6 +177,8 @@ static HostGl open_gl(void) {
     memset(&host, 0, sizeof host);
     if (way == GLX || way == EGL) {
         open_window(&host);
+    } else if (way == SDL) {
+        open_sdl(&host);
     } else if (way == SURFACELESS) {
         open_surfaceless(&host);
     }
@@ -419,18 +435,19 @@ static int threads_of_gl(void) {
 }
 
 int main(int argc, char **argv) {
-    static const char *const WAYS[] = {"none", "glx", "egl", "surfaceless"};
+    static const char *const WAYS[] = {"none", "glx", "egl", "sdl", "surfaceless"};
     HostGl                   hosts[THREADS];
     int                      threads;
     asked = check_begin(argc, argv);
     if (argc < 3) {
-        fprintf(stderr, "usage: %s gl|auto none|glx|egl|surfaceless\n", argv[0]);
+        fprintf(stderr, "usage: %s gl|auto none|glx|egl|sdl|surfaceless\n", argv[0]);
         return 2;
     }
     while ((size_t)way < COUNT_OF(WAYS) && strcmp(argv[2], WAYS[way]) != 0) {
         way++;
     }
-    if ((size_t)way == COUNT_OF(WAYS) || ((way == GLX || way == EGL) && !glfwInit())) {
+    if ((size_t)way == COUNT_OF(WAYS) || ((way == GLX || way == EGL) && !glfwInit()) ||
+        (way == SDL && SDL_Init(SDL_INIT_VIDEO) != 0)) {
         give_up("no such way to GL, or no display");
     }
     for (int i = 0; i < THREADS; i++) {
