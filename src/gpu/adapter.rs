@@ -42,12 +42,6 @@ impl Adapter {
     pub(super) fn gl_thread(&self) -> Option<Arc<GlThread>> {
         self.handle.gl_thread.clone()
     }
-
-    /// Of GL, on its thread: whether its context can still be made current. Where it cannot, wgpu panics in every call
-    /// and every drop.
-    pub(super) fn answers(&self) -> bool {
-        self.handle.raw.as_ref().is_some_and(answers)
-    }
 }
 
 /// An adapter, which is dropped where it may touch GL contexts.
@@ -62,31 +56,12 @@ struct Handle {
 
 impl Drop for Handle {
     fn drop(&mut self) {
-        if let (Some(thread), Some(raw)) = (&self.gl_thread, self.raw.take()) {
-            let end = move || if answers(&raw) { drop(raw) } else { std::mem::forget(raw) };
-            if let Err(error) = thread.run(end) {
-                log::error!("closing the GL adapter: {error}");
-            }
+        if let (Some(thread), Some(raw)) = (&self.gl_thread, self.raw.take())
+            && let Err(error) = thread.run(move || drop(raw))
+        {
+            log::error!("closing the GL adapter: {error}");
         }
     }
-}
-
-/// As [`Adapter::answers`].
-#[cfg(not(target_vendor = "apple"))]
-fn answers(raw: &wgpu::Adapter) -> bool {
-    let make_current = || {
-        // SAFETY: the context is made current and released again, and nothing else is done with it.
-        if let Some(adapter) = unsafe { raw.as_hal::<wgpu::hal::api::Gles>() } {
-            drop(adapter.adapter_context().lock());
-        }
-    };
-    catch_unwind(AssertUnwindSafe(make_current)).is_ok()
-}
-
-/// wgpu has no GL there.
-#[cfg(target_vendor = "apple")]
-fn answers(_: &wgpu::Adapter) -> bool {
-    true
 }
 
 /// Every adapter of `search` that has what the tracer needs, best first: discrete GPUs, integrated ones, virtual and

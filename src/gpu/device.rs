@@ -104,6 +104,12 @@ impl Device {
         Loss(self.health.clone())
     }
 
+    /// On the thread of a GL device: whether its context can still be made current. Where it cannot, wgpu panics in
+    /// every call, and in every drop of what it made.
+    pub(super) fn answers(&self) -> bool {
+        catch_unwind(AssertUnwindSafe(|| self.raw.poll(wgpu::PollType::Poll))).is_ok()
+    }
+
     /// The limits the device was opened with.
     pub fn limits(&self) -> &wgpu::Limits {
         &self.limits

@@ -170,7 +170,7 @@ impl GlTracer {
 impl Drop for GlTracer {
     fn drop(&mut self) {
         let Some(tracer) = self.tracer.take() else { return };
-        let end = move || match tracer.adapter.answers() {
+        let end = move || match tracer.device.answers() {
             true => drop(tracer),
             false => {
                 log::warn!("a GL device that cannot be closed stays behind: its context is gone");
@@ -187,7 +187,7 @@ impl GpuTracer {
     /// On the thread for GL. Errors: DEVICE_LOST when the context cannot be made current any more, in which case
     /// nothing of wgpu's may be asked or dropped.
     fn check_gl_context(&self) -> Result<()> {
-        if !self.adapter.answers() {
+        if !self.device.answers() {
             self.device.loss().lose("its GL context is gone: the EGL display was terminated, or the driver failed");
         }
         self.device.loss().check()

@@ -107,9 +107,6 @@ static void give_up(const char *why) {
 static void open_window(HostGl *host) {
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_CONTEXT_CREATION_API, way == EGL ? GLFW_EGL_CONTEXT_API : GLFW_NATIVE_CONTEXT_API);
-    glfwWindowHint(GLFW_CLIENT_API, way == EGL ? GLFW_OPENGL_ES_API : GLFW_OPENGL_API);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, way == EGL ? 2 : 1);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
     host->window = glfwCreateWindow((int)WIDTH, (int)HEIGHT, "host", NULL, NULL);
     if (host->window == NULL) {
         const char *why = "no window with a GL context";
