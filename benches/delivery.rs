@@ -8,7 +8,6 @@ use bhr::job::Job;
 use bhr::renderer::{FrameRequest, Renderer, RendererOptions};
 use bhr::scene::{Region, Scene};
 use std::collections::VecDeque;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 const FULL_HD: [u32; 2] = [1920, 1080];
@@ -175,7 +174,7 @@ fn jobs(
         let ordered = Instant::now();
         // SAFETY: leaked above, and the job before it in this target has ended.
         let target = unsafe { ImageMut::from_raw(layout, pixels, length as u64) }.expect("a target");
-        let job = renderer.render_in_background(target, false, None, || Arc::new(|| Box::new(()))).expect("a job");
+        let job = renderer.render_in_background(target, false, None).expect("a job");
         calls.push(milliseconds(ordered));
         under_way.push_back((job, ordered));
     }

@@ -1,5 +1,5 @@
 /* common.c -- see common.h. Asks more of the system than C99, which else only video.c does: a monotonic clock,
- * whether a stream is a terminal, a new folder. */
+ * whether a stream is a terminal, a new folder, the number of cores. */
 #ifndef _WIN32
 #define _POSIX_C_SOURCE 199506L /* clock_gettime, isatty, fileno */
 #endif
@@ -238,7 +238,30 @@ void print_adapter(FILE *out, const BhrAdapterInfo *info) {
     }
 }
 
+void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *indent) {
+    if (!(info->flags & BHR_ADAPTER_SOFTWARE)) {
+        return;
+    }
+    const char *tracer = info->backend == BHR_BACKEND_CPU ? "the CPU" : "a software driver";
+    fprintf(out, "%sNo GPU driver was usable, so %s traces the light; --verbose says why.\n", indent, tracer);
+    fprintf(out, "%sA GPU is many times as fast. Its driver: Debian's and Ubuntu's mesa-vulkan-drivers for AMD\n", indent);
+    fprintf(out, "%sand Intel, NVIDIA's own for NVIDIA.\n", indent);
+}
+
 /* ---- the process ---- */
+
+uint32_t cores(void) {
+#ifdef _WIN32
+    SYSTEM_INFO info;
+    GetSystemInfo(&info);
+    return info.dwNumberOfProcessors > 0 ? (uint32_t)info.dwNumberOfProcessors : 1;
+#elif defined(_SC_NPROCESSORS_ONLN)
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count > 0 ? (uint32_t)count : 1;
+#else
+    return 4;
+#endif
+}
 
 double wall_seconds(void) {
 #ifdef _WIN32

@@ -57,11 +57,14 @@ const char *choice_name(const Choice *choices, int32_t value); /* "?" for none o
 int  report_failure(const char *what, BhrStatus status);
 void log_to_stderr(void *user, BhrLogLevel level, const char *message); /* a BhrLogFn */
 void print_adapter(FILE *out, const BhrAdapterInfo *info);              /* one line without its end */
+/* Where AUTO found no GPU: says so, and what to install. Lines that begin with `indent`; nothing for a GPU. */
+void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *indent);
 
 /* ---- the process ---- */
-double wall_seconds(void);         /* monotonic; only differences mean something */
-int    is_terminal(FILE *stream);
-int    make_folder(const char *path); /* 1; 0 with errno when it could not be made, EEXIST when there is one */
+double   wall_seconds(void);            /* monotonic; only differences mean something */
+uint32_t cores(void);                   /* 1 or more; a guess where the system does not tell */
+int      is_terminal(FILE *stream);
+int      make_folder(const char *path); /* 1; 0 with errno when it could not be made, EEXIST when there is one */
 
 #ifdef __cplusplus
 }

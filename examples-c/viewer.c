@@ -317,10 +317,11 @@ static void print_what_renders(const BhrContext *context, int32_t backend) {
     }
     printf("rendering on ");
     print_adapter(stdout, &adapter);
-    if (backend == BHR_BACKEND_AUTO && adapter.backend == BHR_BACKEND_CPU) {
-        printf("\nno GPU driver was usable, so the CPU traces the light; --verbose says why");
+    putchar('\n');
+    if (backend == BHR_BACKEND_AUTO) {
+        print_driver_advice(stdout, &adapter, "");
     }
-    printf("\nH prints the keys, Esc quits\n");
+    printf("H prints the keys, Esc quits\n");
 }
 
 /* A context on an adapter that can present to the window. */

@@ -161,9 +161,10 @@ typedef int32_t BhrLogLevel;
 /**
  * Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
  * for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
- * whichever thread the call runs; one from another thread goes to every context's callback. It may therefore run
- * on several threads at once. It must not throw, unwind or longjmp. Calls on a context from inside it return
- * BHR_ERROR_INVALID_STATE. None runs after bhr_context_destroy has returned.
+ * whichever thread the call runs, or on a thread of the library's that works for the call, which waits; one from
+ * another thread goes to every context's callback. It may therefore run on several threads at once. It must not throw,
+ * unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. None runs after
+ * bhr_context_destroy has returned.
  */
 typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
 
@@ -215,7 +216,10 @@ typedef struct BhrAdapterInfo {
     char driver[256];
 } BhrAdapterInfo;
 
-/** The best GPU, else a software GPU, else the CPU tracer. */
+/**
+ * The best GPU, whatever its interface; else a software driver (Mesa's lavapipe, for Vulkan), but none of OpenGL's,
+ * which take seconds to begin; else the CPU tracer.
+ */
 #define BHR_BACKEND_AUTO 0
 
 /** The built-in double-precision CPU tracer: needs no driver. */
@@ -230,7 +234,12 @@ typedef struct BhrAdapterInfo {
 /** Direct3D 12. */
 #define BHR_BACKEND_D3D12 4
 
-/** OpenGL or OpenGL ES. */
+/**
+ * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library's makes all calls, and ends
+ * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa it lives on the EGL
+ * display without windows, which a process has only one of: bhr never terminates it; a host that does (eglTerminate)
+ * brings BHR_ERROR_DEVICE_LOST to contexts of bhr's, and must not do so during a call or a job of theirs.
+ */
 #define BHR_BACKEND_GL 5
 
 /**
@@ -302,7 +311,10 @@ typedef struct BhrWindow {
 
 /* ---- context ---- */
 
-/** BhrContextOptions.flags: the driver's validation layers, where installed, check bhr and report to the log. Slow. */
+/**
+ * BhrContextOptions.flags: the driver's validation layers, where installed (OpenGL has none), check bhr and report to
+ * the log. Slow.
+ */
 #define BHR_CONTEXT_VALIDATION 1u
 
 /**
@@ -347,11 +359,12 @@ BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_siz
 /**
  * Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30,
  * 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
- * BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
- * why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
- * INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's, and for a window or
- * BHR_BACKEND_GL in a library that was built without (cargo features window, gl); NO_ADAPTER when
- * the backend or adapter asked for is not there, or cannot present to compatible_window.
+ * BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a
+ * driver the CPU tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not
+ * inside callbacks. Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window
+ * of another platform's, and for a window or BHR_BACKEND_GL in a library that was built without (cargo features
+ * window, gl); NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
+ * compatible_window.
  */
 BhrStatus bhr_context_create(uint32_t abi_version,
                              const BhrContextOptions *options,

@@ -3,7 +3,7 @@
 
 mod worker;
 
-pub use worker::{MAX_UNFINISHED, ThreadScope, Worker};
+pub use worker::{MAX_UNFINISHED, Worker};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::ImageMut;

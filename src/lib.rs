@@ -6,6 +6,7 @@
 //! - `cpu`, `gpu`: the two tracers, with one behaviour: scene -> linear radiance.
 //! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
 //! - [`window`]: the host's windows as targets of frames.
+//! - `thread_scope`: what the library's threads take over from the threads that they work for.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
 
 #[doc(hidden)]
@@ -20,4 +21,5 @@ pub mod physics;
 pub mod renderer;
 pub mod scene;
 pub mod sky;
+mod thread_scope;
 pub mod window;

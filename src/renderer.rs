@@ -4,13 +4,14 @@
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::bloom::Bloom;
-use crate::gpu::{self, Adapter, GpuTracer, Search};
+use crate::gpu::{self, Adapter, GlTracer, GpuTracer, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
-use crate::job::{Job, Order, ThreadScope, Worker};
+use crate::job::{Job, Order, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
 use crate::window::{NativeWindow, PresentMode, Showing, Shown, Surface, Tracing, Window};
 use parking_lot::Mutex;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
@@ -55,7 +56,7 @@ pub struct AdapterInfo {
 /// How to make a [`Renderer`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct RendererOptions {
-    /// `None`: the best GPU, else a software GPU, else the CPU tracer.
+    /// `None`: the best GPU, else a software driver (but none of GL's), else the CPU tracer.
     pub backend: Option<Backend>,
     /// Index into [`adapters`]; `None`: the first that `backend` allows.
     pub adapter_index: Option<u32>,
@@ -114,16 +115,24 @@ pub struct FrameRequest {
     pub transparent: bool,
 }
 
-/// Takes a finished tile: packed pixels, rows `bytes_per_row` apart.
-pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + 'a;
+/// Takes a finished tile: packed pixels, rows `bytes_per_row` apart. Runs on a thread of the tracer's, if that has one.
+pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + Send + 'a;
 
-/// Hears how much of the frame is done, 0 .. 1; false cancels.
+/// Hears how much of the frame is done, 0 .. 1; false cancels. Runs on the thread that asked for the frame.
 pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;
 
 /// What traces: one frame at a time.
 pub enum Tracer {
     Cpu(CpuTracer),
     Gpu(Box<GpuTracer>),
+    Gl(Box<GlTracer>),
+}
+
+/// What a tracer runs on, as far as it can be asked while the tracer is at work.
+enum RunsOn {
+    Cpu,
+    Gpu(Arc<Adapter>, Arc<gpu::Device>),
+    Gl(gpu::Loss),
 }
 
 /// A tracer that a renderer, its jobs and its windows take turns with.
@@ -141,6 +150,15 @@ impl Tracer {
         match self {
             Self::Cpu(t) => t.render(scene, request, sink, progress),
             Self::Gpu(t) => t.render(scene, request, sink, progress),
+            Self::Gl(t) => t.render(scene, request, sink, progress),
+        }
+    }
+
+    /// Errors: as `Device::open`.
+    fn on_gpu(adapter: Adapter) -> Result<Self> {
+        match adapter.info.backend {
+            Backend::Gl => GlTracer::open(adapter).map(|t| Self::Gl(Box::new(t))),
+            _ => GpuTracer::new(adapter).map(|t| Self::Gpu(Box::new(t))),
         }
     }
 
@@ -149,6 +167,7 @@ impl Tracer {
         match self {
             Self::Cpu(t) => t.prepare(scene, request),
             Self::Gpu(t) => t.prepare(scene, request),
+            Self::Gl(t) => t.prepare(scene, request),
         }
     }
 
@@ -156,14 +175,15 @@ impl Tracer {
         match self {
             Self::Cpu(t) => t.adapter(),
             Self::Gpu(t) => &t.adapter().info,
+            Self::Gl(t) => t.info(),
         }
     }
 
-    /// What the GPU tracer runs on.
-    fn gpu(&self) -> Option<(Arc<Adapter>, Arc<gpu::Device>)> {
+    fn runs_on(&self) -> RunsOn {
         match self {
-            Self::Cpu(_) => None,
-            Self::Gpu(t) => Some((t.adapter().clone(), t.device())),
+            Self::Cpu(_) => RunsOn::Cpu,
+            Self::Gpu(t) => RunsOn::Gpu(t.adapter().clone(), t.device()),
+            Self::Gl(t) => RunsOn::Gl(t.loss().clone()),
         }
     }
 }
@@ -189,8 +209,7 @@ pub struct Renderer {
     pub scene: Scene,
     options: RendererOptions,
     adapter: AdapterInfo,
-    /// What the GPU tracer runs on.
-    gpu: Option<(Arc<Adapter>, Arc<gpu::Device>)>,
+    runs_on: RunsOn,
     tracer: SharedTracer,
     stats: StatsBoard,
     copiers: Arc<Copiers>,
@@ -203,7 +222,12 @@ pub struct Renderer {
 impl Drop for Renderer {
     fn drop(&mut self) {
         // Windows go before the device that presents to them.
-        self.end_surfaces("its context was destroyed");
+        let ended = catch_unwind(AssertUnwindSafe(|| self.end_surfaces("its context was destroyed")));
+        // A panic that went on from here would drop the rest on its way, where another panic ends the process.
+        if let Err(panic) = ended {
+            std::mem::forget(panic);
+            log::error!("ending a surface panicked");
+        }
     }
 }
 
@@ -218,7 +242,7 @@ impl Renderer {
             scene: Scene::default(),
             options,
             adapter: tracer.info().clone(),
-            gpu: tracer.gpu(),
+            runs_on: tracer.runs_on(),
             tracer: Arc::new(Mutex::new(tracer)),
             stats: StatsBoard::default(),
             copiers: Arc::default(),
@@ -259,7 +283,7 @@ impl Renderer {
             return match found.into_iter().nth(index as usize) {
                 Some(adapter) => {
                     check(&adapter).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
-                    GpuTracer::new(adapter).map(|t| Tracer::Gpu(Box::new(t)))
+                    Tracer::on_gpu(adapter)
                 }
                 None => cpu(),
             };
@@ -267,8 +291,8 @@ impl Renderer {
         let mut reasons = Vec::new();
         for adapter in found {
             let name = adapter.info.name.clone();
-            match check(&adapter).and_then(|()| GpuTracer::new(adapter)) {
-                Ok(tracer) => return Ok(Tracer::Gpu(Box::new(tracer))),
+            match check(&adapter).and_then(|()| Tracer::on_gpu(adapter)) {
+                Ok(tracer) => return Ok(tracer),
                 Err(error) => {
                     log::warn!("adapter {name} passed over: {error}");
                     reasons.push(format!("{name}: {error}"));
@@ -297,7 +321,7 @@ impl Renderer {
         let tracer = self.reopen()?;
         self.end_surfaces("its context was recovered; make it again");
         self.adapter = tracer.info().clone();
-        self.gpu = tracer.gpu();
+        self.runs_on = tracer.runs_on();
         self.tracer = Arc::new(Mutex::new(tracer));
         Ok(())
     }
@@ -309,9 +333,9 @@ impl Renderer {
         let same = gpu::adapters(Search::Only(self.adapter.backend), self.options.validation)
             .into_iter()
             .find(|found| found.info == self.adapter)
-            .map(GpuTracer::new);
+            .map(Tracer::on_gpu);
         match same {
-            Some(Ok(tracer)) => Ok(Tracer::Gpu(Box::new(tracer))),
+            Some(Ok(tracer)) => Ok(tracer),
             Some(Err(error)) => {
                 log::warn!("adapter {} could not be opened again: {error}", self.adapter.name);
                 Self::open(&self.options)
@@ -322,21 +346,33 @@ impl Renderer {
 
     /// Errors: DEVICE_LOST once the device is gone, until [`Self::recover`].
     fn check_device(&self) -> Result<()> {
-        self.gpu.as_ref().map_or(Ok(()), |(_, device)| device.check())
+        match &self.runs_on {
+            RunsOn::Cpu => Ok(()),
+            RunsOn::Gpu(_, device) => device.check(),
+            RunsOn::Gl(loss) => loss.check(),
+        }
     }
 
     /// Destroys the GPU device, as a driver may at any time: for tests.
     #[doc(hidden)]
     pub fn lose_device(&self) -> Result<()> {
-        self.gpu.as_ref().map_or(Ok(()), |(_, device)| device.scoped("destroying the device", |raw| raw.destroy()))
+        match (&self.runs_on, &self.tracer) {
+            (RunsOn::Cpu, _) => Ok(()),
+            (RunsOn::Gpu(_, device), _) => device.scoped("destroying the device", |raw| raw.destroy()),
+            (RunsOn::Gl(_), tracer) => match &mut *tracer.lock() {
+                Tracer::Gl(tracer) => tracer.lose_device(),
+                _ => Ok(()),
+            },
+        }
     }
 
-    /// How often frames found pipelines missing, once those that are made in the background are there; for tests. `None` on the CPU.
+    /// How often frames found pipelines missing, once those that are made in the background are there; for tests. `None` on the CPU
+    /// and on GL, where none are.
     #[doc(hidden)]
     pub fn settled_waits(&self) -> Option<gpu::KernelWaits> {
         match &*self.tracer.lock() {
-            Tracer::Cpu(_) => None,
             Tracer::Gpu(t) => Some(t.settled_waits()),
+            Tracer::Cpu(_) | Tracer::Gl(_) => None,
         }
     }
 
@@ -349,11 +385,12 @@ impl Renderer {
     /// A surface for a window of the host's, to show this renderer's frames in. Errors: as `Surface::new`; DEVICE_LOST.
     pub fn create_surface(&mut self, window: NativeWindow, size: [u32; 2], mode: PresentMode) -> Result<Arc<Surface>> {
         self.check_device()?;
-        let tracing = self.gpu.as_ref().map(|(adapter, device)| Tracing {
-            adapter,
-            device: device.clone(),
-            tracer: self.tracer.clone(),
-        });
+        let tracing = match &self.runs_on {
+            RunsOn::Gpu(adapter, device) => {
+                Some(Tracing { adapter, device: device.clone(), tracer: self.tracer.clone() })
+            }
+            RunsOn::Cpu | RunsOn::Gl(_) => None,
+        };
         let surface = Arc::new(Surface::new(window, size, mode, tracing, self.options.validation)?);
         self.surfaces.retain(|surface| surface.strong_count() > 0);
         self.surfaces.push(Arc::downgrade(&surface));
@@ -413,7 +450,7 @@ impl Renderer {
 
     /// A GPU's frames come out of its staging memory faster than one thread writes them; the CPU tracer's are what its threads wait for.
     fn help_to_write(&self, target: &mut ImageMut<'_>) {
-        if self.gpu.is_some() {
+        if !matches!(self.runs_on, RunsOn::Cpu) {
             target.write_with(self.copiers.clone());
         }
     }
@@ -466,8 +503,7 @@ impl Renderer {
     }
 
     /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is
-    /// written until the job has its outcome. `scope` is entered by the thread that makes the renderer's jobs, if this is the
-    /// first.
+    /// written until the job has its outcome.
     ///
     /// Errors: INVALID_ARGUMENT and INVALID_STATE as `render`; INVALID_STATE when too many jobs are unfinished; OUT_OF_MEMORY without
     /// a thread; DEVICE_LOST.
@@ -476,7 +512,6 @@ impl Renderer {
         mut target: ImageMut<'static>,
         transparent: bool,
         region: Option<Region>,
-        scope: impl FnOnce() -> ThreadScope,
     ) -> Result<Job> {
         let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
         self.scene.lens(&request.region)?;
@@ -484,7 +519,7 @@ impl Renderer {
         self.help_to_write(&mut target);
         let worker = match &self.worker {
             Some(worker) => worker,
-            None => self.worker.insert(Worker::new(scope())?),
+            None => self.worker.insert(Worker::new()?),
         };
         worker.order(Order::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
     }
@@ -499,6 +534,7 @@ impl Renderer {
         match &mut *self.tracer.lock() {
             Tracer::Cpu(t) => t.ray_records(&self.scene, &request),
             Tracer::Gpu(t) => t.ray_records(&self.scene, &request),
+            Tracer::Gl(t) => t.ray_records(&self.scene, &request),
         }
     }
 
@@ -507,6 +543,7 @@ impl Renderer {
         match &mut *self.tracer.lock() {
             Tracer::Cpu(t) => t.trace_rays(&self.scene, rays, hits),
             Tracer::Gpu(t) => t.trace_rays(&self.scene, rays, hits),
+            Tracer::Gl(t) => t.trace_rays(&self.scene, rays, hits),
         }
     }
 

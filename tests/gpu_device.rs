@@ -114,8 +114,17 @@ fn a_search_keeps_to_its_interfaces() {
     assert!(adapters(Search::Only(Backend::Vulkan), false).iter().all(|a| a.info.backend == Backend::Vulkan));
     assert!(adapters(Search::Only(Backend::Gl), false).iter().all(|a| a.info.backend == Backend::Gl));
     assert!(adapters(Search::Only(Backend::Cpu), false).is_empty());
-    let auto = adapters(Search::Auto, false);
-    assert!(!auto.is_empty() && auto.iter().all(|a| a.info.backend != Backend::Gl), "Vulkan is there; GL was started");
+}
+
+#[test]
+fn auto_takes_hardware_before_software_and_no_software_of_gl() {
+    let auto = adapters(Search::Auto, false).into_iter().map(|a| a.info).collect::<Vec<_>>();
+    assert!(auto.iter().any(|a| a.backend == Backend::Vulkan), "no Vulkan adapter: {auto:?}");
+    assert!(auto.is_sorted_by_key(|a| a.software), "software before hardware: {auto:?}");
+    assert!(auto.iter().all(|a| !a.software || a.backend != Backend::Gl), "software GL was not asked for: {auto:?}");
+    // Hardware that no other interface reaches is taken by GL.
+    let hardware = adapters(Search::All, false).iter().any(|a| !a.info.software);
+    assert_eq!(auto.first().is_some_and(|a| !a.software), hardware, "{auto:?}");
 }
 
 #[test]

@@ -5,7 +5,6 @@ use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::job::Job;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use std::sync::Arc;
 use std::time::Duration;
 
 const SIZE: [u32; 2] = [96, 54];
@@ -26,7 +25,7 @@ fn target(size: [u32; 2]) -> (&'static [u8], ImageMut<'static>) {
 }
 
 fn order(renderer: &mut Renderer, target: ImageMut<'static>) -> Job {
-    renderer.render_in_background(target, false, None, || Arc::new(|| Box::new(()))).unwrap()
+    renderer.render_in_background(target, false, None).unwrap()
 }
 
 fn wait(job: &Job) -> bhr::error::Result<bhr::renderer::FrameStats> {

@@ -1,6 +1,6 @@
 //! A GPU device that is really destroyed under a running context: every call that needs it says so until the context is recovered,
-//! and the scene comes back. Through the C API. Needs a Vulkan adapter (lavapipe will do); the tests with a window need an X server too and are run by
-//! tests/windows/run.
+//! and the scene comes back. Through the C API. Needs a Vulkan and a GL adapter (Mesa's software drivers will do); the
+//! tests with a window need an X server too and are run by tests/windows/run.
 #![cfg(target_os = "linux")]
 
 use bhr::capi::adapter::*;
@@ -29,13 +29,13 @@ const BYTES: usize = SIZE[0] as usize * SIZE[1] as usize * 4;
 struct Context(*mut BhrContext);
 
 impl Context {
-    fn new() -> Self {
+    fn new(backend: BhrBackend) -> Self {
         let mut context = null_mut();
         // SAFETY: everything lives here.
         unsafe {
             let mut options = std::mem::zeroed::<BhrContextOptions>();
             assert_eq!(bhr_context_options_init(&mut options, size_of_val(&options)), BHR_OK);
-            options.backend = BHR_BACKEND_VULKAN;
+            options.backend = backend;
             assert_eq!(bhr_context_create(BHR_ABI_VERSION, &options, &mut context), BHR_OK, "{}", message());
             assert_eq!(bhr_set_mass(context, 1.5), BHR_OK);
             assert_eq!(bhr_set_spin(context, 0.6), BHR_OK);
@@ -123,7 +123,16 @@ fn message() -> String {
 
 #[test]
 fn a_lost_device_is_said_until_it_is_recovered_and_the_scene_comes_back() {
-    let context = Context::new();
+    recovers(BHR_BACKEND_VULKAN);
+}
+
+#[test]
+fn a_lost_device_of_gl_comes_back_too() {
+    recovers(BHR_BACKEND_GL);
+}
+
+fn recovers(backend: BhrBackend) {
+    let context = Context::new(backend);
     let before = context.render(BHR_FORMAT_RGBA8_SRGB).unwrap();
     assert_eq!(context.trace(), BHR_OK);
     for round in 0..2 {
@@ -153,7 +162,16 @@ fn a_lost_device_is_said_until_it_is_recovered_and_the_scene_comes_back() {
 
 #[test]
 fn jobs_of_a_lost_device_end() {
-    let context = Context::new();
+    jobs_end(BHR_BACKEND_VULKAN);
+}
+
+#[test]
+fn jobs_of_a_lost_device_of_gl_end() {
+    jobs_end(BHR_BACKEND_GL);
+}
+
+fn jobs_end(backend: BhrBackend) {
+    let context = Context::new(backend);
     let before = context.render(BHR_FORMAT_RGBA8_SRGB).unwrap();
     let mut targets = (0..8).map(|_| vec![0; BYTES]).collect::<Vec<_>>();
     let jobs = targets.iter_mut().map(|pixels| context.order(pixels).unwrap()).collect::<Vec<_>>();
@@ -229,7 +247,7 @@ impl XWindow {
 #[ignore = "needs an X server: run by tests/windows/run"]
 fn a_window_is_shown_again_after_the_recovery() {
     let window = XWindow::new();
-    let context = Context::new();
+    let context = Context::new(BHR_BACKEND_VULKAN);
     let wanted = context.render(BHR_FORMAT_BGRA8_SRGB).unwrap();
     let mut surface = window.surface(&context);
     // SAFETY: context and surfaces live where they are used; each surface is destroyed once.

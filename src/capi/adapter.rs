@@ -10,7 +10,8 @@ use std::ffi::c_char;
 
 /// The interface to an adapter.
 pub type BhrBackend = i32;
-/// The best GPU, else a software GPU, else the CPU tracer.
+/// The best GPU, whatever its interface; else a software driver (Mesa's lavapipe, for Vulkan), but none of OpenGL's,
+/// which take seconds to begin; else the CPU tracer.
 pub const BHR_BACKEND_AUTO: BhrBackend = 0;
 /// The built-in double-precision CPU tracer: needs no driver.
 pub const BHR_BACKEND_CPU: BhrBackend = 1;
@@ -20,7 +21,10 @@ pub const BHR_BACKEND_VULKAN: BhrBackend = 2;
 pub const BHR_BACKEND_METAL: BhrBackend = 3;
 /// Direct3D 12.
 pub const BHR_BACKEND_D3D12: BhrBackend = 4;
-/// OpenGL or OpenGL ES.
+/// OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library's makes all calls, and ends
+/// with the context: whatever GL context is current on a thread of the host's stays so. With Mesa it lives on the EGL
+/// display without windows, which a process has only one of: bhr never terminates it; a host that does (eglTerminate)
+/// brings BHR_ERROR_DEVICE_LOST to contexts of bhr's, and must not do so during a call or a job of theirs.
 pub const BHR_BACKEND_GL: BhrBackend = 5;
 
 /// BhrAdapterInfo.flags: a GPU with memory of its own.

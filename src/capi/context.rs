@@ -53,7 +53,8 @@ impl BhrContext {
     }
 }
 
-/// BhrContextOptions.flags: the driver's validation layers, where installed, check bhr and report to the log. Slow.
+/// BhrContextOptions.flags: the driver's validation layers, where installed (OpenGL has none), check bhr and report to
+/// the log. Slow.
 pub const BHR_CONTEXT_VALIDATION: u32 = 1u32;
 
 /// How to make a context. Fill in with bhr_context_options_init first.
@@ -153,11 +154,12 @@ pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOption
 
 /// Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30,
 /// 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
-/// BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
-/// why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
-/// INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's, and for a window or
-/// BHR_BACKEND_GL in a library that was built without (cargo features window, gl); NO_ADAPTER when
-/// the backend or adapter asked for is not there, or cannot present to compatible_window.
+/// BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a
+/// driver the CPU tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not
+/// inside callbacks. Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window
+/// of another platform's, and for a window or BHR_BACKEND_GL in a library that was built without (cargo features
+/// window, gl); NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
+/// compatible_window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create(
     abi_version: u32,

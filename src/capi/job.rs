@@ -1,7 +1,7 @@
 //! BhrJob: frames in the background. One `Job` with what its waits need of the context, which may be gone by then.
 
 use super::context::BhrContext;
-use super::entry::{self, News, break_if_internal, finish, in_callback, on_context, outside_callbacks};
+use super::entry::{self, News, break_if_internal, finish, guarded, in_callback, on_context, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
@@ -94,10 +94,7 @@ pub unsafe extern "C" fn bhr_render_image_async(
             out.required("out_job")?;
             let target = image::read(target, "target")?;
             let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
-            let of_thread = sink.clone();
-            let scope =
-                || -> crate::job::ThreadScope { Arc::new(move || Box::new(log::Scope::enter(of_thread.clone()))) };
-            let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region, scope)?;
+            let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region)?;
             let job = BhrJob { job, progress: state.progress, progress_gate, sink, broken };
             out.set(Box::into_raw(Box::new(job)));
             Ok(())
@@ -126,8 +123,17 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
 pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
     // SAFETY: NULL or alive, by the header's conventions.
     if let Some(job) = unsafe { job.as_ref() } {
-        job.job.cancel();
+        cancel("bhr_job_cancel", job);
     }
+}
+
+/// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was lost.
+fn cancel(function: &str, job: &BhrJob) {
+    let cancelled = guarded(|| {
+        job.job.cancel();
+        Ok(())
+    });
+    finish(function, cancelled);
 }
 
 /// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
@@ -146,7 +152,7 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     }
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
-    job.job.cancel();
+    cancel(NAME, &job);
     // Its own failure is nobody's any more.
     let _ = job.job.wait(None, &mut |_| true);
 }

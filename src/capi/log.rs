@@ -5,6 +5,7 @@
 use super::entry::{self, Callback};
 use super::gate::Gate;
 use crate::error::Result;
+use crate::thread_scope::{self, ThreadScope};
 use log::{Level, LevelFilter, Log, Metadata, Record};
 use std::cell::RefCell;
 use std::ffi::{CStr, CString, c_char, c_void};
@@ -27,9 +28,10 @@ pub const BHR_LOG_TRACE: BhrLogLevel = 5;
 
 /// Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
 /// for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
-/// whichever thread the call runs; one from another thread goes to every context's callback. It may therefore run
-/// on several threads at once. It must not throw, unwind or longjmp. Calls on a context from inside it return
-/// BHR_ERROR_INVALID_STATE. None runs after bhr_context_destroy has returned.
+/// whichever thread the call runs, or on a thread of the library's that works for the call, which waits; one from
+/// another thread goes to every context's callback. It may therefore run on several threads at once. It must not throw,
+/// unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. None runs after
+/// bhr_context_destroy has returned.
 pub type BhrLogFn = Option<unsafe extern "C" fn(user: *mut c_void, level: BhrLogLevel, message: *const c_char)>;
 
 /// A non-null [`BhrLogFn`].
@@ -108,7 +110,10 @@ static SINKS: Mutex<Vec<Arc<Sink>>> = Mutex::new(Vec::new());
 
 fn change_sinks(change: impl FnOnce(&mut Vec<Arc<Sink>>)) {
     static OURS: OnceLock<bool> = OnceLock::new();
-    let ours = *OURS.get_or_init(|| ::log::set_logger(&HostLogger).is_ok());
+    let ours = *OURS.get_or_init(|| {
+        thread_scope::install(scope_of_caller);
+        ::log::set_logger(&HostLogger).is_ok()
+    });
     let mut sinks = lock(&SINKS);
     change(&mut sinks);
     if ours {
@@ -137,6 +142,14 @@ impl Drop for Scope {
         // No thread-local left: the thread is ending, and nothing can be logged from it any more.
         let _ = CURRENT.try_with(|current| current.replace(self.before.take()));
     }
+}
+
+/// The scope that this thread is in, for a thread that works for it.
+fn scope_of_caller() -> ThreadScope {
+    let sink = CURRENT.try_with(|current| current.borrow().clone()).unwrap_or(None);
+    Arc::new(move || {
+        Box::new(Scope { before: CURRENT.try_with(|current| current.replace(sink.clone())).unwrap_or(None) })
+    })
 }
 
 struct HostLogger;

@@ -1,7 +1,7 @@
 //! BhrSurface: rendering into a window of the host's. One `Surface`, shared with its context, which may go first.
 
 use super::context::BhrContext;
-use super::entry::{News, finish, in_callback, on_context, outside_callbacks};
+use super::entry::{News, finish, guarded, in_callback, on_context, outside_callbacks};
 use super::log::{self, Sink};
 use super::pointer::{Out, is_null, unknown};
 use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
@@ -160,9 +160,14 @@ pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
     // SAFETY: bhr_surface_create made it with Box::into_raw, and the host destroys it once.
     let BhrSurface { surface, sink } = *unsafe { Box::from_raw(surface) };
     let _scope = log::Scope::enter(sink);
-    let ended = super::entry::guarded(|| {
+    let ended = guarded(|| {
         surface.end("it was destroyed");
         Ok(())
     });
-    finish(NAME, ended);
+    // What a panic has left of it goes by itself: a second one on the way would end the process.
+    let dropped = guarded(move || {
+        drop(surface);
+        Ok(())
+    });
+    finish(NAME, ended.and(dropped));
 }

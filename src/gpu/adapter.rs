@@ -1,9 +1,12 @@
 //! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
 
+use super::gl_thread::GlThread;
+use super::loader;
 use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 
 /// The interfaces that a search looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +15,8 @@ pub enum Search {
     All,
     /// Every interface but GL: those that can present.
     Native,
-    /// As `All`, but GL is left alone when another interface has an adapter: starting it takes as long as all the rest.
+    /// Hardware of every interface, then the software adapters of all but GL. GL is looked at only where no other
+    /// interface has hardware: starting it takes as long as all the rest.
     Auto,
     /// This interface alone. `Backend::Cpu` finds nothing: the CPU tracer is no adapter of wgpu.
     Only(Backend),
@@ -33,22 +37,29 @@ impl Adapter {
     pub(super) fn instance(&self) -> Option<&wgpu::Instance> {
         self.handle.instance.as_ref()
     }
+
+    /// Where an adapter of GL may be used; `None` for the other interfaces.
+    pub(super) fn gl_thread(&self) -> Option<Arc<GlThread>> {
+        self.handle.gl_thread.clone()
+    }
 }
 
-/// Drops a GL adapter where it may touch GL contexts.
+/// An adapter, which is dropped where it may touch GL contexts.
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
     /// What makes surfaces for windows; `None` for GL.
     instance: Option<wgpu::Instance>,
-    gl: bool,
+    /// Of GL's.
+    gl_thread: Option<Arc<GlThread>>,
 }
 
 impl Drop for Handle {
     fn drop(&mut self) {
-        if self.gl {
-            let raw = self.raw.take();
-            let _ = on_own_thread(move || drop(raw));
+        if let (Some(thread), Some(raw)) = (&self.gl_thread, self.raw.take())
+            && let Err(error) = thread.run(move || drop(raw))
+        {
+            log::error!("closing the GL adapter: {error}");
         }
     }
 }
@@ -57,19 +68,22 @@ impl Drop for Handle {
 /// unknown ones, software. Among equals GL is last; the driver's order decides the rest, so one machine has one order.
 /// Hardware that several interfaces reach is listed once for each.
 ///
-/// `validation`: adapters whose devices the driver's validation layers watch, if they are installed.
+/// `validation`: adapters whose devices the driver's validation layers watch, if they are installed. GL has none: what
+/// wgpu would switch on instead is EGL's one debug callback, which is the host's.
 ///
 /// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
 pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
     let native = || {
         let (instance, list) = native(validation);
-        list.into_iter().filter_map(|raw| usable(raw, instance.clone())).collect::<Vec<_>>()
+        list.into_iter().filter_map(|raw| usable(raw, instance.clone(), None)).collect::<Vec<_>>()
     };
-    let gl = || gl(validation);
     let mut list = match search {
         Search::All => [native(), gl()].into_iter().flatten().collect(),
         Search::Native => native(),
-        Search::Auto => Some(native()).filter(|list| !list.is_empty()).unwrap_or_else(gl),
+        Search::Auto => match native() {
+            list if list.iter().any(|found| !found.adapter.info.software) => list,
+            list => [list, gl_hardware()].into_iter().flatten().collect(),
+        },
         Search::Only(Backend::Cpu) => Vec::new(),
         Search::Only(Backend::Gl) => gl(),
         Search::Only(backend) => {
@@ -94,6 +108,7 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
 /// through the old one's adapters; devices in use keep theirs.
 pub fn forget_drivers() {
     *found() = [(None, Vec::new()), (None, Vec::new())];
+    NO_GL_HARDWARE.store(false, Ordering::Relaxed);
 }
 
 /// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
@@ -117,7 +132,11 @@ fn native(validation: bool) -> Found {
     let [plain, validated] = &mut *found();
     let kept = if validation { validated } else { plain };
     if kept.1.is_empty() {
-        let all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+        if !loader::is_usable() {
+            log::warn!("no adapter of Vulkan: what is installed as its loader has no functions");
+            all.remove(wgpu::Backends::VULKAN);
+        }
         *kept = ask_drivers(all, validation);
     }
     kept.clone()
@@ -125,25 +144,45 @@ fn native(validation: bool) -> Found {
 
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
 /// once. None without the feature `gl`.
-fn gl(validation: bool) -> Vec<Usable> {
+fn gl() -> Vec<Usable> {
     if !cfg!(feature = "gl") {
         return Vec::new();
     }
-    let work = move || {
-        let (_, list) = ask_drivers(wgpu::Backends::GL, validation);
-        list.into_iter().filter_map(|raw| usable(raw, None)).collect()
+    let search = || -> Result<Vec<Usable>> {
+        let thread = GlThread::start()?;
+        thread.run(|| {
+            let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
+            keep_display(instance);
+            list.into_iter().filter_map(|raw| usable(raw, None, Some(thread.clone()))).collect()
+        })
     };
-    on_own_thread(work).unwrap_or_else(|error| {
+    search().unwrap_or_else(|error| {
         log::info!("adapters of GL passed over: {error}");
         Vec::new()
     })
 }
 
-/// Keeps wgpu's GL off the calling thread: it leaves its thread without a current GL context, and the host may have one.
-fn on_own_thread<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Result<T> {
-    let thread = std::thread::Builder::new().name("bhr-gl".into()).spawn(work);
-    let thread = thread.map_err(|error| Error::internal(format!("no thread for GL: {error}")))?;
-    thread.join().map_err(|_| Error::internal("GL panicked"))
+/// Those of [`gl`] that are no software.
+fn gl_hardware() -> Vec<Usable> {
+    if NO_GL_HARDWARE.load(Ordering::Relaxed) {
+        return Vec::new();
+    }
+    let mut list = gl();
+    list.retain(|found| !found.adapter.info.software);
+    NO_GL_HARDWARE.store(list.is_empty(), Ordering::Relaxed);
+    list
+}
+
+/// What the last search by [`gl_hardware`] came to.
+static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
+
+/// With its last instance on an EGL display wgpu terminates the display, which is one for the whole process: with it go
+/// the contexts of a host that uses it too. So the first instance stays.
+fn keep_display(instance: Option<wgpu::Instance>) {
+    static KEPT: Once = Once::new();
+    if let Some(instance) = instance {
+        KEPT.call_once(|| std::mem::forget(instance));
+    }
 }
 
 /// A driver that panics has no adapters.
@@ -178,7 +217,7 @@ struct Usable {
 type Rank = (u8, bool);
 
 /// `None`, with the reason in the log, when it cannot run the tracer.
-fn usable(raw: wgpu::Adapter, instance: Option<wgpu::Instance>) -> Option<Usable> {
+fn usable(raw: wgpu::Adapter, instance: Option<wgpu::Instance>, gl_thread: Option<Arc<GlThread>>) -> Option<Usable> {
     let found = raw.get_info();
     let pass_over = |reason: String| {
         log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
@@ -198,18 +237,27 @@ fn usable(raw: wgpu::Adapter, instance: Option<wgpu::Instance>) -> Option<Usable
         return pass_over(reason);
     }
     let driver = [found.driver.as_str(), found.driver_info.as_str()];
+    let kind =
+        if backend == Backend::Gl && is_software(&found.name) { wgpu::DeviceType::Cpu } else { found.device_type };
     let info = AdapterInfo {
         backend,
-        discrete: found.device_type == wgpu::DeviceType::DiscreteGpu,
-        software: found.device_type == wgpu::DeviceType::Cpu,
+        discrete: kind == wgpu::DeviceType::DiscreteGpu,
+        software: kind == wgpu::DeviceType::Cpu,
         vendor_id: found.vendor,
         device_id: found.device,
         driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
         name: found.name,
     };
-    let rank = rank(found.device_type, backend);
-    let handle = Handle { raw: Some(raw), instance, gl: backend == Backend::Gl };
-    Some(Usable { rank, adapter: Adapter { info, handle } })
+    let handle = Handle { raw: Some(raw), instance, gl_thread };
+    Some(Usable { rank: rank(kind, backend), adapter: Adapter { info, handle } })
+}
+
+/// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)
+fn is_software(renderer: &str) -> bool {
+    let name = renderer.to_lowercase();
+    ["llvmpipe", "swiftshader", "softpipe", "swrast", "software", "gdi generic", "basic render"]
+        .iter()
+        .any(|known| name.contains(known))
 }
 
 fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {
@@ -251,5 +299,25 @@ mod tests {
         ];
         let ranks = order.map(|(kind, backend)| rank(kind, backend));
         assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
+    }
+
+    #[test]
+    fn knows_software_by_its_name_in_gl() {
+        for name in [
+            "llvmpipe (LLVM 15.0.6, 256 bits)",
+            "softpipe",
+            "zink Vulkan 1.3(llvmpipe (LLVM 15.0.6, 256 bits) (MESA_LLVMPIPE))",
+            "D3D12 (Microsoft Basic Render Driver)",
+            "Apple Software Renderer",
+            "Software Rasterizer",
+            "Google SwiftShader",
+        ] {
+            assert!(is_software(name), "{name}");
+        }
+        for name in
+            ["NVIDIA H200/PCIe/SSE2", "Mesa Intel(R) UHD Graphics 620 (KBL GT2)", "AMD Radeon RX 6800 (radeonsi)"]
+        {
+            assert!(!is_software(name), "{name}");
+        }
     }
 }

@@ -54,10 +54,11 @@ static OPENING: ReentrantMutex<()> = const_reentrant_mutex(());
 impl Device {
     /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
     ///
-    /// A GL device leaves every thread that uses it without a current GL context: a host that draws with GL on the same
-    /// thread has to make its own current again.
+    /// A GL device is for threads without a GL context: wgpu leaves none current on the thread of a call, and where
+    /// another interface's is current (GLX beside EGL) it panics, when the device is dropped too. [`super::GlTracer`]
+    /// keeps one on a thread of its own.
     ///
-    /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason.
+    /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason, also when the driver panics.
     pub fn open(adapter: &Adapter) -> Result<Self> {
         let raw = adapter.raw()?;
         let offered = raw.limits();
@@ -76,11 +77,12 @@ impl Device {
             ..Default::default()
         };
         let opening = OPENING.lock();
-        let opened = pollster::block_on(raw.request_device(&descriptor));
+        let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(raw.request_device(&descriptor))));
         drop(opening);
-        let (raw, queue) = opened.map_err(|error| {
-            Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {error}", adapter.info.name))
-        })?;
+        let refused = |why: &dyn std::fmt::Display| {
+            Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {why}", adapter.info.name))
+        };
+        let (raw, queue) = opened.map_err(|panic| refused(&panic_text(&*panic)))?.map_err(|error| refused(&error))?;
         let health = Arc::new(Health::default());
         let of_errors = health.clone();
         raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
@@ -95,6 +97,17 @@ impl Device {
             modules: Default::default(),
             bindings: Default::default(),
         })
+    }
+
+    /// What tells of the device's loss without asking wgpu for anything.
+    pub(super) fn loss(&self) -> Loss {
+        Loss(self.health.clone())
+    }
+
+    /// On the thread of a GL device: whether its context can still be made current. Where it cannot, wgpu panics in
+    /// every call, and in every drop of what it made.
+    pub(super) fn answers(&self) -> bool {
+        catch_unwind(AssertUnwindSafe(|| self.raw.poll(wgpu::PollType::Poll))).is_ok()
     }
 
     /// The limits the device was opened with.
@@ -134,7 +147,7 @@ impl Device {
     }
 
     fn check_known_loss(&self) -> Result<()> {
-        lock(&self.health.lost).as_deref().map_or(Ok(()), |reason| Err(lost(reason)))
+        self.health.check()
     }
 
     /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and the poll of
@@ -299,7 +312,26 @@ impl Drop for Device {
     }
 }
 
+/// Whether a device is lost, as far as is known: for any thread, also after the device's end.
+#[derive(Clone)]
+pub struct Loss(Arc<Health>);
+
+impl Loss {
+    /// Errors: `DeviceLost`.
+    pub fn check(&self) -> Result<()> {
+        self.0.check()
+    }
+
+    pub(super) fn lose(&self, reason: &str) {
+        self.0.lose(reason);
+    }
+}
+
 impl Health {
+    fn check(&self) -> Result<()> {
+        lock(&self.lost).as_deref().map_or(Ok(()), |reason| Err(lost(reason)))
+    }
+
     /// Keeps the first reason.
     fn lose(&self, reason: &str) {
         let mut lost = lock(&self.lost);
@@ -332,7 +364,7 @@ fn from_wgpu(what: &str, error: &wgpu::Error) -> Error {
     Error::new(kind, format!("{what}: {error}"))
 }
 
-fn panic_text(panic: &(dyn Any + Send)) -> &str {
+pub(super) fn panic_text(panic: &(dyn Any + Send)) -> &str {
     let owned = panic.downcast_ref::<String>().map(String::as_str);
     owned.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or("a panic without a message")
 }

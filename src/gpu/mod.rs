@@ -12,9 +12,11 @@ mod frame;
 mod frame_buffers;
 mod frame_kernels;
 mod kernel_key;
+mod gl_thread;
 mod kernels;
 mod lens_kerr;
 mod lens_schwarzschild;
+mod loader;
 mod pipeline;
 mod present;
 mod rays;
@@ -36,9 +38,10 @@ mod wgsl;
 
 pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
 pub use buffer::Buffer;
-pub use device::Device;
+pub use device::{Device, Loss};
 pub use frame::{BegunFrame, FrameTarget, Recording};
 pub use kernels::KernelWaits;
+pub use gl_thread::GlTracer;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
@@ -78,7 +81,8 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Opens a device. The first frame's pipelines are being made from now on, its sky follows with it. Errors: as `Device::open`.
+    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are being made from now
+    /// on, its sky follows with it. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Arc::new(Device::open(&adapter)?);
         let gl = adapter.info.backend == Backend::Gl;

@@ -7,8 +7,8 @@ use super::{Job, Order, Shared, lock};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{BegunFrame, Device, FrameTarget, Submitted};
 use crate::renderer::{FrameStats, Tile, Tracer};
+use crate::thread_scope::{self, ThreadScope};
 use parking_lot::{ArcMutexGuard, RawMutex};
-use std::any::Any;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
@@ -21,9 +21,6 @@ pub const MAX_UNFINISHED: usize = 64;
 /// Submissions that are not finished, at most: one is copied to the host, one has run and waits for that, two keep the GPU busy.
 const AHEAD: usize = 4;
 
-/// What a worker's threads enter when they begin and leave when they end: a scope of the caller's log.
-pub type ThreadScope = Arc<dyn Fn() -> Box<dyn Any> + Send + Sync>;
-
 /// What the submitting thread hands to the finishing one. Of each frame: `Begun`, then its steps, and `Left` if those are not all; or
 /// `Made` alone.
 enum Event {
@@ -31,7 +28,7 @@ enum Event {
     Step(Box<Submitted>),
     /// The frame ends with an error.
     Left(Error),
-    /// A frame of the CPU tracer's, or one that failed before its begin.
+    /// A frame that was made in one piece, or failed before its begin.
     Made(Box<Order>, Result<FrameStats>),
 }
 
@@ -79,8 +76,10 @@ pub struct Worker {
 }
 
 impl Worker {
-    /// Errors: OUT_OF_MEMORY when the system gives no threads.
-    pub fn new(scope: ThreadScope) -> Result<Self> {
+    /// Its threads are in the scope of the thread that calls this. Errors: OUT_OF_MEMORY when the system gives no
+    /// threads.
+    pub fn new() -> Result<Self> {
+        let scope = thread_scope::of_caller();
         let mut worker = Self { line: Arc::default(), threads: Vec::new() };
         worker.spawn("bhr-jobs", scope.clone(), submit_all, |state| state.submitted = true)?;
         worker.spawn("bhr-finish", scope, finish_all, |state| state.finished = true)?;
@@ -238,7 +237,7 @@ fn submit_all(line: &Line) {
     }
 }
 
-/// Submits a frame to the GPU; on the CPU, makes it.
+/// Submits a frame to the GPU; on the CPU and with GL, makes it.
 fn submit(line: &Line, mut order: Order) {
     if let Err(error) = order.shared.check_cancelled() {
         return line.send(Event::Made(Box::new(order), Err(error)));
@@ -248,8 +247,8 @@ fn submit(line: &Line, mut order: Order) {
         Tracer::Gpu(tracer) => {
             tracer.begin(&order.scene, &order.request, FrameTarget::Host).map(|frame| (frame, tracer.device()))
         }
-        Tracer::Cpu(_) => {
-            let rendered = render_on_cpu(&mut guard, &mut order);
+        Tracer::Cpu(_) | Tracer::Gl(_) => {
+            let rendered = render_whole(&mut guard, &mut order);
             // Whoever waits for the tracer gets it before the next job does.
             ArcMutexGuard::unlock_fair(guard);
             return line.send(Event::Made(Box::new(order), rendered));
@@ -268,7 +267,8 @@ fn submit(line: &Line, mut order: Order) {
     }
 }
 
-fn render_on_cpu(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
+/// Without overlap with the next frame: the CPU is busy, and GL is one thread's.
+fn render_whole(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
     let (scene, request, target, shared) = (&order.scene, &order.request, &mut order.target, order.shared.clone());
     let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
         target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)

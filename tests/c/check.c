@@ -26,11 +26,14 @@ BhrBackend check_begin(int argc, char **argv) {
         if (strcmp(argv[1], "vulkan") == 0) {
             return BHR_BACKEND_VULKAN;
         }
+        if (strcmp(argv[1], "gl") == 0) {
+            return BHR_BACKEND_GL;
+        }
         if (strcmp(argv[1], "auto") == 0) {
             return BHR_BACKEND_AUTO;
         }
     }
-    fprintf(stderr, "usage: %s cpu|vulkan|auto\n", program_name);
+    fprintf(stderr, "usage: %s cpu|vulkan|gl|auto\n", program_name);
     exit(2);
 }
 

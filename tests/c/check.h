@@ -2,7 +2,8 @@
  * fail, and a watch that tells whether a refused call changed its context. Knows the C API only; tests nothing by
  * itself.
  *
- * Every program takes the backend as its first argument (cpu, vulkan) and exits with 0 only if all its checks passed.
+ * Every program takes the backend as its first argument (cpu, vulkan, gl) and exits with 0 only if all its checks
+ * passed.
  */
 #ifndef BHR_CHECK_H
 #define BHR_CHECK_H

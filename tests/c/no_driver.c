@@ -42,6 +42,7 @@ static void automatic(int cpu_only) {
     CHECK_OK(bhr_context_adapter(context, &info));
     CHECK(info.backend != BHR_BACKEND_VULKAN && (!cpu_only || info.backend == BHR_BACKEND_CPU), "backend %d, %s",
           (int)info.backend, info.name);
+    CHECK(info.backend != BHR_BACKEND_GL || !(info.flags & BHR_ADAPTER_SOFTWARE), "AUTO took %s", info.name);
     CHECK(info.backend != BHR_BACKEND_CPU || said[0] != '\0', "the log does not say why the CPU traces");
     CHECK_OK(bhr_render_image(context, &image));
     CHECK(pixels[3] == 255, "no frame was written");
