@@ -7,10 +7,12 @@
 //! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
 //! - [`window`]: the host's windows as targets of frames.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
+//! - `deferred`: below all: what waits until a thread holds no lock of the process.
 
 #[doc(hidden)]
 pub mod capi;
 pub mod cpu;
+mod deferred;
 pub mod error;
 pub mod film;
 pub mod gpu;

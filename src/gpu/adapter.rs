@@ -1,5 +1,6 @@
 //! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
 
+use super::driver_lock;
 use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -35,7 +36,8 @@ impl Adapter {
     }
 }
 
-/// Drops a GL adapter where it may touch GL contexts.
+/// Drops a GL adapter where it may touch GL contexts, and each one while no other thread starts or ends a driver: it may be the last to
+/// hold its instance.
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
@@ -46,9 +48,16 @@ struct Handle {
 
 impl Drop for Handle {
     fn drop(&mut self) {
+        let (raw, instance) = (self.raw.take(), self.instance.take());
+        let end = move || {
+            let _alone = driver_lock::lock();
+            drop(raw);
+            drop(instance);
+        };
         if self.gl {
-            let raw = self.raw.take();
-            let _ = on_own_thread(move || drop(raw));
+            let _ = on_own_thread(end);
+        } else {
+            end();
         }
     }
 }
@@ -85,7 +94,9 @@ pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
 /// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
 /// through the old one's adapters; devices in use keep theirs.
 pub fn forget_drivers() {
-    *found() = [(None, Vec::new()), (None, Vec::new())];
+    let forgotten = std::mem::take(&mut *found());
+    let _alone = driver_lock::lock();
+    drop(forgotten);
 }
 
 /// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
@@ -95,7 +106,8 @@ pub(super) fn required_limits() -> wgpu::Limits {
 
 /// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the life
 /// of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded under
-/// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+/// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once. This lock is held for a few
+/// instructions; who holds [`driver_lock`] may take it, but not the other way round.
 static FOUND: Mutex<[Found; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
 
 /// The instance that a search asked, and the adapters it has.
@@ -106,19 +118,26 @@ fn found() -> MutexGuard<'static, [Found; 2]> {
 }
 
 fn native(validation: bool) -> Found {
-    let [plain, validated] = &mut *found();
-    let kept = if validation { validated } else { plain };
-    if kept.1.is_empty() {
-        let all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-        *kept = ask_drivers(all, validation);
-    }
-    kept.clone()
+    let kept = || Some(found()[usize::from(validation)].clone()).filter(|(_, list)| !list.is_empty());
+    kept().unwrap_or_else(|| {
+        // Who comes second waits for what the first one finds.
+        let _alone = driver_lock::lock();
+        kept().unwrap_or_else(|| {
+            let all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+            let asked = ask_drivers(all, validation);
+            let before = std::mem::replace(&mut found()[usize::from(validation)], asked.clone());
+            drop(before);
+            asked
+        })
+    })
 }
 
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
 /// once.
 fn gl(validation: bool) -> Vec<Usable> {
     let work = move || {
+        // What is not wanted is dropped here.
+        let _alone = driver_lock::lock();
         let (_, list) = ask_drivers(wgpu::Backends::GL, validation);
         list.into_iter().filter_map(|raw| usable(raw, None)).collect()
     };
@@ -142,6 +161,7 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     let descriptor =
         wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    let _alone = driver_lock::lock();
     let ask = || {
         let instance = wgpu::Instance::new(descriptor);
         let list = pollster::block_on(instance.enumerate_adapters(backends));

@@ -2,9 +2,12 @@
 //! wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of scenes.
 
 use super::adapter::{Adapter, required_limits};
+use super::driver_lock;
+use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result};
-use parking_lot::{ReentrantMutex, const_reentrant_mutex};
+use crate::renderer::Backend;
 use std::any::Any;
+use std::mem::ManuallyDrop;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -26,11 +29,16 @@ const MAX_TEXTURE_SIDE: u32 = 16384;
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
-/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it.
+/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it, but then the driver's device
+/// ends with the last of them, outside [`driver_lock`]: who keeps them keeps the device too, and lets it go last.
 pub struct Device {
-    raw: wgpu::Device,
+    /// Until it is being dropped.
+    raw: ManuallyDrop<wgpu::Device>,
     /// `None` only while it is being dropped.
     queue: Option<wgpu::Queue>,
+    backend: Backend,
+    /// Whether a pipeline was made.
+    compiled: AtomicBool,
     limits: wgpu::Limits,
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
@@ -46,10 +54,6 @@ struct Health {
     stray: Mutex<Option<Error>>,
     hung: AtomicBool,
 }
-
-/// Held while a device is opened: NVIDIA's Vulkan driver (580.159.04) often hangs for ever when several threads do so at once. Reentrant, as
-/// what is logged meanwhile goes to the host, who may open another.
-static OPENING: ReentrantMutex<()> = const_reentrant_mutex(());
 
 impl Device {
     /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
@@ -75,9 +79,9 @@ impl Device {
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
         };
-        let opening = OPENING.lock();
+        let alone = driver_lock::lock();
         let opened = pollster::block_on(raw.request_device(&descriptor));
-        drop(opening);
+        drop(alone);
         let (raw, queue) = opened.map_err(|error| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {error}", adapter.info.name))
         })?;
@@ -87,8 +91,10 @@ impl Device {
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
         Ok(Self {
-            raw,
+            raw: ManuallyDrop::new(raw),
             queue: Some(queue),
+            backend: adapter.info.backend,
+            compiled: AtomicBool::new(false),
             limits,
             health,
             bytes: Arc::default(),
@@ -100,6 +106,10 @@ impl Device {
     /// The limits the device was opened with.
     pub fn limits(&self) -> &wgpu::Limits {
         &self.limits
+    }
+
+    pub(super) fn backend(&self) -> Backend {
+        self.backend
     }
 
     /// Whether the device can time its passes.
@@ -138,19 +148,27 @@ impl Device {
     }
 
     /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and the poll of
-    /// another thread may be about to. Errors: `DeviceLost`.
+    /// another thread may be about to. Submits nothing, as another thread may be making a window's images ([`super::Swapchain::configure`]).
+    /// Errors: `DeviceLost`.
     pub(super) fn check_loss_anew(&self) -> Result<()> {
         self.check_known_loss()?;
         let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
         let _ = self.poll(all)?;
         self.check_known_loss()?;
-        let queue = self.queue()?;
-        let nothing = self.unpanicked(|| queue.submit([]))?;
-        let look = wgpu::PollType::Wait { submission_index: Some(nothing), timeout: Some(Duration::ZERO) };
-        if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = self.poll(look)? {
+        if !self.refuses()? {
             self.learn_loss()?;
         }
         self.check_known_loss()
+    }
+
+    /// Whether the device refuses what cannot be, a query set without queries: one that is gone says nothing at all. Reaches no driver.
+    fn refuses(&self) -> Result<bool> {
+        let nothing = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Occlusion, count: 0 };
+        self.unpanicked(|| {
+            let refusal = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
+            drop(self.raw.create_query_set(&nothing));
+            pollster::block_on(refusal.pop()).is_some()
+        })
     }
 
     /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins the
@@ -159,6 +177,7 @@ impl Device {
     /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
     pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check()?;
+        let _holding = hold();
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -261,6 +280,7 @@ impl Device {
 
     /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
     fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+        let _holding = hold();
         catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
             self.health.lose(panic_text(&*panic));
             lost(panic_text(&*panic))
@@ -272,15 +292,47 @@ impl Device {
     }
 }
 
+impl Device {
+    /// Makes a pipeline: the first one of a device while no other thread starts or ends a driver.
+    pub(super) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
+        let alone = (!self.compiled.load(Ordering::Acquire)).then(driver_lock::lock);
+        let made = compile();
+        self.compiled.store(true, Ordering::Release);
+        drop(alone);
+        made
+    }
+
+    /// Waits until nothing runs on it any more, so that dropping it does not, or until that is known to be in vain.
+    fn drain(&self) {
+        let deadline = Instant::now() + HANG_AFTER;
+        let all = || self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) });
+        while !self.health.hung.load(Ordering::Relaxed) && matches!(all(), Ok(Err(wgpu::PollError::Timeout))) {
+            self.health.hung.store(Instant::now() >= deadline, Ordering::Relaxed);
+        }
+    }
+}
+
 impl Drop for Device {
     fn drop(&mut self) {
+        self.drain();
         let queue = self.queue.take();
-        if self.health.hung.load(Ordering::Relaxed) {
-            // Dropping it would wait for the work that never ends.
-            std::mem::forget(queue);
-        } else if catch_unwind(AssertUnwindSafe(|| drop(queue))).is_err() {
+        let alone = driver_lock::lock();
+        let close = || {
+            self.bindings.clear();
+            lock(&self.modules).clear();
+            if self.health.hung.load(Ordering::Relaxed) {
+                // Dropping it would wait for the work that never ends.
+                std::mem::forget(queue);
+            } else {
+                drop(queue);
+            }
+            // SAFETY: it is taken here alone, once, and not used any more.
+            drop(unsafe { ManuallyDrop::take(&mut self.raw) });
+        };
+        if catch_unwind(AssertUnwindSafe(close)).is_err() {
             log::error!("closing the GPU device panicked");
         }
+        drop(alone);
     }
 }
 
@@ -288,9 +340,11 @@ impl Health {
     /// Keeps the first reason.
     fn lose(&self, reason: &str) {
         let mut lost = lock(&self.lost);
-        if lost.is_none() {
+        let first = lost.is_none();
+        lost.get_or_insert_with(|| reason.trim().to_owned());
+        drop(lost);
+        if first {
             log::debug!("GPU device lost: {reason}");
-            *lost = Some(reason.trim().to_owned());
         }
     }
 

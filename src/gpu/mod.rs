@@ -6,6 +6,8 @@ mod bindings;
 mod bloom;
 mod buffer;
 mod device;
+#[doc(hidden)]
+pub mod driver_lock;
 mod export;
 mod frame;
 mod frame_buffers;
@@ -38,7 +40,7 @@ pub use frame::{BegunFrame, FrameTarget, Recording};
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
-pub use readback::{Copied, Readback};
+pub use readback::{Arrived, Copied, Readback};
 pub use submission::Submitted;
 pub use swapchain::{Acquired, Swapchain};
 pub use texture::Texture;
@@ -61,13 +63,14 @@ const RAY_STEP: f64 = 0.2;
 
 /// Traces on one device.
 pub struct GpuTracer {
-    adapter: Arc<Adapter>,
-    device: Arc<Device>,
     kernels: Kernels,
     /// Made when light is first shaded.
     tables: Option<Tables>,
     buffers: frame_buffers::FrameBuffers,
     ray_buffers: rays::RayBuffers,
+    /// Goes after all that was made with it.
+    device: Arc<Device>,
+    adapter: Arc<Adapter>,
 }
 
 impl GpuTracer {

@@ -3,7 +3,10 @@
 
 use super::buffer::Buffer;
 use super::device::Device;
+use crate::deferred::hold;
 use crate::error::{Error, Result};
+use crate::renderer::Backend;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
 
@@ -131,15 +134,21 @@ impl Copied {
         })
     }
 
-    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`.
+    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`, as [`Arrived::part`] does.
     ///
-    /// Errors: those of `take` and of [`Device::wait`]; `Internal` when it was not submitted.
+    /// Errors: as [`Self::wait`] and [`Arrived::part`].
     pub fn read<T>(
-        mut self,
+        self,
         device: &Device,
         submission: &wgpu::SubmissionIndex,
         take: impl FnOnce(&[u8]) -> Result<T>,
     ) -> Result<T> {
+        let size = self.size;
+        self.wait(device, submission)?.part(0..size, take)
+    }
+
+    /// Waits for `submission`, which fills the piece. Errors: those of [`Device::wait`]; `Internal` when it was not submitted.
+    pub fn wait<'a>(mut self, device: &'a Device, submission: &wgpu::SubmissionIndex) -> Result<Arrived<'a>> {
         if self.mapped.is_none() {
             self.request(device)?;
         }
@@ -149,13 +158,61 @@ impl Copied {
         let outcome = self.mapped.as_ref().map(|mapped| mapped.recv_timeout(CALLBACK_AFTER));
         match outcome.unwrap_or(Err(mpsc::RecvTimeoutError::Disconnected)) {
             Ok(Ok(())) => {
-                let range = self.staging.buffer()?.get_mapped_range(0..self.size);
-                take(&range.map_err(|error| failed(&error))?)
+                let view = self.staging.buffer()?.get_mapped_range(0..self.size).map_err(|error| failed(&error))?;
+                Ok(Arrived { view, copied: self, device })
             }
             Ok(Err(error)) => Err(failed(&error)),
             Err(error) => Err(failed(&error)),
         }
     }
+}
+
+/// A piece that the host can read.
+pub struct Arrived<'a> {
+    /// Goes before the mapping does. To be touched in [`Self::part`] only.
+    view: wgpu::BufferView,
+    copied: Copied,
+    device: &'a Device,
+}
+
+impl Arrived<'_> {
+    /// Hands the bytes of `range`, from the piece's begin, to `take`, which must ask wgpu for nothing and wait for no thread that does. Other
+    /// threads that destroy something of the device, or present, wait meanwhile: large pieces are better taken in parts.
+    ///
+    /// Errors: those of `take`; `DeviceLost`; `Internal` for bytes that the piece has not.
+    pub fn part<T>(&self, range: Range<u64>, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
+        let buffer = self.copied.staging.buffer()?;
+        let take = || {
+            let part = self.view.get(range.start as usize..range.end as usize);
+            take(part.ok_or_else(|| Error::internal("a part of a readback that it has not"))?)
+        };
+        // What `take` logs goes to a host, whose callback may wait for a thread that asks wgpu.
+        let _holding = hold();
+        let taken = match self.device.backend() {
+            #[cfg(not(target_vendor = "apple"))]
+            Backend::Vulkan => while_it_exists::<wgpu::hal::api::Vulkan, _>(buffer, take),
+            #[cfg(not(target_vendor = "apple"))]
+            Backend::Gl => while_it_exists::<wgpu::hal::api::Gles, _>(buffer, take),
+            #[cfg(target_vendor = "apple")]
+            Backend::Metal => while_it_exists::<wgpu::hal::api::Metal, _>(buffer, take),
+            #[cfg(windows)]
+            Backend::D3d12 => while_it_exists::<wgpu::hal::api::Dx12, _>(buffer, take),
+            _ => None,
+        };
+        taken.unwrap_or_else(|| {
+            Err(self.device.explain(Error::internal("the memory of a readback was freed before it was read")))
+        })
+    }
+}
+
+/// Runs `work` while `buffer` cannot be destroyed; `None`: it is already.
+///
+/// Once a device has ended, whichever thread polls it destroys all its buffers, mapped ones too (gfx-rs/wgpu #10256), and a device ends when
+/// any call of any thread finds no memory. Destroying takes the write side of the lock of which wgpu's guard is the read side.
+fn while_it_exists<A: wgpu::hal::Api, T>(buffer: &wgpu::Buffer, work: impl FnOnce() -> T) -> Option<T> {
+    // SAFETY: nothing is done with the interface's own buffer but knowing that it is there.
+    let _exists = unsafe { buffer.as_hal::<A>() }?;
+    Some(work())
 }
 
 impl Drop for Copied {
