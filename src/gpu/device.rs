@@ -44,6 +44,7 @@ pub struct Device {
     bytes: Arc<AtomicU64>,
     pub(super) modules: super::pipeline::Modules,
     pub(super) bindings: super::bindings::Bindings,
+    pub(super) uploads: super::upload::Uploads,
 }
 
 /// What wgpu's callbacks, which come from any thread, say about a device.
@@ -100,6 +101,7 @@ impl Device {
             bytes: Arc::default(),
             modules: Default::default(),
             bindings: Default::default(),
+            uploads: Default::default(),
         })
     }
 
@@ -210,16 +212,11 @@ impl Device {
         })
     }
 
-    /// Writes `data` into `buffer` at `offset` (both multiples of 4) before the next submission runs.
-    pub fn write(&self, buffer: &wgpu::Buffer, offset: u64, data: &[u8]) -> Result<()> {
-        let queue = self.queue()?;
-        self.scoped("writing a buffer", |_| queue.write_buffer(buffer, offset, data))
-    }
-
-    /// Starts what `encoder` has recorded. Errors: as [`Self::scoped`].
+    /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as [`Self::scoped`].
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
-        self.scoped("submitting work", |_| queue.submit([encoder.finish()]))
+        let encoders = self.uploads.take().into_iter().chain([encoder]);
+        self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)))
     }
 
     /// Waits until `submission` has run and the callbacks of its buffers were called.
@@ -319,6 +316,7 @@ impl Drop for Device {
         let alone = driver_lock::lock();
         let close = || {
             self.bindings.clear();
+            drop(self.uploads.take());
             lock(&self.modules).clear();
             if self.health.hung.load(Ordering::Relaxed) {
                 // Dropping it would wait for the work that never ends.

@@ -31,6 +31,7 @@ mod texture;
 mod tiles;
 mod timer;
 mod uniforms;
+mod upload;
 mod wgsl;
 
 pub use adapter::{Adapter, Search, adapters, forget_drivers};

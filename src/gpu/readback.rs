@@ -3,9 +3,7 @@
 
 use super::buffer::Buffer;
 use super::device::Device;
-use crate::deferred::hold;
 use crate::error::{Error, Result};
-use crate::renderer::Backend;
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
@@ -176,8 +174,7 @@ pub struct Arrived<'a> {
 }
 
 impl Arrived<'_> {
-    /// Hands the bytes of `range`, from the piece's begin, to `take`, which must ask wgpu for nothing and wait for no thread that does. Other
-    /// threads that destroy something of the device, or present, wait meanwhile: large pieces are better taken in parts.
+    /// Hands the bytes of `range`, from the piece's begin, to `take`, as [`Device::while_it_exists`] does. Large pieces are better taken in parts.
     ///
     /// Errors: those of `take`; `DeviceLost`; `Internal` for bytes that the piece has not.
     pub fn part<T>(&self, range: Range<u64>, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
@@ -186,33 +183,8 @@ impl Arrived<'_> {
             let part = self.view.get(range.start as usize..range.end as usize);
             take(part.ok_or_else(|| Error::internal("a part of a readback that it has not"))?)
         };
-        // What `take` logs goes to a host, whose callback may wait for a thread that asks wgpu.
-        let _holding = hold();
-        let taken = match self.device.backend() {
-            #[cfg(not(target_vendor = "apple"))]
-            Backend::Vulkan => while_it_exists::<wgpu::hal::api::Vulkan, _>(buffer, take),
-            #[cfg(not(target_vendor = "apple"))]
-            Backend::Gl => while_it_exists::<wgpu::hal::api::Gles, _>(buffer, take),
-            #[cfg(target_vendor = "apple")]
-            Backend::Metal => while_it_exists::<wgpu::hal::api::Metal, _>(buffer, take),
-            #[cfg(windows)]
-            Backend::D3d12 => while_it_exists::<wgpu::hal::api::Dx12, _>(buffer, take),
-            _ => None,
-        };
-        taken.unwrap_or_else(|| {
-            Err(self.device.explain(Error::internal("the memory of a readback was freed before it was read")))
-        })
+        self.device.while_it_exists(buffer, take)
     }
-}
-
-/// Runs `work` while `buffer` cannot be destroyed; `None`: it is already.
-///
-/// Once a device has ended, whichever thread polls it destroys all its buffers, mapped ones too (gfx-rs/wgpu #10256), and a device ends when
-/// any call of any thread finds no memory. Destroying takes the write side of the lock of which wgpu's guard is the read side.
-fn while_it_exists<A: wgpu::hal::Api, T>(buffer: &wgpu::Buffer, work: impl FnOnce() -> T) -> Option<T> {
-    // SAFETY: nothing is done with the interface's own buffer but knowing that it is there.
-    let _exists = unsafe { buffer.as_hal::<A>() }?;
-    Some(work())
 }
 
 impl Drop for Copied {
