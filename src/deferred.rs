@@ -1,6 +1,6 @@
-//! What a thread does once it holds no lock of the process any more. A host's callback may wait for another thread's call, so none may run
-//! under a lock that such a call may need: bhr's own, wgpu's, a driver's. What is logged under them waits here until the outermost
-//! [`Holding`] ends. Knows neither locks nor messages.
+//! What a thread does once it holds no lock of the process any more. A host's callback may wait for another thread's
+//! call, so none may run under a lock that such a call may need: bhr's own, wgpu's, a driver's. What is logged under
+//! them waits here until the outermost [`Holding`] ends. Knows neither locks nor messages.
 
 use std::cell::{Cell, RefCell};
 
@@ -17,7 +17,8 @@ struct Waiting {
     bytes: usize,
 }
 
-/// While one lives, this thread's work is put off. Locks that are taken after it must be released before it is dropped. It belongs to the thread.
+/// While one lives, this thread's work is put off. Locks that are taken after it must be released before it is dropped.
+/// It belongs to the thread.
 pub struct Holding(std::marker::PhantomData<*const ()>);
 
 /// What became of work that was handed in.
@@ -38,7 +39,8 @@ pub fn is_holding() -> bool {
     DEPTH.try_with(Cell::get).unwrap_or(0) > 0
 }
 
-/// Does `work`, which keeps some `bytes` of memory, now or when this thread holds nothing any more. For none there is always room.
+/// Does `work`, which keeps some `bytes` of memory, now or when this thread holds nothing any more. For none there is
+/// always room.
 pub fn run(bytes: usize, work: impl FnOnce() + 'static) -> Outcome {
     if !is_holding() {
         work();

@@ -1,5 +1,5 @@
-//! What begins or ends the use of a driver happens under the process's one lock, whoever does it last. Alone in its process, as it listens
-//! to wgpu's log. Without a Vulkan adapter this fails.
+//! What begins or ends the use of a driver happens under the process's one lock, whoever does it last. Alone in its
+//! process, as it listens to wgpu's log. Without a Vulkan adapter this fails.
 
 use bhr::gpu::{GpuTracer, Search, adapters, driver_lock};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};

@@ -520,12 +520,13 @@ fn devices_on_two_threads_do_not_disturb_each_other() {
     });
 }
 
-/// Drivers too: instances are made anew and dropped among them. NVIDIA's hangs or crashes when these things happen at once.
+/// Drivers too: instances are made anew and dropped among them. NVIDIA's hangs or crashes when these things happen at
+/// once.
 #[test]
 fn devices_and_instances_begin_and_end_on_many_threads_at_once() {
     let run = |thread: u32| {
         for round in 0..4 {
-            if (thread + round) % 4 == 0 {
+            if (thread + round).is_multiple_of(4) {
                 forget_drivers();
             }
             round_trip(&device()).unwrap();

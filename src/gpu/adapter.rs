@@ -36,8 +36,8 @@ impl Adapter {
     }
 }
 
-/// Drops a GL adapter where it may touch GL contexts, and each one while no other thread starts or ends a driver: it may be the last to
-/// hold its instance.
+/// Drops a GL adapter where it may touch GL contexts, and each one while no other thread starts or ends a driver: it
+/// may be the last to hold its instance.
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
@@ -104,10 +104,10 @@ pub(super) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
-/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the life
-/// of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded under
-/// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once. This lock is held for a few
-/// instructions; who holds [`driver_lock`] may take it, but not the other way round.
+/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the
+/// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
+/// under the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+/// This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other way round.
 static FOUND: Mutex<[Found; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
 
 /// The instance that a search asked, and the adapters it has.

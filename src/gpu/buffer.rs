@@ -30,11 +30,13 @@ impl Device {
         Ok(Buffer { raw, total })
     }
 
-    /// Runs `work`, which touches the mapped memory of `buffer`, while that cannot be destroyed: once a device has ended, whichever thread polls
-    /// it destroys all its buffers, mapped ones too (gfx-rs/wgpu #10256), and a device ends when any call of any thread finds no memory.
+    /// Runs `work`, which touches the mapped memory of `buffer`, while that cannot be destroyed: once a device has
+    /// ended, whichever thread polls it destroys all its buffers, mapped ones too (gfx-rs/wgpu #10256), and a device
+    /// ends when any call of any thread finds no memory.
     ///
-    /// `work` must ask wgpu for nothing and wait for no thread that does. Other threads that destroy something of the device, or present, wait
-    /// meanwhile, so that it should be short: destroying takes the write side of the lock of which wgpu's guard is the read side.
+    /// `work` must ask wgpu for nothing and wait for no thread that does. Other threads that destroy something of the
+    /// device, or present, wait meanwhile, so that it should be short: destroying takes the write side of the lock of
+    /// which wgpu's guard is the read side.
     ///
     /// Errors: those of `work`; `DeviceLost`.
     pub(super) fn while_it_exists<T>(&self, buffer: &wgpu::Buffer, work: impl FnOnce() -> Result<T>) -> Result<T> {

@@ -29,8 +29,9 @@ const MAX_TEXTURE_SIDE: u32 = 16384;
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
-/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it, but then the driver's device
-/// ends with the last of them, outside [`driver_lock`]: who keeps them keeps the device too, and lets it go last.
+/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it, but
+/// then the driver's device ends with the last of them, outside [`driver_lock`]: who keeps them keeps the device too,
+/// and lets it go last.
 pub struct Device {
     /// Until it is being dropped.
     raw: ManuallyDrop<wgpu::Device>,
@@ -149,9 +150,9 @@ impl Device {
         lock(&self.health.lost).as_deref().map_or(Ok(()), |reason| Err(lost(reason)))
     }
 
-    /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and the poll of
-    /// another thread may be about to. Submits nothing, as another thread may be making a window's images ([`super::Swapchain::configure`]).
-    /// Errors: `DeviceLost`.
+    /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has
+    /// ended, and the poll of another thread may be about to. Submits nothing, as another thread may be making a
+    /// window's images ([`super::Swapchain::configure`]). Errors: `DeviceLost`.
     pub(super) fn check_loss_anew(&self) -> Result<()> {
         self.check_known_loss()?;
         let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
@@ -163,7 +164,8 @@ impl Device {
         self.check_known_loss()
     }
 
-    /// Whether the device refuses what cannot be, a query set without queries: one that is gone says nothing at all. Reaches no driver.
+    /// Whether the device refuses what cannot be, a query set without queries: one that is gone says nothing at all.
+    /// Reaches no driver.
     fn refuses(&self) -> Result<bool> {
         let nothing = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Occlusion, count: 0 };
         self.unpanicked(|| {
@@ -212,7 +214,8 @@ impl Device {
         })
     }
 
-    /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as [`Self::scoped`].
+    /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as
+    /// [`Self::scoped`].
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
         let encoders = self.uploads.take().into_iter().chain([encoder]);

@@ -145,7 +145,8 @@ impl Copied {
         self.wait(device, submission)?.part(0..size, take)
     }
 
-    /// Waits for `submission`, which fills the piece. Errors: those of [`Device::wait`]; `Internal` when it was not submitted.
+    /// Waits for `submission`, which fills the piece. Errors: those of [`Device::wait`]; `Internal` when it was not
+    /// submitted.
     pub fn wait<'a>(mut self, device: &'a Device, submission: &wgpu::SubmissionIndex) -> Result<Arrived<'a>> {
         if self.mapped.is_none() {
             self.request(device)?;
@@ -174,7 +175,8 @@ pub struct Arrived<'a> {
 }
 
 impl Arrived<'_> {
-    /// Hands the bytes of `range`, from the piece's begin, to `take`, as [`Device::while_it_exists`] does. Large pieces are better taken in parts.
+    /// Hands the bytes of `range`, from the piece's begin, to `take`, as [`Device::while_it_exists`] does. Large pieces
+    /// are better taken in parts.
     ///
     /// Errors: those of `take`; `DeviceLost`; `Internal` for bytes that the piece has not.
     pub fn part<T>(&self, range: Range<u64>, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {

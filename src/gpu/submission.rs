@@ -45,8 +45,9 @@ const TICKS: u64 = 0;
 const STEPS: u64 = 64;
 pub const PIXELS: u64 = 256;
 
-/// Pixels are taken in bands of so many bytes. Threads that present to a window of the device wait for one band at most: 1.4 ms at the 12 GB/s
-/// of one core. Much smaller bands would keep the threads that share the copying (`Copiers`) busy waking up.
+/// Pixels are taken in bands of so many bytes. Threads that present to a window of the device wait for one band at
+/// most: 1.4 ms at the 12 GB/s of one core. Much smaller bands would keep the threads that share the copying
+/// (`Copiers`) busy waking up.
 const BAND_BYTES: usize = 16 << 20;
 
 impl FrameBuffers {

@@ -1,9 +1,9 @@
-//! Brings bytes from the host to the device before its next submission runs: into buffers that the host fills, and from there by commands
-//! that go before it. Knows nothing of what the bytes mean.
+//! Brings bytes from the host to the device before its next submission runs: into buffers that the host fills, and from
+//! there by commands that go before it. Knows nothing of what the bytes mean.
 //!
-//! Not by wgpu's `Queue::write_buffer` and `write_texture`: they hold wgpu's snatch lock while they ask for its trackers, and a poll that
-//! frees the memory of a lost device holds the trackers while it asks for the snatch lock (wgpu-core 30.0.1, `Device::release_gpu_resources`), so
-//! that both threads would wait for ever.
+//! Not by wgpu's `Queue::write_buffer` and `write_texture`: they hold wgpu's snatch lock while they ask for its
+//! trackers, and a poll that frees the memory of a lost device holds the trackers while it asks for the snatch lock
+//! (wgpu-core 30.0.1, `Device::release_gpu_resources`), so that both threads would wait for ever.
 
 use super::device::Device;
 use crate::error::{Error, Result};
@@ -24,7 +24,8 @@ impl Uploads {
 }
 
 impl Device {
-    /// Writes `data` into `buffer` at `offset` (both multiples of 4) before the next submission runs. Errors: as [`Device::scoped`].
+    /// Writes `data` into `buffer` at `offset` (both multiples of 4) before the next submission runs. Errors: as
+    /// [`Device::scoped`].
     pub fn write(&self, buffer: &wgpu::Buffer, offset: u64, data: &[u8]) -> Result<()> {
         let filled = self.filled(data, data.len(), data.len())?;
         self.upload("writing a buffer", |encoder| {
@@ -32,8 +33,8 @@ impl Device {
         })
     }
 
-    /// Writes rows of `row_bytes`, one at least, into a part of `texture` of so many rows and `width` columns, which begins at `first`, before
-    /// the next submission runs. Errors: as [`Device::scoped`].
+    /// Writes rows of `row_bytes`, one at least, into a part of `texture` of so many rows and `width` columns, which
+    /// begins at `first`, before the next submission runs. Errors: as [`Device::scoped`].
     pub(super) fn write_texels(
         &self,
         texture: &wgpu::Texture,
