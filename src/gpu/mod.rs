@@ -7,6 +7,8 @@ mod bloom;
 mod buffer;
 mod compilers;
 mod device;
+#[doc(hidden)]
+pub mod driver_lock;
 mod export;
 mod frame;
 mod frame_buffers;
@@ -34,6 +36,7 @@ mod texture;
 mod tiles;
 mod timer;
 mod uniforms;
+mod upload;
 mod wgsl;
 
 pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
@@ -45,7 +48,7 @@ pub use gl_thread::GlTracer;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
-pub use readback::{Copied, Readback};
+pub use readback::{Arrived, Copied, Readback};
 pub use submission::Submitted;
 pub use swapchain::{Acquired, Swapchain};
 pub use texture::Texture;
@@ -69,8 +72,6 @@ const RAY_STEP: f64 = 0.2;
 
 /// Traces on one device.
 pub struct GpuTracer {
-    adapter: Arc<Adapter>,
-    device: Arc<Device>,
     kernels: Kernels,
     /// The kernels of the last frame that was begun.
     needed: Vec<KernelKey>,
@@ -78,6 +79,9 @@ pub struct GpuTracer {
     tables: Option<Tables>,
     buffers: frame_buffers::FrameBuffers,
     ray_buffers: rays::RayBuffers,
+    /// Goes after all that was made with it.
+    device: Arc<Device>,
+    adapter: Arc<Adapter>,
 }
 
 impl GpuTracer {
@@ -85,13 +89,11 @@ impl GpuTracer {
     /// on, its sky follows with it. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Arc::new(Device::open(&adapter)?);
-        let gl = adapter.info.backend == Backend::Gl;
         // All of a GL device shares one context, which two threads cannot use at once.
-        let kernels = Kernels::new(device.clone(), !gl);
-        if gl {
-            // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now.
-            kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
-        }
+        let kernels = Kernels::new(device.clone(), adapter.info.backend != Backend::Gl);
+        // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a device's first
+        // pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by side.
+        kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         let mut tracer = Self {
             adapter: Arc::new(adapter),
             device,
