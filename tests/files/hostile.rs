@@ -27,12 +27,21 @@ pub fn bombs() -> Vec<Bomb> {
     }
     add("a long side.pnm", "P6 2000000000 2 255\n".into(), &["at most 1048576"]);
     // A claim within the limits, which nothing follows.
-    add("nothing.pnm", "P6 16384 16384 255\n".into(), &["Not enough data", "no 3221225472 bytes", "of memory"]);
+    add("nothing.pnm", "P6 16384 16384 255\n".into(), &["0 bytes follow"]);
+    add("nothing in digits.pnm", "P3 4096 4096 255\n".into(), &["0 bytes follow"]);
+    let few = ["P2 64 64 255\n", &" ".repeat(1 << 14), "1 2 3"].concat();
+    add("few digits.pnm", few.into(), &["ends before"]);
     let nothing = [seeds::png_header(16384, 16384, 16, 6, false), seeds::chunk(b"IDAT", &[0x78, 1])].concat();
     add("nothing.png", nothing, &["end of file", "of memory", "more data"]);
     // Headers without an end.
     let words = ["P6 ".as_bytes(), &vec![b'1'; 1 << 17]].concat();
     add("a word without end.pnm", words, &["parsing"]);
+    let line = ["P7\nWIDTH ".as_bytes(), &vec![b'1'; 1 << 17]].concat();
+    add("a line without end.pnm", line, &["its WIDTH"]);
+    let pam =
+        |size: u32, most: u32| format!("P7\nWIDTH {size}\nHEIGHT {size}\nDEPTH 4\nMAXVAL {most}\nENDHDR\n").into();
+    add("wide.pam.pnm", pam(20000, 256), &["at most 4294967296"]);
+    add("nothing.pam.pnm", pam(16384, 255), &["fill whole buffer"]);
     let comment = ["P6 #".as_bytes(), &vec![b'x'; 1 << 17]].concat();
     add("a comment without end.pnm", comment, &["end"]);
     #[cfg(feature = "exr")]

@@ -11,10 +11,11 @@ mod seeds;
 use bhr::error::ErrorKind;
 use bhr::image::{self, Loaded};
 use random::{Random, count_from};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::PathBuf;
 use std::process::Command;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Bytes of address space that a child has for files, besides what it begins with.
@@ -151,11 +152,14 @@ fn child_reads_faulty_files() {
     let count = count_from("BHR_FILES_COUNT", 1000);
     let seeds = seeds(&kind);
     let folder = Folder::new();
-    std::panic::set_hook(Box::new(|_| {}));
+    static PLACES: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    std::panic::set_hook(Box::new(|info| {
+        PLACES.lock().unwrap().extend(info.location().map(ToString::to_string));
+    }));
     limit_memory(CHILD_BYTES);
     let mut random = Random(count_from("BHR_FILES_SEED", 1) as u64);
     let (mut read, mut panics) = (0, 0);
-    let mut slowest = Duration::ZERO;
+    let mut slowest = (Duration::ZERO, 0);
     for i in 0..count {
         let bytes = hostile::faulty(&seeds, &mut random);
         // What is there when this process dies is the file that killed it.
@@ -173,7 +177,10 @@ fn child_reads_faulty_files() {
                 panics += usize::from(error.message.contains("the codec failed"));
             }
         }
-        slowest = slowest.max(begin.elapsed());
+        slowest = slowest.max((begin.elapsed(), i));
+    }
+    for place in PLACES.lock().unwrap().iter() {
+        println!("a codec panicked at {place}");
     }
     println!("{kind}: {count} files, {read} of them read, {panics} caught panics, the slowest {slowest:?}");
     assert!(read > count / 100 && read < count, "{read} of {count} were read: faults are too many or too few");
@@ -181,7 +188,7 @@ fn child_reads_faulty_files() {
 
 fn faulty_files(kind: &str) {
     let all = std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1");
-    let count = if all { 100_000 } else { 3_000 };
+    let count = if all { 100_000 } else { 5_000 };
     let environment = [("BHR_FILES_KIND", kind.to_owned()), ("BHR_FILES_COUNT", count.to_string())];
     let out = child("child_reads_faulty_files", &environment);
     println!("{}", out.lines().find(|line| line.starts_with(kind)).unwrap_or_default());

@@ -28,6 +28,8 @@ pub fn pnm() -> Vec<Seed> {
         seed("colour of 16 bits", "P6\n4\n3\n65535\n", &raster[..72]),
         seed("any grey", &pam(1, 255, "GRAYSCALE"), &raster[..12]),
         seed("any colour", &pam(3, 255, "RGB"), &raster[..36]),
+        seed("any grey with alpha", &pam(2, 65535, "GRAYSCALE_ALPHA"), &raster[..48]),
+        seed("any colour with alpha", &pam(4, 255, "RGB_ALPHA"), &raster[..48]),
         seed("any black and white", &pam(1, 1, "BLACKANDWHITE"), &[0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 1]),
     ]
 }
@@ -86,13 +88,8 @@ pub fn png() -> Vec<Seed> {
     const PASSES: [[usize; 4]; 7] =
         [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
     let mut seeds = Vec::new();
-    let kinds = [
-        (0, 1, &[1, 2, 4, 8, 16][..]),
-        (2, 3, &[8, 16]),
-        (3, 1, &[1, 2, 4, 8]),
-        (4, 2, &[8, 16]),
-        (6, 4, &[8, 16]),
-    ];
+    let kinds =
+        [(0, 1, &[1, 2, 4, 8, 16][..]), (2, 3, &[8, 16]), (3, 1, &[1, 2, 4, 8]), (4, 2, &[8, 16]), (6, 4, &[8, 16])];
     for (color, samples, depths) in kinds {
         for depth in depths {
             for (interlaced, transparent) in [(false, false), (true, false), (false, true)] {
@@ -106,7 +103,9 @@ pub fn png() -> Vec<Seed> {
                         if width > 0 {
                             // Every filter in turn.
                             lines.push(y as u8 % 5);
-                            lines.extend((0..(width * samples * depth).div_ceil(8)).map(|_| (random.next() * 256.0) as u8));
+                            lines.extend(
+                                (0..(width * samples * depth).div_ceil(8)).map(|_| (random.next() * 256.0) as u8),
+                            );
                         }
                     }
                 };

@@ -1,6 +1,6 @@
 //! Reading image files: which kind a file is, by its first bytes, and what all kinds become.
 
-use super::{about, io_error, on_own_thread, png, pnm, reserve};
+use super::{about, io_error, on_own_thread, pam, png, pnm, reserve};
 use crate::error::Result;
 use crate::image::memory::PixelFormat;
 use std::fs::{self, File};
@@ -75,7 +75,8 @@ fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {
         [0x76, 0x2f, 0x31, 0x01, ..] => super::exr::read(file),
         #[cfg(not(feature = "exr"))]
         [0x76, 0x2f, 0x31, 0x01, ..] => Err(crate::error::Error::unsupported(super::WITHOUT_EXR)),
-        [b'P', b'1'..=b'7', ..] => pnm::read(file),
+        [b'P', b'1'..=b'6', ..] => pnm::read(file),
+        [b'P', b'7', ..] => pam::read(file),
         _ => Err(io_error("it is no PNG, EXR or PNM file")),
     }
 }

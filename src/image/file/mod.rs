@@ -5,6 +5,7 @@
 #[cfg(feature = "exr")]
 mod exr;
 mod load;
+mod pam;
 mod png;
 mod pnm;
 mod replace;

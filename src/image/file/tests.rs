@@ -305,7 +305,8 @@ fn data_windows_are_placed_in_display_windows() {
         ::exr::block::write(file, std::iter::once(header).collect(), false, |meta, chunks| {
             let mut compressor = chunks.sequential_blocks_compressor(&meta);
             for (index, block) in meta.collect_ordered_block_data(|_| {
-                let rows = (0..5).flat_map(|y| channels.iter().flat_map(move |_| (0..3).map(move |x| (x + 10 * y) as f32)));
+                let rows =
+                    (0..5).flat_map(|y| channels.iter().flat_map(move |_| (0..3).map(move |x| (x + 10 * y) as f32)));
                 rows.flat_map(f32::to_ne_bytes).collect()
             }) {
                 compressor.compress_block(index, block)?;
@@ -323,5 +324,42 @@ fn data_windows_are_placed_in_display_windows() {
         let wanted = rows.as_flattened().iter().flat_map(|value| pixel(*value)).collect::<Vec<_>>();
         assert_eq!((loaded.width, loaded.height), (4, 3));
         assert_eq!(bytemuck::cast_slice::<u8, f32>(loaded.pixels.as_bytes()), wanted);
+    }
+}
+
+#[test]
+fn pam_has_every_depth() {
+    let folder = Folder::new("pam");
+    let load_pam = |depth: u32, most: u32, kind: &str, raster: &[u8]| {
+        let header = format!("P7\nWIDTH 2\n# a comment\nHEIGHT 1\nDEPTH {depth}\nMAXVAL {most}\n{kind}\nENDHDR\n");
+        fs::write(folder.file("a.pam"), [header.as_bytes(), raster].concat()).unwrap();
+        load(&folder.file("a.pam"))
+    };
+    let bytes = |loaded: Loaded| loaded.pixels.as_bytes().to_vec();
+    for (depth, most, kind, raster, wanted) in [
+        (1, 1, "TUPLTYPE BLACKANDWHITE", &[0, 1][..], [0, 0, 0, 255, 255, 255, 255, 255]),
+        (1, 255, "", &[7, 9], [7, 7, 7, 255, 9, 9, 9, 255]),
+        (2, 15, "TUPLTYPE GRAYSCALE_ALPHA", &[1, 15, 14, 0], [17, 17, 17, 255, 238, 238, 238, 0]),
+        (3, 255, "TUPLTYPE RGB", &[1, 2, 3, 4, 5, 6], [1, 2, 3, 255, 4, 5, 6, 255]),
+        (4, 255, "TUPLTYPE RGB_ALPHA", &[1, 2, 3, 4, 5, 6, 7, 8], [1, 2, 3, 4, 5, 6, 7, 8]),
+    ] {
+        assert_eq!(bytes(load_pam(depth, most, kind, raster).unwrap()), wanted, "{kind}");
+        let error = load_pam(depth, most, kind, &raster[1..]).unwrap_err();
+        assert_eq!(error.kind, ErrorKind::Io);
+    }
+    let wide = load_pam(4, 65535, "", &[255, 255, 0, 0, 128, 0, 128, 0].repeat(2)).unwrap();
+    assert_eq!(wide.format, PixelFormat::Rgba32F);
+    let pixel: &[f32] = bytemuck::cast_slice(&wide.pixels.as_bytes()[16..]);
+    assert!((pixel[2] - 0.21404).abs() < 2e-5 && pixel[..2] == [1.0, 0.0], "{pixel:?}");
+    assert_eq!(pixel[3], 32768.0 / 65535.0);
+    for (depth, most, kind, words) in [
+        (5, 255, "", "DEPTH is 5"),
+        (3, 0, "", "MAXVAL 0"),
+        (3, 70000, "", "MAXVAL 70000"),
+        (3, 255, "TUPLTYPE RGB_ALPHA", "TUPLTYPE is RGB_ALPHA"),
+        (3, 255, "COLOUR 3", "line COLOUR"),
+    ] {
+        let error = load_pam(depth, most, kind, &[0; 16]).unwrap_err();
+        assert!(error.kind == ErrorKind::Io && error.message.contains(words), "{error}");
     }
 }
