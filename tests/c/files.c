@@ -204,7 +204,9 @@ static void bombs(void) {
         size += attribute(file + size, "screenWindowCenter", "v2f", zeros, 8);
         size += attribute(file + size, "screenWindowWidth", "float", one, 4);
         file[size++] = 0;
-        memset(file + size, 0, 24); /* the offset table, and a block: y, its size, some of its bytes */
+        memset(file + size, 0, 24); /* the offset of a block, and that block: y, its size, its bytes */
+        file[size] = (unsigned char)((size + 8) & 0xff);
+        file[size + 1] = (unsigned char)((size + 8) >> 8);
         file[size + 12] = 8;
         write_file(path_of("bomb.exr"), file, size + 24);
         check_unreadable(path_of("bomb.exr"), BHR_ERROR_IO, "1048576", __LINE__);

@@ -85,8 +85,8 @@ fn exr_header(display: [i32; 2], data: [i32; 2], compression: u8, channels: usiz
         bytes.extend(attribute("tiles", "tiledesc", &[&ints(&[width, height])[..], &[0]].concat()));
     }
     bytes.push(0);
-    // The offset table of one block, and that block: y, and its number of bytes.
-    bytes.extend([0; 8]);
+    // The offset of one block, and that block: y, and its number of bytes.
+    bytes.extend((bytes.len() as u64 + 8).to_le_bytes());
     bytes.extend(ints(&[0, 9]));
     bytes.extend([0; 9]);
     bytes
