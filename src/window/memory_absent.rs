@@ -3,8 +3,8 @@
 use super::Window;
 use crate::error::{Error, Result};
 
-pub const MAX_SIDE: u32 = 0;
-pub const MAX_PIXELS: u64 = 0;
+pub const MAX_SIDE: u32 = 1;
+pub const MAX_PIXELS: u64 = 1;
 
 /// There is none.
 pub enum MemoryWindow {}
