@@ -56,7 +56,8 @@ pub(super) fn read(file: impl BufRead + Seek) -> Result<Loaded> {
     Ok(Loaded { format, width, height, pixels })
 }
 
-/// Turns a row's samples into RGBA: bytes, or with `codes` from 16-bit codes into floats. The part of `out` that was written.
+/// Turns a row's samples into RGBA: bytes, or with `codes` from 16-bit codes into floats. The part of `out` that was
+/// written.
 fn widen<'a>(row: &[u8], color: ColorType, codes: &[f32], out: &'a mut [u8]) -> &'a [u8] {
     if codes.is_empty() {
         let written = row.len() / color.samples() * 4;
