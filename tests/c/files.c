@@ -212,8 +212,8 @@ static void bombs(void) {
         check_unreadable(path_of("bomb.exr"), BHR_ERROR_IO, "1048576", __LINE__);
     }
     /* 65536 x 65536 of 8 grey bits are 4 GiB, which are read; as RGBA they are 16 GiB, which are not. */
-    static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0, 1, 0,
-                                        0, 0, 1, 0, 0, 8, 0, 0, 0, 0, 0x49, 0xef, 0x6f, 0x3f};
+    static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0,
+                                        1, 0, 0, 0, 1, 0, 0, 8, 0, 0, 0, 0, 0x49, 0xef, 0x6f, 0x3f};
     write_file(path_of("bomb.png"), png, sizeof png);
     check_unreadable(path_of("bomb.png"), BHR_ERROR_IO, "4294967296", __LINE__);
     static const char pgm[] = "P5 65536 65536 255\n";

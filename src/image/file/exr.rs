@@ -1,4 +1,5 @@
-//! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, and one block at a time is held.
+//! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, and one block
+//! at a time is held.
 
 use super::load::{Loaded, Pixels};
 use super::{MAX_SIDE, io_error, pixel_count, probe, zeros};
@@ -21,7 +22,8 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 
 /// Longest headers of all parts together, bytes.
 const MAX_HEADER_BYTES: u64 = 8 << 20;
-/// What a byte of header may take in memory: attributes of a few bytes become values of some hundred, in tables that grow by doubling.
+/// What a byte of header may take in memory: attributes of a few bytes become values of some hundred, in tables that
+/// grow by doubling.
 const HEADER_GROWTH: u64 = 64;
 /// What is read of headers at a time, bytes.
 const HEADER_STEP: usize = 64 << 10;
@@ -29,10 +31,11 @@ const HEADER_STEP: usize = 64 << 10;
 const MAX_CHANNELS: usize = 4096;
 /// Largest block (tile, or 1 to 256 scan lines) when it is unpacked, bytes.
 const MAX_BLOCK_BYTES: u64 = 256 << 20;
-/// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the way.
+/// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the
+/// way.
 const BLOCKS_AT_A_TIME: u64 = 6;
 
-/// Errors: IO; OUT_OF_MEMORY.
+/// Errors: IO; UNSUPPORTED for a compression that is not read; OUT_OF_MEMORY.
 pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     let in_headers = Cell::new(true);
     let headed = Headed { file, in_headers: &in_headers, taken: 0, probed: 0 };
@@ -40,6 +43,12 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     in_headers.set(false);
     let part = check(reader.headers())?;
     let header = &reader.headers()[part];
+    if let Compression::DWAA(_) | Compression::DWAB(_) | Compression::HTJ2K32 | Compression::HTJ2K256 =
+        header.compression
+    {
+        let kind = header.compression;
+        return Err(Error::unsupported(format!("its {kind} is not read; ZIP, PIZ, PXR24, B44, RLE and none are")));
+    }
     let largest = reader.headers().iter().map(block_bytes).max().unwrap_or(0);
     let mut picture = Picture::new(part, header)?;
     probe(BLOCKS_AT_A_TIME * largest)?;
@@ -120,7 +129,8 @@ fn block_bytes(header: &Header) -> u64 {
     pixels.saturating_mul(header.channels.bytes_per_pixel as u64)
 }
 
-/// The part that is read: the first with channels R, G and B. Errors: IO when there is none, or any part exceeds a limit.
+/// The part that is read: the first with channels R, G and B. Errors: IO when there is none, or any part exceeds a
+/// limit.
 fn check(parts: &[Header]) -> Result<usize> {
     for (i, part) in parts.iter().enumerate() {
         let Vec2(width, height) = part.layer_size;

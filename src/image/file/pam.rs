@@ -1,5 +1,5 @@
-//! PAM, the PNM kind with alpha, which the `image` crate reads only in versions that bring colour management along: a header of words, then
-//! samples as in PGM and PPM.
+//! PAM, the PNM kind with alpha, which the `image` crate reads only in versions that bring colour management along: a
+//! header of words, then samples as in PGM and PPM.
 
 use super::load::{Loaded, Pixels, linear_codes};
 use super::{io_error, pixel_count, zeros};

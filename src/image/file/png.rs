@@ -7,13 +7,14 @@ use crate::image::memory::{ImageRef, PixelFormat};
 use ::png::{
     BitDepth, ColorType, Compression, Decoder, Encoder, InterlaceInfo, Limits, Transformations, expand_interlaced_row,
 };
-use std::io::{BufRead, Seek, Write};
+use std::io::{BufRead, Seek, SeekFrom, Write};
 
 /// What the decoder may hold besides two rows, bytes; its own default.
 const MAX_CHUNK_BYTES: usize = 64 << 20;
 
 /// Errors: IO; OUT_OF_MEMORY.
-pub(super) fn read(file: impl BufRead + Seek) -> Result<Loaded> {
+pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
+    let length = file.seek(SeekFrom::End(0)).and_then(|length| file.rewind().map(|()| length)).map_err(io_error)?;
     let mut decoder = Decoder::new_with_limits(file, Limits { bytes: MAX_CHUNK_BYTES });
     decoder.set_transformations(Transformations::EXPAND);
     decoder.set_ignore_text_chunk(true);
@@ -32,8 +33,9 @@ pub(super) fn read(file: impl BufRead + Seek) -> Result<Loaded> {
     let row_bytes = width as usize * pixel_bytes;
     let mut wide = zeros::<u32>(row_bytes / 4)?;
     let wide: &mut [u8] = bytemuck::cast_slice_mut(&mut wide);
-    // Rows as they are filtered and as they are handed out, of at most 8 bytes a pixel.
-    probe(64 * u64::from(width) + 2 * MAX_CHUNK_BYTES as u64)?;
+    // Rows as they are filtered and as they are handed out, of at most 8 bytes a pixel, and chunks, in a vector that
+    // doubles as they come in.
+    probe(64 * u64::from(width) + 2 * length.min(MAX_CHUNK_BYTES as u64))?;
 
     let mut reader = decoder.read_info().map_err(io_error)?;
     let (color, _) = reader.output_color_type();
@@ -56,7 +58,8 @@ pub(super) fn read(file: impl BufRead + Seek) -> Result<Loaded> {
     Ok(Loaded { format, width, height, pixels })
 }
 
-/// Turns a row's samples into RGBA: bytes, or with `codes` from 16-bit codes into floats. The part of `out` that was written.
+/// Turns a row's samples into RGBA: bytes, or with `codes` from 16-bit codes into floats. The part of `out` that was
+/// written.
 fn widen<'a>(row: &[u8], color: ColorType, codes: &[f32], out: &'a mut [u8]) -> &'a [u8] {
     if codes.is_empty() {
         let written = row.len() / color.samples() * 4;

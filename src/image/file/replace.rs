@@ -1,4 +1,5 @@
-//! Files that appear whole or not at all: written beside their place under another name, brought to the disk, then renamed.
+//! Files that appear whole or not at all: written beside their place under another name, brought to the disk, then
+//! renamed.
 
 use super::io_error;
 use crate::error::Result;
@@ -10,10 +11,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Links to links that are followed, as many as Linux does.
 const MAX_LINKS: u32 = 40;
-/// Names that are tried for the temporary file; where process numbers repeat, as in containers, left-over ones have the first.
+/// Names that are tried for the temporary file; where process numbers repeat, as in containers, left-over ones have
+/// the first.
 const MAX_NAMES: u32 = 10_000;
 
-/// Lets `fill` write a file, gets it back, and puts it in the place of `path`. Errors: IO, and nothing is changed; those of `fill`.
+/// Lets `fill` write a file, gets it back, and puts it in the place of `path`. Errors: IO, and nothing is changed;
+/// those of `fill`.
 pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Result<()> {
     let place = end_of_links(path)?;
     let before = fs::metadata(&place).ok();
@@ -64,7 +67,8 @@ fn refuse_as_target(there: &Metadata) -> Result<()> {
     Err(io_error(why))
 }
 
-/// A new file in the folder of `place`, under a name that does not depend on `place`'s: that may be as long as names can be.
+/// A new file in the folder of `place`, under a name that does not depend on `place`'s: that may be as long as names
+/// can be.
 fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     if place.file_name().is_none() {
@@ -97,8 +101,8 @@ fn never_wider(options: &mut OpenOptions, before: Option<&Metadata>) {
 #[cfg(not(unix))]
 fn never_wider(_: &mut OpenOptions, _: Option<&Metadata>) {}
 
-/// Gives the file the mode of the one before it, brings it to the disk and closes it: quotas and network file systems tell some errors only
-/// then.
+/// Gives the file the mode of the one before it, brings it to the disk and closes it: quotas and network file systems
+/// tell some errors only then.
 fn finish(file: File, before: Option<&Metadata>) -> io::Result<()> {
     keep_mode(&file, before)?;
     synced(file.sync_all())?;

@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::image::{ImageMut, ImageRef, Layout};
-use half::f16;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -82,6 +81,7 @@ fn blue_and_red_change_places_and_ppm_drops_alpha() {
 #[cfg(feature = "exr")]
 #[test]
 fn float_files_keep_every_value() {
+    use half::f16;
     let folder = Folder::new("exr");
     let top: Vec<f32> = (0..12).map(|i| i as f32 * 0.25 - 1.0).collect();
     let bottom: Vec<f32> = (0..12).map(|i| 1e4 + i as f32 * 8.0).collect();
