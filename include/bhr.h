@@ -1,6 +1,6 @@
 /* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
  *
- * Made by build.rs from the Rust sources in src/capi; do not edit. A program needs nothing else to read: make a
+ * Made by cbindgen from the Rust sources in src/capi; do not edit. A program needs nothing else to read: make a
  * context (bhr_context_create), set mass, spin and camera, render into memory of your own (bhr_render_image).
  *
  * Units
@@ -362,8 +362,9 @@ BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_siz
  * BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a
  * driver the CPU tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not
  * inside callbacks. Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window
- * of another platform's; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot
- * present to compatible_window.
+ * of another platform's, and for a window or BHR_BACKEND_GL in a library that was built without (cargo features
+ * window, gl); NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
+ * compatible_window.
  */
 BhrStatus bhr_context_create(uint32_t abi_version,
                              const BhrContextOptions *options,
@@ -1139,9 +1140,10 @@ typedef int32_t BhrPresentMode;
  * which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for
  * NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
  * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
- * have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
- * beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory), OUT_OF_MEMORY. A host that
- * holds XGrabServer must not call on surfaces: it would wait for itself.
+ * have, for all in a library that was built without windows (cargo feature window), where nothing can present to the
+ * window, and for a side that the device's images cannot have (mostly beyond 16384); DEVICE_LOST (also for images that
+ * do not fit into the device's memory), OUT_OF_MEMORY. A host that holds XGrabServer must not call on surfaces: it
+ * would wait for itself.
  */
 BhrStatus bhr_surface_create(BhrContext *context,
                              const BhrWindow *window,

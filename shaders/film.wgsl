@@ -1,9 +1,12 @@
 // Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of packed.wgsl
 // or screen.wgsl.
 
-// What a pipeline is made for: the numbers of ToneMap and PixelFormat. (The view: false_colour.wgsl.)
+// What a pipeline is made for: the numbers of ToneMap and PixelFormat, or FROM_FILM where it serves all and the uniform says which. (The
+// view: false_colour.wgsl.)
 override TONE_MAP: u32 = 1u;
 override FORMAT: u32 = 1u;
+
+const FROM_FILM: u32 = 0xffffffffu;
 
 struct FilmParams {
     exposure: f32,
@@ -26,18 +29,27 @@ const MAX_SCENE_LIGHT: f32 = 65504.0;
 const MAX_F16: f32 = 65504.0;
 const MAX_F32: f32 = 3.40282347e38;
 
+// PixelFormat and ToneMap of the film.
+fn pixel_format() -> u32 {
+    return select(FORMAT, film.format, FORMAT == FROM_FILM);
+}
+
+fn chosen_tone_map() -> u32 {
+    return select(TONE_MAP, film.tone_map, TONE_MAP == FROM_FILM);
+}
+
 // One pixel, in as many of the four words as the format has: 1 (8-bit, R32F), 2 (RGBA16F) or 4 (RGBA32F).
 fn develop(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    if FORMAT == FORMAT_RGBA16F {
+    if pixel_format() == FORMAT_RGBA16F {
         return vec4<u32>(develop_rgba16f(radiance), 0u, 0u);
     }
-    if FORMAT == FORMAT_RGBA32F {
+    if pixel_format() == FORMAT_RGBA32F {
         return develop_rgba32f(radiance);
     }
-    if FORMAT == FORMAT_R32F {
+    if pixel_format() == FORMAT_R32F {
         return vec4<u32>(bitcast<u32>(radiance.x), 0u, 0u, 0u);
     }
-    if FORMAT == FORMAT_BGRA8 {
+    if pixel_format() == FORMAT_BGRA8 {
         return vec4<u32>(develop_bgra8(radiance, x, y), 0u, 0u, 0u);
     }
     return vec4<u32>(develop_rgba8(radiance, x, y), 0u, 0u, 0u);
@@ -54,14 +66,14 @@ fn develop_bgra8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
 }
 
 fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    if FALSE_COLOUR != 0u {
+    if colour_of() != 0u {
         return vec4<u32>(vec3<u32>(false_colour(radiance.x) * 255.0 + 0.5), 255u);
     }
     let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
     // Most of the sky is black, and black stays black, whatever the dither. (A `return` here, called from a loop, crashes the shader
     // compiler of Mesa 22.3.)
     var codes = vec3<u32>(0u);
-    if TONE_MAP == TONE_MAP_AGX || any(scene != vec3<f32>(0.0)) {
+    if chosen_tone_map() == TONE_MAP_AGX || any(scene != vec3<f32>(0.0)) {
         codes = vec3<u32>(srgb_encode(tone_map(scene)) * 255.0 + dither(x, y));
     }
     return vec4<u32>(codes, u32(alpha_of(radiance.w) * 255.0 + 0.5));
@@ -118,10 +130,10 @@ fn dither(x: u32, y: u32) -> f32 {
 }
 
 fn tone_map(rgb: vec3<f32>) -> vec3<f32> {
-    if TONE_MAP == TONE_MAP_ACES {
+    if chosen_tone_map() == TONE_MAP_ACES {
         return aces(rgb);
     }
-    if TONE_MAP == TONE_MAP_AGX {
+    if chosen_tone_map() == TONE_MAP_AGX {
         return agx(rgb);
     }
     return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0));

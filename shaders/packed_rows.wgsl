@@ -16,10 +16,10 @@ var<private> rows_index: u32;
 
 // Words of a pixel.
 fn pixel_words() -> u32 {
-    if FORMAT == FORMAT_RGBA16F {
+    if pixel_format() == FORMAT_RGBA16F {
         return 2u;
     }
-    return select(1u, 4u, FORMAT == FORMAT_RGBA32F);
+    return select(1u, 4u, pixel_format() == FORMAT_RGBA32F);
 }
 
 fn keep_words(words: vec4<u32>) {

@@ -162,6 +162,15 @@ impl Tracer {
         }
     }
 
+    /// Makes all that such frames need, and keeps it. Errors: as `Renderer::render`.
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+        match self {
+            Self::Cpu(t) => t.prepare(scene, request),
+            Self::Gpu(t) => t.prepare(scene, request),
+            Self::Gl(t) => t.prepare(scene, request),
+        }
+    }
+
     fn info(&self) -> &AdapterInfo {
         match self {
             Self::Cpu(t) => t.adapter(),
@@ -223,7 +232,8 @@ impl Drop for Renderer {
 }
 
 impl Renderer {
-    /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), whatever opening a device gives.
+    /// Errors: `NoAdapter` for a backend or index that is not there (AUTO never fails so), `Unsupported` for one that
+    /// the library was built without, whatever opening a device gives.
     pub fn new(options: RendererOptions) -> Result<Self> {
         let tracer = Self::open(&options)?;
         // The window need not be there any more when the device is opened again.
@@ -242,6 +252,7 @@ impl Renderer {
     }
 
     fn open(options: &RendererOptions) -> Result<Tracer> {
+        gpu::check_built(options.backend)?;
         let window = options.compatible_window.map(Window::open).transpose()?;
         let cpu = || CpuTracer::new(options.cpu_threads).map(Tracer::Cpu);
         if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {
@@ -355,6 +366,16 @@ impl Renderer {
         }
     }
 
+    /// How often frames found pipelines missing, once those that are made in the background are there; for tests. `None` on the CPU.
+    #[doc(hidden)]
+    pub fn settled_waits(&self) -> Option<gpu::KernelWaits> {
+        match &mut *self.tracer.lock() {
+            Tracer::Cpu(_) => None,
+            Tracer::Gpu(t) => Some(t.settled_waits()),
+            Tracer::Gl(t) => t.settled_waits().ok(),
+        }
+    }
+
     fn end_surfaces(&mut self, reason: &'static str) {
         for surface in self.surfaces.drain(..).filter_map(|surface| surface.upgrade()) {
             surface.end(reason);
@@ -396,13 +417,18 @@ impl Renderer {
         *self.stats.0.lock()
     }
 
-    /// What a tracer is asked for. Errors: a region that the image overruns; a region with bloom; a format that does not go with the view.
-    fn request(&self, target: &ImageMut<'_>, transparent: bool, region: Option<Region>) -> Result<FrameRequest> {
-        let (width, height) = (target.width(), target.height());
+    /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a format that
+    /// does not go with the view.
+    fn request(
+        &self,
+        format: PixelFormat,
+        [width, height]: [u32; 2],
+        transparent: bool,
+        region: Option<Region>,
+    ) -> Result<FrameRequest> {
         let set = region.is_some();
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
-        let format = target.format();
         let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
         if blooms && set {
             return Err(Error::state(format!(
@@ -442,7 +468,7 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let start = Instant::now();
-        let request = self.request(target, transparent, region)?;
+        let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
         self.help_to_write(target);
         let mut written = 0_u64;
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
@@ -461,6 +487,21 @@ impl Renderer {
         Ok(())
     }
 
+    /// Makes all that frames of the present scene need as images of this format and size, and as windows' frames of this size: the next
+    /// ones then wait for nothing but themselves.
+    ///
+    /// Errors: as [`Self::render`].
+    pub fn prepare(
+        &mut self,
+        format: PixelFormat,
+        size: [u32; 2],
+        transparent: bool,
+        region: Option<Region>,
+    ) -> Result<()> {
+        let request = self.request(format, size, transparent, region)?;
+        self.tracer.lock().prepare(&self.scene, &request)
+    }
+
     /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is
     /// written until the job has its outcome.
     ///
@@ -472,7 +513,7 @@ impl Renderer {
         transparent: bool,
         region: Option<Region>,
     ) -> Result<Job> {
-        let request = self.request(&target, transparent, region)?;
+        let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
         self.scene.lens(&request.region)?;
         self.check_device()?;
         self.help_to_write(&mut target);

@@ -1,22 +1,68 @@
-//! include/bhr.h is the header that build.rs makes from the sources, and every dialect of C and C++ takes it
-//! without a warning.
+//! include/bhr.h is the header that cbindgen makes from `src/capi`, one section per source file, and every dialect of C
+//! and C++ takes it without a warning.
 
 mod c_header;
 
 use c_header::{HEADER, compiler, functions, root, run, scratch};
+use std::path::Path;
 
-const GENERATED: &str = include_str!(concat!(env!("OUT_DIR"), "/bhr.h"));
+/// The header's sections in order (a type stands before its first use): source file, title.
+const SECTIONS: [(&str, &str); 21] = [
+    ("version", "version"),
+    ("status", "status, messages"),
+    ("log", "log"),
+    ("adapter", "adapters"),
+    ("window", "windows of the host"),
+    ("context", "context"),
+    ("hole", "the black hole"),
+    ("camera", "the camera: an observer with a lens"),
+    ("disk", "accretion disk"),
+    ("image", "images in the host's memory"),
+    ("sky", "sky"),
+    ("film", "film"),
+    ("effects", "relativistic effects, time"),
+    ("quality", "quality"),
+    ("view", "what a pixel shows"),
+    ("region", "parts of a larger frame"),
+    ("render", "rendering into memory"),
+    ("job", "rendering in the background"),
+    ("surface", "rendering into windows"),
+    ("rays", "rays: the same tracer, asked directly"),
+    ("stats", "numbers about the last finished frame"),
+];
+
+/// Between the preface and the first section.
+const OPENING: &str = r#"
+#ifndef BHR_H
+#define BHR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+"#;
+
+/// After the last section.
+const CLOSING: &str = "
+#ifdef __cplusplus
+}
+#endif
+
+#endif
+";
 
 /// With BHR_UPDATE_HEADER set, this is the command that brings include/bhr.h up to date.
 #[test]
 fn the_committed_header_is_the_generated_one() {
-    let committed = root().join("include/bhr.h");
+    let (committed, generated) = (root().join("include/bhr.h"), generate());
     if std::env::var_os("BHR_UPDATE_HEADER").is_some() {
-        std::fs::write(&committed, GENERATED).unwrap();
+        std::fs::write(&committed, &generated).unwrap();
     }
     let text = std::fs::read_to_string(&committed).unwrap_or_default();
     assert!(
-        text == GENERATED,
+        text == generated,
         "include/bhr.h is not what the sources say; bring it up to date with\n\
          BHR_UPDATE_HEADER=1 cargo test --test header committed"
     );
@@ -71,4 +117,48 @@ fn cpp_programs_link_to_the_plain_names() {
 /// Mach-O puts an underscore before every C name.
 fn plain(name: &str) -> String {
     if cfg!(target_vendor = "apple") { name.trim_start_matches('_').into() } else { name.into() }
+}
+
+// ---- making it ----
+
+fn generate() -> String {
+    let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
+    let preface = config.header.take().unwrap_or_default();
+    let mut header = format!("{}\n{OPENING}", preface.trim());
+    for (file, title) in SECTIONS {
+        let path = root().join("src/capi").join(file).with_extension("rs");
+        header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, &config).trim());
+    }
+    header + CLOSING
+}
+
+/// What one source file adds. Types of other sections are named without being known, which is all that C needs.
+fn section(path: &Path, config: &cbindgen::Config) -> String {
+    let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(path).generate();
+    let mut text = Vec::new();
+    bindings.unwrap_or_else(|error| panic!("{}: {error}", path.display())).write(&mut text);
+    tidy(&String::from_utf8(text).unwrap())
+}
+
+/// Comments of one line on one line, and structs by their typedef, which every struct has.
+fn tidy(text: &str) -> String {
+    let text = text.replace("typedef struct Bhr", "typedef-Bhr").replace("struct Bhr", "Bhr");
+    let text = text.replace("typedef-Bhr", "typedef struct Bhr");
+    let lines: Vec<&str> = text.lines().collect();
+    let mut tidied = String::new();
+    let mut rest = lines.as_slice();
+    while let [first, after @ ..] = rest {
+        rest = match after {
+            [line, end, after @ ..] if first.trim() == "/**" && end.trim() == "*/" => {
+                let comment = line.trim().trim_start_matches("* ");
+                tidied += &format!("{}{comment} */\n", first.replace("/**", "/** "));
+                after
+            }
+            _ => {
+                tidied += &format!("{first}\n");
+                after
+            }
+        };
+    }
+    tidied
 }

@@ -1,4 +1,5 @@
-# lib.sh -- what tests/run, tests/c/run and tests/windows/run share: folders, the Vulkan driver, counting. Sourced by them; runs no test.
+# lib.sh -- what the scripts of tests/ share: folders, the Vulkan driver, building, counting. Sourced by them; runs no
+# test.
 # shellcheck shell=bash
 
 tests=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
@@ -56,6 +57,31 @@ without_drivers() {
         : >"$folder/$name"
     done
     LD_LIBRARY_PATH=$folder${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH} "$@"
+}
+
+# Cargo tells checkouts that share a target folder apart by nothing but the age of their files, and a checkout that was
+# moved not at all: it takes what the other one built, which looks for its files there. What is bhr's in the target
+# folder goes when another checkout built it.
+own_target_folder() {
+    local mark=$target/bhr-checkout profile
+    if [ -f "$mark" ] && [ "$(cat -- "$mark")" != "$root" ]; then
+        for profile in release checked; do
+            cargo clean --quiet --profile "$profile" --package bhr --manifest-path "$root/Cargo.toml" || return 1
+        done
+    fi
+    mkdir -p -- "$target" && printf '%s\n' "$root" >"$mark"
+}
+
+# The example programs, by CMake.
+examples=$target/examples-cmake
+cmake_builds() {
+    # CMake refuses a folder that it made for another checkout, or at another place: that one is started afresh.
+    local cache=$examples/CMakeCache.txt line
+    for line in "CMAKE_HOME_DIRECTORY:INTERNAL=$root/examples-c" "CMAKE_CACHEFILE_DIR:INTERNAL=$examples"; do
+        [ ! -f "$cache" ] || grep -qxF -e "$line" -- "$cache" || rm -rf -- "$examples"
+    done
+    cmake -S "$root/examples-c" -B "$examples" -DBHR_ROOT="$root" -DCMAKE_BUILD_TYPE=Release &&
+        cmake --build "$examples"
 }
 
 # The library with every check on and with symbols, for valgrind: the one that cargo builds for the Rust tests, not another one without what
@@ -122,6 +148,14 @@ count_begun() {
     done
     begun=()
     begun_pids=()
+}
+
+# stop MESSAGE...: ends a script at once, as something that the tests need is missing.
+stop() {
+    printf '%s\n' "$@"
+    failed=$((failed + 1))
+    finish
+    exit 1
 }
 
 # Ends a script: the count as a plain line, and the exit status.

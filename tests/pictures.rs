@@ -7,7 +7,7 @@ use bhr::gpu::{Device, Search, adapters};
 use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, LensTables, Lensing, Motion, Region, Sky, View};
+use bhr::scene::{Camera, Effects, KerrWorth, LensTables, Lensing, Motion, Region, Sky, View};
 use frames::{both, cpu, differing, floats, gpu, picture, tiled};
 use glam::DVec3;
 use serde_json::Value;
@@ -246,7 +246,7 @@ fn tables_give_the_same_bytes() {
             assert!(*first == tiled(&mut renderer, format, size), "{name}: tiles at {eye:?}");
             let frame = renderer.scene.observer().unwrap().frame;
             let pixels = u64::from(size[0] * size[1]);
-            assert!(renderer.scene.lensing(&frame, pixels) != Lensing::Traced, "{name}: no tables at {eye:?}");
+            assert!(renderer.scene.lensing(&frame, pixels, KerrWorth::GPU) != Lensing::Traced, "{name}: no tables at {eye:?}");
         }
     }
 }

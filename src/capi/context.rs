@@ -157,8 +157,9 @@ pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOption
 /// BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a
 /// driver the CPU tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not
 /// inside callbacks. Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window
-/// of another platform's; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot
-/// present to compatible_window.
+/// of another platform's, and for a window or BHR_BACKEND_GL in a library that was built without (cargo features
+/// window, gl); NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
+/// compatible_window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create(
     abi_version: u32,

@@ -69,9 +69,10 @@ unsafe fn on_surface(
 /// which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for
 /// NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
 /// window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
-/// have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
-/// beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory), OUT_OF_MEMORY. A host that
-/// holds XGrabServer must not call on surfaces: it would wait for itself.
+/// have, for all in a library that was built without windows (cargo feature window), where nothing can present to the
+/// window, and for a side that the device's images cannot have (mostly beyond 16384); DEVICE_LOST (also for images that
+/// do not fit into the device's memory), OUT_OF_MEMORY. A host that holds XGrabServer must not call on surfaces: it
+/// would wait for itself.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_surface_create(
     context: *mut BhrContext,

@@ -14,7 +14,7 @@ use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
-use crate::scene::{Scene, View};
+use crate::scene::{KerrWorth, Scene, View};
 use crate::sky::StarIndex;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -66,6 +66,13 @@ impl CpuTracer {
 }
 
 impl CpuTracer {
+    /// Makes all that frames of the scene like this one need, its sky and its lens, and keeps it. Errors: as `Renderer::render`.
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+        let lens = scene.lens(&request.region)?;
+        let stars = self.stars.insert(scene.stars()?).clone();
+        self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request)).map(|_| ())
+    }
+
     /// The records of a frame, row by row. Errors: as `Scene::lens`.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let lens = scene.lens(&request.region)?;
@@ -104,7 +111,7 @@ impl<'a> Frame<'a> {
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
-        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels));
+        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels, KerrWorth::CPU));
         let source = |recorder| match tables {
             Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
             None => Source::Traced(recorder),

@@ -311,7 +311,7 @@ mod tests {
     use crate::physics::geodesic::wrap_angle;
     use crate::physics::trace::Settings;
     use crate::scene::observer::Lens;
-    use crate::scene::{Camera, LensTables, Motion, Region};
+    use crate::scene::{Camera, KerrWorth, LensTables, Motion, Region};
 
     /// Numbers in [0, 1): a fixed sequence (Knuth's multiplier, TAOCP 3.3.4).
     struct Sequence(u64);
@@ -430,7 +430,7 @@ mod tests {
         let lens = scene.lens(&REGION).unwrap();
         let mut cache = LensCache::default();
         let frame = &lens.observer.frame;
-        let lensing = scene.lensing(frame, 1);
+        let lensing = scene.lensing(frame, 1, KerrWorth::CPU);
         assert_ne!(lensing, Lensing::Traced);
         let tables = cache.tables(scene, frame, lensing).unwrap();
         let lookup = LookedUp::new(scene, Recorder::new(scene, &lens), tables);
@@ -532,7 +532,7 @@ mod tests {
         let mut cache = LensCache::default();
         let mut place = |scene: &Scene| {
             let frame = scene.lens(&REGION).unwrap().observer.frame;
-            match cache.tables(scene, &frame, scene.lensing(&frame, 1)).unwrap() {
+            match cache.tables(scene, &frame, scene.lensing(&frame, 1, KerrWorth::CPU)).unwrap() {
                 Tables::Schwarzschild(lens) => lens.family().r,
                 Tables::Kerr(lens) => {
                     lens.grid().direction(kerr::Branch::Outer, 0, 40.0).x + lens.grid().channels() as f64

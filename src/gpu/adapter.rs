@@ -96,6 +96,14 @@ pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
     list.into_iter().map(|found| found.adapter).collect()
 }
 
+/// Errors: UNSUPPORTED for GL without the feature `gl`.
+pub fn check_built(backend: Option<Backend>) -> Result<()> {
+    if backend == Some(Backend::Gl) && !cfg!(feature = "gl") {
+        return Err(Error::unsupported("this library was built without OpenGL (cargo feature `gl`)"));
+    }
+    Ok(())
+}
+
 /// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
 /// through the old one's adapters; devices in use keep theirs.
 pub fn forget_drivers() {
@@ -135,8 +143,11 @@ fn native(validation: bool) -> Found {
 }
 
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
-/// once.
+/// once. None without the feature `gl`.
 fn gl() -> Vec<Usable> {
+    if !cfg!(feature = "gl") {
+        return Vec::new();
+    }
     let search = || -> Result<Vec<Usable>> {
         let thread = GlThread::start()?;
         thread.run(|| {

@@ -2,6 +2,7 @@
 //! where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
 use super::frame_buffers::Written;
+use super::kernel_key::KernelKey;
 use super::kernels::{Kernels, Stage};
 use super::slots::{LIGHT, TextureKind};
 use super::{Device, Texture, uniform_stride};
@@ -164,17 +165,19 @@ impl BloomBuffers {
         Ok([view(&made.light), view(glare), made.smooth(), made.level()])
     }
 
-    pub fn stages(&self, device: &Device, kernels: &mut Kernels, bloom: &Bloom) -> Result<BloomStages> {
+    pub fn stages(&self, device: &Device, kernels: &Kernels, bloom: &Bloom) -> Result<BloomStages> {
         let made = self.made()?;
         let count = bloom.levels.len();
         let below = std::iter::once(&made.light).chain(&made.gathered);
         let gather = below.zip(&made.gathered).take(count).enumerate().map(|(index, (finer, cells))| {
-            if index == 0 && bloom.factor == 2 {
-                let group = [made.level(), view(finer), made.smooth(), view(cells)];
-                return kernels.gather_base(device)?.stage(device, &[&group]);
+            let key = gather_key(bloom, index);
+            let kernel = kernels.get(key)?;
+            match key {
+                KernelKey::GatherBase => {
+                    kernel.stage(device, &[&[made.level(), view(finer), made.smooth(), view(cells)]])
+                }
+                _ => kernel.stage(device, &[&[made.level(), view(finer), view(cells)]]),
             }
-            let kernel = kernels.gather(device, if index == 0 { bloom.factor } else { 2 }, index > 0)?;
-            kernel.stage(device, &[&[made.level(), view(finer), view(cells)]])
         });
         let gather = gather.collect::<Result<Vec<_>>>()?;
         let mut give_back = Vec::new();
@@ -184,10 +187,26 @@ impl BloomBuffers {
             let all = made.gathered.get(index).zip(above).zip(made.spread.get(index));
             let ((finer, coarser), spread) = all.ok_or_else(|| Error::internal("bloom without its grids"))?;
             let group = [made.level(), view(finer), view(coarser), made.smooth(), view(spread)];
-            give_back.push(kernels.give_back(device)?.stage(device, &[&group])?);
+            give_back.push(kernels.get(KernelKey::GiveBack)?.stage(device, &[&group])?);
         }
         let sizes = bloom.levels.iter().map(|level| level.size).collect();
         Ok(BloomStages { gather, give_back, sizes, stride: uniform_stride::<LevelUniform>(device) as u32 })
+    }
+}
+
+/// The kernels that spread light.
+pub fn kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
+    let count = bloom.levels.len();
+    let gather = (0..count).map(|index| gather_key(bloom, index));
+    gather.chain((1 < count).then_some(KernelKey::GiveBack))
+}
+
+/// The kernel that gathers light into the grid of a level.
+fn gather_key(bloom: &Bloom, level: usize) -> KernelKey {
+    match (level, bloom.factor) {
+        (0, 2) => KernelKey::GatherBase,
+        (0, factor) => KernelKey::Gather(factor, false),
+        _ => KernelKey::Gather(2, true),
     }
 }
 

@@ -172,16 +172,31 @@ impl Device {
     /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
     pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check()?;
+        match self.watched(work) {
+            (_, Some(error)) => Err(self.explain(from_wgpu(what, &error))),
+            (done, None) => self.check().map(|()| done),
+        }
+    }
+
+    /// [`Self::scoped`] for threads beside the one that uses the device: leaves the errors that come outside every call to that one,
+    /// and does not ask the device anew whether it is lost, for which work is submitted.
+    pub(super) fn beside<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+        self.check_known_loss()?;
+        match self.watched(work) {
+            (_, Some(error)) => Err(from_wgpu(what, &error)),
+            (done, None) => Ok(done),
+        }
+    }
+
+    /// Runs `work`, and what wgpu had against it.
+    fn watched<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
         let done = work(&self.raw);
         // What is missing for want of memory is not valid either: the cause first.
         let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
-        match errors.into_iter().rev().flatten().next() {
-            Some(error) => Err(self.explain(from_wgpu(what, &error))),
-            None => self.check().map(|()| done),
-        }
+        (done, errors.into_iter().rev().flatten().next())
     }
 
     /// [`Self::scoped`] for calls about windows, some of which panic. What goes wrong in them is `SurfaceLost`, if the device is not gone: not

@@ -5,7 +5,8 @@
 use super::bloom::LIGHT_BYTES;
 use super::export::{EXPORT_BYTES, imported};
 use super::frame_buffers::Size;
-use super::kernels::{FilmLook, Kernels, Look, PixelTarget, Source};
+use super::kernel_key::{FilmLook, KernelKey, Look, PixelTarget, Source, Variant};
+use super::kernels::Kernels;
 use super::lens_kerr::Wanted;
 use super::records::{Making, Shared};
 use super::refine::EdgeList;
@@ -15,15 +16,16 @@ use super::submission::{Submitted, pass_of};
 use super::tables::Tables;
 use super::tiles::{MEMORY, Plan};
 use super::uniforms::FrameUniform;
-use super::{GpuTracer, Texture, for_f32, kernels, variant};
+use super::{GpuTracer, Texture, for_f32, variant};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
+use crate::image::PixelFormat;
 use crate::physics::trace::Settings;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
-use crate::scene::{Lensing, Projection, Region, Scene, View};
+use crate::scene::{KerrWorth, Lensing, Projection, Region, Scene, View};
 use glam::DVec3;
 use std::collections::VecDeque;
 
@@ -131,6 +133,17 @@ impl GpuTracer {
         Ok(stats)
     }
 
+    /// Makes all that frames of the scene like this one need, in windows too, and keeps it. Errors: as `Renderer::render`.
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+        let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
+        if request.format == PixelFormat::Rgba8Srgb && !request.transparent {
+            keys.extend(self.set_up(scene, request, PixelTarget::Screen)?.kernels());
+        }
+        self.kernels.make_all(&keys)?;
+        // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as well.
+        self.render(scene, request, &mut |_, _, _| Ok(()), &mut |_| true).map(|_| ())
+    }
+
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as `Renderer::render`;
     /// the tables of lenses are then forgotten.
     pub fn begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
@@ -144,10 +157,11 @@ impl GpuTracer {
     fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
         let kind = match target {
             FrameTarget::Screen(_) => PixelTarget::Screen,
-            FrameTarget::Host if self.maps_pixels(scene) => PixelTarget::Rows,
-            FrameTarget::Host => PixelTarget::Packed,
+            FrameTarget::Host => self.host_pixels(scene),
         };
         let mut setup = self.set_up(scene, request, kind)?;
+        let needed = setup.kernels();
+        self.kernels.make_all(&needed)?;
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
@@ -171,11 +185,12 @@ impl GpuTracer {
         }
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
-        let stages = self.buffers.stages(&self.device, &mut self.kernels, tables, &setup, target, software)?;
+        let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
         let bloom = setup.bloom;
         let projection = setup.looks.look.projection;
         let request = *request;
+        self.anticipate(scene, &request, kind, needed);
         Ok(BegunFrame { stages, request, target: kind, samples, projection, source, steps, bloom, submitted: 0 })
     }
 
@@ -217,6 +232,11 @@ impl GpuTracer {
         self.buffers.forget();
     }
 
+    /// How pixels for the host's memory are put.
+    pub(super) fn host_pixels(&self, scene: &Scene) -> PixelTarget {
+        if self.maps_pixels(scene) { PixelTarget::Rows } else { PixelTarget::Packed }
+    }
+
     /// Whether kernels put pixels into the host's memory themselves, which hides the copy behind the tracing (a device of wgpu's runs one
     /// thing after another). Other interfaces than Vulkan may keep such memory out of kernels' reach, or reach it slowly.
     fn maps_pixels(&self, scene: &Scene) -> bool {
@@ -225,13 +245,14 @@ impl GpuTracer {
         self.device.maps_storage() && scene.quality.mapped_pixels.unwrap_or(pays)
     }
 
-    fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
+    pub(super) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height]);
-        let developed = FilmLook::new(&film, target);
+        let any_film = scene.quality.kernels_for_any_film.unwrap_or(!self.adapter.info.software);
+        let developed = if any_film { FilmLook::of_any(target) } else { FilmLook::new(&film, target) };
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,
@@ -262,7 +283,7 @@ impl GpuTracer {
         let pattern = scene.turbulence().is_some();
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
-        let source = match scene.lensing(&eye, pixels) {
+        let source = match scene.lensing(&eye, pixels, KerrWorth::GPU) {
             Lensing::Traced => Source::Traced,
             Lensing::Schwarzschild => Source::Schwarzschild { delay, moving },
             Lensing::Kerr => Source::Kerr { delay, pattern, moving, rest: false },
@@ -273,7 +294,7 @@ impl GpuTracer {
         let disk_u = scene.disk_u();
         Making {
             source,
-            variant: kernels::Variant {
+            variant: Variant {
                 azimuth: pattern,
                 projection: scene.camera.projection,
                 ..variant(scene, settings, inside)
@@ -314,12 +335,12 @@ impl GpuTracer {
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
-        let records = buffers.makers.stages(device, &mut self.kernels, &setup.making, &shared)?;
+        let records = buffers.makers.stages(device, &self.kernels, &setup.making, &shared)?;
         let group = buffers.makers.group(setup.making.source)?;
-        let take = |kernels: &mut Kernels, source| {
-            kernels.export(device, source, setup.looks.look)?.stage(device, &[&scene, &group, &exported])
+        let take = |kernels: &Kernels, source| {
+            kernels.get(KernelKey::export(source, setup.looks.look))?.stage(device, &[&scene, &group, &exported])
         };
-        let taking = Taking::new(&mut self.kernels, &setup.making, self.adapter.info.software, take)?;
+        let taking = Taking::new(&self.kernels, &setup.making, self.adapter.info.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;

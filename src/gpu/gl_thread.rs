@@ -4,7 +4,7 @@
 //! process. So whatever wgpu's GL is asked for, and whatever it made is dropped, happens here. Knows no scenes.
 
 use super::device::{Loss, panic_text};
-use super::{Adapter, GpuTracer};
+use super::{Adapter, GpuTracer, KernelWaits};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, FrameRequest, FrameStats, Progress, TileSink};
 use crate::scene::record::Record;
@@ -126,6 +126,16 @@ impl GlTracer {
                 let _ = answer.send(progress(fraction));
             }
         })
+    }
+
+    /// As [`GpuTracer::prepare`].
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+        self.call(|tracer| tracer.prepare(scene, request))
+    }
+
+    /// As [`GpuTracer::settled_waits`]. Errors: DEVICE_LOST.
+    pub fn settled_waits(&mut self) -> Result<KernelWaits> {
+        self.call(|tracer| Ok(tracer.settled_waits()))
     }
 
     /// As [`GpuTracer::trace_rays`].

@@ -1,6 +1,7 @@
 //! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk has changed, read
 //! by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels, no scene.
 
+use super::kernel_key::KernelKey;
 use super::kernels::{self, Kernels, Stage};
 use super::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind};
 use super::{Buffer, Device, Texture};
@@ -128,7 +129,7 @@ impl KerrTables {
     pub fn update(
         &mut self,
         device: &Device,
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         frame: &LocalFrame,
         wanted: &Wanted,
         frame_uniform: wgpu::BindingResource<'_>,
@@ -153,10 +154,10 @@ impl KerrTables {
         let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
         let trace_nodes = match current {
             Some(_) => None,
-            None => Some(kernels.trace_kerr_nodes(device, wanted.delay, wanted.pattern)?.stage(device, &[&shared])?),
+            None => Some(kernels.get(KernelKey::KerrNodes { delay: wanted.delay, pattern: wanted.pattern })?.stage(device, &[&shared])?),
         };
         let all = [shared.as_slice(), &[texture(&flags)]].concat();
-        let flag_cells = kernels.flag_kerr_cells(device, wanted.pattern)?.stage(device, &[&all])?;
+        let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: wanted.pattern })?.stage(device, &[&all])?;
         Ok(Some(KerrStages { trace_nodes, flag_cells, size: [COLUMNS, uniform.rows[0] + uniform.rows[1]] }))
     }
 

@@ -1,7 +1,8 @@
 //! The tables of a spin-0 lens on the device: built by compute passes when the eye's radius has changed, read by
 //! lens_schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
 
-use super::kernels::{self, Kernels, Stage};
+use super::kernel_key::{KernelKey, LENS_GROUP};
+use super::kernels::{Kernels, Stage};
 use super::slots::{LENS_COLUMNS, LENS_ROWS, TextureKind};
 use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
@@ -88,7 +89,7 @@ impl SchwarzschildTables {
     pub fn update(
         &mut self,
         device: &Device,
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         frame: &LocalFrame,
         delay: bool,
         frame_uniform: wgpu::BindingResource<'_>,
@@ -112,12 +113,12 @@ impl SchwarzschildTables {
         let texture = wgpu::BindingResource::TextureView;
         let lens = made.uniform.as_entire_binding();
         let find_ends = kernels
-            .find_schwarzschild_ends(device)?
+            .get(KernelKey::SchwarzschildEnds)?
             .stage(device, &[&[frame_uniform.clone(), lens.clone(), texture(&ends)]])?;
         let fill_columns = kernels
-            .fill_schwarzschild_columns(device, delay)?
+            .get(KernelKey::SchwarzschildColumns { delay })?
             .stage(device, &[&[frame_uniform, lens, texture(&ends), texture(&swept), texture(&u), texture(&delays)]])?;
-        Ok(Some(LensStages { find_ends, fill_columns, groups: [nodes.div_ceil(kernels::LENS_GROUP), BRANCHES] }))
+        Ok(Some(LensStages { find_ends, fill_columns, groups: [nodes.div_ceil(LENS_GROUP), BRANCHES] }))
     }
 
     /// After a submission that failed, nobody knows what the tables hold.

@@ -5,11 +5,14 @@ mod adapter;
 mod bindings;
 mod bloom;
 mod buffer;
+mod compilers;
 mod device;
 mod export;
 mod frame;
 mod frame_buffers;
+mod frame_kernels;
 mod gl_thread;
+mod kernel_key;
 mod kernels;
 mod lens_kerr;
 mod lens_schwarzschild;
@@ -33,11 +36,12 @@ mod timer;
 mod uniforms;
 mod wgsl;
 
-pub use adapter::{Adapter, Search, adapters, forget_drivers};
+pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
 pub use buffer::Buffer;
 pub use device::{Device, Loss};
 pub use frame::{BegunFrame, FrameTarget, Recording};
 pub use gl_thread::GlTracer;
+pub use kernels::KernelWaits;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
@@ -53,7 +57,8 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::physics::trace::Settings;
 use crate::renderer::Backend;
 use crate::scene::{Method, Projection, Scene};
-use kernels::{Kernels, Variant};
+use kernel_key::{KernelKey, Variant};
+use kernels::Kernels;
 use std::sync::Arc;
 use tables::Tables;
 
@@ -67,6 +72,8 @@ pub struct GpuTracer {
     adapter: Arc<Adapter>,
     device: Arc<Device>,
     kernels: Kernels,
+    /// The kernels of the last frame that was begun.
+    needed: Vec<KernelKey>,
     /// Made when light is first shaded.
     tables: Option<Tables>,
     buffers: frame_buffers::FrameBuffers,
@@ -74,23 +81,34 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). Pipelines and sky follow with the
-    /// first frame. Errors: as `Device::open`.
+    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are being
+    /// made from now on, its sky follows with it. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
-        let device = Device::open(&adapter)?;
-        let mut kernels = Kernels::default();
-        if adapter.info.backend == Backend::Gl {
+        let device = Arc::new(Device::open(&adapter)?);
+        let gl = adapter.info.backend == Backend::Gl;
+        // All of a GL device shares one context, which two threads cannot use at once.
+        let kernels = Kernels::new(device.clone(), !gl);
+        if gl {
             // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now.
-            kernels.count(&device).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
+            kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         }
-        Ok(Self {
+        let mut tracer = Self {
             adapter: Arc::new(adapter),
-            device: Arc::new(device),
+            device,
             kernels,
+            needed: Vec::new(),
             tables: None,
             buffers: Default::default(),
             ray_buffers: Default::default(),
-        })
+        };
+        tracer.expect_first_frame();
+        Ok(tracer)
+    }
+
+    /// For tests: waits until the pipelines that are made in the background are there, and tells how often frames found some missing.
+    pub fn settled_waits(&self) -> KernelWaits {
+        self.kernels.settle();
+        self.kernels.waits()
     }
 
     pub fn adapter(&self) -> &Arc<Adapter> {

@@ -3,10 +3,12 @@
 use super::device::Device;
 use crate::error::Result;
 use std::collections::HashMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 /// The modules of a device by their source, so that pipelines which differ in constants share one translation.
-pub(super) type Modules = Mutex<HashMap<(String, Loops), wgpu::ShaderModule>>;
+/// Each has a lock of its own, so that several are translated at a time.
+pub(super) type Modules = Mutex<HashMap<(String, Loops), Arc<Mutex<Option<wgpu::ShaderModule>>>>>;
 
 /// What keeps the loops of a shader finite, which drivers rely on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -47,14 +49,16 @@ pub struct Kernel<'a> {
 }
 
 impl Device {
-    /// Compiles a kernel; the driver may put its own part off to the first dispatch.
+    /// Compiles a kernel; the driver may put its own part off to the first dispatch. Several threads may, whoever uses the device meanwhile.
     ///
     /// Errors: `Internal` with wgpu's message for source that is not valid, an unknown entry point or constant, or a layout
-    /// that does not fit; `OutOfMemory`; `DeviceLost`.
+    /// that does not fit, or when the device was lost a moment ago ([`Device::explain`] tells); `OutOfMemory`; `DeviceLost`.
     pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
+        let started = Instant::now();
         let module = self.module(kernel)?;
+        let translated = started.elapsed();
         let groups = kernel.groups.iter().map(|group| Some(*group)).collect::<Vec<_>>();
-        self.scoped(kernel.label, |device| {
+        let pipeline = self.beside(kernel.label, |device| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(kernel.label),
                 bind_group_layouts: &groups,
@@ -71,28 +75,35 @@ impl Device {
                 },
                 cache: None,
             })
-        })
+        })?;
+        log::debug!(
+            "kernel {}: module {} ms, pipeline {} ms",
+            kernel.label,
+            translated.as_millis(),
+            (started.elapsed() - translated).as_millis()
+        );
+        Ok(pipeline)
     }
 
     fn module(&self, kernel: &Kernel<'_>) -> Result<wgpu::ShaderModule> {
         let key = (kernel.source.join("\n"), kernel.loops);
-        let mut modules = self.modules.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(module) = modules.get(&key) {
+        let source = key.0.clone();
+        let place = self.modules.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
+        let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(module) = &*place {
             return Ok(module.clone());
         }
-        let descriptor = wgpu::ShaderModuleDescriptor {
-            label: Some(kernel.label),
-            source: wgpu::ShaderSource::Wgsl(key.0.as_str().into()),
-        };
+        let descriptor =
+            wgpu::ShaderModuleDescriptor { label: Some(kernel.label), source: wgpu::ShaderSource::Wgsl(source.into()) };
         let checks = wgpu::ShaderRuntimeChecks {
             force_loop_bounding: kernel.loops == Loops::Counted,
             ..wgpu::ShaderRuntimeChecks::checked()
         };
-        let module = self.scoped(kernel.label, |device| {
+        let module = self.beside(kernel.label, |device| {
             // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches for them.
             unsafe { device.create_shader_module_trusted(descriptor, checks) }
         })?;
-        modules.insert(key, module.clone());
+        *place = Some(module.clone());
         Ok(module)
     }
 }

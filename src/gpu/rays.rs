@@ -1,6 +1,7 @@
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced in f32; but for
 //! eyes so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
 
+use super::kernel_key::KernelKey;
 use super::{Buffer, GpuTracer, Readback, ray_settings, variant};
 use crate::error::{Error, Result};
 use crate::physics::geodesic::{Constants, State, wrap_angle};
@@ -106,7 +107,7 @@ impl GpuTracer {
     fn run(&mut self, scene: &Scene, starts: &[RayStart]) -> Result<Vec<RayEnd>> {
         let device = &self.device;
         let settings = ray_settings(scene);
-        let compiled = self.kernels.rays(device, variant(scene, &settings, true))?;
+        let compiled = self.kernels.get(KernelKey::Rays(variant(scene, &settings, true)))?;
         if self.ray_buffers.made.is_none() {
             let bytes = |size: usize| (CHUNK * size) as u64;
             self.ray_buffers.made = Some([

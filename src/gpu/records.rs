@@ -1,7 +1,8 @@
 //! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens. Gives shading
 //! its group 1 and knows nothing else of it.
 
-use super::kernels::{Kernels, Source, Stage, Variant};
+use super::kernel_key::{KernelKey, Source, Variant};
+use super::kernels::{Kernels, Stage};
 use super::lens_kerr::{KerrStages, KerrTables, Wanted};
 use super::lens_schwarzschild::{LensStages, SchwarzschildTables};
 use super::slots::{TRACED, TextureKind};
@@ -74,7 +75,7 @@ impl RecordMakers {
     pub fn stages(
         &mut self,
         device: &Device,
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         making: &Making,
         shared: &Shared<'_>,
     ) -> Result<RecordStages> {
@@ -204,7 +205,7 @@ impl TracedRecords {
     fn stages(
         &self,
         device: &Device,
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         variant: Variant,
         shared: &Shared<'_>,
     ) -> Result<TraceStages> {
@@ -212,9 +213,9 @@ impl TracedRecords {
         let Shared { frame, pass, step_sum } = shared.clone();
         Ok(TraceStages {
             trace: kernels
-                .pixels(device, variant)?
+                .get(KernelKey::Pixels(variant))?
                 .stage(device, &[&[frame, pass.clone(), sky, meta.clone(), disk]])?,
-            count: kernels.count(device)?.stage(device, &[&[pass, meta, step_sum]])?,
+            count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
         })
     }
 }

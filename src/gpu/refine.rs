@@ -1,7 +1,8 @@
 //! The second look at pixels that edges run through: their list on the device, and the kernels that go over it (edges.wgsl,
 //! refine.wgsl). Knows kernels and their groups, no records and no light.
 
-use super::kernels::{FilmLook, Kernels, Look, Refined, Source, Stage, Variant};
+use super::kernel_key::{FilmLook, KernelKey, Look, Refined, Source, Variant};
+use super::kernels::{Kernels, Stage};
 use super::tiles::MAX_BATCH;
 use super::{Buffer, Device};
 use crate::error::{Error, Result};
@@ -58,13 +59,13 @@ impl Refining {
     /// `shared`: groups 0 and 1, and without `film` 2, as those of the kernels that shaded the pixels.
     pub fn new(
         device: &Device,
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         (source, variant): (Source, Variant),
         (look, film): (Look, Option<FilmLook>),
         shared: &[&[wgpu::BindingResource<'_>]],
         software: bool,
     ) -> Result<Self> {
-        let stage = kernels.refine(device, Refined { source, variant }, look, film)?.stage(device, shared)?;
+        let stage = kernels.get(KernelKey::refine(Refined { source, variant }, look, film))?.stage(device, shared)?;
         Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
     }
 

@@ -1,6 +1,6 @@
 //! What kernels bind: kinds of bindings, the formats of textures as the shaders declare them, and groups that kernels share.
 
-use super::kernels::Source;
+use super::kernel_key::Source;
 
 /// What a binding is.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

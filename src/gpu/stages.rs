@@ -5,7 +5,8 @@ use super::Device;
 use super::bloom::BloomStages;
 use super::frame::{FrameTarget, Setup};
 use super::frame_buffers::{FrameBuffers, Written};
-use super::kernels::{Compiled, Kernels, Source, Stage};
+use super::kernel_key::{KernelKey, Source};
+use super::kernels::{Compiled, Kernels, Stage};
 use super::records::{Making, RecordStages, Shared};
 use super::refine::Refining;
 use super::steps::Step;
@@ -74,10 +75,10 @@ pub enum Put {
 impl Taking {
     /// `take` makes the stage that takes the records of a source.
     pub fn new(
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         making: &Making,
         software: bool,
-        take: impl Fn(&mut Kernels, Source) -> Result<Stage>,
+        take: impl Fn(&Kernels, Source) -> Result<Stage>,
     ) -> Result<Self> {
         Ok(Self {
             all: take(kernels, making.source)?,
@@ -98,7 +99,7 @@ impl FrameBuffers {
     pub fn stages(
         &mut self,
         device: &Device,
-        kernels: &mut Kernels,
+        kernels: &Kernels,
         tables: &Tables,
         setup: &Setup,
         target: FrameTarget<'_>,
@@ -116,17 +117,17 @@ impl FrameBuffers {
         let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let shared = [frame, pass.clone(), light, cells, milky_way, map];
-        let shades = |kernels: &mut Kernels, target: &[wgpu::BindingResource<'_>]| {
-            let take = |kernels: &mut Kernels, source| {
+        let shades = |kernels: &Kernels, target: &[wgpu::BindingResource<'_>]| {
+            let take = |kernels: &Kernels, source| {
                 let compiled = match looks.several_samples {
-                    true => kernels.shade_sample(device, source, looks.look)?,
-                    false => kernels.shade_only(device, source, looks.look, looks.film)?,
+                    true => kernels.get(KernelKey::shade_sample(source, looks.look))?,
+                    false => kernels.get(KernelKey::shade_only(source, looks.look, looks.film))?,
                 };
                 let groups: [&[_]; 3] = [&shared, &records, target];
                 compiled.stage(device, if looks.several_samples { &groups } else { &groups[..2] })
             };
             let making = &setup.making;
-            let refine = |kernels: &mut Kernels| {
+            let refine = |kernels: &Kernels| {
                 let film = (!looks.several_samples).then_some(looks.film);
                 let (source, groups) = (making.rest().unwrap_or(making.source), [&shared[..], &records, target]);
                 let groups = if film.is_some() { &groups[..2] } else { &groups };
@@ -136,8 +137,8 @@ impl FrameBuffers {
             Ok::<_, Error>(Shades { taking: Taking::new(kernels, making, software, take)?, refining })
         };
         let puts = match looks.several_samples {
-            true => kernels.develop(device, looks.film, None)?,
-            false => kernels.shade_only(device, setup.making.source, looks.look, looks.film)?,
+            true => kernels.get(KernelKey::Develop(looks.film, None))?,
+            false => kernels.get(KernelKey::shade_only(setup.making.source, looks.look, looks.film))?,
         };
         let shading = if looks.several_samples {
             let develop =
@@ -152,7 +153,7 @@ impl FrameBuffers {
         } else {
             Shading::Only(shades(kernels, &[])?)
         };
-        let edges = self.edges.group(device, &kernels.edge_list(device)?)?;
+        let edges = self.edges.group(device, &kernels.edge_list()?)?;
         let group = |puts: &Compiled, film: &Written, pixels| {
             device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels])
         };
@@ -165,7 +166,7 @@ impl FrameBuffers {
         };
         let (put, glare) = match (&setup.bloom, looks.developed) {
             (Some(bloom), Some(look)) => {
-                let develops = kernels.develop(device, look, Some(bloom.factor))?;
+                let develops = kernels.get(KernelKey::Develop(look, Some(bloom.factor)))?;
                 let glare = GlareStages {
                     bloom: self.bloom.stages(device, kernels, bloom)?,
                     develop: develops.stage(device, &[slice::from_ref(&pass), &self.bloom.group(bloom)?])?,

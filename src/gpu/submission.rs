@@ -2,7 +2,8 @@
 
 use super::frame::{BegunFrame, Recording};
 use super::frame_buffers::FrameBuffers;
-use super::kernels::{PixelTarget, check_groups, pixel_groups};
+use super::kernel_key::PixelTarget;
+use super::kernels::{check_groups, pixel_groups};
 use super::records::STEP_SUM;
 use super::uniforms::PassUniform;
 use super::{Copied, Device, GpuTimer, timer, uniform_stride};

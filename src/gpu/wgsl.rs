@@ -1,6 +1,6 @@
 //! The WGSL of every kernel, joined from the files of shaders/. Knows neither bindings nor devices.
 
-use super::kernels::{FilmLook, PixelTarget, Source};
+use super::kernel_key::{FilmLook, PixelTarget, Source};
 use crate::sky;
 
 const MATH: &str = include_str!("../../shaders/math.wgsl");

@@ -23,7 +23,7 @@ pub use disk::Disk;
 pub use film::{Film, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;
-pub use lensing::{LensTables, Lensing};
+pub use lensing::{KerrWorth, LensTables, Lensing};
 pub use quality::{Method, Quality};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 pub use sky::Sky;

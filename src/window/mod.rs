@@ -1,14 +1,16 @@
 //! Windows of the host as targets of frames. A [`Surface`] shows a renderer's frames in one window: traced and presented by the same
 //! GPU device, or, where that cannot present, uploaded to one that can, or put there as memory. Hosts' handles come in as a
-//! [`NativeWindow`]; nothing here knows C, or what a frame shows.
+//! [`NativeWindow`]; nothing here knows C, or what a frame shows. Without the cargo feature `window` every window is
+//! UNSUPPORTED.
 
 mod claim;
+#[cfg_attr(not(feature = "window"), path = "memory_absent.rs")]
 mod memory;
 mod native;
 mod surface;
-#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod wayland;
-#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod x11;
 
 pub use native::{Handles, NativeWindow};
@@ -40,11 +42,11 @@ pub trait Pacer: Send {
 /// A window of the host's that was looked at and found there, with what it takes to present to it.
 pub struct Window {
     native: NativeWindow,
-    #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+    #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
     x11: Option<x11::X11Window>,
 }
 
-#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+#[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 impl Window {
     /// Errors: INVALID_ARGUMENT for a window that is not there; UNSUPPORTED for a kind that this platform does not have.
     pub fn open(native: NativeWindow) -> Result<Self> {
@@ -94,9 +96,9 @@ impl Window {
     }
 }
 
-#[cfg(not(all(unix, not(target_vendor = "apple"), not(target_os = "android"))))]
+#[cfg(not(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android"))))]
 impl Window {
-    /// Errors: UNSUPPORTED for a kind that this platform does not have.
+    /// Errors: UNSUPPORTED for a kind that this platform does not have, for all without the feature `window`.
     pub fn open(native: NativeWindow) -> Result<Self> {
         native.check_platform()?;
         Ok(Self { native })

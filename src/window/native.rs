@@ -56,8 +56,11 @@ impl NativeWindow {
         }
     }
 
-    /// Errors: UNSUPPORTED for a kind that this platform does not have.
+    /// Errors: UNSUPPORTED for a kind that this platform does not have, for all without the feature `window`.
     pub fn check_platform(&self) -> Result<()> {
+        if !cfg!(feature = "window") {
+            return Err(Error::unsupported("this library was built without windows (cargo feature `window`)"));
+        }
         let here = match self {
             Self::Xlib { .. } | Self::Xcb { .. } | Self::Wayland { .. } => {
                 cfg!(all(unix, not(target_vendor = "apple"), not(target_os = "android")))
@@ -170,6 +173,7 @@ mod tests {
             if w.a_native_window == pointer(0x70)));
     }
 
+    #[cfg(feature = "window")]
     #[test]
     fn kinds_of_other_platforms_are_refused_by_name() {
         let refused = all().iter().filter_map(|window| window.check_platform().err()).collect::<Vec<_>>();

@@ -3,13 +3,14 @@
 #![allow(dead_code)]
 
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 pub const HEADER: &str = include_str!("../../include/bhr.h");
 
-pub fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+/// The repository as cargo names it when it runs the test: it may have been moved since the test was built.
+pub fn root() -> PathBuf {
+    std::env::var_os("CARGO_MANIFEST_DIR").expect("cargo runs the tests").into()
 }
 
 /// `text` without comments and preprocessor lines.
@@ -45,7 +46,8 @@ pub fn constants(text: &str) -> BTreeSet<String> {
 
 /// A folder of the calling test's own, inside cargo's target folder.
 pub fn scratch(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let deps = std::env::current_exe().unwrap();
+    let folder = deps.ancestors().nth(3).unwrap().join("tmp").join(name);
     std::fs::create_dir_all(&folder).unwrap();
     folder
 }

@@ -16,7 +16,7 @@ panel_open() {
 
 # Puts the window of a program that stays open into $panel_window.
 panel_find() {
-    panel_window=$(xdotool search --pid "$panel_pid" --name 'bhr: panel' | head -n 1)
+    read -r panel_window < <(xdotool search --pid "$panel_pid" --name 'bhr: panel')
     [ -n "$panel_window" ] || panel_complain 'it has no window'
 }
 

@@ -23,7 +23,7 @@ viewer_window_of() { xdotool search --onlyvisible --pid "$1"; }
 viewer_says() { grep -q -e "$1" "$viewer_log"; }
 viewer_lives() { kill -0 "$viewer_pid" 2>/dev/null || { echo "the viewer is gone"; return 1; }; }
 viewer_title() { xdotool getwindowname "$viewer_window"; }
-viewer_title_says() { viewer_title | grep -q -e "$1"; }
+viewer_title_says() { grep -q -e "$1" <<<"$(viewer_title)"; }
 
 # viewer_open OPTIONS...: starts it in the background in a folder of its own, waits for its first frames and puts the
 # mouse, and so the keys, over its window. Sets viewer_pid, viewer_window, viewer_folder.

@@ -1,0 +1,106 @@
+//! Pipelines are there before a frame needs them: frames list all that they run, `prepare` leaves nothing to wait for, and what is a
+//! host's likely next change is made in the background.
+
+use bhr::image::{ImageMut, PixelFormat, memory::Layout};
+use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::scene::{LensTables, Method, Motion, Projection, Scene, ToneMap, View};
+
+const SIZE: [u32; 2] = [96, 64];
+
+fn renderer() -> Renderer {
+    let mut renderer =
+        Renderer::new(RendererOptions { backend: Some(Backend::Vulkan), ..Default::default() }).expect("a Vulkan driver");
+    renderer.scene.quality.lens_tables = LensTables::Always;
+    renderer
+}
+
+fn render(renderer: &mut Renderer, format: PixelFormat) -> Vec<u8> {
+    let layout = Layout::packed(format, SIZE[0], SIZE[1]);
+    let mut pixels = vec![0; SIZE[0] as usize * SIZE[1] as usize * format.bytes_per_pixel()];
+    renderer.render(&mut ImageMut::new(layout, &mut pixels).unwrap(), false, None, &mut |_| true).unwrap();
+    pixels
+}
+
+/// How many pipelines were missing when frames began, and how many more while they were bound.
+fn missing(renderer: &Renderer) -> [u64; 2] {
+    let waits = renderer.settled_waits().expect("a GPU");
+    [waits.waits, waits.late]
+}
+
+type Change = fn(&mut Scene);
+
+/// One of each kind of change that a host can make.
+const CHANGES: [Change; 14] = [
+    |_| (),
+    |scene| scene.hole.spin = 0.9,
+    |scene| scene.disk.as_mut().unwrap().turbulence = 1.0,
+    |scene| scene.film.bloom = 0.3,
+    |scene| scene.quality.samples_per_pixel = 3,
+    |scene| scene.film.bloom = 0.0,
+    |scene| scene.quality.lens_tables = LensTables::Never,
+    |scene| scene.quality.method = Method::Rk4,
+    |scene| scene.hole.spin = 0.0,
+    |scene| scene.quality.samples_per_pixel = 1,
+    |scene| scene.camera.projection = Projection::Fisheye,
+    |scene| scene.camera.motion = Motion::FreeFall,
+    |scene| scene.view = View::Redshift,
+    |scene| scene.disk = None,
+];
+
+#[test]
+fn frames_list_every_kernel_that_they_run() {
+    let mut renderer = renderer();
+    for (index, change) in CHANGES.iter().enumerate() {
+        change(&mut renderer.scene);
+        for mapped in [false, true] {
+            renderer.scene.quality.mapped_pixels = Some(mapped);
+            render(&mut renderer, PixelFormat::Rgba8Srgb);
+            assert_eq!(missing(&renderer)[1], 0, "change {index}, mapped {mapped}");
+        }
+    }
+}
+
+#[test]
+fn after_prepare_frames_wait_for_no_pipeline() {
+    let mut renderer = renderer();
+    for (index, change) in CHANGES.iter().enumerate().filter(|(index, _)| [0, 3, 4, 7].contains(index)) {
+        change(&mut renderer.scene);
+        renderer.prepare(PixelFormat::Rgba8Srgb, SIZE, false, None).unwrap();
+        let before = missing(&renderer);
+        render(&mut renderer, PixelFormat::Rgba8Srgb);
+        assert_eq!(missing(&renderer), before, "change {index}");
+    }
+}
+
+#[test]
+fn what_a_host_changes_next_is_made_in_the_background() {
+    let mut renderer = renderer();
+    render(&mut renderer, PixelFormat::Rgba8Srgb);
+    let before = missing(&renderer);
+    for change in [CHANGES[1], CHANGES[3], |scene: &mut Scene| scene.view = View::Order] {
+        change(&mut renderer.scene);
+        render(&mut renderer, PixelFormat::Rgba8Srgb);
+        assert_eq!(missing(&renderer), before);
+    }
+}
+
+/// On hardware one kernel serves all films; on software drivers each film has its own. Their pixels are the same.
+#[test]
+fn a_kernel_for_any_film_puts_the_same_bytes() {
+    let mut renderer = renderer();
+    let mut compare = |scene: Change, format| {
+        scene(&mut renderer.scene);
+        let [own, any] = [false, true].map(|any| {
+            renderer.scene.quality.kernels_for_any_film = Some(any);
+            render(&mut renderer, format)
+        });
+        assert!(own == any, "{format:?}, {:?}, {:?}", renderer.scene.film.tone_map, renderer.scene.view);
+    };
+    compare(|_| (), PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Bgra8Srgb);
+    compare(|scene| scene.film.tone_map = ToneMap::None, PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.quality.mapped_pixels = Some(true), PixelFormat::Rgba16F);
+    compare(|_| (), PixelFormat::Rgba32F);
+    compare(|scene| scene.view = View::Redshift, PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.view = View::Order, PixelFormat::R32F);
+}

@@ -1,0 +1,96 @@
+# needs.sh -- what the tests need of the machine: finding it, and installing it on Debian and Ubuntu. Sourced by
+# tests/run after lib.sh; runs no test. Its functions answer by their exit status, or print the Debian packages of what
+# is missing.
+# shellcheck shell=bash
+
+# No pipe into grep -q, here or in any script: grep ends at its first match, what feeds it is killed by SIGPIPE as soon
+# as it has more to say than a pipe holds, and pipefail makes a failure of that.
+
+# has_library NAME: the dynamic linker knows the library.
+has_library() { [[ $(ldconfig -p 2>/dev/null) == *"$1"* ]]; }
+has_vulkan_loader() { has_library libvulkan.so.1; }
+has_software_gl() {
+    has_library libEGL.so.1 &&
+        { compgen -G '/usr/lib/*/dri/swrast_dri.so' || compgen -G '/usr/lib/*/libgallium*.so'; } >/dev/null
+}
+has_vulkan_driver() { [ -n "${VK_DRIVER_FILES:-}${VK_ICD_FILENAMES:-}" ] || lavapipe_manifest >/dev/null; }
+# compiles COMPILER LANGUAGE HEADER...
+compiles() {
+    local compiler=$1 language=$2
+    shift 2
+    { printf '#include <%s>\n' "$@" && echo 'int main(void) { return 0; }'; } |
+        "$compiler" -x "$language" - -o "$scratch/probe" 2>/dev/null
+}
+c_compiles() { compiles cc c stdio.h; }
+cxx_compiles() { compiles c++ c++ cstdio; }
+valgrind_works() { c_compiles && valgrind --quiet --error-exitcode=9 "$scratch/probe" 2>/dev/null; }
+
+has_validation() { compgen -G '/usr/share/vulkan/explicit_layer.d/VkLayer_khronos_validation*.json' >/dev/null; }
+# missing PACKAGE COMMAND...: the package, unless all of these commands are there.
+missing() {
+    local package=$1 command
+    shift
+    for command; do
+        command -v "$command" >/dev/null || { printf '%s\n' "$package" && return; }
+    done
+}
+
+# What windows are made and looked at with: the Debian packages of what is missing.
+missing_window_packages() {
+    missing xvfb Xvfb
+    missing weston weston
+    missing xdotool xdotool
+    missing imagemagick import identify compare convert
+    missing pkg-config pkg-config
+    compiles cc c X11/Xlib.h || printf '%s\n' libx11-dev
+    compiles cc c xcb/xcb.h || printf '%s\n' libxcb1-dev
+    compiles cc c X11/Xlib.h X11/extensions/Xrandr.h || printf '%s\n' libxrandr-dev
+    compiles cc c GLFW/glfw3.h || printf '%s\n' libglfw3-dev
+    compiles cc c SDL2/SDL.h || printf '%s\n' libsdl2-dev
+    compiles c++ c++ GL/gl.h || printf '%s\n' libgl-dev
+    compiles c++ c++ imgui/imgui.h || printf '%s\n' libimgui-dev
+    has_validation || printf '%s\n' vulkan-validationlayers
+}
+
+# The Debian packages of what is missing, one a line.
+missing_packages() {
+    c_compiles || printf '%s\n' gcc libc6-dev
+    cxx_compiles || printf '%s\n' g++
+    command -v cmake >/dev/null && command -v make >/dev/null || printf '%s\n' cmake make
+    valgrind_works || printf '%s\n' valgrind libc6-dbg
+    has_vulkan_loader || printf '%s\n' libvulkan1
+    has_vulkan_driver || printf '%s\n' mesa-vulkan-drivers
+    has_software_gl || printf '%s\n' libegl1 libgl1-mesa-dri
+    missing_window_packages
+}
+
+install_missing() {
+    local packages as_root=()
+    mapfile -t packages < <(missing_packages)
+    [ ${#packages[@]} -gt 0 ] || return 0
+    local advice="sudo apt-get update && sudo apt-get install --no-install-recommends ${packages[*]}"
+    command -v apt-get >/dev/null || stop "Missing here, by their Debian names: ${packages[*]}"
+    if [ "$(id -u)" -ne 0 ]; then
+        sudo -n true 2>/dev/null || stop "Packages are missing, and sudo asks for a password here. Run:" "    $advice"
+        as_root=(sudo -n)
+    fi
+    printf 'Installing %s\n' "${packages[*]}"
+    "${as_root[@]}" apt-get update -qq &&
+        "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+            apt-get install -y -qq --no-install-recommends "${packages[@]}" >"$scratch/apt" 2>&1 || {
+        tail -n 30 -- "$scratch/apt"
+        stop "The installation failed. Run:" "    $advice"
+    }
+    mapfile -t packages < <(missing_packages)
+    [ ${#packages[@]} -eq 0 ] || stop "Still missing after the installation: ${packages[*]}"
+}
+
+need_rust() {
+    command -v cargo >/dev/null || stop "Rust is missing (cargo was not found). Get it from https://rustup.rs"
+    local part
+    for part in fmt clippy; do
+        cargo "$part" --version >/dev/null 2>&1 && continue
+        rustup component add rustfmt clippy ||
+            stop "cargo $part is missing. Run:" "    rustup component add rustfmt clippy"
+    done
+}
