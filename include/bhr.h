@@ -163,8 +163,8 @@ typedef int32_t BhrLogLevel;
  * for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
  * whichever thread the call runs, or on a thread of the library's that works for the call, which waits; one from
  * another thread goes to every context's callback. It may therefore run on several threads at once. It must not throw,
- * unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. None runs after
- * bhr_context_destroy has returned.
+ * unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads'
+ * calls on other contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
  */
 typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
 

@@ -8,10 +8,12 @@
 //! - [`window`]: the host's windows as targets of frames.
 //! - `thread_scope`: what the library's threads take over from the threads that they work for.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
+//! - `deferred`: below all: what waits until a thread holds no lock of the process.
 
 #[doc(hidden)]
 pub mod capi;
 pub mod cpu;
+mod deferred;
 pub mod error;
 pub mod film;
 pub mod gpu;

@@ -1,9 +1,13 @@
 //! The device layer of the GPU tracer on a real adapter; lavapipe will do. Without a Vulkan adapter these tests fail.
 
 use bhr::error::{ErrorKind, Result};
-use bhr::gpu::{Adapter, Buffer, Device, GpuTimer, Kernel, Loops, Readback, Search, adapters, read_time};
-use bhr::renderer::Backend;
-use std::time::Instant;
+use bhr::gpu::{
+    Adapter, Buffer, Device, GpuTimer, GpuTracer, Kernel, Loops, Readback, Search, adapters, forget_drivers, read_time,
+};
+use bhr::image::PixelFormat;
+use bhr::renderer::{Backend, FrameRequest, Tile};
+use bhr::scene::{Region, Scene};
+use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
 
 const DOUBLE: &str = "
@@ -364,12 +368,182 @@ fn a_device_lost_during_a_readback_is_an_error() {
     drop(readback);
 }
 
+/// wgpu frees all memory of a device that has ended, on whichever thread polls it next.
+#[test]
+fn memory_that_is_being_read_stays_when_the_device_ends() {
+    let device = device();
+    let size = 64 << 20;
+    let source = device.buffer("source", size, BufferUsages::COPY_SRC).unwrap();
+    let mut encoder = device.encoder("readback").unwrap();
+    let copied = Readback::new().copy(&device, &mut encoder, &source, size).unwrap();
+    let submission = device.submit(encoder).unwrap();
+    let (reading, begun) = std::sync::mpsc::channel();
+    let read = std::thread::scope(|scope| {
+        let of_end = submission.clone();
+        let device = &device;
+        let ending = scope.spawn(move || {
+            begun.recv().unwrap();
+            device.scoped("destroy", |d| d.destroy()).unwrap();
+            device.is_done(&of_end)
+        });
+        let read = copied.read(device, &submission, |bytes| {
+            reading.send(()).unwrap();
+            let end = Instant::now() + Duration::from_millis(300);
+            let mut sum = 0;
+            while Instant::now() < end {
+                sum += bytes.iter().step_by(1024).map(|byte| u64::from(*byte)).sum::<u64>();
+            }
+            Ok(sum)
+        });
+        assert_eq!(ending.join().unwrap().unwrap_err().kind, ErrorKind::DeviceLost);
+        read
+    });
+    assert_eq!(read.unwrap(), 0);
+}
+
+/// Pixels are taken in bands, and a device may end between two of them.
+#[test]
+fn a_frame_whose_device_ends_while_it_is_copied_is_lost() {
+    let mut tracer = GpuTracer::new(adapter()).unwrap();
+    let device = tracer.device();
+    // More than a band: 24 MB.
+    let (width, height) = (1500, 1000);
+    let request = FrameRequest {
+        width,
+        height,
+        region: Region { full_width: width, full_height: height, x: 0, y: 0 },
+        format: PixelFormat::Rgba32F,
+        transparent: false,
+    };
+    let scene = Scene { disk: None, ..Scene::default() };
+    let (copying, begun) = std::sync::mpsc::channel();
+    let (ended, end) = std::sync::mpsc::channel();
+    let mut taken = 0;
+    let rendered = std::thread::scope(|scope| {
+        let device = &device;
+        scope.spawn(move || {
+            begun.recv().unwrap();
+            device.scoped("destroy", |d| d.destroy()).unwrap();
+            ended.send(()).unwrap();
+            while device.check().is_ok() {
+                let _ = device.submit_and_wait(device.encoder("nothing").unwrap());
+            }
+        });
+        let mut sink = |_: Tile, pixels: &[u8], _: usize| {
+            if taken == 0 {
+                copying.send(()).unwrap();
+                end.recv().unwrap();
+                std::thread::sleep(Duration::from_millis(100));
+            }
+            taken += pixels.len();
+            // All of them are still there.
+            assert!(pixels.iter().map(|byte| u64::from(*byte)).sum::<u64>() > 0);
+            Ok(())
+        };
+        tracer.render(&scene, &request, &mut sink, &mut |_| true)
+    });
+    let all = (width * height) as usize * 16;
+    assert!(taken > 0, "no band was taken");
+    match rendered {
+        // On a busy machine the device may end after the last band.
+        Ok(_) => assert_eq!(taken, all),
+        Err(error) => assert_eq!(error.kind, ErrorKind::DeviceLost),
+    }
+}
+
+/// Frames and losses at moments of all kinds, while a third thread polls.
+#[test]
+fn a_device_may_end_at_any_moment() {
+    let request = FrameRequest {
+        width: 160,
+        height: 90,
+        region: Region { full_width: 160, full_height: 90, x: 0, y: 0 },
+        format: PixelFormat::Rgba8Srgb,
+        transparent: false,
+    };
+    let mut frames = 0;
+    for round in 0..12 {
+        let mut tracer = GpuTracer::new(adapter()).unwrap();
+        let device = tracer.device();
+        // The pipelines take long; afterwards a frame takes a few milliseconds.
+        let early = round % 3 == 0;
+        let mut render = |frames: &mut u32| {
+            let mut sum = 0_u64;
+            let mut sink = |_: Tile, pixels: &[u8], _: usize| {
+                sum += pixels.iter().map(|byte| u64::from(*byte)).sum::<u64>();
+                Ok(())
+            };
+            let rendered = tracer.render(&Scene::default(), &request, &mut sink, &mut |_| true);
+            *frames += u32::from(rendered.is_ok());
+            rendered.map(|_| sum)
+        };
+        if !early {
+            assert!(render(&mut frames).unwrap() > 0);
+        }
+        let failed = std::thread::scope(|scope| {
+            let device = &device;
+            scope.spawn(move || {
+                std::thread::sleep(Duration::from_micros(700 * round));
+                device.scoped("destroy", |d| d.destroy()).unwrap();
+            });
+            scope.spawn(move || {
+                let end = Instant::now() + Duration::from_secs(60);
+                while device.check().is_ok() && Instant::now() < end {
+                    // A failure that is no loss: it looks for one.
+                    let _ = device.buffer("none", 0, BufferUsages::COPY_DST);
+                    let _ = device.scoped("poll", |d| d.poll(wgpu::PollType::Poll));
+                }
+            });
+            (0..100_000).find_map(|_| render(&mut frames).err())
+        });
+        assert_eq!(failed.unwrap().kind, ErrorKind::DeviceLost, "round {round}");
+        assert_eq!(render(&mut frames).unwrap_err().kind, ErrorKind::DeviceLost, "round {round}");
+    }
+    assert!(frames >= 8);
+}
+
+/// Another thread may be making the images of a window of the same device: nothing may be submitted then.
+#[test]
+fn a_failure_is_looked_into_without_submitting_anything() {
+    let device = device();
+    let submit = || device.submit(device.encoder("empty").unwrap()).unwrap();
+    let layout = layout(&device).unwrap();
+    // wgpu counts submissions, and shows the count nowhere else.
+    let number = |index: wgpu::SubmissionIndex| {
+        format!("{index:?}").chars().filter(char::is_ascii_digit).collect::<String>().parse::<u64>().unwrap()
+    };
+    let before = number(submit());
+    assert_eq!(number(submit()), before + 1);
+    let error = device.compute_pipeline(&kernel(&[DOUBLE], &[&layout])).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Internal);
+    assert_eq!(number(submit()), before + 2);
+}
+
 #[test]
 fn devices_on_two_threads_do_not_disturb_each_other() {
     let run = || (0..5).for_each(|_| round_trip(&device()).unwrap());
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(run);
+        }
+    });
+}
+
+/// Drivers too: instances are made anew and dropped among them. NVIDIA's hangs or crashes when these things happen at
+/// once.
+#[test]
+fn devices_and_instances_begin_and_end_on_many_threads_at_once() {
+    let run = |thread: u32| {
+        for round in 0..4 {
+            if (thread + round).is_multiple_of(4) {
+                forget_drivers();
+            }
+            round_trip(&device()).unwrap();
+        }
+    };
+    std::thread::scope(|scope| {
+        for thread in 0..8 {
+            scope.spawn(move || run(thread));
         }
     });
 }

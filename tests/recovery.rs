@@ -199,6 +199,55 @@ fn jobs_end(backend: BhrBackend) {
     assert_eq!(pixels, before);
 }
 
+/// Waits for the jobs and destroys them. How many were finished; the others are lost.
+fn finish(jobs: Vec<*mut BhrJob>) -> usize {
+    let end = |job: *mut BhrJob| {
+        // SAFETY: each job is destroyed once, here.
+        unsafe {
+            let status = bhr_job_wait(job, 60_000_000_000, null_mut());
+            assert!([BHR_OK, BHR_ERROR_DEVICE_LOST].contains(&status), "{status}: {}", message());
+            bhr_job_destroy(job);
+            status == BHR_OK
+        }
+    };
+    jobs.into_iter().filter(|job| end(*job)).count()
+}
+
+/// While jobs are traced and copied, and other threads trace rays and watch the jobs.
+#[test]
+fn the_device_may_end_at_any_moment_of_jobs() {
+    struct Shared<'a>(&'a Context);
+    // SAFETY: any thread may call the API.
+    unsafe impl Sync for Shared<'_> {}
+    let context = Context::new();
+    assert!(context.render(BHR_FORMAT_RGBA8_SRGB).is_ok());
+    let mut finished = 0;
+    for round in 0..8_u64 {
+        let mut targets = (0..4).map(|_| vec![0; BYTES]).collect::<Vec<_>>();
+        let jobs = targets.iter_mut().map(|pixels| context.order(pixels).unwrap()).collect::<Vec<_>>();
+        let shared = Shared(&context);
+        let shared = &shared;
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(move || {
+                    let statuses = (0..1000).map(|_| shared.0.trace()).find(|status| *status != BHR_OK);
+                    assert!(
+                        statuses.is_none_or(|status| status == BHR_ERROR_DEVICE_LOST),
+                        "{statuses:?}: {}",
+                        message()
+                    );
+                });
+            }
+            std::thread::sleep(std::time::Duration::from_micros(1500 * round));
+            shared.0.lose_device();
+            finished += finish(jobs);
+        });
+        context.recover();
+        assert!(context.render(BHR_FORMAT_RGBA8_SRGB).is_ok(), "round {round}: {}", message());
+    }
+    assert!(finished < 32, "no job was lost");
+}
+
 /// A window on the X server that the environment names.
 struct XWindow {
     connection: XCBConnection,
@@ -288,4 +337,43 @@ fn a_window_is_shown_again_after_the_recovery() {
         context.lose_device();
         bhr_surface_destroy(surface);
     }
+}
+
+/// While a window is shown and jobs run beside it.
+#[test]
+#[ignore = "needs an X server: run by tests/windows/run"]
+fn the_device_may_end_at_any_moment_of_a_window() {
+    let window = XWindow::new();
+    let context = Context::new();
+    let mut shown = 0;
+    for round in 0..8_u64 {
+        let surface = window.surface(&context);
+        let mut targets = (0..4).map(|_| vec![0; BYTES]).collect::<Vec<_>>();
+        let jobs = targets.iter_mut().map(|pixels| context.order(pixels).unwrap()).collect::<Vec<_>>();
+        let loser = context.0 as usize;
+        let losing = std::thread::spawn(move || {
+            std::thread::sleep(std::time::Duration::from_micros(1500 * round));
+            // SAFETY: the context lives until this thread was joined.
+            assert_eq!(unsafe { lose_device(loser as *mut BhrContext) }, BHR_OK);
+        });
+        // SAFETY: context and surface live; the surface is destroyed once.
+        unsafe {
+            let mut status = BHR_OK;
+            while status == BHR_OK || status == BHR_FRAME_SKIPPED {
+                status = bhr_render_surface(context.0, surface);
+                shown += u32::from(status == BHR_OK);
+            }
+            assert_eq!(status, BHR_ERROR_DEVICE_LOST, "round {round}: {}", message());
+            losing.join().unwrap();
+            if round % 2 == 0 {
+                bhr_surface_destroy(surface);
+                finish(jobs);
+            } else {
+                finish(jobs);
+                bhr_surface_destroy(surface);
+            }
+        }
+        context.recover();
+    }
+    assert!(shown > 0);
 }

@@ -1,13 +1,14 @@
 //! BhrLogLevel, BhrLogFn, and the way from the `log` crate to the hosts' callbacks. The process-wide logger is
 //! installed here, when the first context with a callback is made, and only if the process has none. Nothing is
-//! ever printed.
+//! ever printed. What comes up under a lock of the process is told when that is released (`deferred`).
 
 use super::entry::{self, Callback};
 use super::gate::Gate;
+use crate::deferred::{self, Outcome};
 use crate::error::Result;
 use crate::thread_scope::{self, ThreadScope};
 use log::{Level, LevelFilter, Log, Metadata, Record};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
@@ -30,8 +31,8 @@ pub const BHR_LOG_TRACE: BhrLogLevel = 5;
 /// for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
 /// whichever thread the call runs, or on a thread of the library's that works for the call, which waits; one from
 /// another thread goes to every context's callback. It may therefore run on several threads at once. It must not throw,
-/// unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. None runs after
-/// bhr_context_destroy has returned.
+/// unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads'
+/// calls on other contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
 pub type BhrLogFn = Option<unsafe extern "C" fn(user: *mut c_void, level: BhrLogLevel, message: *const c_char)>;
 
 /// A non-null [`BhrLogFn`].
@@ -124,6 +125,8 @@ fn change_sinks(change: impl FnOnce(&mut Vec<Arc<Sink>>)) {
 thread_local! {
     /// Of the call this thread is in: `Some(None)` is a context without a callback.
     static CURRENT: RefCell<Option<Option<Arc<Sink>>>> = const { RefCell::new(None) };
+    /// Messages that found no room to wait in, since the note about them was ordered.
+    static OMITTED: Cell<u64> = const { Cell::new(0) };
 }
 
 /// While it lives, this thread's messages go to one context's callback, if it has one, and to no other.
@@ -172,12 +175,36 @@ impl Log for HostLogger {
             return;
         }
         let message = text(record);
-        for sink in sinks {
-            sink.deliver(level, &message);
+        if tell(sinks.clone(), level, message) == Outcome::NoRoom {
+            omit(sinks, level);
         }
     }
 
     fn flush(&self) {}
+}
+
+/// Tells `sinks` now, or when this thread holds no lock of the process any more.
+fn tell(sinks: Vec<Arc<Sink>>, level: Level, message: CString) -> Outcome {
+    let bytes = message.as_bytes().len() + size_of_val(sinks.as_slice()) + size_of::<CString>();
+    deferred::run(bytes, move || {
+        for sink in sinks {
+            sink.deliver(level, &message);
+        }
+    })
+}
+
+/// A message for which there is no room: after those that had room, `sinks` hear how many were left out.
+fn omit(sinks: Vec<Arc<Sink>>, level: Level) {
+    if OMITTED.try_with(|omitted| omitted.replace(omitted.get() + 1)) != Ok(0) {
+        return;
+    }
+    deferred::run(0, move || {
+        let omitted = OMITTED.try_with(Cell::take).unwrap_or(0);
+        let note = c_string(format!("{omitted} more messages of one call into the graphics stack were left out"));
+        for sink in sinks {
+            sink.deliver(level, &note);
+        }
+    });
 }
 
 fn is_own(record: &Record<'_>) -> bool {
@@ -254,6 +281,32 @@ mod tests {
         ::log::warn!("after the first has gone");
         assert_eq!((said(&one, "has gone").len(), said(&two, "has gone").len()), (0, 1));
         drop(second);
+    }
+
+    #[test]
+    fn what_is_logged_under_a_lock_of_the_process_is_heard_afterwards_up_to_a_bound() {
+        let heard = Heard::default();
+        let registered = listen(&heard, LevelFilter::Info);
+        let scope = Scope::enter(Some(registered.sink()));
+        let alone = crate::gpu::driver_lock::lock();
+        ::log::warn!("under the lock");
+        assert_eq!(said(&heard, "under the lock").len(), 0);
+        drop(alone);
+        assert_eq!(said(&heard, "under the lock"), [BHR_LOG_WARN]);
+        let alone = crate::gpu::driver_lock::lock();
+        for _ in 0..20 {
+            ::log::info!("long {}", "!".repeat(1 << 20));
+        }
+        // Kept for whom they were meant, whatever the thread does next.
+        drop(scope);
+        drop(alone);
+        assert_eq!(said(&heard, "long").len(), 15);
+        assert_eq!(said(&heard, "5 more messages"), [BHR_LOG_INFO]);
+        let _scope = Scope::enter(Some(registered.sink()));
+        let alone = crate::gpu::driver_lock::lock();
+        ::log::warn!("once more");
+        drop(alone);
+        assert_eq!((said(&heard, "once more").len(), said(&heard, "more messages").len()), (1, 1));
     }
 
     #[test]

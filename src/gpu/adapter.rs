@@ -1,7 +1,7 @@
 //! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
 
 use super::gl_thread::GlThread;
-use super::loader;
+use super::{driver_lock, loader};
 use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -44,7 +44,8 @@ impl Adapter {
     }
 }
 
-/// An adapter, which is dropped where it may touch GL contexts.
+/// An adapter, which is dropped where it may touch GL contexts, and while no other thread starts or ends a driver: it may be the
+/// last to hold its instance.
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
@@ -56,9 +57,14 @@ struct Handle {
 
 impl Drop for Handle {
     fn drop(&mut self) {
-        if let (Some(thread), Some(raw)) = (&self.gl_thread, self.raw.take())
-            && let Err(error) = thread.run(move || drop(raw))
-        {
+        let (raw, instance) = (self.raw.take(), self.instance.take());
+        let end = move || {
+            let _alone = driver_lock::lock();
+            drop(raw);
+            drop(instance);
+        };
+        let Some(thread) = &self.gl_thread else { return end() };
+        if let Err(error) = thread.run(end) {
             log::error!("closing the GL adapter: {error}");
         }
     }
@@ -107,8 +113,10 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
 /// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
 /// through the old one's adapters; devices in use keep theirs.
 pub fn forget_drivers() {
-    *found() = [(None, Vec::new()), (None, Vec::new())];
+    let forgotten = std::mem::take(&mut *found());
     NO_GL_HARDWARE.store(false, Ordering::Relaxed);
+    let _alone = driver_lock::lock();
+    drop(forgotten);
 }
 
 /// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
@@ -116,9 +124,10 @@ pub(super) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
-/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the life
-/// of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded under
-/// the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the
+/// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
+/// under the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+/// This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other way round.
 static FOUND: Mutex<[Found; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
 
 /// The instance that a search asked, and the adapters it has.
@@ -129,17 +138,22 @@ fn found() -> MutexGuard<'static, [Found; 2]> {
 }
 
 fn native(validation: bool) -> Found {
-    let [plain, validated] = &mut *found();
-    let kept = if validation { validated } else { plain };
-    if kept.1.is_empty() {
-        let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
-        if !loader::is_usable() {
-            log::warn!("no adapter of Vulkan: what is installed as its loader has no functions");
-            all.remove(wgpu::Backends::VULKAN);
-        }
-        *kept = ask_drivers(all, validation);
-    }
-    kept.clone()
+    let kept = || Some(found()[usize::from(validation)].clone()).filter(|(_, list)| !list.is_empty());
+    kept().unwrap_or_else(|| {
+        // Who comes second waits for what the first one finds.
+        let _alone = driver_lock::lock();
+        kept().unwrap_or_else(|| {
+            let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+            if !loader::is_usable() {
+                log::warn!("no adapter of Vulkan: what is installed as its loader has no functions");
+                all.remove(wgpu::Backends::VULKAN);
+            }
+            let asked = ask_drivers(all, validation);
+            let before = std::mem::replace(&mut found()[usize::from(validation)], asked.clone());
+            drop(before);
+            asked
+        })
+    })
 }
 
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
@@ -151,6 +165,8 @@ fn gl() -> Vec<Usable> {
     let search = || -> Result<Vec<Usable>> {
         let thread = GlThread::start()?;
         thread.run(|| {
+            // What is not wanted is dropped here.
+            let _alone = driver_lock::lock();
             let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
             keep_display(instance);
             list.into_iter().filter_map(|raw| usable(raw, None, Some(thread.clone()))).collect()
@@ -192,6 +208,7 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     let descriptor =
         wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    let _alone = driver_lock::lock();
     let ask = || {
         let instance = wgpu::Instance::new(descriptor);
         let list = pollster::block_on(instance.enumerate_adapters(backends));

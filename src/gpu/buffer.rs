@@ -1,7 +1,9 @@
 //! Buffers on a device: checked against its limits before wgpu is asked, and counted while they exist.
 
 use super::device::Device;
+use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result};
+use crate::renderer::Backend;
 use std::ops::Deref;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -28,6 +30,34 @@ impl Device {
         Ok(Buffer { raw, total })
     }
 
+    /// Runs `work`, which touches the mapped memory of `buffer`, while that cannot be destroyed: once a device has
+    /// ended, whichever thread polls it destroys all its buffers, mapped ones too (gfx-rs/wgpu #10256), and a device
+    /// ends when any call of any thread finds no memory.
+    ///
+    /// `work` must ask wgpu for nothing and wait for no thread that does. Other threads that destroy something of the
+    /// device, or present, wait meanwhile, so that it should be short: destroying takes the write side of the lock of
+    /// which wgpu's guard is the read side.
+    ///
+    /// Errors: those of `work`; `DeviceLost`.
+    pub(super) fn while_it_exists<T>(&self, buffer: &wgpu::Buffer, work: impl FnOnce() -> Result<T>) -> Result<T> {
+        // What `work` logs goes to a host, whose callback may wait for a thread that asks wgpu.
+        let holding = hold();
+        let done = match self.backend() {
+            #[cfg(not(target_vendor = "apple"))]
+            Backend::Vulkan => while_it_exists::<wgpu::hal::api::Vulkan, _>(buffer, work),
+            #[cfg(not(target_vendor = "apple"))]
+            Backend::Gl => while_it_exists::<wgpu::hal::api::Gles, _>(buffer, work),
+            #[cfg(target_vendor = "apple")]
+            Backend::Metal => while_it_exists::<wgpu::hal::api::Metal, _>(buffer, work),
+            #[cfg(windows)]
+            Backend::D3d12 => while_it_exists::<wgpu::hal::api::Dx12, _>(buffer, work),
+            _ => None,
+        };
+        drop(holding);
+        let gone = || Err(self.explain(Error::internal("mapped memory was freed before it was used")));
+        done.unwrap_or_else(gone)
+    }
+
     fn check_size(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> Result<()> {
         if size == 0 {
             return Err(Error::internal(format!("buffer '{label}' of 0 bytes")));
@@ -46,6 +76,13 @@ impl Device {
             )),
         }
     }
+}
+
+/// `None`: it was destroyed, or is another interface's.
+fn while_it_exists<A: wgpu::hal::Api, T>(buffer: &wgpu::Buffer, work: impl FnOnce() -> T) -> Option<T> {
+    // SAFETY: nothing is done with the interface's own buffer but knowing that it is there.
+    let _exists = unsafe { buffer.as_hal::<A>() }?;
+    Some(work())
 }
 
 impl Deref for Buffer {

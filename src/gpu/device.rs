@@ -2,9 +2,12 @@
 //! wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of scenes.
 
 use super::adapter::{Adapter, required_limits};
+use super::driver_lock;
+use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result};
-use parking_lot::{ReentrantMutex, const_reentrant_mutex};
+use crate::renderer::Backend;
 use std::any::Any;
+use std::mem::ManuallyDrop;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -26,16 +29,23 @@ const MAX_TEXTURE_SIDE: u32 = 16384;
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
-/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it.
+/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it, but
+/// then the driver's device ends with the last of them, outside [`driver_lock`]: who keeps them keeps the device too,
+/// and lets it go last.
 pub struct Device {
-    raw: wgpu::Device,
+    /// Until it is being dropped.
+    raw: ManuallyDrop<wgpu::Device>,
     /// `None` only while it is being dropped.
     queue: Option<wgpu::Queue>,
+    backend: Backend,
+    /// Whether a pipeline was made.
+    compiled: AtomicBool,
     limits: wgpu::Limits,
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
     pub(super) modules: super::pipeline::Modules,
     pub(super) bindings: super::bindings::Bindings,
+    pub(super) uploads: super::upload::Uploads,
 }
 
 /// What wgpu's callbacks, which come from any thread, say about a device.
@@ -46,10 +56,6 @@ struct Health {
     stray: Mutex<Option<Error>>,
     hung: AtomicBool,
 }
-
-/// Held while a device is opened: NVIDIA's Vulkan driver (580.159.04) often hangs for ever when several threads do so at once. Reentrant, as
-/// what is logged meanwhile goes to the host, who may open another.
-static OPENING: ReentrantMutex<()> = const_reentrant_mutex(());
 
 impl Device {
     /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
@@ -76,9 +82,9 @@ impl Device {
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
         };
-        let opening = OPENING.lock();
+        let alone = driver_lock::lock();
         let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(raw.request_device(&descriptor))));
-        drop(opening);
+        drop(alone);
         let refused = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {why}", adapter.info.name))
         };
@@ -89,13 +95,16 @@ impl Device {
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
         Ok(Self {
-            raw,
+            raw: ManuallyDrop::new(raw),
             queue: Some(queue),
+            backend: adapter.info.backend,
+            compiled: AtomicBool::new(false),
             limits,
             health,
             bytes: Arc::default(),
             modules: Default::default(),
             bindings: Default::default(),
+            uploads: Default::default(),
         })
     }
 
@@ -113,6 +122,10 @@ impl Device {
     /// The limits the device was opened with.
     pub fn limits(&self) -> &wgpu::Limits {
         &self.limits
+    }
+
+    pub(super) fn backend(&self) -> Backend {
+        self.backend
     }
 
     /// Whether the device can time its passes.
@@ -150,20 +163,29 @@ impl Device {
         self.health.check()
     }
 
-    /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has ended, and the poll of
-    /// another thread may be about to. Errors: `DeviceLost`.
+    /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has
+    /// ended, and the poll of another thread may be about to. Submits nothing, as another thread may be making a
+    /// window's images ([`super::Swapchain::configure`]). Errors: `DeviceLost`.
     pub(super) fn check_loss_anew(&self) -> Result<()> {
         self.check_known_loss()?;
         let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
         let _ = self.poll(all)?;
         self.check_known_loss()?;
-        let queue = self.queue()?;
-        let nothing = self.unpanicked(|| queue.submit([]))?;
-        let look = wgpu::PollType::Wait { submission_index: Some(nothing), timeout: Some(Duration::ZERO) };
-        if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = self.poll(look)? {
+        if !self.refuses()? {
             self.learn_loss()?;
         }
         self.check_known_loss()
+    }
+
+    /// Whether the device refuses what cannot be, a query set without queries: one that is gone says nothing at all.
+    /// Reaches no driver.
+    fn refuses(&self) -> Result<bool> {
+        let nothing = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Occlusion, count: 0 };
+        self.unpanicked(|| {
+            let refusal = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
+            drop(self.raw.create_query_set(&nothing));
+            pollster::block_on(refusal.pop()).is_some()
+        })
     }
 
     /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins the
@@ -179,7 +201,7 @@ impl Device {
     }
 
     /// [`Self::scoped`] for threads beside the one that uses the device: leaves the errors that come outside every call to that one,
-    /// and does not ask the device anew whether it is lost, for which work is submitted.
+    /// and does not ask the device anew whether it is lost.
     pub(super) fn beside<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check_known_loss()?;
         match self.watched(work) {
@@ -190,6 +212,7 @@ impl Device {
 
     /// Runs `work`, and what wgpu had against it.
     fn watched<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
+        let _holding = hold();
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -219,16 +242,12 @@ impl Device {
         })
     }
 
-    /// Writes `data` into `buffer` at `offset` (both multiples of 4) before the next submission runs.
-    pub fn write(&self, buffer: &wgpu::Buffer, offset: u64, data: &[u8]) -> Result<()> {
-        let queue = self.queue()?;
-        self.scoped("writing a buffer", |_| queue.write_buffer(buffer, offset, data))
-    }
-
-    /// Starts what `encoder` has recorded. Errors: as [`Self::scoped`].
+    /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as
+    /// [`Self::scoped`].
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
-        self.scoped("submitting work", |_| queue.submit([encoder.finish()]))
+        let encoders = self.uploads.take().into_iter().chain([encoder]);
+        self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)))
     }
 
     /// Waits until `submission` has run and the callbacks of its buffers were called.
@@ -289,6 +308,7 @@ impl Device {
 
     /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
     fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+        let _holding = hold();
         catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
             self.health.lose(panic_text(&*panic));
             lost(panic_text(&*panic))
@@ -300,15 +320,50 @@ impl Device {
     }
 }
 
+impl Device {
+    /// Makes a pipeline: the first one of a device while no other thread starts or ends a driver.
+    pub(super) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
+        let first = || !self.compiled.load(Ordering::Acquire);
+        // Those who waited for the first one make theirs side by side.
+        let alone = first().then(driver_lock::lock).filter(|_| first());
+        let made = compile();
+        self.compiled.store(true, Ordering::Release);
+        drop(alone);
+        made
+    }
+
+    /// Waits until nothing runs on it any more, so that dropping it does not, or until that is known to be in vain.
+    fn drain(&self) {
+        let deadline = Instant::now() + HANG_AFTER;
+        let all = || self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) });
+        while !self.health.hung.load(Ordering::Relaxed) && matches!(all(), Ok(Err(wgpu::PollError::Timeout))) {
+            self.health.hung.store(Instant::now() >= deadline, Ordering::Relaxed);
+        }
+    }
+}
+
 impl Drop for Device {
     fn drop(&mut self) {
+        self.drain();
         let queue = self.queue.take();
-        if self.health.hung.load(Ordering::Relaxed) {
-            // Dropping it would wait for the work that never ends.
-            std::mem::forget(queue);
-        } else if catch_unwind(AssertUnwindSafe(|| drop(queue))).is_err() {
+        let alone = driver_lock::lock();
+        let close = || {
+            self.bindings.clear();
+            drop(self.uploads.take());
+            lock(&self.modules).clear();
+            if self.health.hung.load(Ordering::Relaxed) {
+                // Dropping it would wait for the work that never ends.
+                std::mem::forget(queue);
+            } else {
+                drop(queue);
+            }
+            // SAFETY: it is taken here alone, once, and not used any more.
+            drop(unsafe { ManuallyDrop::take(&mut self.raw) });
+        };
+        if catch_unwind(AssertUnwindSafe(close)).is_err() {
             log::error!("closing the GPU device panicked");
         }
+        drop(alone);
     }
 }
 
@@ -335,9 +390,11 @@ impl Health {
     /// Keeps the first reason.
     fn lose(&self, reason: &str) {
         let mut lost = lock(&self.lost);
-        if lost.is_none() {
+        let first = lost.is_none();
+        lost.get_or_insert_with(|| reason.trim().to_owned());
+        drop(lost);
+        if first {
             log::debug!("GPU device lost: {reason}");
-            *lost = Some(reason.trim().to_owned());
         }
     }
 

@@ -133,11 +133,6 @@ impl GlTracer {
         self.call(|tracer| tracer.prepare(scene, request))
     }
 
-    /// As [`GpuTracer::settled_waits`]. Errors: DEVICE_LOST.
-    pub fn settled_waits(&mut self) -> Result<KernelWaits> {
-        self.call(|tracer| Ok(tracer.settled_waits()))
-    }
-
     /// As [`GpuTracer::trace_rays`].
     pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         self.call(|tracer| tracer.trace_rays(scene, rays, hits))

@@ -7,12 +7,14 @@ mod bloom;
 mod buffer;
 mod compilers;
 mod device;
+#[doc(hidden)]
+pub mod driver_lock;
 mod export;
 mod frame;
 mod frame_buffers;
 mod frame_kernels;
-mod gl_thread;
 mod kernel_key;
+mod gl_thread;
 mod kernels;
 mod lens_kerr;
 mod lens_schwarzschild;
@@ -34,18 +36,19 @@ mod texture;
 mod tiles;
 mod timer;
 mod uniforms;
+mod upload;
 mod wgsl;
 
 pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
 pub use buffer::Buffer;
 pub use device::{Device, Loss};
 pub use frame::{BegunFrame, FrameTarget, Recording};
-pub use gl_thread::GlTracer;
 pub use kernels::KernelWaits;
+pub use gl_thread::GlTracer;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use present::Presenter;
-pub use readback::{Copied, Readback};
+pub use readback::{Arrived, Copied, Readback};
 pub use submission::Submitted;
 pub use swapchain::{Acquired, Swapchain};
 pub use texture::Texture;
@@ -69,8 +72,6 @@ const RAY_STEP: f64 = 0.2;
 
 /// Traces on one device.
 pub struct GpuTracer {
-    adapter: Arc<Adapter>,
-    device: Arc<Device>,
     kernels: Kernels,
     /// The kernels of the last frame that was begun.
     needed: Vec<KernelKey>,
@@ -78,20 +79,21 @@ pub struct GpuTracer {
     tables: Option<Tables>,
     buffers: frame_buffers::FrameBuffers,
     ray_buffers: rays::RayBuffers,
+    /// Goes after all that was made with it.
+    device: Arc<Device>,
+    adapter: Arc<Adapter>,
 }
 
 impl GpuTracer {
-    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are being
-    /// made from now on, its sky follows with it. Errors: as `Device::open`.
+    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are being made from now
+    /// on, its sky follows with it. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Arc::new(Device::open(&adapter)?);
-        let gl = adapter.info.backend == Backend::Gl;
         // All of a GL device shares one context, which two threads cannot use at once.
-        let kernels = Kernels::new(device.clone(), !gl);
-        if gl {
-            // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now.
-            kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
-        }
+        let kernels = Kernels::new(device.clone(), adapter.info.backend != Backend::Gl);
+        // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a device's first
+        // pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by side.
+        kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         let mut tracer = Self {
             adapter: Arc::new(adapter),
             device,

@@ -64,7 +64,7 @@ impl Device {
                 bind_group_layouts: &groups,
                 immediate_size: 0,
             });
-            device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            let descriptor = wgpu::ComputePipelineDescriptor {
                 label: Some(kernel.label),
                 layout: Some(&layout),
                 module: &module,
@@ -74,7 +74,8 @@ impl Device {
                     zero_initialize_workgroup_memory: kernel.zero_workgroup_memory,
                 },
                 cache: None,
-            })
+            };
+            self.compiling(|| device.create_compute_pipeline(&descriptor))
         })?;
         log::debug!(
             "kernel {}: module {} ms, pipeline {} ms",

@@ -77,7 +77,7 @@ impl Presenter {
                     cache: None,
                 })
             };
-            let pipelines = [pipeline(false), pipeline(true)];
+            let pipelines = device.compiling(|| [pipeline(false), pipeline(true)]);
             let filter = wgpu::FilterMode::Linear;
             let sampler = d.create_sampler(&wgpu::SamplerDescriptor {
                 mag_filter: filter,

@@ -4,6 +4,7 @@
 use super::buffer::Buffer;
 use super::device::Device;
 use crate::error::{Error, Result};
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
 
@@ -131,15 +132,22 @@ impl Copied {
         })
     }
 
-    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`.
+    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`, as [`Arrived::part`] does.
     ///
-    /// Errors: those of `take` and of [`Device::wait`]; `Internal` when it was not submitted.
+    /// Errors: as [`Self::wait`] and [`Arrived::part`].
     pub fn read<T>(
-        mut self,
+        self,
         device: &Device,
         submission: &wgpu::SubmissionIndex,
         take: impl FnOnce(&[u8]) -> Result<T>,
     ) -> Result<T> {
+        let size = self.size;
+        self.wait(device, submission)?.part(0..size, take)
+    }
+
+    /// Waits for `submission`, which fills the piece. Errors: those of [`Device::wait`]; `Internal` when it was not
+    /// submitted.
+    pub fn wait<'a>(mut self, device: &'a Device, submission: &wgpu::SubmissionIndex) -> Result<Arrived<'a>> {
         if self.mapped.is_none() {
             self.request(device)?;
         }
@@ -149,12 +157,35 @@ impl Copied {
         let outcome = self.mapped.as_ref().map(|mapped| mapped.recv_timeout(CALLBACK_AFTER));
         match outcome.unwrap_or(Err(mpsc::RecvTimeoutError::Disconnected)) {
             Ok(Ok(())) => {
-                let range = self.staging.buffer()?.get_mapped_range(0..self.size);
-                take(&range.map_err(|error| failed(&error))?)
+                let view = self.staging.buffer()?.get_mapped_range(0..self.size).map_err(|error| failed(&error))?;
+                Ok(Arrived { view, copied: self, device })
             }
             Ok(Err(error)) => Err(failed(&error)),
             Err(error) => Err(failed(&error)),
         }
+    }
+}
+
+/// A piece that the host can read.
+pub struct Arrived<'a> {
+    /// Goes before the mapping does. To be touched in [`Self::part`] only.
+    view: wgpu::BufferView,
+    copied: Copied,
+    device: &'a Device,
+}
+
+impl Arrived<'_> {
+    /// Hands the bytes of `range`, from the piece's begin, to `take`, as [`Device::while_it_exists`] does. Large pieces
+    /// are better taken in parts.
+    ///
+    /// Errors: those of `take`; `DeviceLost`; `Internal` for bytes that the piece has not.
+    pub fn part<T>(&self, range: Range<u64>, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
+        let buffer = self.copied.staging.buffer()?;
+        let take = || {
+            let part = self.view.get(range.start as usize..range.end as usize);
+            take(part.ok_or_else(|| Error::internal("a part of a readback that it has not"))?)
+        };
+        self.device.while_it_exists(buffer, take)
     }
 }
 

@@ -13,12 +13,13 @@ use std::sync::Arc;
 /// The images of one window.
 pub struct Swapchain {
     surface: wgpu::Surface<'static>,
-    device: Arc<Device>,
     presenter: Presenter,
     format: wgpu::TextureFormat,
     alpha: wgpu::CompositeAlphaMode,
     modes: Vec<wgpu::PresentMode>,
     configured: Option<PresentMode>,
+    /// Goes after all that was made with it.
+    device: Arc<Device>,
 }
 
 /// What asking for the next image gave.

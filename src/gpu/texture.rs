@@ -86,17 +86,7 @@ impl Device {
         if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
             return Err(Error::internal(format!("{} bytes are no rows of {row_bytes}", data.len())));
         }
-        let height = (data.len() / row_bytes as usize) as u32;
-        let target = wgpu::TexelCopyTextureInfo {
-            texture: &texture.raw,
-            mip_level: 0,
-            origin: wgpu::Origin3d { x: first[0], y: first[1], z: 0 },
-            aspect: wgpu::TextureAspect::All,
-        };
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row_bytes), rows_per_image: None };
-        let size = wgpu::Extent3d { width, height, depth_or_array_layers: 1 };
-        let queue = self.queue()?;
-        self.scoped("writing a texture", |_| queue.write_texture(target, data, layout, size))
+        self.write_texels(&texture.raw, first, width, row_bytes as usize, data)
     }
 }
 

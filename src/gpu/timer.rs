@@ -73,12 +73,17 @@ impl GpuTimer {
 
 /// Nanoseconds that the passes of `submission` took together. Errors: as [`Copied::read`].
 pub fn read_time(device: &Device, copied: Copied, submission: &wgpu::SubmissionIndex) -> Result<u64> {
-    copied.read(device, submission, |bytes| nanoseconds(device, bytes))
+    let ticks = copied.read(device, submission, sum_of_spans)?;
+    Ok(in_nanoseconds(device, ticks))
 }
 
 /// Nanoseconds that passes took together, by what [`GpuTimer::resolve`] wrote.
 pub(super) fn nanoseconds(device: &Device, bytes: &[u8]) -> Result<u64> {
-    Ok((sum_of_spans(bytes)? as f64 * device.timestamp_period()) as u64)
+    Ok(in_nanoseconds(device, sum_of_spans(bytes)?))
+}
+
+fn in_nanoseconds(device: &Device, ticks: u64) -> u64 {
+    (ticks as f64 * device.timestamp_period()) as u64
 }
 
 /// The bytes are pairs of begin and end. A driver's clock may jump back; such a span counts as 0.

@@ -257,9 +257,9 @@ fn submit(line: &Line, mut order: Order) {
     match begun {
         Err(error) => line.send(Event::Made(Box::new(order), Err(error))),
         Ok((frame, device)) => {
-            let (stats, count, shared) = (frame.stats(), frame.count(), order.shared.clone());
+            let (stats, count, shared, _device) = (frame.stats(), frame.count(), order.shared.clone(), device.clone());
             line.send(Event::Begun(Box::new(Running { order, device, stats, done: 0, count })));
-            let submitted = Submitting { guard: Some(guard), frame }.submit(line, &shared);
+            let submitted = Submitting { guard: Some(guard), frame, _device }.submit(line, &shared);
             if let Err(error) = submitted {
                 line.send(Event::Left(error));
             }
@@ -289,6 +289,8 @@ struct Submitting {
     /// `None` only while it is being dropped.
     guard: Option<ArcMutexGuard<RawMutex, Tracer>>,
     frame: BegunFrame,
+    /// Goes after the frame.
+    _device: Arc<Device>,
 }
 
 impl Submitting {

@@ -57,15 +57,17 @@ enum Way {
 
 /// A window's images, and the texture that they are filled from.
 struct Screen {
-    swapchain: Swapchain,
     texture: Option<Texture>,
+    /// Goes after the texture, as it has the device.
+    swapchain: Swapchain,
     /// With one, VSYNC is MAILBOX underneath, each frame when the pacer says so.
     pacer: Option<Box<dyn Pacer>>,
 }
 
 struct Untaken {
-    device: Arc<Device>,
     steps: VecDeque<Submitted>,
+    /// Goes after the steps.
+    device: Arc<Device>,
     stats: FrameStats,
     /// From the call's begin to its end.
     call: Duration,
