@@ -4,7 +4,7 @@
 //! process. So whatever wgpu's GL is asked for, and whatever it made is dropped, happens here. Knows no scenes.
 
 use super::device::{Loss, panic_text};
-use super::{Adapter, GpuTracer, KernelWaits};
+use super::{Adapter, GpuTracer};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, FrameRequest, FrameStats, Progress, TileSink};
 use crate::scene::record::Record;
