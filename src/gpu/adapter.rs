@@ -196,7 +196,7 @@ static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
 /// the contexts of a host that uses it too. So the first instance stays.
 fn keep_display(instance: Option<wgpu::Instance>) {
     static KEPT: Once = Once::new();
-    if let Some(instance) = instance {
+    if let Some(instance) = instance.filter(|_| !cfg!(windows)) {
         KEPT.call_once(|| std::mem::forget(instance));
     }
 }
