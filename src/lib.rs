@@ -7,7 +7,9 @@
 //! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
 //! - [`window`]: the host's windows as targets of frames.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
+//! - `allocate`: below them all: memory that may be refused.
 
+mod allocate;
 #[doc(hidden)]
 pub mod capi;
 pub mod cpu;

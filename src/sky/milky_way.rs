@@ -5,11 +5,15 @@
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE};
 use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
 use super::map::SkyMap;
+use crate::allocate::{collected, filled};
 use crate::error::{Error, Result};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::scene::turbulence::mix;
 use glam::{DMat3, DVec3};
+use image::codecs::png::PngDecoder;
+use image::{ColorType, ImageDecoder};
 use std::f64::consts::{LN_10, PI, TAU};
+use std::io::Cursor;
 use std::sync::OnceLock;
 
 static HEIGHTS: &[u8] = include_bytes!("data/milky_way.png");
@@ -87,13 +91,18 @@ fn equatorial_to_galactic() -> DMat3 {
 
 impl MilkyWay {
     fn decode() -> Result<Self> {
-        let error = |e| Error::internal(format!("the embedded Milky Way: {e}"));
-        let codes = image::load_from_memory_with_format(HEIGHTS, image::ImageFormat::Png).map_err(error)?.into_luma8();
-        let (width, height) = codes.dimensions();
+        let error = |e: &dyn std::fmt::Display| Error::internal(format!("the embedded Milky Way: {e}"));
+        let decoder = PngDecoder::new(Cursor::new(HEIGHTS)).map_err(|e| error(&e))?;
+        let ((width, height), colours) = (decoder.dimensions(), decoder.color_type());
+        if colours != ColorType::L8 {
+            return Err(error(&format!("{colours:?}")));
+        }
+        let mut codes = filled(width as usize * height as usize, 0, "the picture of the Milky Way")?;
+        decoder.read_image(&mut codes).map_err(|e| error(&e))?;
         Ok(Self {
             width,
             height,
-            codes: codes.into_raw(),
+            codes,
             to_galactic: equatorial_to_galactic(),
             colours: BlackbodyTable::shared(),
             brightest: brightest(),
@@ -103,7 +112,7 @@ impl MilkyWay {
     fn draw(&self) -> Result<SkyMap> {
         let [width, height] = MAP_SIZE;
         let place = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
-        let columns = (0..width).map(|x| self.column(place(x, width))).collect::<Vec<_>>();
+        let columns = collected((0..width).map(|x| self.column(place(x, width))), "the columns of the Milky Way")?;
         SkyMap::of_rows(MAP_SIZE, &|y, out| {
             let v = place(y, height);
             let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();
