@@ -204,8 +204,10 @@ fn last_panic() -> std::sync::MutexGuard<'static, Option<String>> {
     LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Sync + Send>;
+
 /// The hook that was there.
-static BEFORE: OnceLock<Box<dyn Fn(&PanicHookInfo<'_>) + Sync + Send>> = OnceLock::new();
+static BEFORE: OnceLock<Hook> = OnceLock::new();
 
 /// Rust's default hook prints. Panics inside a call, and on the tracers' threads (named "bhr.."), are noted
 /// instead; any other panic in the process goes where it went before.
