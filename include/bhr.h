@@ -35,9 +35,10 @@
  *
  * Structs
  *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than
- *   the library's first version is BHR_ERROR_INVALID_ARGUMENT; larger is accepted as input when the rest is zero,
- *   and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear struct_size bytes
- *   and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
+ *   in the library's first version is BHR_ERROR_INVALID_ARGUMENT. A field that a program's struct does not reach
+ *   has its default as input, and is not written as output. Larger than this library's is accepted as input when
+ *   the rest is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear
+ *   struct_size bytes and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
  *
  * Pointers
  *   A pointer is NULL only where this header says that it may be. Whatever is passed in is copied before the
@@ -51,9 +52,20 @@
  *   callback must not wait for another thread's call on the same context. No callback runs after the destroy
  *   call of its context has returned.
  *
+ * Memory
+ *   What takes more than some tens of kilobytes (frames, maps, tables, rays, star fields) is asked for in such a way
+ *   that a refusal is BHR_ERROR_OUT_OF_MEMORY with the size, and given only while a megabyte is left after it; a thread
+ *   that cannot be started is the same error. The context goes on, and so does the next call once there is memory.
+ * Three
+ *   things cannot be caught, and end the process where no memory is left: small allocations of the Rust runtime and of
+ *   the thread pool; those of graphics drivers and loaders; and those of wgpu, through which GPUs are reached. Hosts
+ *   that must outlive exhaustion use BHR_BACKEND_CPU, or keep some memory back to free when this error comes.
+ *
  * The process
- *   The library never writes to stdout or stderr, never calls exit or abort, installs no signal handler, and no
- *   Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind. After fork()
+ *   The library never writes to stdout or stderr, never calls exit or abort (but see Memory), installs no signal
+ * handler,
+ *   and no Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind.
+ * After fork()
  *   the child may only exec: neither drivers nor threads live on in it.
  */
 
@@ -647,12 +659,22 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
  */
 #define BHR_IMAGE_TRANSPARENT 1u
 
-/** A pixel's bytes in memory order; row 0 is at the top. */
+/**
+ * BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
+ * address of the block, as without the flag, and row_stride > 0 leads to the next row up.
+ */
+#define BHR_IMAGE_BOTTOM_UP 2u
+
+/** A pixel's bytes in memory order. */
 typedef int32_t BhrFormat;
 
 /**
  * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
  * side or interleaved; different contexts may then render them at the same time.
+ *
+ * Rows from the bottom up are best asked for by BHR_IMAGE_BOTTOM_UP. A negative row_stride, with pixels at the last
+ * row of the block, says the same; but with pixels left at the block's begin, an easy slip, it has all rows but one
+ * written before the block, which nothing can check.
  */
 typedef struct BhrImage {
     /** sizeof(BhrImage). */
@@ -663,19 +685,20 @@ typedef struct BhrImage {
     uint32_t width;
     /** Pixels, 1 .. 2^20. */
     uint32_t height;
-    /** The top-left pixel; aligned to its channel: 1, 2 or 4 bytes. */
+    /** The top-left pixel; with BHR_IMAGE_BOTTOM_UP the bottom-left one. Aligned to its channel: 1, 2 or 4 bytes. */
     void *pixels;
     /**
-     * Bytes to the next row down, a multiple of the channel's size. 0 (default): packed. < 0: bottom-up.
-     * |row_stride| must hold a row.
+     * Bytes to the next row down, with BHR_IMAGE_BOTTOM_UP to the next row up; a multiple of the channel's size. 0
+     * (default): packed. < 0: the next row down lies lower in memory, and pixels is the block's last row; not together
+     * with BHR_IMAGE_BOTTOM_UP. |row_stride| must hold a row.
      */
     int64_t row_stride;
     /**
-     * Of the host's block, which begins at its lowest address (row_stride < 0: at the last row). Needed: (height -
-     * 1) |row_stride| + width bytes-per-pixel; checked.
+     * Of the host's block, which begins at its lowest address: at pixels, but (height - 1) |row_stride| before it
+     * where row_stride < 0. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
      */
     uint64_t byte_size;
-    /** BHR_IMAGE_* bits. Default 0. Matters for rendering only. */
+    /** BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only. */
     uint32_t flags;
     /** 0. */
     uint32_t reserved;
@@ -717,15 +740,15 @@ BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
 /**
- * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in. 8-bit files give
- * RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with channels R, G and B is
- * read, its largest level, cut to the display window, 0 where the data window does not reach; 8 MiB of headers, 4096
- * channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the library's: give them
- * back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
- * struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR;
- * OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more
- * than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before memory is taken
- * for it.
+ * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
+ * down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with
+ * channels R, G and B is read, its largest level, cut to the display window, 0 where the data window does not reach;
+ * 8 MiB of headers, 4096 channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the
+ * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
+ * built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
+ * side, or of more than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before
+ * memory is taken for it.
  */
 BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
@@ -1201,7 +1224,10 @@ void bhr_surface_destroy(BhrSurface *surface);
 /** Crossings that a BhrHit lists. */
 #define BHR_MAX_CROSSINGS 4
 
-/** A ray, followed backward from the eye. */
+/**
+ * A ray, followed backward from the eye. Within one BHR_ABI_VERSION it does not grow: some calls that fill it in are
+ * told no size.
+ */
 typedef struct BhrRay {
     /** Scene axes and lengths. */
     double position[3];
@@ -1221,7 +1247,7 @@ typedef struct BhrRay {
 /** What became of a ray. */
 typedef int32_t BhrFate;
 
-/** A crossing of the equatorial plane outside the horizon. */
+/** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
 typedef struct BhrCrossing {
     /** Boyer-Lindquist r, scene lengths. */
     double radius;
@@ -1233,7 +1259,7 @@ typedef struct BhrCrossing {
     double delay;
 } BhrCrossing;
 
-/** What a ray met. */
+/** What a ray met. It may grow at its end: bhr_trace_rays is told hit_size. */
 typedef struct BhrHit {
     /** BHR_FATE_*. */
     BhrFate fate;
@@ -1291,9 +1317,10 @@ BhrStatus bhr_camera_ray(const BhrContext *context,
  * Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
  * equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
  * flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
- * error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled; both
- * arrays are packed. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below the first version's;
- * UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+ * error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
+ * least 56 and 184, those of the first version; both arrays are packed. A longer ray must be 0 beyond what this
+ * library knows, a longer hit becomes so. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below
+ * the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
  */
 BhrStatus bhr_trace_rays(BhrContext *context,
                          const BhrRay *rays,

@@ -8,8 +8,9 @@
 //! - [`window`]: the host's windows as targets of frames.
 //! - `thread_scope`: what the library's threads take over from the threads that they work for.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
-//! - `deferred`: below all: what waits until a thread holds no lock of the process.
+//! - `deferred`: below all: what waits until a thread holds no lock of the process. `allocate`: memory that may be refused.
 
+mod allocate;
 #[doc(hidden)]
 pub mod capi;
 pub mod cpu;

@@ -110,7 +110,7 @@ impl Gpu {
         let storage = |contents: &[u8], usage| {
             self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: None, contents, usage })
         };
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let size = items.len() as u64 * 16;
         let output = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -227,7 +227,7 @@ fn gpu_blackbody_agrees() {
 #[test]
 fn gpu_stars_agree() {
     let gpu = Gpu::new();
-    let index = StarIndex::shared();
+    let index = StarIndex::shared().expect("an index");
     let mut items: Vec<Item> = Vec::new();
     for (i, star) in index.stars.iter().step_by(2 * 89).enumerate() {
         let near = widened(*star).normalize();

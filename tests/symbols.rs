@@ -2,19 +2,9 @@
 
 mod c_header;
 
-use c_header::{HEADER, functions};
+use c_header::{HEADER, functions, library};
 use object::Object;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
-
-/// The library that cargo built for this test: beside the test itself, in `deps`.
-fn library() -> PathBuf {
-    let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-    let name = format!("{}bhr{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let path = deps.join(name);
-    assert!(path.is_file(), "{} is not there: cargo builds it with crate-type cdylib", path.display());
-    path
-}
 
 #[test]
 fn exported_symbols_are_the_headers_functions() {

@@ -164,7 +164,7 @@ bool Window::begin_frame() {
     return true;
 }
 
-// The window's pixels as they were drawn just now. OpenGL's first row is the lowest one: a negative stride says so.
+// The window's pixels as they were drawn just now. OpenGL's first row is the lowest one.
 static void copy_window(int width, int height, Pixels &copy) {
     const size_t row = size_t{4} * static_cast<size_t>(width);
     copy.bytes.resize(row * static_cast<size_t>(height));
@@ -176,8 +176,8 @@ static void copy_window(int width, int height, Pixels &copy) {
     copy.image = with_defaults(bhr_image_init);
     copy.image.width = static_cast<uint32_t>(width);
     copy.image.height = static_cast<uint32_t>(height);
-    copy.image.row_stride = -static_cast<int64_t>(row);
-    copy.image.pixels = copy.bytes.data() + copy.bytes.size() - row;
+    copy.image.flags = BHR_IMAGE_BOTTOM_UP;
+    copy.image.pixels = copy.bytes.data();
     copy.image.byte_size = copy.bytes.size();
 }
 

@@ -58,6 +58,7 @@ pub struct BhrAdapterInfo {
 // SAFETY: repr(C), size first, no padding, integers only.
 unsafe impl Versioned for BhrAdapterInfo {
     const NAME: &'static str = "BhrAdapterInfo";
+    const SIZES: &'static [usize] = &[536];
     fn defaults() -> Self {
         Self {
             struct_size: 0,

@@ -68,6 +68,7 @@ pub struct BhrCamera {
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrCamera {
     const NAME: &'static str = "BhrCamera";
+    const SIZES: &'static [usize] = &[120];
     fn defaults() -> Self {
         Camera::default().into()
     }

@@ -9,7 +9,7 @@ use super::pointer::{Out, check_flags};
 use super::render::Callback;
 use super::status::BhrStatus;
 use super::version::BHR_ABI_VERSION;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{self, OutStruct, POINTER, Versioned};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{Renderer, RendererOptions};
@@ -90,6 +90,7 @@ const MAX_CPU_THREADS: u32 = 1024;
 // SAFETY: repr(C), size first, no padding, integers and nullable pointers.
 unsafe impl Versioned for BhrContextOptions {
     const NAME: &'static str = "BhrContextOptions";
+    const SIZES: &'static [usize] = &[24 + 3 * POINTER];
     fn defaults() -> Self {
         Self {
             struct_size: 0,

@@ -40,6 +40,7 @@ pub struct BhrDisk {
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrDisk {
     const NAME: &'static str = "BhrDisk";
+    const SIZES: &'static [usize] = &[64];
     fn defaults() -> Self {
         Disk::default().into()
     }

@@ -10,18 +10,20 @@ use crate::error::{Error, ErrorKind, Result};
 use parking_lot::MutexGuard;
 use std::cell::{Cell, RefCell};
 use std::ffi::c_char;
+use std::io::Write;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{Mutex, Once, OnceLock, PoisonError};
 use std::thread::LocalKey;
 
 /// Room for a message with two longest paths in it.
 const MESSAGE_BYTES: usize = 10_000;
 
 thread_local! {
-    /// Never longer than its capacity, so that it stays where it is: a pointer that a host kept too long shows a later
-    /// message, not freed memory.
-    static MESSAGE: RefCell<Vec<u8>> = RefCell::new(Vec::with_capacity(MESSAGE_BYTES));
+    /// Ends with a NUL. In place, so that no memory is needed to say that there is none, and a pointer that a host
+    /// kept too long shows a later message, not freed memory. (Nor does it need a destructor, which is memory as
+    /// well.)
+    static MESSAGE: RefCell<[u8; MESSAGE_BYTES]> = const { RefCell::new([0; MESSAGE_BYTES]) };
     static CALLS: Cell<u32> = const { Cell::new(0) };
     static CALLBACKS: Cell<u32> = const { Cell::new(0) };
     static LOG_CALLBACKS: Cell<u32> = const { Cell::new(0) };
@@ -117,29 +119,32 @@ pub(super) fn finish<T: Success>(function: &str, result: Result<T>) -> BhrStatus
         Ok(success) => return success.status(),
         Err(error) => error,
     };
-    let message = format!("{function}: {}", error.message);
-    ::log::error!(target: "bhr", "{message}");
-    keep_message(&message);
+    // `allocate` says nothing where there is no memory to say it in.
+    let message = if error.message.is_empty() { "no memory is left" } else { &error.message };
+    ::log::error!(target: "bhr", "{function}: {message}");
+    keep_message(format_args!("{function}: {message}"));
     status::of(error.kind)
 }
 
-fn keep_message(message: &str) {
-    let text = log::c_string(message.get(..message.floor_char_boundary(MESSAGE_BYTES - 1)).unwrap_or_default().into());
+fn keep_message(message: std::fmt::Arguments<'_>) {
     // A thread that is ending has no message any more.
     let _ = MESSAGE.try_with(|kept| {
         let mut kept = kept.borrow_mut();
-        kept.clear();
-        kept.extend_from_slice(text.as_bytes_with_nul());
+        let mut rest = &mut kept[..MESSAGE_BYTES - 1];
+        // What does not fit is left out.
+        let _ = rest.write_fmt(message);
+        let written = MESSAGE_BYTES - 1 - rest.len();
+        let text = &mut kept[..written];
+        text.iter_mut().filter(|byte| **byte == 0).for_each(|byte| *byte = b' ');
+        // No half of a character.
+        let length = std::str::from_utf8(text).map_or_else(|cut| cut.valid_up_to(), str::len);
+        kept[length] = 0;
     });
 }
 
 /// Never NULL.
 pub(super) fn last_message() -> *const c_char {
-    let kept = MESSAGE.try_with(|kept| match kept.borrow() {
-        message if message.is_empty() => c"".as_ptr(),
-        message => message.as_ptr().cast(),
-    });
-    kept.unwrap_or(c"".as_ptr())
+    MESSAGE.try_with(|kept| kept.as_ptr().cast_const().cast()).unwrap_or(c"".as_ptr())
 }
 
 fn refuse_in_callback() -> Result<()> {
@@ -199,16 +204,21 @@ fn last_panic() -> std::sync::MutexGuard<'static, Option<String>> {
     LAST_PANIC.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Sync + Send>;
+
+/// The hook that was there.
+static BEFORE: OnceLock<Hook> = OnceLock::new();
+
 /// Rust's default hook prints. Panics inside a call, and on the tracers' threads (named "bhr.."), are noted
 /// instead; any other panic in the process goes where it went before.
 fn silence_panics() {
-    let before = std::panic::take_hook();
-    std::panic::set_hook(Box::new(move |info| {
+    // Not captured, as a closure that holds nothing takes no memory.
+    BEFORE.get_or_init(std::panic::take_hook);
+    std::panic::set_hook(Box::new(|info| {
         let ours = count(&CALLS) > 0 || std::thread::current().name().is_some_and(|name| name.starts_with("bhr"));
-        if ours {
-            *last_panic() = Some(describe(info));
-        } else {
-            before(info);
+        match BEFORE.get() {
+            Some(before) if !ours => before(info),
+            _ => *last_panic() = Some(describe(info)),
         }
     }));
 }
@@ -262,10 +272,10 @@ mod tests {
 
     #[test]
     fn a_message_stays_where_it_is() {
-        keep_message("first");
+        keep_message(format_args!("first"));
         let place = last_message();
         for length in [0, 100, MESSAGE_BYTES - 1, MESSAGE_BYTES, 1_000_000] {
-            keep_message(&"\u{e9}".repeat(length / 2));
+            keep_message(format_args!("{}", "\u{e9}".repeat(length / 2)));
             assert_eq!(last_message(), place);
             assert_eq!(message().len(), (length / 2 * 2).min(MESSAGE_BYTES - 2));
         }

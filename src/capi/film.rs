@@ -44,6 +44,7 @@ pub struct BhrFilm {
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrFilm {
     const NAME: &'static str = "BhrFilm";
+    const SIZES: &'static [usize] = &[24];
     fn defaults() -> Self {
         Film::default().into()
     }

@@ -109,6 +109,7 @@ pub struct BhrHoleInfo {
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrHoleInfo {
     const NAME: &'static str = "BhrHoleInfo";
+    const SIZES: &'static [usize] = &[88];
     fn defaults() -> Self {
         Self {
             struct_size: 0,

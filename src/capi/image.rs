@@ -4,7 +4,7 @@
 use super::entry::anywhere;
 use super::pointer::{check_flags, check_reserved, is_null, unknown};
 use super::status::BhrStatus;
-use super::versioned::{self, OutStruct, Versioned};
+use super::versioned::{self, OutStruct, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::image::{self, ImageMut, Layout, Loaded, PixelFormat};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A pixel's bytes in memory order; row 0 is at the top.
+/// A pixel's bytes in memory order.
 pub type BhrFormat = i32;
 /// 4 bytes: red, green, blue with the sRGB curve, alpha.
 pub const BHR_FORMAT_RGBA8_SRGB: BhrFormat = 1;
@@ -31,8 +31,16 @@ pub const BHR_FORMAT_R32F: BhrFormat = 5;
 /// and leaves alpha: glare over the host's own picture.
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
+/// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
+/// address of the block, as without the flag, and row_stride > 0 leads to the next row up.
+pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
+
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
 /// side or interleaved; different contexts may then render them at the same time.
+///
+/// Rows from the bottom up are best asked for by BHR_IMAGE_BOTTOM_UP. A negative row_stride, with pixels at the last
+/// row of the block, says the same; but with pixels left at the block's begin, an easy slip, it has all rows but one
+/// written before the block, which nothing can check.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrImage {
@@ -44,15 +52,16 @@ pub struct BhrImage {
     pub width: u32,
     /// Pixels, 1 .. 2^20.
     pub height: u32,
-    /// The top-left pixel; aligned to its channel: 1, 2 or 4 bytes.
+    /// The top-left pixel; with BHR_IMAGE_BOTTOM_UP the bottom-left one. Aligned to its channel: 1, 2 or 4 bytes.
     pub pixels: *mut c_void,
-    /// Bytes to the next row down, a multiple of the channel's size. 0 (default): packed. < 0: bottom-up.
-    /// |row_stride| must hold a row.
+    /// Bytes to the next row down, with BHR_IMAGE_BOTTOM_UP to the next row up; a multiple of the channel's size. 0
+    /// (default): packed. < 0: the next row down lies lower in memory, and pixels is the block's last row; not together
+    /// with BHR_IMAGE_BOTTOM_UP. |row_stride| must hold a row.
     pub row_stride: i64,
-    /// Of the host's block, which begins at its lowest address (row_stride < 0: at the last row). Needed: (height -
-    /// 1) |row_stride| + width bytes-per-pixel; checked.
+    /// Of the host's block, which begins at its lowest address: at pixels, but (height - 1) |row_stride| before it
+    /// where row_stride < 0. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
     pub byte_size: u64,
-    /// BHR_IMAGE_* bits. Default 0. Matters for rendering only.
+    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only.
     pub flags: u32,
     /// 0.
     pub reserved: u32,
@@ -61,6 +70,7 @@ pub struct BhrImage {
 // SAFETY: repr(C), size first, no padding, integers and a nullable pointer.
 unsafe impl Versioned for BhrImage {
     const NAME: &'static str = "BhrImage";
+    const SIZES: &'static [usize] = &[40 + POINTER];
     fn defaults() -> Self {
         Self { format: BHR_FORMAT_RGBA8_SRGB, ..Self::empty() }
     }
@@ -107,7 +117,8 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Give
     // SAFETY: this function's contract.
     let given = unsafe { versioned::read(image, name) }?;
     check_reserved(given.reserved, name)?;
-    let flags = check_flags(given.flags, BHR_IMAGE_TRANSPARENT, &format!("{name} flags"))?;
+    let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP;
+    let flags = check_flags(given.flags, known, &format!("{name} flags"))?;
     let layout = Layout {
         format: format(given.format)?,
         width: given.width,
@@ -115,7 +126,12 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Give
         row_stride: given.row_stride,
     };
     // SAFETY: the block of byte_size bytes is the host's, by this function's contract.
-    let pixels = unsafe { ImageMut::from_raw(layout, given.pixels.cast(), given.byte_size) }?;
+    let pixels = unsafe {
+        match flags & BHR_IMAGE_BOTTOM_UP {
+            0 => ImageMut::from_raw(layout, given.pixels.cast(), given.byte_size),
+            _ => ImageMut::from_raw_bottom_up(layout, given.pixels.cast(), given.byte_size),
+        }
+    }?;
     Ok(Given { pixels, transparent: flags & BHR_IMAGE_TRANSPARENT != 0 })
 }
 
@@ -165,15 +181,15 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
     })
 }
 
-/// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in. 8-bit files give
-/// RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with channels R, G and B is
-/// read, its largest level, cut to the display window, 0 where the data window does not reach; 8 MiB of headers, 4096
-/// channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the library's: give them
-/// back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
-/// struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR;
-/// OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more
-/// than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before memory is taken
-/// for it.
+/// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
+/// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with
+/// channels R, G and B is read, its largest level, cut to the display window, 0 where the data window does not reach;
+/// 8 MiB of headers, 4096 channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the
+/// library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
+/// built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
+/// side, or of more than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before
+/// memory is taken for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

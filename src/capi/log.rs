@@ -10,6 +10,7 @@ use crate::thread_scope::{self, ThreadScope};
 use log::{Level, LevelFilter, Log, Metadata, Record};
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString, c_char, c_void};
+use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// How much a log callback hears: messages of this level and those more severe.
@@ -124,7 +125,8 @@ fn change_sinks(change: impl FnOnce(&mut Vec<Arc<Sink>>)) {
 
 thread_local! {
     /// Of the call this thread is in: `Some(None)` is a context without a callback.
-    static CURRENT: RefCell<Option<Option<Arc<Sink>>>> = const { RefCell::new(None) };
+    /// Not dropped with its thread, which has left every scope by then: a destructor would take memory in each thread.
+    static CURRENT: RefCell<ManuallyDrop<Option<Option<Arc<Sink>>>>> = const { RefCell::new(ManuallyDrop::new(None)) };
     /// Messages that found no room to wait in, since the note about them was ordered.
     static OMITTED: Cell<u64> = const { Cell::new(0) };
 }
@@ -136,23 +138,28 @@ pub(super) struct Scope {
 
 impl Scope {
     pub(super) fn enter(sink: Option<Arc<Sink>>) -> Self {
-        Self { before: CURRENT.try_with(|current| current.replace(Some(sink))).unwrap_or(None) }
+        Self { before: change_current(Some(sink)) }
     }
 }
 
 impl Drop for Scope {
     fn drop(&mut self) {
-        // No thread-local left: the thread is ending, and nothing can be logged from it any more.
-        let _ = CURRENT.try_with(|current| current.replace(self.before.take()));
+        change_current(self.before.take());
     }
 }
 
 /// The scope that this thread is in, for a thread that works for it.
 fn scope_of_caller() -> ThreadScope {
-    let sink = CURRENT.try_with(|current| current.borrow().clone()).unwrap_or(None);
-    Arc::new(move || {
-        Box::new(Scope { before: CURRENT.try_with(|current| current.replace(sink.clone())).unwrap_or(None) })
-    })
+    let sink = CURRENT.try_with(|current| (*current.borrow()).clone()).ok();
+    let sink = sink.map_or(None, ManuallyDrop::into_inner);
+    Arc::new(move || Box::new(Scope { before: change_current(sink.clone()) }))
+}
+
+/// What was there before.
+fn change_current(sink: Option<Option<Arc<Sink>>>) -> Option<Option<Arc<Sink>>> {
+    // No thread-local left: the thread is ending, and nothing can be logged from it any more.
+    let replaced = CURRENT.try_with(|current| current.replace(ManuallyDrop::new(sink)));
+    replaced.map_or(None, ManuallyDrop::into_inner)
 }
 
 struct HostLogger;
@@ -167,7 +174,7 @@ impl Log for HostLogger {
             return;
         }
         let level = host_level(record);
-        let sinks = match CURRENT.try_with(|current| current.borrow().clone()).unwrap_or(None) {
+        let sinks = match CURRENT.try_with(|current| (**current.borrow()).clone()).unwrap_or(None) {
             Some(own) => own.into_iter().collect(),
             None => lock(&SINKS).clone(),
         };
@@ -228,7 +235,7 @@ fn text(record: &Record<'_>) -> CString {
 }
 
 /// `text` as a C string; a NUL inside becomes a space.
-pub(super) fn c_string(text: String) -> CString {
+fn c_string(text: String) -> CString {
     CString::new(text).unwrap_or_else(|error| {
         let text = String::from_utf8_lossy(&error.into_vec()).replace('\0', " ");
         CString::new(text).unwrap_or_default()

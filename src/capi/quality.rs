@@ -52,6 +52,7 @@ pub struct BhrQuality {
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrQuality {
     const NAME: &'static str = "BhrQuality";
+    const SIZES: &'static [usize] = &[48];
     fn defaults() -> Self {
         Quality::default().into()
     }

@@ -5,6 +5,7 @@ use super::context::BhrContext;
 use super::entry::on_context;
 use super::pointer::{Out, check_finite, is_null};
 use super::status::BhrStatus;
+use crate::allocate::{filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::MAX_SIDE;
 use crate::renderer::Renderer;
@@ -12,7 +13,8 @@ use crate::scene::{Crossing, Hit, MAX_CROSSINGS, Ray};
 use bytemuck::{Pod, Zeroable};
 use std::mem::size_of;
 
-/// A ray, followed backward from the eye.
+/// A ray, followed backward from the eye. Within one BHR_ABI_VERSION it does not grow: some calls that fill it in are
+/// told no size.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrRay {
@@ -32,7 +34,7 @@ pub const BHR_MAX_CROSSINGS: usize = 4;
 
 const _: () = assert!(BHR_MAX_CROSSINGS == MAX_CROSSINGS);
 
-/// A crossing of the equatorial plane outside the horizon.
+/// A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrCrossing {
@@ -57,7 +59,7 @@ pub const BHR_FATE_UNRESOLVED: BhrFate = 2;
 /// This ray's input is not valid: not finite, zero direction, no frame there.
 pub const BHR_FATE_INVALID: BhrFate = 3;
 
-/// What a ray met.
+/// What a ray met. It may grow at its end: bhr_trace_rays is told hit_size.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrHit {
@@ -198,6 +200,16 @@ const CHUNK: usize = 65_536;
 /// Larger than the structs will ever be.
 const MAX_ELEMENT: usize = 16 * 1024;
 
+// Neither may grow: `bhr_camera_rays` and others fill a BhrRay in without being told its size, and a BhrHit holds
+// crossings.
+const _: () = assert!(size_of::<BhrRay>() == 56 && size_of::<BhrCrossing>() == 32);
+
+/// The sizes of a BhrHit, as `Versioned::SIZES` of structs that hold theirs.
+const HIT_SIZES: [usize; 1] = [184];
+const FIRST_HIT: usize = HIT_SIZES[0];
+
+const _: () = assert!(HIT_SIZES[HIT_SIZES.len() - 1] == size_of::<BhrHit>());
+
 /// A packed array of the host's, of elements that may be longer than ours.
 #[derive(Clone, Copy)]
 struct Array {
@@ -237,14 +249,23 @@ impl Array {
         }
     }
 
+    /// As much of the hit as the host's element holds; what it holds beyond that becomes zero.
+    ///
     /// # Safety
     /// `index` is less than the count, and the host's array is writable.
     unsafe fn write_hit(self, index: usize, hit: Hit) {
-        let known = size_of::<BhrHit>();
-        // SAFETY: this function's contract; `element >= known` by `new`.
+        // SAFETY: this function's contract.
+        unsafe { self.write(index, bytemuck::bytes_of(&BhrHit::from(hit))) }
+    }
+
+    /// # Safety
+    /// As `write_hit`.
+    unsafe fn write(self, index: usize, value: &[u8]) {
+        let known = value.len().min(self.element);
+        // SAFETY: this function's contract; `known` is no longer than the element or the value.
         unsafe {
             let at = self.begin.add(index * self.element);
-            at.cast::<BhrHit>().write_unaligned(hit.into());
+            std::ptr::copy_nonoverlapping(value.as_ptr(), at, known);
             at.add(known).write_bytes(0, self.element - known);
         }
     }
@@ -253,16 +274,21 @@ impl Array {
 /// # Safety
 /// `rays` and `hits` hold `count` elements.
 unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: usize) -> Result<()> {
+    let most = CHUNK.min(count);
+    let mut chunk = with_room(most, "rays to trace")?;
+    let mut found = filled(most, Hit::default(), "what rays hit")?;
     let mut begin = 0;
     while begin < count {
         let length = CHUNK.min(count - begin);
-        // SAFETY: the indices are below `count`.
-        let chunk = (begin..begin + length).map(|index| unsafe { rays.read_ray(index) }).collect::<Result<Vec<_>>>()?;
-        let mut found = vec![Hit::default(); length];
-        renderer.trace_rays(&chunk, &mut found)?;
-        for (index, hit) in (begin..).zip(found) {
+        chunk.clear();
+        for index in begin..begin + length {
+            // SAFETY: the indices are below `count`.
+            chunk.push(unsafe { rays.read_ray(index) }?);
+        }
+        renderer.trace_rays(&chunk, &mut found[..length])?;
+        for (index, hit) in (begin..).zip(&found[..length]) {
             // SAFETY: as above.
-            unsafe { hits.write_hit(index, hit) };
+            unsafe { hits.write_hit(index, *hit) };
         }
         begin += length;
     }
@@ -272,9 +298,10 @@ unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: us
 /// Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
 /// equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
 /// flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
-/// error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled; both
-/// arrays are packed. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below the first version's;
-/// UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+/// error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
+/// least 56 and 184, those of the first version; both arrays are packed. A longer ray must be 0 beyond what this
+/// library knows, a longer hit becomes so. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below
+/// the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_rays(
     context: *mut BhrContext,
@@ -288,7 +315,7 @@ pub unsafe extern "C" fn bhr_trace_rays(
     unsafe {
         on_context("bhr_trace_rays", context, |state| {
             let from = Array::new(rays.cast_mut().cast(), ray_size, size_of::<BhrRay>(), count, ["rays", "ray_size"])?;
-            let to = Array::new(out_hits.cast(), hit_size, size_of::<BhrHit>(), count, ["out_hits", "hit_size"])?;
+            let to = Array::new(out_hits.cast(), hit_size, FIRST_HIT, count, ["out_hits", "hit_size"])?;
             let result = trace_all(&mut state.renderer, from, to, count);
             if result.is_err() {
                 to.begin.write_bytes(0, count * hit_size);
@@ -362,6 +389,19 @@ mod tests {
         // SAFETY: one element is there.
         unsafe { array.write_hit(0, Hit::default()) };
         assert_eq!(bytes[known..], [0, 0, 0, 0, 7, 7, 7, 7]);
+    }
+
+    /// A hit that is longer than the host's, as if it had grown after the host was compiled.
+    #[test]
+    fn a_shorter_hit_is_written_no_further_than_it_is_long() {
+        let mut bytes = [7u8; 3 * FIRST_HIT];
+        let array = Array::new(bytes.as_mut_ptr(), FIRST_HIT, FIRST_HIT, 2, ["hits", "hit_size"]).unwrap();
+        let grown = (0..FIRST_HIT + 16).map(|i| i as u8).collect::<Vec<_>>();
+        // SAFETY: two elements are there.
+        unsafe { array.write(1, &grown) };
+        assert_eq!(bytes[..FIRST_HIT], [7; FIRST_HIT]);
+        assert_eq!(bytes[FIRST_HIT..2 * FIRST_HIT], grown[..FIRST_HIT]);
+        assert_eq!(bytes[2 * FIRST_HIT..], [7; FIRST_HIT]);
     }
 
     #[test]

@@ -30,6 +30,7 @@ pub struct BhrRegion {
 // SAFETY: repr(C), size first, no padding, integers only.
 unsafe impl Versioned for BhrRegion {
     const NAME: &'static str = "BhrRegion";
+    const SIZES: &'static [usize] = &[24];
     fn defaults() -> Self {
         Self { struct_size: 0, full_width: 0, full_height: 0, x: 0, y: 0, reserved: 0 }
     }

@@ -51,6 +51,7 @@ pub struct BhrSky {
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrSky {
     const NAME: &'static str = "BhrSky";
+    const SIZES: &'static [usize] = &[64];
     fn defaults() -> Self {
         Sky::default().into()
     }

@@ -35,6 +35,7 @@ pub struct BhrFrameStats {
 // SAFETY: repr(C), size first, no padding, integers only.
 unsafe impl Versioned for BhrFrameStats {
     const NAME: &'static str = "BhrFrameStats";
+    const SIZES: &'static [usize] = &[64];
     fn defaults() -> Self {
         FrameStats::default().into()
     }

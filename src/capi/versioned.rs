@@ -15,18 +15,39 @@ const MAX_SIZE: usize = 16 * 1024;
 pub(super) unsafe trait Versioned: Copy {
     /// As in the header.
     const NAME: &'static str;
-    /// What the header calls the library's first version. When the struct grows, this stays.
-    const FIRST_SIZE: usize = size_of::<Self>();
+    /// Its size in the first release that had it, then its size in each later release in which it had grown; the last
+    /// one is today's. Numbers, not `size_of`: hosts compiled back then go on saying them. Append only.
+    const SIZES: &'static [usize];
     /// What `*_init` fills in, and what fields hold that the caller's version does not have.
     fn defaults() -> Self;
 }
 
+/// Of a pointer in a struct: the part of [`Versioned::SIZES`] that is not the same on every platform.
+pub(super) const POINTER: usize = size_of::<*const ()>();
+
+/// The size of the first release, with `SIZES` checked: a struct that has grown without being said to, or has shrunk,
+/// does not compile.
+const fn first_size<T: Versioned>() -> usize {
+    let sizes = T::SIZES;
+    assert!(!sizes.is_empty() && sizes[0] >= size_of::<u32>(), "a struct has its first release's size");
+    assert!(
+        sizes[sizes.len() - 1] == size_of::<T>(),
+        "the last of SIZES is today's size; a struct that grows appends it"
+    );
+    let mut i = 1;
+    while i < sizes.len() {
+        assert!(sizes[i - 1] < sizes[i], "structs only grow");
+        i += 1;
+    }
+    sizes[0]
+}
+
 fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
-    if size < T::FIRST_SIZE {
+    let first = const { first_size::<T>() };
+    if size < first {
         return Err(Error::argument(format!(
-            "{name} struct_size is {size}; it must be sizeof({}), at least {}",
-            T::NAME,
-            T::FIRST_SIZE
+            "{name} struct_size is {size}; it must be sizeof({}), at least {first}",
+            T::NAME
         )));
     }
     if size > MAX_SIZE {
@@ -156,7 +177,7 @@ mod tests {
     // SAFETY: repr(C), only u32, size first.
     unsafe impl Versioned for Grown {
         const NAME: &'static str = "Grown";
-        const FIRST_SIZE: usize = 12;
+        const SIZES: &'static [usize] = &[12, 16];
         fn defaults() -> Self {
             Self { struct_size: 0, old: [7, 8], new: 9 }
         }
@@ -211,6 +232,87 @@ mod tests {
         assert_eq!(words, [24, 7, 8, 9, 0, 0, 9]);
         // SAFETY: refused before anything is written.
         assert!(unsafe { init(words.as_mut_ptr().cast::<Grown>(), "grown", usize::MAX) }.is_err());
+    }
+
+    /// As if a real struct had grown, in a release that is not made yet, by fields whose defaults are not 0.
+    #[repr(C)]
+    #[derive(Clone, Copy)]
+    struct Later<T> {
+        known: T,
+        added: [u32; 2],
+    }
+
+    const ADDED: [u32; 2] = [0x0102_0304, 0x0506_0708];
+
+    // SAFETY: as `T`, whose size is a multiple of 4, with u32 after it.
+    unsafe impl<T: Versioned> Versioned for Later<T> {
+        const NAME: &'static str = T::NAME;
+        const SIZES: &'static [usize] = &[T::SIZES[0], size_of::<Self>()];
+        fn defaults() -> Self {
+            Self { known: T::defaults(), added: ADDED }
+        }
+    }
+
+    fn bytes_of<T: Versioned>(value: &T) -> &[u8] {
+        // SAFETY: no padding, by the contract of `Versioned`.
+        unsafe { std::slice::from_raw_parts((&raw const *value).cast(), size_of::<T>()) }
+    }
+
+    /// A host compiled against the first release meets a library in which `T` has grown.
+    fn hosts_of_the_first_release_go_on<T: Versioned>() {
+        let (first, full) = (T::SIZES[0], size_of::<Later<T>>());
+        assert!(full > first && align_of::<T>() <= align_of::<u64>());
+        let defaults = Later::<T>::defaults();
+        for size in first..=full {
+            // 8 bytes behind the host's struct are somebody else's.
+            let mut words = vec![u64::from_ne_bytes([0xa5; 8]); (full + 8).div_ceil(8)];
+            let pointer = words.as_mut_ptr().cast::<Later<T>>();
+            let host = || {
+                // SAFETY: so many bytes are there.
+                unsafe { std::slice::from_raw_parts(pointer.cast::<u8>(), full + 8) }.to_vec()
+            };
+            let is_default = |bytes: &[u8]| {
+                bytes[..4] == (size as u32).to_ne_bytes()
+                    && bytes[4..size] == bytes_of(&defaults)[4..size]
+                    && bytes[size..].iter().all(|byte| *byte == 0xa5)
+            };
+            // SAFETY: `size` bytes are there, as in the rest of this function.
+            unsafe { init(pointer, "struct", size) }.unwrap();
+            assert!(is_default(&host()), "{}: init at {size}", T::NAME);
+            // SAFETY: as above.
+            let value = unsafe { read(pointer, "struct") }.unwrap();
+            assert!(bytes_of(&value)[4..] == bytes_of(&defaults)[4..], "{}: read at {size}", T::NAME);
+            // SAFETY: as above.
+            let out = unsafe { OutStruct::cleared(pointer, "struct") };
+            let cleared = host();
+            assert!(cleared[4..size].iter().all(|byte| *byte == 0), "{}: cleared at {size}", T::NAME);
+            assert!(cleared[size..].iter().all(|byte| *byte == 0xa5), "{}: cleared at {size}", T::NAME);
+            out.set(&defaults).unwrap();
+            assert!(is_default(&host()), "{}: filled at {size}", T::NAME);
+            // SAFETY: as above.
+            unsafe { write(pointer, "struct", &defaults) }.unwrap();
+            assert!(is_default(&host()), "{}: written at {size}", T::NAME);
+        }
+        let mut small = [first as u32 - 1; 2];
+        // SAFETY: refused before anything but the size is read.
+        let error = unsafe { read(small.as_mut_ptr().cast::<Later<T>>(), "struct") }.err().unwrap();
+        assert!(error.message.ends_with(&format!("sizeof({}), at least {first}", T::NAME)), "{error}");
+    }
+
+    #[test]
+    fn every_struct_may_grow_under_hosts_of_the_first_release() {
+        hosts_of_the_first_release_go_on::<crate::capi::adapter::BhrAdapterInfo>();
+        hosts_of_the_first_release_go_on::<crate::capi::camera::BhrCamera>();
+        hosts_of_the_first_release_go_on::<crate::capi::context::BhrContextOptions>();
+        hosts_of_the_first_release_go_on::<crate::capi::disk::BhrDisk>();
+        hosts_of_the_first_release_go_on::<crate::capi::film::BhrFilm>();
+        hosts_of_the_first_release_go_on::<crate::capi::hole::BhrHoleInfo>();
+        hosts_of_the_first_release_go_on::<crate::capi::image::BhrImage>();
+        hosts_of_the_first_release_go_on::<crate::capi::quality::BhrQuality>();
+        hosts_of_the_first_release_go_on::<crate::capi::region::BhrRegion>();
+        hosts_of_the_first_release_go_on::<crate::capi::sky::BhrSky>();
+        hosts_of_the_first_release_go_on::<crate::capi::stats::BhrFrameStats>();
+        hosts_of_the_first_release_go_on::<crate::capi::window::BhrWindow>();
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! its pointers.
 
 use super::pointer::{check_reserved, unknown};
-use super::versioned::{self, Versioned};
+use super::versioned::{self, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::window::NativeWindow;
 use std::ffi::c_void;
@@ -57,6 +57,7 @@ pub struct BhrWindow {
 // SAFETY: repr(C), size first, no padding, integers and nullable pointers.
 unsafe impl Versioned for BhrWindow {
     const NAME: &'static str = "BhrWindow";
+    const SIZES: &'static [usize] = &[32 + 3 * POINTER];
     fn defaults() -> Self {
         Self {
             struct_size: 0,

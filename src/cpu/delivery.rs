@@ -2,6 +2,7 @@
 //! gets a little of every other's. Knows neither how light is made nor host memory.
 
 use super::frame::Frame;
+use crate::allocate::{collected, filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::{Bloom, Glare};
@@ -10,6 +11,8 @@ use rayon::prelude::*;
 
 /// Bytes of a whole frame's light; a frame with bloom that needs more is traced twice instead.
 const LIGHT_MEMORY: u64 = 192 << 20;
+/// What memory is asked for.
+const LIGHT: &str = "the light of a tile";
 /// Bytes of a pixel's light.
 const LIGHT_BYTES: u64 = size_of::<[f32; 4]>() as u64;
 
@@ -36,7 +39,7 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         Self { pool, frame, sink, progress, done: 0, total: 0, steps: 0 }
     }
 
-    /// Without bloom. Errors: those of the sink; CANCELLED.
+    /// Without bloom. Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
     pub fn plain(&mut self, tiles: &[Tile]) -> Result<()> {
         self.total = tiles.len() as u64 * u64::from(self.frame.samples);
         for tile in tiles {
@@ -53,11 +56,8 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         let keep = keep.unwrap_or((width * height) as u64 * LIGHT_BYTES <= LIGHT_MEMORY);
         let samples = u64::from(self.frame.samples);
         self.total = tiles.len() as u64 * (samples + if keep { 1 } else { samples });
-        let mut kept = Vec::new();
-        kept.try_reserve_exact(if keep { width * height } else { 0 })
-            .map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("light of {width} x {height}: {error}")))?;
-        kept.resize(kept.capacity().min(width * height), [0.0; 4]);
-        let mut gathering = bloom.gathering();
+        let mut kept = filled(if keep { width * height } else { 0 }, [0.0; 4], "the light of a frame with bloom")?;
+        let mut gathering = bloom.gathering()?;
         for tile in tiles {
             let light = self.exposed_light(*tile)?;
             self.pool.install(|| gathering.add([tile.x, tile.y], tile.width, &light));
@@ -68,40 +68,44 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
             }
             self.tick()?;
         }
-        let glare = self.pool.install(|| gathering.spread());
+        let glare = self.pool.install(|| gathering.spread())?;
         let film = self.frame.film.of_exposed();
         for tile in tiles {
             let light = match keep {
-                true => rows(*tile, width).filter_map(|row| kept.get(row)).flatten().copied().collect(),
+                true => {
+                    let mut light = with_room((tile.width * tile.height) as usize, LIGHT)?;
+                    rows(*tile, width).filter_map(|row| kept.get(row)).for_each(|row| light.extend_from_slice(row));
+                    light
+                }
                 false => self.exposed_light(*tile)?,
             };
-            let light = self.pool.install(|| with_glare(&glare, *tile, &light));
+            let light = self.pool.install(|| with_glare(&glare, *tile, &light))?;
             self.put(*tile, &film, &light)?;
             self.tick()?;
         }
         Ok(())
     }
 
-    /// Errors: CANCELLED.
+    /// Errors: CANCELLED; OUT_OF_MEMORY.
     fn light(&mut self, tile: Tile) -> Result<Vec<[f64; 4]>> {
-        let mut sum = vec![[0.0; 4]; (tile.width * tile.height) as usize];
+        let mut sum = filled((tile.width * tile.height) as usize, [0.0; 4], LIGHT)?;
         for sample in 0..self.frame.samples {
             if sample > 0 {
                 self.tick()?;
             }
-            self.steps += self.pool.install(|| self.frame.add_sample(tile, sample, &mut sum));
+            self.steps += self.pool.install(|| self.frame.add_sample(tile, sample, &mut sum))?;
         }
         Ok(sum)
     }
 
-    /// Light as bloom spreads it. Errors: CANCELLED.
+    /// Light as bloom spreads it. Errors: CANCELLED; OUT_OF_MEMORY.
     fn exposed_light(&mut self, tile: Tile) -> Result<Vec<[f32; 4]>> {
         let light = self.light(tile)?;
-        Ok(light.into_iter().map(|radiance| self.frame.film.exposed_light(radiance)).collect())
+        collected(light.into_iter().map(|radiance| self.frame.film.exposed_light(radiance)), LIGHT)
     }
 
     fn put(&mut self, tile: Tile, film: &FilmParams, light: &[[f64; 4]]) -> Result<()> {
-        let pixels = self.pool.install(|| self.frame.develop(film, tile, light));
+        let pixels = self.pool.install(|| self.frame.develop(film, tile, light))?;
         (self.sink)(tile, &pixels, pixels.len() / tile.height.max(1) as usize)
     }
 
@@ -121,11 +125,14 @@ fn rows(tile: Tile, width: usize) -> impl Iterator<Item = std::ops::Range<usize>
     (0..tile.height as usize).map(move |row| begin + row * width..begin + row * width + tile.width as usize)
 }
 
-fn with_glare(glare: &Glare<'_>, tile: Tile, light: &[[f32; 4]]) -> Vec<[f64; 4]> {
+/// Errors: OUT_OF_MEMORY.
+fn with_glare(glare: &Glare<'_>, tile: Tile, light: &[[f32; 4]]) -> Result<Vec<[f64; 4]>> {
+    let mut with = with_room(light.len(), LIGHT)?;
     let place = |i: usize| (tile.x + i as u32 % tile.width, tile.y + i as u32 / tile.width);
     let pixel = |(i, light): (usize, &[f32; 4])| {
         let (x, y) = place(i);
         glare.over(*light, x, y).map(f64::from)
     };
-    light.par_iter().enumerate().map(pixel).collect()
+    light.par_iter().enumerate().map(pixel).collect_into_vec(&mut with);
+    Ok(with)
 }

@@ -7,6 +7,7 @@ use super::lens::{LensCache, LookedUp};
 use super::record::{Neighbours, Recorder};
 use super::refine::Refiner;
 use super::shade::Shader;
+use crate::allocate::{self, collected, filled};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::film::{FilmParams, develop_row};
@@ -51,12 +52,13 @@ impl CpuTracer {
         sink: &mut TileSink<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
+        allocate::check_room(0, "a frame")?;
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();
         let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
-        let tiles = tiles(request, frame.expected_steps(scene));
+        let tiles = tiles(request, frame.expected_steps(scene))?;
         let mut delivery = Delivery::new(&self.pool, &frame, sink, progress);
-        match Bloom::new(scene, request.format, [request.width, request.height]) {
+        match Bloom::new(scene, request.format, [request.width, request.height])? {
             None => delivery.plain(&tiles)?,
             Some(bloom) => delivery.with_glare(&tiles, &bloom, scene.quality.keep_light)?,
         }
@@ -73,29 +75,35 @@ impl CpuTracer {
         self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request)).map(|_| ())
     }
 
-    /// The records of a frame, row by row. Errors: as `Scene::lens`.
+    /// The records of a frame, row by row. Errors: as `Scene::lens`; OUT_OF_MEMORY.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();
         let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
-        let mut records = vec![Record::captured(); request.width as usize * request.height as usize];
-        self.pool.install(|| frame.with_records(tile, origin, &mut records, |record, _, _, out| *out = record.clone()));
+        let count = request.width as usize * request.height as usize;
+        let mut records = filled(count, Record::captured(), "the records of a frame's rays")?;
+        let keep = |record: &Record, _: f64, _: f64, out: &mut Record| *out = record.clone();
+        self.pool.install(|| frame.with_records(tile, origin, &mut records, keep))?;
         Ok(records)
     }
 }
 
-/// Row by row from the top left.
-fn tiles(request: &FrameRequest, steps: u64) -> Vec<Tile> {
+/// Row by row from the top left. Errors: OUT_OF_MEMORY.
+fn tiles(request: &FrameRequest, steps: u64) -> Result<Vec<Tile>> {
     let pixels = (TILE_STEPS / steps).clamp(256, 1 << 15) as u32;
     let w = request.width.clamp(1, TILE_WIDTH.min(pixels / 4));
     let h = pixels / w;
     let columns = (0..request.width).step_by(w as usize);
     let rows = (0..request.height).step_by(h as usize);
-    rows.flat_map(|y| columns.clone().map(move |x| (x, y)))
-        .map(|(x, y)| Tile { x, y, width: w.min(request.width - x), height: h.min(request.height - y) })
-        .collect()
+    let tiles = rows.flat_map(|y| columns.clone().map(move |x| (x, y))).map(|(x, y)| Tile {
+        x,
+        y,
+        width: w.min(request.width - x),
+        height: h.min(request.height - y),
+    });
+    collected(tiles, "the list of a frame's tiles")
 }
 
 impl<'a> Frame<'a> {
@@ -111,7 +119,7 @@ impl<'a> Frame<'a> {
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let eye = &lens.observer.frame;
-        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels, KerrWorth::CPU));
+        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels, KerrWorth::CPU))?;
         let source = |recorder| match tables {
             Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
             None => Source::Traced(recorder),
@@ -137,8 +145,9 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays.
-    pub fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> u64 {
+    /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays. Errors:
+    /// OUT_OF_MEMORY.
+    pub fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> Result<u64> {
         let region = self.request.region;
         let offset = sample_offset(sample, self.samples, self.lens.mapping.projection);
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
@@ -152,30 +161,30 @@ impl<'a> Frame<'a> {
     }
 
     /// Calls `take` with the record of each pixel of `tile` (the first one's ray passing through `origin` of the full frame), its
-    /// place, and its item of `out`; the steps of all rays.
+    /// place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
     fn with_records<T: Send>(
         &self,
         tile: Tile,
         origin: [f64; 2],
         out: &mut [T],
         take: impl Fn(&Record, f64, f64, &mut T) + Sync,
-    ) -> u64 {
+    ) -> Result<u64> {
         match &self.source {
             Source::Traced(recorder) => trace_records(recorder, tile, origin, out, take),
-            Source::LookedUp(lookup) => look_records_up(lookup, tile, origin, out, take),
+            Source::LookedUp(lookup) => Ok(look_records_up(lookup, tile, origin, out, take)),
         }
     }
 
-    /// Packed pixels, rows without gaps.
-    pub fn develop(&self, film: &FilmParams, tile: Tile, sum: &[[f64; 4]]) -> Vec<u8> {
+    /// Packed pixels, rows without gaps. Errors: OUT_OF_MEMORY.
+    pub fn develop(&self, film: &FilmParams, tile: Tile, sum: &[[f64; 4]]) -> Result<Vec<u8>> {
         let region = self.request.region;
         let width = tile.width as usize;
         let row_bytes = width * self.request.format.bytes_per_pixel();
-        let mut pixels = vec![0; row_bytes * tile.height as usize];
+        let mut pixels = filled(row_bytes * tile.height as usize, 0, "the pixels of a tile")?;
         pixels.par_chunks_mut(row_bytes).zip(sum.par_chunks(width)).enumerate().for_each(|(row, (out, sum))| {
             develop_row(film, sum, region.x + tile.x, region.y + tile.y + row as u32, out);
         });
-        pixels
+        Ok(pixels)
     }
 }
 
@@ -186,13 +195,13 @@ fn trace_records<T: Send>(
     origin: [f64; 2],
     out: &mut [T],
     take: impl Fn(&Record, f64, f64, &mut T) + Sync,
-) -> u64 {
+) -> Result<u64> {
     let place = |column: u32, row: u32| (origin[0] - 1.0 + f64::from(column), origin[1] - 1.0 + f64::from(row));
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
     let stride = width as usize;
     // In one piece: rows made and freed by many threads leave their allocators in shreds.
-    let mut records = vec![Record::captured(); stride * height as usize];
+    let mut records = filled(stride * height as usize, Record::captured(), "the records of a tile's rays")?;
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
         for (record, column) in records.iter_mut().zip(0..) {
             let (x, y) = place(column, row);
@@ -212,7 +221,7 @@ fn trace_records<T: Send>(
             }
         },
     );
-    records.iter().map(|record| u64::from(record.steps)).sum()
+    Ok(records.iter().map(|record| u64::from(record.steps)).sum())
 }
 
 /// The same by looking up: each record is used as it is made.

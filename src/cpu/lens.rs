@@ -3,9 +3,11 @@
 //! `shaders/lens_schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
+use crate::allocate::{filled, with_room};
+use crate::error::Result;
 use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
-use crate::physics::lens::{OrbitPlane, PlaneImage, SchwarzschildLens};
+use crate::physics::lens::{LENS, OrbitPlane, PlaneImage, SchwarzschildLens};
 use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
@@ -16,6 +18,7 @@ use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::ops::Range;
 
 /// Relative difference of u of crossings up to which the footprint of one serves for the other.
 const LIKE: f64 = 1e-2;
@@ -49,34 +52,34 @@ pub enum Tables<'a> {
 
 impl LensCache {
     /// The tables for `lensing` by the eye at `frame`, built on the current pool unless they are those of before. `None`: rays are to
-    /// be traced.
-    pub fn tables(&mut self, scene: &Scene, frame: &LocalFrame, lensing: Lensing) -> Option<Tables<'_>> {
-        match lensing {
+    /// be traced. Errors: OUT_OF_MEMORY.
+    pub fn tables(&mut self, scene: &Scene, frame: &LocalFrame, lensing: Lensing) -> Result<Option<Tables<'_>>> {
+        Ok(match lensing {
             Lensing::Traced => None,
-            Lensing::Kerr => self.kerr(frame, wanted(scene)).map(Tables::Kerr),
-            Lensing::Schwarzschild => self.schwarzschild(frame, scene.needs_delay()).map(Tables::Schwarzschild),
-        }
+            Lensing::Kerr => self.kerr(frame, wanted(scene))?.map(Tables::Kerr),
+            Lensing::Schwarzschild => self.schwarzschild(frame, scene.needs_delay())?.map(Tables::Schwarzschild),
+        })
     }
 
-    fn schwarzschild(&mut self, frame: &LocalFrame, with_delay: bool) -> Option<&SchwarzschildLens> {
+    fn schwarzschild(&mut self, frame: &LocalFrame, with_delay: bool) -> Result<Option<&SchwarzschildLens>> {
         let fits = |lens: &SchwarzschildLens| {
             let family = lens.family();
             (family.r, family.rain, family.with_delay) == (frame.r, frame.rain, with_delay)
         };
         if !self.schwarzschild.as_ref().is_some_and(fits) {
-            self.schwarzschild = build_schwarzschild(frame, with_delay);
+            self.schwarzschild = build_schwarzschild(frame, with_delay)?;
         }
-        self.schwarzschild.as_ref()
+        Ok(self.schwarzschild.as_ref())
     }
 
-    fn kerr(&mut self, frame: &LocalFrame, wanted: Crossings) -> Option<&KerrLens> {
+    fn kerr(&mut self, frame: &LocalFrame, wanted: Crossings) -> Result<Option<&KerrLens>> {
         let key = KerrKey { spin: frame.a, r: frame.r, e_r: frame.e_r, wanted };
         if !self.kerr.as_ref().is_some_and(|(held, _)| *held == key) {
             // The old ones go first: they are large.
             self.kerr = None;
-            self.kerr = build_kerr(frame, wanted).map(|lens| (key, lens));
+            self.kerr = build_kerr(frame, wanted)?.map(|lens| (key, lens));
         }
-        self.kerr.as_ref().map(|(_, lens)| lens)
+        Ok(self.kerr.as_ref().map(|(_, lens)| lens))
     }
 }
 
@@ -89,27 +92,46 @@ fn wanted(scene: &Scene) -> Crossings {
     }
 }
 
-fn build_kerr(frame: &LocalFrame, wanted: Crossings) -> Option<KerrLens> {
-    let grid = Grid::new(frame, KERR_RESOLUTION, wanted)?;
-    let branches = [kerr::Branch::Outer, kerr::Branch::Inner];
-    let tables = branches.map(|branch| {
-        let rows = (0..grid.rows(branch)).into_par_iter();
-        let nodes: Vec<f64> = rows.clone().flat_map_iter(|row| grid.node_row(branch, row)).collect();
-        let cells = grid.cell_rows(branch).into_par_iter();
-        let flags: Vec<u32> = cells.flat_map_iter(|row| grid.flag_row(branch, row, &nodes)).collect();
-        (rows.flat_map_iter(|row| grid.packed_row(row, &nodes)).collect(), flags)
+/// A table of `rows`, each `width` long.
+fn by_rows<T: Copy + Default + Send, I: Iterator<Item = T>>(
+    rows: Range<usize>,
+    width: usize,
+    make: impl Fn(usize) -> I + Sync,
+) -> Result<Vec<T>> {
+    let mut table = filled(rows.len() * width, T::default(), LENS)?;
+    table.par_chunks_mut(width).zip(rows).for_each(|(row, number)| {
+        row.iter_mut().zip(make(number)).for_each(|(out, value)| *out = value);
     });
-    let [(outer, outer_flags), (inner, inner_flags)] = tables;
-    Some(KerrLens::assemble(grid, [outer, inner], [outer_flags, inner_flags]))
+    Ok(table)
 }
 
-fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Option<SchwarzschildLens> {
-    let family = Family::new(frame, with_delay, Resolution::SINGLE)?;
-    let columns = |branch| -> Option<Vec<Column>> {
-        (0..family.columns(branch)).into_par_iter().map(|i| family.column(branch, i)).collect()
+fn build_kerr(frame: &LocalFrame, wanted: Crossings) -> Result<Option<KerrLens>> {
+    let Some(grid) = Grid::new(frame, KERR_RESOLUTION, wanted) else { return Ok(None) };
+    let tables = |branch| {
+        let rows = 0..grid.rows(branch);
+        let nodes = by_rows(rows.clone(), grid.columns() * grid.channels(), |row| grid.node_row(branch, row))?;
+        let flags = by_rows(grid.cell_rows(branch), grid.columns(), |row| grid.flag_row(branch, row, &nodes))?;
+        Ok((by_rows(rows, grid.packed_row_size(), |row| grid.packed_row(row, &nodes))?, flags))
+    };
+    let ((outer, outer_flags), (inner, inner_flags)) = (tables(kerr::Branch::Outer)?, tables(kerr::Branch::Inner)?);
+    Ok(Some(KerrLens::assemble(grid, [outer, inner], [outer_flags, inner_flags])))
+}
+
+fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Result<Option<SchwarzschildLens>> {
+    let Some(family) = Family::new(frame, with_delay, Resolution::SINGLE) else { return Ok(None) };
+    let columns = |branch| -> Result<Option<Vec<Column>>> {
+        let count = family.columns(branch);
+        let (mut made, mut columns) = (with_room(count, LENS)?, with_room(count, LENS)?);
+        (0..count).into_par_iter().map(|i| family.column(branch, i)).collect_into_vec(&mut made);
+        for column in made {
+            let Some(column) = column? else { return Ok(None) };
+            columns.push(column);
+        }
+        Ok(Some(columns))
     };
     let (escaping, captured) = rayon::join(|| columns(Branch::Escaping), || columns(Branch::Captured));
-    SchwarzschildLens::from_columns(family, escaping?, captured?)
+    let (Some(escaping), Some(captured)) = (escaping?, captured?) else { return Ok(None) };
+    SchwarzschildLens::from_columns(family, escaping, captured)
 }
 
 /// What looks the records of a frame up.
@@ -432,7 +454,7 @@ mod tests {
         let frame = &lens.observer.frame;
         let lensing = scene.lensing(frame, 1, KerrWorth::CPU);
         assert_ne!(lensing, Lensing::Traced);
-        let tables = cache.tables(scene, frame, lensing).unwrap();
+        let tables = cache.tables(scene, frame, lensing).unwrap().unwrap();
         let lookup = LookedUp::new(scene, Recorder::new(scene, &lens), tables);
         let truth = exact(scene, &lens);
         let mut sequence = Sequence(11);
@@ -532,7 +554,7 @@ mod tests {
         let mut cache = LensCache::default();
         let mut place = |scene: &Scene| {
             let frame = scene.lens(&REGION).unwrap().observer.frame;
-            match cache.tables(scene, &frame, scene.lensing(&frame, 1, KerrWorth::CPU)).unwrap() {
+            match cache.tables(scene, &frame, scene.lensing(&frame, 1, KerrWorth::CPU)).unwrap().unwrap() {
                 Tables::Schwarzschild(lens) => lens.family().r,
                 Tables::Kerr(lens) => {
                     lens.grid().direction(kerr::Branch::Outer, 0, 40.0).x + lens.grid().channels() as f64

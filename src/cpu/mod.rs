@@ -11,6 +11,7 @@ mod shade;
 
 pub use rays::{trace_path, trace_ray};
 
+use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Hit, Ray, Scene};
@@ -53,11 +54,14 @@ impl CpuTracer {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()).min(MAX_THREADS as usize),
             n => n as usize,
         };
+        allocate::check_room(count * THREAD_ROOM, "the threads of the CPU tracer")?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(count)
             .thread_name(|i| format!("bhr-cpu-{i}"))
             .build()
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
+        // Once all of them run, they have what threads take at their start, which is not ours to refuse.
+        pool.broadcast(|_| ());
         Ok(Self { adapter: adapter_info(), pool, lenses: Box::default(), stars: None })
     }
 
@@ -65,7 +69,9 @@ impl CpuTracer {
         &self.adapter
     }
 
+    /// Errors: OUT_OF_MEMORY.
     pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
+        allocate::check_room(0, "tracing rays")?;
         self.pool.install(|| rays::trace_rays(scene, rays, hits));
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Rays that a host asks for, traced in f64.
 
+use crate::allocate::collected;
 use crate::error::{Error, Result};
 use crate::physics::trace::{Settings, path, trace};
 use crate::scene::{Fate, Hit, Ray, Scene};
@@ -27,7 +28,7 @@ const MAX_PATH: usize = 1 << 16;
 /// The curve a ray follows, from the eye: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most (65536 in any case), evenly
 /// spaced in Mino time, the last one its end: just outside the horizon, or, for a ray that escapes, at ten times the eye's
 /// radius, but at least 1000 M.
-/// Errors: INVALID_ARGUMENT for a ray that is not valid.
+/// Errors: INVALID_ARGUMENT for a ray that is not valid; OUT_OF_MEMORY.
 pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
     let Some((frame, start)) = scene.start(ray) else {
         return Err(Error::argument(
@@ -40,11 +41,9 @@ pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64;
     let settings = scene.quality.ray_settings(scene.hole.spin);
     let far = (10.0 * frame.r).max(1000.0);
     let to_scene = scene.hole.scene_to_chart().transpose();
-    Ok(path(&constants, &state, &settings, far, capacity.min(MAX_PATH))
-        .into_iter()
-        .map(|p| {
-            let place = to_scene * p.position * scene.hole.mass;
-            [place.x, place.y, place.z, -p.delay * scene.hole.mass]
-        })
-        .collect())
+    let points = path(&constants, &state, &settings, far, capacity.min(MAX_PATH))?.into_iter().map(|p| {
+        let place = to_scene * p.position * scene.hole.mass;
+        [place.x, place.y, place.z, -p.delay * scene.hole.mass]
+    });
+    collected(points, "the points of a path")
 }

@@ -17,6 +17,8 @@
 //! The levels, smooth as they are, do not show: wherever the light lies, K is within 10 % of its formula and within 5 % isotropic from
 //! five of the finest cells on (10 pixels, in frames of at most 2^21 cells of 2 x 2), and within 20 % nearer.
 
+use crate::allocate::{collected, filled, with_room};
+use crate::error::Result;
 use crate::image::PixelFormat;
 use crate::scene::{Film, Scene, View};
 use rayon::prelude::*;
@@ -39,6 +41,9 @@ pub const MOST_LEVELS: usize = 20;
 pub const TAIL: usize = 4;
 /// What the six nearest cells of a finer grid give of their light: the B-spline of degree 4.
 const SPLINE: [f64; 6] = [1.0 / 16.0, 5.0 / 16.0, 10.0 / 16.0, 10.0 / 16.0, 5.0 / 16.0, 1.0 / 16.0];
+
+/// What memory is asked for.
+const GRIDS: &str = "the grids of bloom";
 
 /// How a frame's light is spread.
 #[derive(Clone, Debug)]
@@ -79,10 +84,13 @@ struct Taps {
 
 impl Taps {
     /// `fine`: the coverage of the finer row. `kernel`: what a cell gets of the finer ones about it, even in number.
-    fn new(fine: &[f64], step: usize, kernel: &[f64]) -> Self {
+    /// Errors: OUT_OF_MEMORY.
+    fn new(fine: &[f64], step: usize, kernel: &[f64]) -> Result<Self> {
         let (each, cells) = (kernel.len(), fine.len().div_ceil(step));
         let margin = (each - step) / 2;
-        let mut taps = Self { step, shares: Vec::with_capacity(cells * each), each, coverage: Vec::new() };
+        let (shares, coverage) = (with_room(cells * each, GRIDS)?, with_room(cells, GRIDS)?);
+        let mut taps = Self { step, shares, each, coverage };
+        let mut own_shares = with_room(each, GRIDS)?;
         for cell in 0..cells {
             let share = |tap: usize| {
                 let covered = (cell * step + tap).checked_sub(margin).and_then(|i| fine.get(i)).copied().unwrap_or(0.0);
@@ -96,12 +104,13 @@ impl Taps {
                 }
                 share * covered
             };
-            let shares = (0..each).map(share).collect::<Vec<_>>();
-            let sum = shares.iter().sum::<f64>();
-            taps.shares.extend(shares.iter().map(|share| (share / sum) as f32));
+            own_shares.clear();
+            own_shares.extend((0..each).map(share));
+            let sum = own_shares.iter().sum::<f64>();
+            taps.shares.extend(own_shares.iter().map(|share| (share / sum) as f32));
             taps.coverage.push(sum / step as f64);
         }
-        taps
+        Ok(taps)
     }
 
     /// Of a cell: the first finer cell it takes from, and their shares; none lies outside `fine` cells.
@@ -117,9 +126,9 @@ impl Taps {
 }
 
 /// What a pixel shares out to the finest cells about it: linearly by its distance from their centres.
-fn tent(factor: u32) -> Vec<f64> {
+fn tent(factor: u32) -> Result<Vec<f64>> {
     let f = f64::from(factor);
-    (0..2 * factor).map(|tap| (f64::from(tap) + 0.5).min(2.0 * f - f64::from(tap) - 0.5) / f).collect()
+    collected((0..2 * factor).map(|tap| (f64::from(tap) + 0.5).min(2.0 * f - f64::from(tap) - 0.5) / f), GRIDS)
 }
 
 /// Standard deviation of level `index`'s spread, there and back, in pixels: the variance of the tent is (2 f^2 + 1) / 12, that of the
@@ -162,13 +171,13 @@ impl Bloom {
         film.bloom > 0.0 && view == View::Light && format.is_8bit()
     }
 
-    /// Of a whole frame; `None`: it has none.
-    pub fn new(scene: &Scene, format: PixelFormat, frame: [u32; 2]) -> Option<Self> {
-        Self::is_shown(&scene.film, scene.view, format).then(|| Self::of(scene.film.bloom, frame))
+    /// Of a whole frame; `None`: it has none. Errors: OUT_OF_MEMORY.
+    pub fn new(scene: &Scene, format: PixelFormat, frame: [u32; 2]) -> Result<Option<Self>> {
+        Self::is_shown(&scene.film, scene.view, format).then(|| Self::of(scene.film.bloom, frame)).transpose()
     }
 
-    /// For `bloom` in [0, 1] and a frame of at least one pixel.
-    pub fn of(bloom: f64, frame: [u32; 2]) -> Self {
+    /// For `bloom` in [0, 1] and a frame of at least one pixel. Errors: OUT_OF_MEMORY.
+    pub fn of(bloom: f64, frame: [u32; 2]) -> Result<Self> {
         let cells = |factor: u32| frame.map(|side| u64::from(side.div_ceil(factor)));
         let mut factor = 2;
         while cells(factor).iter().product::<u64>() > MOST_CELLS || cells(factor).iter().any(|&side| side > MOST_SIDE) {
@@ -177,7 +186,7 @@ impl Bloom {
         let height = f64::from(frame[1]);
         let mut levels: Vec<Level> = Vec::new();
         let mut sigmas = Vec::new();
-        while let Some(taps) = next_taps(&levels, frame, factor)
+        while let Some(taps) = next_taps(&levels, frame, factor)?
             && (levels.is_empty() || sigma(factor, levels.len()) < WIDEST * height)
         {
             sigmas.push(sigma(factor, levels.len()) / height);
@@ -189,7 +198,7 @@ impl Bloom {
         for (level, weight) in levels.iter_mut().zip(weights) {
             level.weight = (scattered * weight) as f32;
         }
-        Self { frame, factor, direct: (1.0 - scattered * (1.0 - narrow)) as f32, levels }
+        Ok(Self { frame, factor, direct: (1.0 - scattered * (1.0 - narrow)) as f32, levels })
     }
 
     /// What level `index` gets: its weight; or 1, as it comes with the coarser ones already.
@@ -200,20 +209,24 @@ impl Bloom {
         }
     }
 
-    /// How the frame's light is gathered for the finest grid.
-    pub fn gathering(&self) -> Gathering<'_> {
+    /// How the frame's light is gathered for the finest grid. Errors: OUT_OF_MEMORY.
+    pub fn gathering(&self) -> Result<Gathering<'_>> {
         let cells = self.levels.first().map_or(0, |base| base.cells());
-        Gathering { bloom: self, base: vec![[0.0; 4]; cells] }
+        Ok(Gathering { bloom: self, base: filled(cells, [0.0; 4], GRIDS)? })
     }
 }
 
 /// Between what there is and the next level; `None`: what there is cannot be coarser.
-fn next_taps(levels: &[Level], frame: [u32; 2], factor: u32) -> Option<[Taps; 2]> {
-    match levels.last() {
-        None => Some(frame.map(|side| Taps::new(&vec![1.0; side as usize], factor as usize, &tent(factor)))),
-        Some(level) if level.size == [1, 1] || levels.len() == MOST_LEVELS => None,
-        Some(level) => Some(level.taps.each_ref().map(|taps| Taps::new(&taps.coverage, 2, &SPLINE))),
-    }
+fn next_taps(levels: &[Level], frame: [u32; 2], factor: u32) -> Result<Option<[Taps; 2]>> {
+    let [x, y] = match levels.last() {
+        None => {
+            let kernel = tent(factor)?;
+            frame.map(|side| Taps::new(&filled(side as usize, 1.0, GRIDS)?, factor as usize, &kernel))
+        }
+        Some(level) if level.size == [1, 1] || levels.len() == MOST_LEVELS => return Ok(None),
+        Some(level) => level.taps.each_ref().map(|taps| Taps::new(&taps.coverage, 2, &SPLINE)),
+    };
+    Ok(Some([x?, y?]))
 }
 
 impl Level {
@@ -233,8 +246,8 @@ impl Level {
     }
 
     /// The cells' mean light, from the finer grid's.
-    fn taken(&self, fine: &[[f32; 4]], [width, height]: [u32; 2]) -> Vec<[f32; 4]> {
-        let mut cells = vec![[0.0; 4]; self.cells()];
+    fn taken(&self, fine: &[[f32; 4]], [width, height]: [u32; 2]) -> Result<Vec<[f32; 4]>> {
+        let mut cells = filled(self.cells(), [0.0; 4], GRIDS)?;
         let (width, height) = (width as usize, height as usize);
         cells.par_chunks_mut(self.size[0] as usize).enumerate().for_each(|(y, row)| {
             let (top, down) = self.taps[1].of(y, height);
@@ -243,7 +256,7 @@ impl Level {
                 *cell = weighted_sum(fine, width, [left, top], across, down);
             }
         });
-        cells
+        Ok(cells)
     }
 }
 
@@ -291,13 +304,13 @@ impl<'a> Gathering<'a> {
         });
     }
 
-    /// Once all tiles are in: spreads their light. On the current pool.
-    pub fn spread(self) -> Glare<'a> {
+    /// Once all tiles are in: spreads their light. On the current pool. Errors: OUT_OF_MEMORY.
+    pub fn spread(self) -> Result<Glare<'a>> {
         let Self { bloom, base } = self;
         let mut grids = vec![base];
         for pair in bloom.levels.windows(2) {
             if let ([finer, level], Some(grid)) = (pair, grids.last()) {
-                let taken = level.taken(grid, finer.size);
+                let taken = level.taken(grid, finer.size)?;
                 grids.push(taken);
             }
         }
@@ -305,7 +318,7 @@ impl<'a> Gathering<'a> {
         for (index, grid) in grids.into_iter().enumerate().rev() {
             glare = bloom.joined(index, grid, &glare);
         }
-        Glare { bloom, cells: glare }
+        Ok(Glare { bloom, cells: glare })
     }
 }
 
@@ -396,7 +409,7 @@ mod tests {
     /// A field with its bloom, gathered in tiles of at most `tile` pixels.
     fn bloomed(bloom: &Bloom, light: &Field, tile: [u32; 2]) -> Field {
         let [width, height] = bloom.frame;
-        let mut gathering = bloom.gathering();
+        let mut gathering = bloom.gathering().expect("a grid");
         for y in (0..height).step_by(tile[1] as usize) {
             for x in (0..width).step_by(tile[0] as usize) {
                 let (w, h) = (tile[0].min(width - x), tile[1].min(height - y));
@@ -404,7 +417,7 @@ mod tests {
                 gathering.add([x, y], w, &(y..y + h).flat_map(|y| light[row(y)].to_vec()).collect::<Field>());
             }
         }
-        let glare = gathering.spread();
+        let glare = gathering.spread().expect("grids");
         let place = |i: usize| (i as u32 % width, i as u32 / width);
         light.iter().enumerate().map(|(i, v)| glare.over(*v, place(i).0, place(i).1)).collect()
     }
@@ -438,7 +451,7 @@ mod tests {
     #[test]
     fn no_light_is_lost_or_made_wherever_it_lies() {
         for frame in [[1, 1], [2, 1], [7, 5], [64, 64], [101, 67], [333, 17], [1, 200], [640, 361]] {
-            let bloom = Bloom::of(1.0, frame);
+            let bloom = Bloom::of(1.0, frame).expect("grids");
             let shares = f64::from(bloom.direct) + bloom.levels.iter().map(|l| f64::from(l.weight)).sum::<f64>();
             assert!((shares - 1.0).abs() < 1e-6, "{frame:?}: {shares}");
             let ends = |side: u32| [0, 1, side / 2, side.saturating_sub(3), side.saturating_sub(2), side - 1];
@@ -454,8 +467,11 @@ mod tests {
     #[test]
     fn an_even_frame_stays_even() {
         for frame in [[5, 3], [129, 67], [640, 361]] {
-            let out =
-                bloomed(&Bloom::of(1.0, frame), &vec![[0.5, 0.25, 2.0, 0.75]; (frame[0] * frame[1]) as usize], frame);
+            let out = bloomed(
+                &Bloom::of(1.0, frame).expect("grids"),
+                &vec![[0.5, 0.25, 2.0, 0.75]; (frame[0] * frame[1]) as usize],
+                frame,
+            );
             for v in out {
                 assert!(
                     (0..3).all(|c| (v[c] / [0.5, 0.25, 2.0][c] - 1.0).abs() < 1e-5) && v[3] == 0.75,
@@ -469,7 +485,7 @@ mod tests {
     fn light_falls_as_the_formula_says_and_alike_in_all_directions() {
         for height in [360, 1080] {
             let h = f64::from(height);
-            let bloom = Bloom::of(1.0, [height, height]);
+            let bloom = Bloom::of(1.0, [height, height]).expect("grids");
             let formula = |r: f64| {
                 let q = r * r + (h / 180.0).powi(2);
                 q.powf(-1.5) + 28.0 / (h * q)
@@ -497,7 +513,7 @@ mod tests {
     /// The glare of a lone light has no edges: along a row its second differences change their sign where a smooth bump's do.
     #[test]
     fn no_blocks_show() {
-        let bloom = Bloom::of(1.0, [512, 512]);
+        let bloom = Bloom::of(1.0, [512, 512]).expect("grids");
         let glare = point(&bloom, [257, 251]);
         for y in [251_usize, 280, 330] {
             let row = glare[y * 512..(y + 1) * 512].iter().map(|v| f64::from(v[0])).collect::<Vec<_>>();
@@ -513,7 +529,7 @@ mod tests {
     /// A spot of two pixels' width that moves by sixteenths of a pixel.
     #[test]
     fn glare_moves_smoothly_with_its_light() {
-        let bloom = Bloom::of(1.0, [256, 256]);
+        let bloom = Bloom::of(1.0, [256, 256]).expect("grids");
         let frame = |shift: f64| {
             let mut light = black([256, 256]);
             for (i, v) in light.iter_mut().enumerate() {
@@ -538,7 +554,7 @@ mod tests {
     #[test]
     fn tiles_do_not_show() {
         let frame = [203, 77];
-        let bloom = Bloom::of(0.7, frame);
+        let bloom = Bloom::of(0.7, frame).expect("grids");
         let light = (0..frame[0] * frame[1]).map(|i| [(i * 7919 % 1013) as f32; 4]).collect::<Field>();
         let whole = bloomed(&bloom, &light, frame);
         for tile in [[64, 9], [1, 77], [203, 1], [50, 50]] {
@@ -552,20 +568,20 @@ mod tests {
     #[test]
     fn the_finest_grid_is_bounded_and_glare_hardly_depends_on_it() {
         for frame in [[3840, 2160], [7680, 4320], [16384, 16384], [1 << 14, 1], [1 << 20, 1], [7, 1 << 20]] {
-            let bloom = Bloom::of(0.5, frame);
+            let bloom = Bloom::of(0.5, frame).expect("grids");
             assert!(bloom.levels[0].cells() as u64 <= MOST_CELLS && bloom.factor.is_multiple_of(2), "{frame:?}");
             assert!(bloom.levels[0].size.iter().all(|&side| u64::from(side) <= MOST_SIDE + 2), "{frame:?}");
         }
-        let bloom = Bloom::of(1.0, [7680, 4320]);
+        let bloom = Bloom::of(1.0, [7680, 4320]).expect("grids");
         assert_eq!(bloom.factor, 4);
         let light = |w: &Bloom| w.levels.iter().map(|l| l.weight).sum::<f32>();
-        assert!((light(&bloom) - light(&Bloom::of(1.0, [3840, 2160]))).abs() < 0.002);
+        assert!((light(&bloom) - light(&Bloom::of(1.0, [3840, 2160]).expect("grids"))).abs() < 0.002);
     }
 
     #[test]
     fn no_bloom_where_there_is_none() {
         let mut scene = Scene::default();
-        let shown = |scene: &Scene, format| Bloom::new(scene, format, [64, 64]).is_some();
+        let shown = |scene: &Scene, format| Bloom::new(scene, format, [64, 64]).expect("grids").is_some();
         assert!(!shown(&scene, PixelFormat::Rgba8Srgb));
         scene.film.bloom = 0.1;
         assert!(shown(&scene, PixelFormat::Rgba8Srgb) && shown(&scene, PixelFormat::Bgra8Srgb));

@@ -17,6 +17,7 @@ use super::tables::Tables;
 use super::tiles::{MEMORY, Plan};
 use super::uniforms::FrameUniform;
 use super::{GpuTracer, Texture, for_f32, variant};
+use crate::allocate::collected;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
@@ -250,7 +251,7 @@ impl GpuTracer {
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
-        let bloom = Bloom::new(scene, request.format, [request.width, request.height]);
+        let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
         let any_film = scene.quality.kernels_for_any_film.unwrap_or(!self.adapter.info.software);
         let developed = if any_film { FilmLook::of_any(target) } else { FilmLook::new(&film, target) };
         let looks = Looks {
@@ -358,7 +359,9 @@ impl GpuTracer {
         let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
         let copied = buffers.readback.copy(device, &mut encoder, &sized.packed, bytes)?;
         let submission = device.submit(encoder)?;
-        copied.read(device, &submission, |bytes| Ok(bytes.chunks_exact(EXPORT_BYTES as usize).map(imported).collect()))
+        copied.read(device, &submission, |bytes| {
+            collected(bytes.chunks_exact(EXPORT_BYTES as usize).map(imported), "the records of a frame's rays")
+        })
     }
 }
 

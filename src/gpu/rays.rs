@@ -3,6 +3,7 @@
 
 use super::kernel_key::KernelKey;
 use super::{Buffer, GpuTracer, Readback, ray_settings, variant};
+use crate::allocate::{collected, with_room};
 use crate::error::{Error, Result};
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::observer::LocalFrame;
@@ -75,8 +76,8 @@ impl GpuTracer {
     fn trace_chunk(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         let horizon = horizon_outer(scene.hole.spin);
         let exact = scene.quality.ray_settings(scene.hole.spin);
-        let mut begun = Vec::new();
-        let mut starts = Vec::new();
+        let mut begun = with_room(rays.len(), "rays to trace")?;
+        let mut starts = with_room(rays.len(), "rays to trace")?;
         for (index, (ray, hit)) in rays.iter().zip(hits.iter_mut()).enumerate() {
             *hit = Hit::default();
             match scene.start(ray) {
@@ -143,7 +144,7 @@ impl GpuTracer {
         let copied = self.ray_buffers.readback.copy(device, &mut encoder, output, size)?;
         let submission = device.submit(encoder)?;
         copied.read(device, &submission, |bytes| {
-            Ok(bytes.chunks_exact(size_of::<RayEnd>()).map(bytemuck::pod_read_unaligned).collect())
+            collected(bytes.chunks_exact(size_of::<RayEnd>()).map(bytemuck::pod_read_unaligned), "what rays hit")
         })
     }
 }

@@ -3,6 +3,7 @@
 
 use super::sky_maps::SkyMaps;
 use super::{Device, Texture};
+use crate::allocate::with_room;
 use crate::error::{Error, Result};
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::scene::Scene;
@@ -45,8 +46,10 @@ fn table<T: bytemuck::Pod>(
     }
     let texture = device.table(label, format, [TABLE_WIDTH as u32, rows as u32])?;
     let mut entries = entries.take(size).fuse();
+    let mut written = with_room(WRITTEN_ROWS.min(rows) * TABLE_WIDTH, label)?;
     for first_row in (0..rows).step_by(WRITTEN_ROWS) {
-        let mut written: Vec<T> = entries.by_ref().take(WRITTEN_ROWS * TABLE_WIDTH).collect();
+        written.clear();
+        written.extend(entries.by_ref().take(WRITTEN_ROWS * TABLE_WIDTH));
         written.resize(written.len().next_multiple_of(TABLE_WIDTH), T::zeroed());
         device.write_rows(&texture, first_row as u32, bytemuck::cast_slice(&written))?;
     }

@@ -1,6 +1,7 @@
 //! Threads that share the copying of large pieces of memory: one core brings about 12 GB/s out of a GPU's staging memory, a PCIe 5 bus
 //! carries 50. Knows no images and touches no memory itself.
 
+use crate::allocate::{self, THREAD_ROOM};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -46,9 +47,14 @@ impl Copiers {
 
     fn pool(&self) -> Option<&ThreadPool> {
         let build = || {
+            let room = allocate::check_room(self.threads * THREAD_ROOM, "threads to copy frames with");
+            room.inspect_err(|error| log::warn!("{error}")).ok()?;
             let builder = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
             let built = builder.thread_name(|i| format!("bhr-copy-{i}")).build();
-            built.inspect_err(|error| log::warn!("no threads to copy frames with: {error}")).ok()
+            let pool = built.inspect_err(|error| log::warn!("no threads to copy frames with: {error}")).ok()?;
+            // Once all of them run, they have what threads take at their start, which is not ours to refuse.
+            pool.broadcast(|_| ());
+            Some(pool)
         };
         self.pool.get_or_init(build).as_ref()
     }

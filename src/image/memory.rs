@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Longest side of an image, pixels. A larger one is more than any format's header or any address space holds well.
 pub const MAX_SIDE: u32 = 1 << 20;
 
-/// Bytes in memory order; row 0 at the top (`BHR_FORMAT_*`).
+/// Bytes in memory order (`BHR_FORMAT_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum PixelFormat {
@@ -120,6 +120,14 @@ impl Layout {
     }
 }
 
+/// Which row of a picture begins at the pixels that a host names.
+enum FirstRow {
+    /// `row_stride` leads to the next row down; where it is negative, the pixels are the block's last row.
+    Top,
+    /// `row_stride`, not negative, leads to the next row up: `BHR_IMAGE_BOTTOM_UP`.
+    Bottom,
+}
+
 /// A checked layout and its top-left pixel.
 #[derive(Clone, Copy)]
 struct Rows {
@@ -131,17 +139,25 @@ struct Rows {
 }
 
 impl Rows {
-    /// Errors: as `Layout::check`; a block of fewer bytes than that needs; NULL or misaligned pixels, or ones whose
-    /// rows would lie outside the address space.
-    fn new(layout: Layout, top_left: *mut u8, byte_size: u64) -> Result<Self> {
+    /// `pixels` as `first_row` says. Errors: as `Layout::check`; a negative stride with `FirstRow::Bottom`; a block
+    /// of fewer bytes than that needs; NULL or misaligned pixels, or ones whose rows would lie outside the address
+    /// space.
+    fn new(layout: Layout, first_row: FirstRow, pixels: *mut u8, byte_size: u64) -> Result<Self> {
+        let given = layout.row_stride;
+        if matches!(first_row, FirstRow::Bottom) && given < 0 {
+            return Err(Error::argument(format!(
+                "image row_stride is {given}; where BHR_IMAGE_BOTTOM_UP says that the bottom row comes first it is 0 \
+                 or more, and pixels the lowest address"
+            )));
+        }
         let (bytes, stride) = layout.check()?;
-        if top_left.is_null() {
+        if pixels.is_null() {
             return Err(Error::argument("image pixels is NULL"));
         }
         let channel = layout.format.channel_bytes();
-        if !top_left.addr().is_multiple_of(channel) {
+        if !pixels.addr().is_multiple_of(channel) {
             return Err(Error::argument(format!(
-                "image pixels is {top_left:p}; for {} it must be a multiple of {channel}",
+                "image pixels is {pixels:p}; for {} it must be a multiple of {channel}",
                 layout.format
             )));
         }
@@ -151,21 +167,29 @@ impl Rows {
                 layout.width, layout.height, layout.format
             )));
         }
-        let above = (layout.height as usize - 1) * stride.unsigned_abs();
-        let lowest = if stride < 0 { top_left.addr().checked_sub(above) } else { Some(top_left.addr()) };
+        let Layout { format, width, height, .. } = layout;
+        let to_last = (height as usize - 1) * stride.unsigned_abs();
+        let lowest = if stride < 0 { pixels.addr().checked_sub(to_last) } else { Some(pixels.addr()) };
         if lowest.and_then(|address| address.checked_add(bytes)).is_none() {
             return Err(Error::argument(format!(
-                "image pixels is {top_left:p}; {bytes} bytes at stride {stride} reach outside the address space"
+                "image pixels is {pixels:p}; {bytes} bytes at stride {stride} reach outside the address space"
             )));
         }
-        let Layout { format, width, height, .. } = layout;
-        Ok(Self { format, width, height, stride, top_left })
+        match first_row {
+            FirstRow::Top => Ok(Self { format, width, height, stride, top_left: pixels }),
+            // In range: the last row, which is the top one, lies in the address space.
+            FirstRow::Bottom => {
+                Ok(Self { format, width, height, stride: -stride, top_left: pixels.wrapping_add(to_last) })
+            }
+        }
     }
 
-    /// Offset of the top-left pixel in the block.
-    fn lead(layout: Layout) -> Result<usize> {
+    /// Of a whole block. Errors: as `new`.
+    fn of_block(layout: Layout, begin: *mut u8, byte_size: usize) -> Result<Self> {
         let (_, stride) = layout.check()?;
-        Ok(if stride < 0 { (layout.height as usize - 1) * stride.unsigned_abs() } else { 0 })
+        let lead = if stride < 0 { (layout.height as usize - 1) * stride.unsigned_abs() } else { 0 };
+        // A block that ends before its top-left pixel is refused by its size.
+        Self::new(layout, FirstRow::Top, begin.wrapping_add(lead), byte_size as u64)
     }
 
     fn row_bytes(&self) -> usize {
@@ -193,10 +217,8 @@ unsafe impl Sync for ImageRef<'_> {}
 impl<'a> ImageRef<'a> {
     /// Errors: a layout out of its ranges, or a block too small or misaligned for it.
     pub fn new(layout: Layout, block: &'a [u8]) -> Result<Self> {
-        let lead = Rows::lead(layout)?;
-        // A block that ends before its top-left pixel is refused by its size below.
-        let top_left = block.as_ptr().wrapping_add(lead).cast_mut();
-        Ok(Self { rows: Rows::new(layout, top_left, block.len() as u64)?, memory: PhantomData })
+        let rows = Rows::of_block(layout, block.as_ptr().cast_mut(), block.len())?;
+        Ok(Self { rows, memory: PhantomData })
     }
 
     pub fn width(&self) -> u32 {
@@ -281,10 +303,7 @@ unsafe impl Send for ImageMut<'_> {}
 impl<'a> ImageMut<'a> {
     /// Errors: a layout out of its ranges, or a block too small or misaligned for it.
     pub fn new(layout: Layout, block: &'a mut [u8]) -> Result<Self> {
-        let lead = Rows::lead(layout)?;
-        let byte_size = block.len() as u64;
-        let top_left = block.as_mut_ptr().wrapping_add(lead);
-        Ok(Self { rows: Rows::new(layout, top_left, byte_size)?, touched: false, copiers: None, memory: PhantomData })
+        Self::begin(Rows::of_block(layout, block.as_mut_ptr(), block.len()))
     }
 
     /// Errors: as `new`, or `pixels` NULL.
@@ -293,7 +312,19 @@ impl<'a> ImageMut<'a> {
     /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not what lies
     /// between them) are readable and writable, and nobody else's, during `'a`.
     pub unsafe fn from_raw(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
-        Ok(Self { rows: Rows::new(layout, pixels, byte_size)?, touched: false, copiers: None, memory: PhantomData })
+        Self::begin(Rows::new(layout, FirstRow::Top, pixels, byte_size))
+    }
+
+    /// With the bottom row first in memory: `BHR_IMAGE_BOTTOM_UP`. Errors: as `from_raw`, or a negative stride.
+    ///
+    /// # Safety
+    /// As `from_raw`, but that `pixels` is the bottom-left pixel, where the block begins.
+    pub unsafe fn from_raw_bottom_up(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
+        Self::begin(Rows::new(layout, FirstRow::Bottom, pixels, byte_size))
+    }
+
+    fn begin(rows: Result<Rows>) -> Result<Self> {
+        Ok(Self { rows: rows?, touched: false, copiers: None, memory: PhantomData })
     }
 
     pub fn width(&self) -> u32 {
@@ -396,6 +427,41 @@ mod tests {
             }
             assert_eq!(block.iter().filter(|byte| **byte == 0xee).count(), 2 * (step - 8));
         }
+    }
+
+    #[test]
+    fn pictures_whose_bottom_row_comes_first_begin_at_their_lowest_address() {
+        for stride in [0i64, 8, 12] {
+            let step = if stride == 0 { 8 } else { stride as usize };
+            let mut block = vec![0xee; 2 * step + 8];
+            let (begin, size) = (block.as_mut_ptr(), block.len() as u64);
+            let l = layout(Rgba8Srgb, 2, 3, stride);
+            // SAFETY: `begin` is a block of `size` bytes that nobody else uses meanwhile.
+            let mut image = unsafe { ImageMut::from_raw_bottom_up(l, begin, size) }.unwrap();
+            for y in 0..3u8 {
+                image.write_tile(0, y.into(), 2, 1, &[y; 8], 8).unwrap();
+                assert_eq!(image.as_image_ref().row(y.into()), [y; 8], "stride {stride}");
+            }
+            assert_eq!([0, step, 2 * step].map(|at| block[at..at + 8] == [block[at]; 8]), [true; 3]);
+            assert_eq!([block[0], block[step], block[2 * step]], [2, 1, 0], "stride {stride}");
+            assert_eq!(block.iter().filter(|byte| **byte == 0xee).count(), 2 * (step - 8));
+        }
+        // SAFETY: refused, or never written to.
+        let raw = |stride, address: usize, size| unsafe {
+            let pixels = std::ptr::without_provenance_mut(address);
+            ImageMut::from_raw_bottom_up(layout(Rgba32F, 1, 2, stride), pixels, size).map(|_| ())
+        };
+        for (stride, address, size, word) in [
+            (-16, 1024, 32, "row_stride is -16"),
+            (16, 1024, 31, "byte_size is 31"),
+            (0, 0, 32, "NULL"),
+            (0, 1026, 32, "0x402"),
+            (0, usize::MAX - 27, 32, "address space"),
+        ] {
+            let error = raw(stride, address, size).err().unwrap();
+            assert!(error.message.contains(word), "{error}");
+        }
+        raw(0, 8, 32).unwrap();
     }
 
     #[test]

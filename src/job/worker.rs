@@ -4,6 +4,7 @@
 //! a few instructions, so that it always gets on.
 
 use super::{Job, Order, Shared, lock};
+use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{BegunFrame, Device, FrameTarget, Submitted};
 use crate::renderer::{FrameStats, Tile, Tracer};
@@ -12,7 +13,7 @@ use parking_lot::{ArcMutexGuard, RawMutex};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, Barrier, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 
 /// Jobs of one renderer that may be unfinished at a time.
@@ -80,6 +81,7 @@ impl Worker {
     /// threads.
     pub fn new() -> Result<Self> {
         let scope = thread_scope::of_caller();
+        allocate::check_room(2 * THREAD_ROOM, "the threads that render in the background")?;
         let mut worker = Self { line: Arc::default(), threads: Vec::new() };
         worker.spawn("bhr-jobs", scope.clone(), submit_all, |state| state.submitted = true)?;
         worker.spawn("bhr-finish", scope, finish_all, |state| state.finished = true)?;
@@ -89,7 +91,10 @@ impl Worker {
     /// `end`: what the others hear when `work` has ended.
     fn spawn(&mut self, name: &str, scope: ThreadScope, work: fn(&Line), end: fn(&mut State)) -> Result<()> {
         let line = self.line.clone();
+        let begun = Arc::new(Barrier::new(2));
+        let begins = begun.clone();
         let body = move || {
+            begins.wait();
             let _scope = scope();
             // Unwind safe: after a panic nothing is taken any more, and what was taken ends as it is dropped.
             let result = catch_unwind(AssertUnwindSafe(|| work(&line)));
@@ -103,6 +108,8 @@ impl Worker {
         let thread = std::thread::Builder::new().name(name.into()).spawn(body).map_err(|error| {
             Error::new(ErrorKind::OutOfMemory, format!("no thread to render in the background: {error}"))
         })?;
+        // What a thread takes at its start, which is not ours to refuse, it has once it runs.
+        begun.wait();
         self.threads.push(thread);
         Ok(())
     }

@@ -5,6 +5,8 @@ use super::geodesic::{Constants, State};
 use super::integrator::{Method, Quintic, held_inside, step, step_limit};
 use super::observer::LocalFrame;
 use super::orbit::redshift;
+use crate::allocate::{collected, push};
+use crate::error::Result;
 use arrayvec::ArrayVec;
 use glam::DVec3;
 
@@ -282,14 +284,18 @@ pub struct PathPoint {
 }
 
 /// The path in `count` (>= 2) points, evenly spaced in Mino time from the eye to the end: the horizon (1 + 1e-6), or, for
-/// a ray that escapes, the radius `far`.
-pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: usize) -> Vec<PathPoint> {
+/// a ray that escapes, the radius `far`. Errors: OUT_OF_MEMORY.
+pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: usize) -> Result<Vec<PathPoint>> {
     let point = |s: &State| PathPoint { position: s.chart_direction() / s.u, delay: c.delay(start, s) };
     let u_far = 1.0 / far;
     let mut segments: Vec<(State, f64, f64)> = Vec::new();
     let mut end_tau = 0.0;
+    let mut kept = Ok(());
     follow(c, start, settings, &mut |segment| {
-        segments.push((*segment.from, segment.tau, segment.h));
+        kept = push(&mut segments, (*segment.from, segment.tau, segment.h), "the steps of a path");
+        if kept.is_err() {
+            return false;
+        }
         end_tau = segment.tau + segment.h;
         if segment.to.u < u_far && segment.to.du < 0.0 {
             let q = Quintic::new(
@@ -306,17 +312,17 @@ pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: 
         }
         true
     });
+    kept?;
     let mut index = 0;
-    (0..count)
-        .map(|i| {
-            let tau = end_tau * i as f64 / (count - 1).max(1) as f64;
-            while index + 1 < segments.len() && segments[index + 1].1 <= tau {
-                index += 1;
-            }
-            let Some((from, begin, _)) = segments.get(index) else { return point(start) };
-            point(&step(settings.method, c, from, tau - begin, settings.delay).0)
-        })
-        .collect()
+    let points = (0..count).map(|i| {
+        let tau = end_tau * i as f64 / (count - 1).max(1) as f64;
+        while index + 1 < segments.len() && segments[index + 1].1 <= tau {
+            index += 1;
+        }
+        let Some((from, begin, _)) = segments.get(index) else { return point(start) };
+        point(&step(settings.method, c, from, tau - begin, settings.delay).0)
+    });
+    collected(points, "the points of a path")
 }
 
 #[cfg(test)]
@@ -394,14 +400,14 @@ mod tests {
     fn radial_paths_take_the_textbook_time() {
         let frame = LocalFrame::new(0.0, DVec3::new(0.0, 40.0, 0.0)).unwrap();
         let (c, start) = frame.start(DVec3::NEG_X).unwrap();
-        for point in path(&c, &start, &Settings::exact(0.0), 1000.0, 12).iter().take(11) {
+        for point in path(&c, &start, &Settings::exact(0.0), 1000.0, 12).unwrap().iter().take(11) {
             let r = point.position.length();
             let expected = 40.0 - r + 2.0 * (38.0 / (r - 2.0)).ln();
             assert!((point.delay - expected).abs() < 1e-8 * expected.max(1.0), "r {r}: {} {expected}", point.delay);
         }
         let inside = LocalFrame::new(0.0, DVec3::new(1.5, 0.0, 0.0)).unwrap();
         let (c, start) = inside.start(DVec3::X).unwrap();
-        let points = path(&c, &start, &Settings::exact(0.0), 100.0, 9);
+        let points = path(&c, &start, &Settings::exact(0.0), 100.0, 9).unwrap();
         for pair in points.windows(2) {
             // Outgoing light looked back along: dT/dr = 1 / (1 + sqrt(2/r)) on the radial ray that falls in with the eye.
             let [r0, r1] = [0, 1].map(|i| pair[i].position.length());

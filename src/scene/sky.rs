@@ -93,6 +93,6 @@ impl Scene {
         if self.shows_stars() && self.view == View::Light {
             return field.index();
         }
-        Ok(field.index_if_made().unwrap_or_else(StarField::catalogue))
+        field.index_if_made()?.map_or_else(StarField::catalogue, Ok)
     }
 }

@@ -3,9 +3,10 @@
 use super::catalogue;
 use super::index::StarIndex;
 use super::procedural;
-use crate::error::{Error, ErrorKind, Result};
+use crate::allocate;
+use crate::error::Result;
 use parking_lot::Mutex;
-use std::sync::{Arc, OnceLock, Weak};
+use std::sync::{Arc, Weak};
 
 /// The stars of a sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +29,7 @@ impl StarField {
     /// Its index; the catalogue's takes milliseconds and stays, others take about a second unless somebody holds them. Errors: OUT_OF_MEMORY.
     pub fn index(self) -> Result<Arc<StarIndex>> {
         if self == Self::Catalogue {
-            return Ok(Self::catalogue());
+            return Self::catalogue();
         }
         // Held while it is made: who asks for the same one meanwhile is to wait for it.
         let mut made = MADE.lock();
@@ -36,43 +37,41 @@ impl StarField {
             return Ok(index);
         }
         made.retain(|(_, index)| index.strong_count() > 0);
-        check_room()?;
-        let index = Arc::new(self.make());
+        allocate::check_room(ROOM, "making a sky of random stars")?;
+        let index = Arc::new(self.make()?);
         made.push((self, Arc::downgrade(&index)));
         Ok(index)
     }
 
-    fn make(self) -> StarIndex {
+    fn make(self) -> Result<StarIndex> {
         match self {
             Self::Catalogue => StarIndex::new(catalogue::stars()),
-            Self::Procedural(seed) => StarIndex::new(procedural::stars(seed)),
+            Self::Procedural(seed) => StarIndex::new(procedural::stars(seed)?),
             Self::Continued(seed) => {
-                let fainter = procedural::stars(seed).filter(|star| star.magnitude > catalogue::FAINTEST);
+                let fainter = procedural::stars(seed)?.filter(|star| star.magnitude > catalogue::FAINTEST);
                 StarIndex::new(catalogue::stars().chain(fainter))
             }
         }
     }
 
-    /// Its index if it is there already.
-    pub fn index_if_made(self) -> Option<Arc<StarIndex>> {
-        if self == Self::Catalogue { Some(Self::catalogue()) } else { find(&MADE.lock(), self) }
+    /// Its index if it is there already; the catalogue's always is. Errors: OUT_OF_MEMORY.
+    pub fn index_if_made(self) -> Result<Option<Arc<StarIndex>>> {
+        if self == Self::Catalogue { Self::catalogue().map(Some) } else { Ok(find(&MADE.lock(), self)) }
     }
 
-    pub fn catalogue() -> Arc<StarIndex> {
-        static SHARED: OnceLock<Arc<StarIndex>> = OnceLock::new();
-        SHARED.get_or_init(|| Arc::new(Self::Catalogue.make())).clone()
+    /// Errors: OUT_OF_MEMORY.
+    pub fn catalogue() -> Result<Arc<StarIndex>> {
+        static SHARED: Mutex<Option<Arc<StarIndex>>> = Mutex::new(None);
+        let mut shared = SHARED.lock();
+        match &*shared {
+            Some(index) => Ok(index.clone()),
+            None => Ok(shared.insert(Arc::new(Self::Catalogue.make()?)).clone()),
+        }
     }
 }
 
 fn find(made: &[(StarField, Weak<StarIndex>)], field: StarField) -> Option<Arc<StarIndex>> {
     made.iter().find(|(key, _)| *key == field).and_then(|(_, index)| index.upgrade())
-}
-
-/// Errors: OUT_OF_MEMORY.
-fn check_room() -> Result<()> {
-    Vec::<u8>::new().try_reserve_exact(ROOM).map_err(|error| {
-        Error::new(ErrorKind::OutOfMemory, format!("a procedural sky takes {} MiB for a while: {error}", ROOM >> 20))
-    })
 }
 
 #[cfg(test)]
@@ -82,15 +81,19 @@ mod tests {
     #[test]
     fn an_index_is_shared_while_it_is_held_and_then_freed() {
         let field = StarField::Procedural(0x5eed);
-        assert!(field.index_if_made().is_none());
+        let if_made = || field.index_if_made().expect("no catalogue is asked for");
+        assert!(if_made().is_none());
         let started = std::time::Instant::now();
         let first = field.index().expect("an index");
         eprintln!("made in {:?}", started.elapsed());
         let again = std::thread::spawn(move || field.index().expect("an index")).join().expect("a thread");
         assert!(Arc::ptr_eq(&first, &again));
-        assert!(field.index_if_made().is_some_and(|index| Arc::ptr_eq(&index, &first)));
+        assert!(if_made().is_some_and(|index| Arc::ptr_eq(&index, &first)));
         drop((first, again));
-        assert!(field.index_if_made().is_none());
-        assert!(Arc::ptr_eq(&StarField::catalogue(), &StarField::Catalogue.index().expect("an index")));
+        assert!(if_made().is_none());
+        assert!(Arc::ptr_eq(
+            &StarField::catalogue().expect("an index"),
+            &StarField::Catalogue.index().expect("an index")
+        ));
     }
 }

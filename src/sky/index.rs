@@ -4,6 +4,8 @@
 use super::catalogue::Star;
 use super::field::StarField;
 use super::galaxy::{GALACTIC_POLE, crowded_density, crowding};
+use crate::allocate::{collected, filled, with_room};
+use crate::error::Result;
 use crate::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -134,30 +136,32 @@ impl std::fmt::Debug for StarIndex {
 }
 
 impl StarIndex {
-    /// The catalogue's.
-    pub fn shared() -> Arc<Self> {
+    /// The catalogue's. Errors: OUT_OF_MEMORY.
+    pub fn shared() -> Result<Arc<Self>> {
         StarField::catalogue()
     }
 
-    /// Of any stars.
-    pub fn new(stars: impl Iterator<Item = Star>) -> Self {
-        let mut stars: Vec<Star> = stars.collect();
+    /// Of any stars. Errors: OUT_OF_MEMORY.
+    pub fn new(stars: impl Iterator<Item = Star>) -> Result<Self> {
+        let mut stars = collected(stars, STARS)?;
         // Neighbours in the sky become neighbours in memory.
-        stars.sort_by_cached_key(|star| cell_of(star.direction, 0));
+        sort_by_cell(&mut stars)?;
         let table = BlackbodyTable::shared();
         let packed = stars.iter().flat_map(|star| {
             let (d, temperature) = (star.direction, star.temperature());
             let (flux, log_reference) = (scaled_flux(star), table.ln_luminance(temperature));
             [[d.x, d.y, d.z, flux], [temperature, log_reference, 0.0, 0.0]]
         });
-        let (star_cells, star_lists) = list_cells(&stars);
-        Self {
-            stars: packed.map(|v| v.map(|x| x as f32)).collect(),
+        let mut flat = with_room(2 * stars.len(), STARS)?;
+        flat.extend(packed.map(|v| v.map(|x| x as f32)));
+        let (star_cells, star_lists) = list_cells(&stars)?;
+        Ok(Self {
+            stars: flat,
             star_cells,
             star_lists,
             mean_sky: mean_skies(&stars),
             crowding: crowding(&stars) as f32,
-        }
+        })
     }
 
     /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean skies' tables; room for the disk's profile; of each level the
@@ -280,9 +284,29 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
     }
 }
 
+/// What memory is asked for.
+const STARS: &str = "the index of a sky's stars";
+
+/// Stable; in place but for the keys, as `sort_by_cached_key`, which cannot be refused memory.
+fn sort_by_cell(stars: &mut [Star]) -> Result<()> {
+    let keys = stars.iter().zip(0_u32..).map(|(star, number)| (cell_of(star.direction, 0), number));
+    let mut order = collected(keys, STARS)?;
+    order.sort_unstable();
+    for place in 0..stars.len() {
+        // Who belongs here may have been swapped away, to where its own place's star went.
+        let mut from = order[place].1 as usize;
+        while from < place {
+            from = order[from].1 as usize;
+        }
+        order[place].1 = from as u32;
+        stars.swap(place, from);
+    }
+    Ok(())
+}
+
 /// `StarIndex::star_cells` and `star_lists`: a counting sort of the stars by cell.
-fn list_cells(stars: &[Star]) -> (Vec<u32>, Vec<[f32; 4]>) {
-    let mut counts = vec![0_u32; CELL_COUNT];
+fn list_cells(stars: &[Star]) -> Result<(Vec<u32>, Vec<[f32; 4]>)> {
+    let mut counts = filled(CELL_COUNT, 0_u32, STARS)?;
     for star in stars {
         visit_cells(star, &mut |cell| counts[cell] += 1);
     }
@@ -292,10 +316,10 @@ fn list_cells(stars: &[Star]) -> (Vec<u32>, Vec<[f32; 4]>) {
         end += count;
         end - count
     };
-    let mut places = counts.iter().map(begin_and_skip).collect::<Vec<_>>();
+    let mut places = collected(counts.iter().map(begin_and_skip), STARS)?;
     // A length has 8 bits; lists are not that long.
-    let cells = places.iter().zip(&counts).map(|(begin, &count)| begin << 8 | count.min(255)).collect();
-    let mut lists = vec![[0.0; 4]; end as usize];
+    let cells = collected(places.iter().zip(&counts).map(|(begin, &count)| begin << 8 | count.min(255)), STARS)?;
+    let mut lists = filled(end as usize, [0.0; 4], STARS)?;
     for (number, star) in stars.iter().enumerate() {
         let d = star.direction.as_vec3();
         visit_cells(star, &mut |cell| {
@@ -303,7 +327,7 @@ fn list_cells(stars: &[Star]) -> (Vec<u32>, Vec<[f32; 4]>) {
             places[cell] += 1;
         });
     }
-    (cells, lists)
+    Ok((cells, lists))
 }
 
 /// Light and light / temperature of stars, by temperature.
@@ -376,7 +400,7 @@ mod tests {
 
     #[test]
     fn one_lookup_finds_every_star_within_the_margin() {
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let corner = DVec3::splat(1.0).normalize();
         let edge = DVec3::new(1.0, 1.0 - 1e-12, 0.01).normalize();
         for direction in directions(300).chain([corner, -corner, edge, DVec3::X, DVec3::NEG_Z]) {
@@ -445,7 +469,7 @@ mod tests {
     #[test]
     fn memory_stays_small_and_lists_are_in_order() {
         let random = StarField::Procedural(1).index().expect("an index");
-        for (index, megabytes, longest) in [(StarIndex::shared(), 14, 64), (random, 105, 160)] {
+        for (index, megabytes, longest) in [(StarIndex::shared().expect("an index"), 14, 64), (random, 105, 160)] {
             let entries = index.light_table_size();
             assert!(entries * 16 + index.star_cells.len() * 4 < megabytes * 1_000_000, "{entries} entries");
             assert_eq!(index.star_cells.len(), CELL_COUNT);
@@ -472,7 +496,7 @@ mod tests {
     /// The GPU's tables hold what the shaders look for where they look for it.
     #[test]
     fn tables_are_where_the_shaders_look() {
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let tables: Vec<[f32; 4]> = index.light_tables().collect();
         assert_eq!(tables.len(), index.light_table_size());
         let last = tables[MEAN_SKY_OFFSET + STAR_LEVELS as usize - 1];
@@ -490,7 +514,7 @@ mod tests {
     /// What a level lists and what its mean sky holds is all there is.
     #[test]
     fn every_level_has_the_light_of_all_stars() {
-        every_level_has_the_light_of(&StarIndex::shared());
+        every_level_has_the_light_of(&StarIndex::shared().expect("an index"));
         every_level_has_the_light_of(&StarField::Continued(2).index().expect("an index"));
     }
 
@@ -506,7 +530,7 @@ mod tests {
 
     #[test]
     fn mean_sky_beyond_the_levels_has_the_light_of_all_stars_under_any_shift() {
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let table = BlackbodyTable::shared();
         for (g, tolerance) in [(0.5, 0.05), (1.0, 0.01), (2.0, 0.05)] {
             let mut exact = [0.0; 3];

@@ -5,7 +5,8 @@
 //! grows to the left, as on the maps of astronomers: the picture looks as the sky does from inside. With (u, v) in [0, 1) from the top left,
 //! RA = 360 deg (1/2 - u), declination = 180 deg (1/2 - v).
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::allocate::{THREAD_ROOM, check_room, filled};
+use crate::error::{Error, Result};
 use crate::image::{ImageRef, PixelFormat, file::srgb_to_linear};
 use parking_lot::Mutex;
 use std::f64::consts::PI;
@@ -106,37 +107,32 @@ impl Level {
     /// The source's light, averaged over the solid angle of each texel.
     fn new(source: &Source<'_>, size: [u32; 2]) -> Result<Self> {
         let [width, height] = size.map(|side| side as usize);
-        let mut texels = Vec::new();
-        texels.try_reserve_exact(width * height).map_err(|_| {
-            Error::new(
-                ErrorKind::OutOfMemory,
-                format!("a sky map of {width} x {height} texels does not fit into memory"),
-            )
-        })?;
-        texels.resize(width * height, 0);
+        let mut texels = filled(width * height, 0, "the texels of a sky map")?;
         // Threads of their own: in a pool, one that waits for a map could come to wait for itself.
         let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
         let threads = cores.min(texels.len() / TEXELS_A_THREAD);
         let bands = Mutex::new(texels.chunks_mut(BAND * width).zip((0_u32..).step_by(BAND)));
-        let work = || {
-            let mut scratch = Scratch::new(source.size[0] as usize, width);
+        let work = || -> Result<()> {
+            let mut scratch = Scratch::new(source.size[0] as usize, width)?;
             loop {
-                let Some((texels, first)) = bands.lock().next() else { break };
+                let Some((texels, first)) = bands.lock().next() else { return Ok(()) };
                 for (texels, y) in texels.chunks_mut(width).zip(first..) {
                     scratch.fill_row(source, size, y, texels);
                 }
             }
         };
-        std::thread::scope(|scope| {
+        let made = std::thread::scope(|scope| {
             for i in 1..threads {
                 let thread = std::thread::Builder::new().name(format!("bhr-sky-{i}"));
-                if thread.spawn_scoped(scope, work).is_err() {
+                // Without memory for a thread, or without a thread, there are fewer: this one is enough.
+                let room = check_room(THREAD_ROOM, "a thread that makes a sky map");
+                if room.is_err() || thread.spawn_scoped(scope, || drop(work())).is_err() {
                     break;
                 }
             }
-            work();
+            work()
         });
-        Ok(Self { size, texels })
+        made.map(|()| Self { size, texels })
     }
 
     /// The texels of row `y`; empty past the last.
@@ -155,6 +151,8 @@ struct Scratch {
     /// The row, and its sums up to each texel.
     row: Vec<[f64; 3]>,
     up_to: Vec<[f64; 3]>,
+    /// The row to be.
+    blurred: Vec<[f64; 3]>,
 }
 
 fn add(sum: &mut [f64; 3], weight: f64, light: [f64; 3]) {
@@ -170,13 +168,15 @@ fn parts(index: usize, count: usize, source: usize) -> impl Iterator<Item = (usi
 }
 
 impl Scratch {
-    fn new(source_width: usize, width: usize) -> Self {
-        Self {
-            read: vec![[0.0; 3]; source_width],
-            sum: vec![[0.0; 3]; source_width],
-            row: vec![[0.0; 3]; width],
-            up_to: vec![[0.0; 3]; width + 1],
-        }
+    fn new(source_width: usize, width: usize) -> Result<Self> {
+        let what = "rows of a sky map";
+        Ok(Self {
+            read: filled(source_width, [0.0; 3], what)?,
+            sum: filled(source_width, [0.0; 3], what)?,
+            row: filled(width, [0.0; 3], what)?,
+            up_to: filled(width + 1, [0.0; 3], what)?,
+            blurred: filled(width, [0.0; 3], what)?,
+        })
     }
 
     /// Makes row `y` of a level of `size`.
@@ -257,7 +257,8 @@ impl Scratch {
             // Rounding may leave less than nothing.
             std::array::from_fn(|c| ((to[c] - from[c]) / texels).max(0.0))
         };
-        self.row = (0..width).map(blurred).collect();
+        self.blurred.iter_mut().enumerate().for_each(|(x, out)| *out = blurred(x));
+        std::mem::swap(&mut self.row, &mut self.blurred);
     }
 }
 
@@ -303,6 +304,7 @@ pub fn unpack(texel: u32) -> [f32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::ErrorKind;
     use crate::image::Layout;
 
     const FORMATS: [PixelFormat; 4] =

@@ -5,6 +5,7 @@
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE};
 use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
 use super::map::SkyMap;
+use crate::allocate::collected;
 use crate::error::Result;
 use crate::image::file::decode_png;
 use crate::physics::blackbody::BlackbodyTable;
@@ -89,10 +90,11 @@ fn equatorial_to_galactic() -> DMat3 {
 impl MilkyWay {
     fn decode() -> Result<Self> {
         let grey = decode_png(HEIGHTS)?;
+        let codes = grey.pixels.as_bytes().iter().copied().step_by(4);
         Ok(Self {
             width: grey.width,
             height: grey.height,
-            codes: grey.pixels.as_bytes().iter().copied().step_by(4).collect(),
+            codes: collected(codes, "the picture of the Milky Way")?,
             to_galactic: equatorial_to_galactic(),
             colours: BlackbodyTable::shared(),
             brightest: brightest(),
@@ -102,7 +104,7 @@ impl MilkyWay {
     fn draw(&self) -> Result<SkyMap> {
         let [width, height] = MAP_SIZE;
         let place = |i: u32, count: u32| (f64::from(i) + 0.5) / f64::from(count);
-        let columns = (0..width).map(|x| self.column(place(x, width))).collect::<Vec<_>>();
+        let columns = collected((0..width).map(|x| self.column(place(x, width))), "the columns of the Milky Way")?;
         SkyMap::of_rows(MAP_SIZE, &|y, out| {
             let v = place(y, height);
             let (sin_dec, cos_dec) = (PI * (0.5 - v)).sin_cos();

@@ -3,6 +3,8 @@
 
 use super::catalogue::{self, Star};
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE, crowded_sine};
+use crate::allocate::collected;
+use crate::error::Result;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -34,15 +36,15 @@ impl Colours {
     }
 }
 
-/// The stars of a field, in no order.
-pub fn stars(seed: u64) -> impl Iterator<Item = Star> {
-    let colours = Colours(catalogue::stars().collect());
+/// The stars of a field, in no order. Errors: OUT_OF_MEMORY.
+pub fn stars(seed: u64) -> Result<impl Iterator<Item = Star>> {
+    let colours = Colours(collected(catalogue::stars(), "the catalogue's stars")?);
     let mut random = Pcg32::seed_from_u64(seed);
-    (0..PROCEDURAL_STARS).map(move |_| {
+    Ok((0..PROCEDURAL_STARS).map(move |_| {
         let magnitude = magnitude(f64::from(PROCEDURAL_STARS) * unit(&mut random));
         let colour = colours.like(magnitude, &mut random);
         Star { direction: direction(magnitude, &mut random), magnitude, colour }
-    })
+    }))
 }
 
 /// In [0, 1), a multiple of 2^-53.
@@ -84,7 +86,7 @@ mod tests {
 
     #[test]
     fn counts_follow_the_real_sky() {
-        let field: Vec<Star> = stars(7).collect();
+        let field: Vec<Star> = stars(7).expect("stars").collect();
         assert_eq!(field.len(), PROCEDURAL_STARS as usize);
         assert!(field.iter().all(|star| (star.direction.length() - 1.0).abs() < 1e-12));
         for (v, count) in (0..).zip(COUNTS).take(12) {
@@ -102,7 +104,7 @@ mod tests {
 
     #[test]
     fn colours_and_crowding_are_the_catalogues() {
-        let field: Vec<Star> = stars(8).filter(|star| star.magnitude <= catalogue::FAINTEST).collect();
+        let field: Vec<Star> = stars(8).expect("stars").filter(|star| star.magnitude <= catalogue::FAINTEST).collect();
         let real: Vec<Star> = catalogue::stars().collect();
         assert!((crowding(&real) - CROWDING_OF_BRIGHT).abs() < 0.03, "{}", crowding(&real));
         assert!((crowding(&field) - CROWDING_OF_BRIGHT).abs() < 0.06, "{}", crowding(&field));
@@ -117,7 +119,7 @@ mod tests {
                 assert!((found - real).abs() < 0.08, "V {low} .. {high}: B-V {found}, not {real}");
             }
         }
-        let faint: Vec<Star> = stars(8).filter(|star| star.magnitude > catalogue::FAINTEST).collect();
+        let faint: Vec<Star> = stars(8).expect("stars").filter(|star| star.magnitude > catalogue::FAINTEST).collect();
         assert!(crowding(&faint) > 0.97, "{}", crowding(&faint));
         // (1.975 / 1.025)^2 between the middles of these ranges.
         let height = |low: f64, high: f64| {
@@ -135,11 +137,11 @@ mod tests {
     /// The numbers themselves, so that another machine or version that makes other stars is found out.
     #[test]
     fn a_seed_means_the_same_stars_everywhere() {
-        let first = |seed| stars(seed).next().expect("a star");
+        let first = |seed| stars(seed).expect("stars").next().expect("a star");
         assert_eq!(first(1), first(1));
         assert_ne!(first(1).direction, first(2).direction);
         assert_ne!(first(0).direction, first(u64::MAX).direction);
-        let sum = stars(1).take(1000).fold(0_i64, |sum, star| {
+        let sum = stars(1).expect("stars").take(1000).fold(0_i64, |sum, star| {
             sum + (star.magnitude * 1e3).round() as i64
                 + (star.colour * 1e3).round() as i64
                 + (star.direction.x * 1e6) as i64

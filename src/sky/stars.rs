@@ -164,7 +164,7 @@ mod tests {
     }
 
     fn single(direction: DVec3, magnitude: f64) -> StarIndex {
-        StarIndex::new([Star { direction, magnitude, colour: 0.6 }].into_iter())
+        StarIndex::new([Star { direction, magnitude, colour: 0.6 }].into_iter()).expect("an index")
     }
 
     #[test]
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn index_and_plain_search_draw_the_same() {
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let table = BlackbodyTable::shared();
         // Footprints of the levels that hold all stars, before any of them fades.
         for (i, scale) in [2e-4, 1e-3, 1.6e-3, 1.9e-3].into_iter().enumerate() {
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn wide_pixels_blend_into_the_mean() {
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let mean = index.mean_sky[STAR_LEVELS as usize].radiance * index.mean_sky_density(DVec3::Z);
         let (d, dx, dy) = pixel(DVec3::Z, 0.1, 0.0, 0.0);
         assert!((luminance(index.star_light(d, [dx, dy], 1.0, 1.0, LEAST)) / mean - 1.0).abs() < 1e-3);
@@ -241,7 +241,7 @@ mod tests {
 
     #[test]
     fn anything_gives_finite_light() {
-        let index = StarIndex::shared();
+        let index = StarIndex::shared().expect("an index");
         let star = &index.stars[0];
         let d = DVec3::new(star[0].into(), star[1].into(), star[2].into());
         let t = d.any_orthonormal_vector();

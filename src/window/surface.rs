@@ -4,6 +4,7 @@
 use super::claim::Claim;
 use super::memory::{self, MemoryWindow};
 use super::{NativeWindow, Pacer, PresentMode, Window};
+use crate::allocate::{reserve, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
 use crate::image::PixelFormat;
@@ -290,9 +291,7 @@ fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut 
     let row = request.width as usize * 4;
     let bytes = row * request.height as usize;
     pixels.clear();
-    pixels.try_reserve_exact(bytes).map_err(|error| {
-        Error::new(ErrorKind::OutOfMemory, format!("a frame of {} x {}: {error}", request.width, request.height))
-    })?;
+    reserve(pixels, bytes, "a window's frame")?;
     pixels.resize(bytes, 0);
     let mut sink = |tile: Tile, packed: &[u8], row_bytes: usize| {
         let part = tile.x as usize * 4..(tile.x + tile.width) as usize * 4;
@@ -313,9 +312,7 @@ fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Op
     if [from_width, from_height] == [width, height] {
         return Ok(None);
     }
-    let mut out = Vec::new();
-    out.try_reserve_exact(width * height * 4)
-        .map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("a window of {width} x {height}: {error}")))?;
+    let mut out = with_room(width * height * 4, "a window's stretched frame")?;
     // Of a place: the pixel before it, the one after, and how far it is from the first.
     let place = |i: usize, to: usize, from: usize| {
         let at = ((i as f32 + 0.5) * from as f32 / to as f32 - 0.5).clamp(0.0, (from - 1) as f32);

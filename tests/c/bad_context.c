@@ -70,7 +70,7 @@ static void options(BhrBackend backend) {
     grown.tail[7] = 1;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_context_create(BHR_ABI_VERSION, &grown.known, &context));
     grown.tail[7] = 0;
-    grown.known.struct_size = (uint32_t)(known - 8);
+    grown.known.struct_size = FIRST_CONTEXT_OPTIONS - 1;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_context_create(BHR_ABI_VERSION, &grown.known, &context));
     grown.known.struct_size = 0;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_context_create(BHR_ABI_VERSION, &grown.known, &context));

@@ -115,8 +115,11 @@ static void constants(Watch *watch) {
         CHECK_BAD(image, "format");
     }
     BhrImage image = good_image();
-    image.flags = 0x100;
-    CHECK_BAD(image, "flags");
+    for (uint32_t flag = 4; flag != 0; flag <<= 1) {
+        image = good_image();
+        image.flags = flag | BHR_IMAGE_BOTTOM_UP;
+        CHECK_BAD(image, "flags");
+    }
     image = good_image();
     image.reserved = 1;
     CHECK_BAD(image, "reserved");
@@ -124,6 +127,43 @@ static void constants(Watch *watch) {
     image = good_image();
     image.format = BHR_FORMAT_R32F;
     CHECK_BAD(image, "R32F|format");
+}
+
+/* With BHR_IMAGE_BOTTOM_UP pixels is the lowest address, and a negative stride makes no sense. */
+static void bottom_up(Watch *watch) {
+    static const int64_t negative[] = {-1, -(int64_t)(WIDTH * 4), -(int64_t)(WIDTH * 4 + 12), INT64_MIN};
+    for (size_t i = 0; i < COUNT_OF(negative); i++) {
+        BhrImage image = good_image();
+        image.flags = BHR_IMAGE_BOTTOM_UP;
+        image.row_stride = negative[i];
+        image.byte_size = sizeof block;
+        CHECK_BAD(image, "BHR_IMAGE_BOTTOM_UP");
+    }
+    static const int64_t bad[] = {1, WIDTH * 4 - 1, INT64_MAX, (int64_t)1 << 60};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        BhrImage image = good_image();
+        image.flags = BHR_IMAGE_BOTTOM_UP | BHR_IMAGE_TRANSPARENT;
+        image.row_stride = bad[i];
+        image.byte_size = sizeof block;
+        CHECK_BAD(image, i < 2 ? "row_stride" : "row_stride|byte_size");
+    }
+    BhrImage image = good_image();
+    image.flags = BHR_IMAGE_BOTTOM_UP;
+    image.byte_size = PACKED - 1;
+    CHECK_BAD(image, "byte_size");
+    image.row_stride = WIDTH * 4 + 12;
+    image.byte_size = (HEIGHT - 1) * (WIDTH * 4 + 12) + WIDTH * 4 - 1;
+    CHECK_BAD(image, "byte_size");
+    image = good_image();
+    image.flags = BHR_IMAGE_BOTTOM_UP;
+    image.pixels = NULL;
+    CHECK_BAD(image, "pixels");
+    image.pixels = (unsigned char *)(UINTPTR_MAX - PACKED / 2 + 1);
+    CHECK_BAD(image, "address space");
+    image.format = BHR_FORMAT_RGBA32F;
+    image.byte_size = sizeof block;
+    image.pixels = (unsigned char *)block + 2;
+    CHECK_BAD(image, "pixels|align");
 }
 
 static void views_and_formats(Watch *watch) {
@@ -155,20 +195,24 @@ static void struct_sizes(Watch *watch) {
     CHECK_OK(bhr_image_init(&grown.known, sizeof grown));
     CHECK(grown.tail[0] == 0 && grown.tail[15] == 0, "bhr_image_init left the tail");
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "image", bhr_image_init(NULL, sizeof grown));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_image_init(&grown.known, sizeof grown.known - 1));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_image_init(&grown.known, FIRST_IMAGE - 1));
     memset(&grown, 0, sizeof grown);
     grown.known = good_image();
     grown.known.struct_size = sizeof grown;
     grown.tail[3] = 1;
     CHECK_BAD(grown.known, "struct_size");
     grown.tail[3] = 0;
-    grown.known.struct_size = sizeof grown.known - 1;
+    grown.known.struct_size = FIRST_IMAGE - 1;
     CHECK_BAD(grown.known, "struct_size");
     grown.known.struct_size = 0;
     CHECK_BAD(grown.known, "struct_size");
-    grown.known.struct_size = sizeof grown;
-    CHECK_OK(bhr_render_image(watch->context, &grown.known));
-    CHECK(memcmp(block, watch->frame, sizeof watch->frame) == 0, "a grown struct gives another frame");
+    for (uint32_t size = FIRST_IMAGE; size <= sizeof grown; size++) {
+        memset(block, UNTOUCHED, sizeof block);
+        grown.known.struct_size = size;
+        CHECK_OK(bhr_render_image(watch->context, &grown.known));
+        CHECK(memcmp(block, watch->frame, sizeof watch->frame) == 0, "struct_size %u gives another frame",
+              (unsigned)size);
+    }
 
     BhrImage image = good_image();
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "target", bhr_render_image(watch->context, NULL));
@@ -204,7 +248,7 @@ static void regions(Watch *watch) {
     region.reserved = 1;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_region(watch->context, &region));
     region.reserved = 0;
-    region.struct_size = 4;
+    region.struct_size = FIRST_REGION - 1;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_set_region(watch->context, &region));
 
     /* The region is fine, the image does not fit into its frame. */
@@ -271,6 +315,7 @@ int main(int argc, char **argv) {
     strides(&watch);
     alignment(&watch);
     constants(&watch);
+    bottom_up(&watch);
     views_and_formats(&watch);
     struct_sizes(&watch);
     regions(&watch);

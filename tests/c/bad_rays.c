@@ -63,10 +63,10 @@ static void trace_rays(Watch *watch, BhrContext *context) {
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "hits",
                   bhr_trace_rays(context, &ray, sizeof ray, 1, NULL, sizeof hit));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "ray_size",
-                  bhr_trace_rays(context, &ray, sizeof ray - 1, 1, &hit, sizeof hit));
+                  bhr_trace_rays(context, &ray, FIRST_RAY - 1, 1, &hit, sizeof hit));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "ray_size", bhr_trace_rays(context, &ray, 0, 1, &hit, sizeof hit));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "hit_size",
-                  bhr_trace_rays(context, &ray, sizeof ray, 1, &hit, sizeof hit - 1));
+                  bhr_trace_rays(context, &ray, sizeof ray, 1, &hit, FIRST_HIT - 1));
     /* Arrays no memory holds: count times size does not fit into size_t, or not into half of it. */
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "count",
                   bhr_trace_rays(context, &ray, sizeof ray, SIZE_MAX, &hit, sizeof hit));

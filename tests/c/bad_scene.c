@@ -8,35 +8,48 @@
 
 static const double NOT_FINITE[] = {NAN, INFINITY, -INFINITY};
 
-/* A struct as a newer host passes it, with a tail this version does not know: `grown` has members known and tail, is
- * filled by `init`, and `set` must take it with a zero tail only. `get` must zero the tail. */
-#define CHECK_STRUCT_SIZES(watch, grown, init, set, get)                                         \
-    do {                                                                                         \
-        memset(&(grown), UNTOUCHED, sizeof(grown));                                              \
-        CHECK_OK(init);                                                                          \
-        CHECK((grown).known.struct_size == sizeof(grown), "init left another struct_size");      \
-        for (size_t at = 0; at < sizeof(grown).tail; at++) {                                     \
-            CHECK((grown).tail[at] == 0, "init left byte %u of the tail", (unsigned)at);         \
-        }                                                                                        \
-        CHECK_OK(set);                                                                           \
-        watch_begin((watch), (watch)->context);                                                  \
-        (grown).tail[sizeof(grown).tail - 1] = 1;                                                \
-        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                    \
-        (grown).tail[sizeof(grown).tail - 1] = 0;                                                \
-        (grown).known.struct_size = (uint32_t)sizeof(grown).known - 1;                           \
-        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                    \
-        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", get);                    \
-        (grown).known.struct_size = 0;                                                           \
-        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                    \
-        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", get);                    \
-        memset(&(grown), UNTOUCHED, sizeof(grown));                                              \
-        (grown).known.struct_size = sizeof(grown);                                               \
-        CHECK_OK(get);                                                                           \
-        for (size_t at = 0; at < sizeof(grown).tail; at++) {                                     \
-            CHECK((grown).tail[at] == 0, "a getter left byte %u of the tail", (unsigned)at);     \
-        }                                                                                        \
-        CHECK((grown).known.struct_size == sizeof(grown), "a getter changed struct_size");       \
+/* A struct as hosts of other releases pass it. `grown` has members known and tail, is filled by `init`, a call with
+ * `size`, and `set` must take it with every struct_size from `first`, the first release's, to that of the struct;
+ * with a tail that this version does not know, only if that is zero; and with none below `first`. `get` must write
+ * struct_size bytes, the tail's zero. */
+#define CHECK_STRUCT_SIZES(watch, grown, first, init, set, get)                                                        \
+    do {                                                                                                               \
+        for (size_t size = (first); size <= sizeof(grown); size++) {                                                   \
+            memset(&(grown), UNTOUCHED, sizeof(grown));                                                                \
+            CHECK_OK(init);                                                                                            \
+            CHECK((grown).known.struct_size == size, "init left another struct_size than %u", (unsigned)size);         \
+            CHECK(is_after(&(grown), sizeof(grown).known, size, 0), "init at %u: the tail is not 0", (unsigned)size);  \
+            CHECK(is_after(&(grown), size, sizeof(grown), UNTOUCHED), "init at %u wrote further", (unsigned)size);     \
+            CHECK_OK(set);                                                                                             \
+            memset(&(grown), UNTOUCHED, sizeof(grown));                                                                \
+            (grown).known.struct_size = (uint32_t)size;                                                                \
+            CHECK_OK(get);                                                                                             \
+            CHECK((grown).known.struct_size == size, "a getter changed struct_size %u", (unsigned)size);               \
+            CHECK(is_after(&(grown), sizeof(grown).known, size, 0), "get at %u: the tail is not 0", (unsigned)size);   \
+            CHECK(is_after(&(grown), size, sizeof(grown), UNTOUCHED), "get at %u wrote further", (unsigned)size);      \
+        }                                                                                                              \
+        watch_begin((watch), (watch)->context);                                                                        \
+        (grown).tail[sizeof(grown).tail - 1] = 1;                                                                      \
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                                          \
+        (grown).tail[sizeof(grown).tail - 1] = 0;                                                                      \
+        const uint32_t wrong[] = {(first) - 1, (first) / 2, 4, 0, 1u << 20, UINT32_MAX};                               \
+        for (size_t at = 0; at < COUNT_OF(wrong); at++) {                                                              \
+            (grown).known.struct_size = wrong[at];                                                                     \
+            CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", set);                                      \
+            CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", get);                                      \
+            const size_t size = wrong[at];                                                                             \
+            CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", init);                                              \
+        }                                                                                                              \
     } while (0)
+
+/* Whether bytes begin .. end - 1 of the struct are all `value`. */
+static int is_after(const void *structure, size_t begin, size_t end, unsigned char value) {
+    const unsigned char *bytes = structure;
+    while (begin < end && bytes[begin] == value) {
+        begin++;
+    }
+    return begin >= end;
+}
 
 /* A number that a setter must refuse, and what its message must name. */
 typedef struct BadNumber {
@@ -226,10 +239,10 @@ static void camera(Watch *watch, BhrContext *context) {
         BhrCamera     known;
         unsigned char tail[24];
     } grown;
-    CHECK_STRUCT_SIZES(watch, grown, bhr_camera_init(&grown.known, sizeof grown),
+    CHECK_STRUCT_SIZES(watch, grown, FIRST_CAMERA, bhr_camera_init(&grown.known, size),
                        bhr_set_camera(context, &grown.known), bhr_get_camera(context, &grown.known));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_camera_init(NULL, sizeof good));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_init(&good, sizeof good - 1));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_init(&good, FIRST_CAMERA - 1));
 }
 
 /* The helpers that write a camera leave it alone when they fail. */
@@ -309,7 +322,7 @@ static void disk(Watch *watch, BhrContext *context) {
     value.flags = 0x40;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_disk(context, &value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "disk", bhr_disk_init(NULL, sizeof value));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_disk_init(&value, sizeof value - 1));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_disk_init(&value, FIRST_DISK - 1));
     CHECK_OK(bhr_disk_init(&value, sizeof value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_disk(NULL, &value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_disk(NULL, &value, &present));
@@ -320,7 +333,7 @@ static void disk(Watch *watch, BhrContext *context) {
         BhrDisk       known;
         unsigned char tail[16];
     } grown;
-    CHECK_STRUCT_SIZES(watch, grown, bhr_disk_init(&grown.known, sizeof grown), bhr_set_disk(context, &grown.known),
+    CHECK_STRUCT_SIZES(watch, grown, FIRST_DISK, bhr_disk_init(&grown.known, size), bhr_set_disk(context, &grown.known),
                        bhr_get_disk(context, &grown.known, &present));
     CHECK_OK(bhr_set_disk(context, NULL));
     CHECK_OK(bhr_get_disk(context, &value, &present));
@@ -392,7 +405,7 @@ static void sky(Watch *watch, BhrContext *context) {
     value.flags = BHR_SKY_PROCEDURAL | 0x80000000u;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "0x80000002", bhr_set_sky(context, &value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "sky", bhr_sky_init(NULL, sizeof value));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_sky_init(&value, sizeof value - 1));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_sky_init(&value, FIRST_SKY - 1));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_sky(NULL, NULL));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_sky(NULL, &value));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "sky", bhr_get_sky(context, NULL));
@@ -401,7 +414,7 @@ static void sky(Watch *watch, BhrContext *context) {
         BhrSky        known;
         unsigned char tail[16];
     } grown;
-    CHECK_STRUCT_SIZES(watch, grown, bhr_sky_init(&grown.known, sizeof grown), bhr_set_sky(context, &grown.known),
+    CHECK_STRUCT_SIZES(watch, grown, FIRST_SKY, bhr_sky_init(&grown.known, size), bhr_set_sky(context, &grown.known),
                        bhr_get_sky(context, &grown.known));
     CHECK_OK(bhr_set_sky(context, NULL));
     CHECK_OK(bhr_sky_init(&value, sizeof value));
@@ -481,7 +494,7 @@ static void film(Watch *watch, BhrContext *context) {
         BhrFilm       known;
         unsigned char tail[16];
     } grown;
-    CHECK_STRUCT_SIZES(watch, grown, bhr_film_init(&grown.known, sizeof grown), bhr_set_film(context, &grown.known),
+    CHECK_STRUCT_SIZES(watch, grown, FIRST_FILM, bhr_film_init(&grown.known, size), bhr_set_film(context, &grown.known),
                        bhr_get_film(context, &grown.known));
 }
 
@@ -570,7 +583,7 @@ static void quality(Watch *watch, BhrContext *context) {
         BhrQuality    known;
         unsigned char tail[16];
     } grown;
-    CHECK_STRUCT_SIZES(watch, grown, bhr_quality_init(&grown.known, sizeof grown),
+    CHECK_STRUCT_SIZES(watch, grown, FIRST_QUALITY, bhr_quality_init(&grown.known, size),
                        bhr_set_quality(context, &grown.known), bhr_get_quality(context, &grown.known));
 }
 

@@ -60,6 +60,22 @@ typedef struct Watch {
 void watch_begin(Watch *watch, BhrContext *context); /* again after every change that is meant */
 int  check_unchanged(const Watch *watch, const char *file, int line, const char *call);
 
+/* ---- sizes of structs in the library's first release (with pointers of 8 bytes): hosts compiled then go on saying
+ * them, however the structs have grown ---- */
+enum {
+    FIRST_CAMERA = 120,
+    FIRST_CONTEXT_OPTIONS = 48,
+    FIRST_DISK = 64,
+    FIRST_FILM = 24,
+    FIRST_HIT = 184,
+    FIRST_IMAGE = 48,
+    FIRST_QUALITY = 48,
+    FIRST_RAY = 56,
+    FIRST_REGION = 24,
+    FIRST_SKY = 64,
+    FIRST_WINDOW = 56
+};
+
 /* ---- images ---- */
 /* A packed image over `pixels`, of byte_size bytes. */
 BhrImage image_of(BhrFormat format, uint32_t width, uint32_t height, void *pixels, uint64_t byte_size);

@@ -90,6 +90,16 @@ static void round_trips(BhrContext *context) {
         CHECK(memcmp(loaded.pixels, rgba, sizeof rgba) == 0, "a bottom-up image is saved upside down");
         CHECK_OK(bhr_image_release(&loaded));
     }
+    image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, padded, sizeof padded);
+    image.row_stride = STRIDE;
+    image.flags = BHR_IMAGE_BOTTOM_UP;
+    CHECK_OK(bhr_image_save(&image, path_of("flag.png")));
+    loaded.flags = BHR_IMAGE_BOTTOM_UP; /* an output: what a file gives lies top-down, and says so */
+    if (CHECK_OK(bhr_image_load(path_of("flag.png"), &loaded))) {
+        CHECK(memcmp(loaded.pixels, rgba, sizeof rgba) == 0, "an image with the flag is saved upside down");
+        CHECK(loaded.flags == 0, "a loaded image has flags %u", (unsigned)loaded.flags);
+        CHECK_OK(bhr_image_release(&loaded));
+    }
 }
 
 /* An older file keeps its mode; of a link the target is written; what a killed process left does not matter; names are

@@ -23,24 +23,35 @@ static unsigned char *packed_frame(BhrContext *context, BhrFormat format) {
 
 /* ---- layouts ---- */
 
-/* Renders with `stride` into the middle of a larger block; `flip`: bottom-up. Each row must equal the packed frame's,
- * and every other byte of the block must stay. */
-static void check_layout(BhrContext *context, BhrFormat format, size_t stride, int flip, const unsigned char *packed) {
+/* Rows from the top down; from the bottom up, said by a negative stride and by the flag. */
+typedef enum Rows { TOP_DOWN, NEGATIVE, BOTTOM_UP, WAYS } Rows;
+static const char *const ROWS[WAYS] = {"top-down", "negative", "bottom-up"};
+
+/* Renders with `stride` into the middle of a larger block. Each row must equal the packed frame's, and every other
+ * byte of the block must stay. */
+static void check_layout(BhrContext *context, BhrFormat format, size_t stride, Rows rows, const unsigned char *packed) {
     const size_t   row = WIDTH * bytes_per_pixel(format), margin = 64;
     const size_t   needed = stride * (HEIGHT - 1) + row, bytes = needed + 2 * margin;
     unsigned char *block = malloc(bytes), *first = block + margin;
     memset(block, UNTOUCHED, bytes);
-    BhrImage image = image_of(format, WIDTH, HEIGHT, flip ? first + stride * (HEIGHT - 1) : first, needed);
-    image.row_stride = flip ? -(int64_t)stride : (int64_t)stride;
+    BhrImage image = image_of(format, WIDTH, HEIGHT, first, needed);
+    image.row_stride = (int64_t)stride;
+    if (rows == NEGATIVE) {
+        image.pixels = first + stride * (HEIGHT - 1);
+        image.row_stride = -(int64_t)stride;
+    } else if (rows == BOTTOM_UP) {
+        image.flags = BHR_IMAGE_BOTTOM_UP;
+        image.row_stride = stride == row ? 0 : (int64_t)stride;
+    }
     CHECK_OK(bhr_render_image(context, &image));
     for (uint32_t y = 0; y < HEIGHT; y++) {
-        const size_t at = margin + stride * (flip ? HEIGHT - 1 - y : y);
-        CHECK(memcmp(block + at, packed + y * row, row) == 0, "format %d, stride %s%u: row %u differs", (int)format,
-              flip ? "-" : "", (unsigned)stride, (unsigned)y);
+        const size_t at = margin + stride * (rows == TOP_DOWN ? y : HEIGHT - 1 - y);
+        CHECK(memcmp(block + at, packed + y * row, row) == 0, "format %d, %s stride %u: row %u differs", (int)format,
+              ROWS[rows], (unsigned)stride, (unsigned)y);
         memset(block + at, UNTOUCHED, row);
     }
-    CHECK(all_untouched(block, bytes), "format %d, stride %s%u: a byte beside the rows was written", (int)format,
-          flip ? "-" : "", (unsigned)stride);
+    CHECK(all_untouched(block, bytes), "format %d, %s stride %u: a byte beside the rows was written", (int)format,
+          ROWS[rows], (unsigned)stride);
     free(block);
 }
 
@@ -50,12 +61,12 @@ static void layouts(BhrContext *context) {
         const size_t    row = WIDTH * bytes_per_pixel(format);
         const size_t    channel = format == BHR_FORMAT_RGBA32F ? 4 : format == BHR_FORMAT_RGBA16F ? 2 : 1;
         unsigned char  *packed = packed_frame(context, format);
-        for (int flip = 0; flip <= 1; flip++) {
-            check_layout(context, format, row, flip, packed);
-            check_layout(context, format, row + channel, flip, packed); /* odd, for 8-bit formats */
-            check_layout(context, format, row + 7 * channel, flip, packed);
-            check_layout(context, format, row + 260, flip, packed);
-            check_layout(context, format, 4096, flip, packed);
+        for (Rows rows = TOP_DOWN; rows < WAYS; rows++) {
+            check_layout(context, format, row, rows, packed);
+            check_layout(context, format, row + channel, rows, packed); /* odd, for 8-bit formats */
+            check_layout(context, format, row + 7 * channel, rows, packed);
+            check_layout(context, format, row + 260, rows, packed);
+            check_layout(context, format, 4096, rows, packed);
         }
         free(packed);
     }

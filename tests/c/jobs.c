@@ -254,6 +254,7 @@ static void layouts(BhrContext *context) {
         check_layout(context, formats[i], 0, 1, 0);
         check_layout(context, formats[i], i < 2 ? 7 : 12, 0, BHR_IMAGE_TRANSPARENT);
         check_layout(context, formats[i], i < 2 ? 1 : 4, 1, 0);
+        check_layout(context, formats[i], i < 2 ? 3 : 8, 0, BHR_IMAGE_BOTTOM_UP);
     }
     CHECK_OK(bhr_set_view(context, BHR_VIEW_DEFLECTION));
     check_layout(context, BHR_FORMAT_R32F, 20, 1, 0);

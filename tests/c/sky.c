@@ -79,6 +79,30 @@ static void formats(Watch *watch) {
     }
 }
 
+/* A map whose bottom row comes first is the same sky as its rows turned round. */
+static void bottom_up(BhrContext *context, BhrImage map) {
+    static float turned[WIDTH * HEIGHT * 4], seen[3][FRAME_WIDTH * FRAME_HEIGHT * 4], all[WIDTH * HEIGHT * 4];
+    memcpy(all, map_pixels, sizeof all);
+    for (size_t i = 0; i < COUNT_OF(turned); i++) {
+        map_pixels[i] = (float)(i / (WIDTH * 4)) / HEIGHT;
+    }
+    for (size_t y = 0; y < HEIGHT; y++) {
+        memcpy(turned + (HEIGHT - 1 - y) * WIDTH * 4, map_pixels + y * WIDTH * 4, WIDTH * 16);
+    }
+    for (int i = 0; i < 3; i++) {
+        const BhrImage target = image_of(BHR_FORMAT_RGBA32F, FRAME_WIDTH, FRAME_HEIGHT, seen[i], sizeof seen[i]);
+        map.pixels = i == 0 ? (void *)map_pixels : (void *)turned;
+        map.flags = i == 1 ? BHR_IMAGE_BOTTOM_UP : 0;
+        CHECK_OK(bhr_set_sky_map(context, &map));
+        CHECK_OK(bhr_render_image(context, &target));
+    }
+    CHECK(memcmp(seen[0], seen[1], sizeof seen[0]) == 0, "a map whose bottom row comes first gives another sky");
+    CHECK(memcmp(seen[0], seen[2], sizeof seen[0]) != 0, "a map upside down gives the same sky");
+    memcpy(map_pixels, all, sizeof all);
+    map.pixels = map_pixels;
+    CHECK_OK(bhr_set_sky_map(context, &map));
+}
+
 static void shapes(Watch *watch) {
     const BhrImage good = image_of(BHR_FORMAT_RGBA32F, WIDTH, HEIGHT, map_pixels, sizeof map_pixels);
     static const uint32_t sizes[][2] = {{1, 1}, {1, HEIGHT}, {WIDTH, 1}, {3, 2}, {2, 5}, {WIDTH, HEIGHT}};
@@ -94,6 +118,7 @@ static void shapes(Watch *watch) {
         map.pixels = map_pixels + (size_t)(map.height - 1) * WIDTH * 4;
         CHECK_OK(bhr_set_sky_map(watch->context, &map));
     }
+    bottom_up(watch->context, good);
     watch_begin(watch, watch->context);
     map = good;
     map.width = 0;

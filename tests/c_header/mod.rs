@@ -3,6 +3,7 @@
 #![allow(dead_code)]
 
 use std::collections::BTreeSet;
+use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -44,6 +45,78 @@ pub fn constants(text: &str) -> BTreeSet<String> {
         .collect()
 }
 
+/// Structs with their fields in order.
+pub fn structs(text: &str) -> Vec<(String, Vec<String>)> {
+    let code = code_of(text);
+    let mut found: Vec<_> = code
+        .split("typedef struct ")
+        .skip(1)
+        .filter_map(|rest| {
+            let (name, body) = rest.split_once('{')?;
+            // An opaque type ends before any brace opens.
+            (!name.contains(';')).then(|| (name.trim().to_owned(), fields(body.split_once('}').unwrap().0)))
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+fn fields(body: &str) -> Vec<String> {
+    let names = body.split(';').flat_map(|declaration| declaration.split(',')).map(|declarator| {
+        let declarator = declarator.split('[').next().unwrap_or_default();
+        declarator.rsplit([' ', '*', '\n']).next().unwrap_or_default().to_owned()
+    });
+    names.filter(|name| !name.is_empty()).collect()
+}
+
+/// A program that prints every constant's value and every struct's and field's place, size and type, as `header` has
+/// them: those that `text` declares.
+pub fn table(text: &str, header: &str) -> String {
+    let mut program = format!(
+        "#include <stdio.h>\n#include \"{header}\"\n\
+         #define TYPE(x) _Generic((x), int32_t: \"int32\", uint32_t: \"uint32\", int64_t: \"int64\", \
+         uint64_t: \"uint64\", double: \"double\", void *: \"void*\", double *: \"double[]\", char *: \"char[]\", \
+         BhrLogFn: \"log\", const BhrWindow *: \"window\", BhrCrossing *: \"crossings\", default: \"?\")\n\
+         int main(void) {{\n"
+    );
+    for name in constants(text) {
+        writeln!(program, "printf(\"{name} %lld %zu\\n\", (long long)({name}), sizeof({name}));").unwrap();
+    }
+    for (name, fields) in structs(text) {
+        writeln!(program, "printf(\"{name} %zu\\n\", sizeof({name}));").unwrap();
+        for field in fields {
+            let place = format!("((({name} *)0)->{field})");
+            writeln!(
+                program,
+                "printf(\"{name}.{field} %zu %zu %s\\n\", offsetof({name}, {field}), sizeof{place}, TYPE{place});"
+            )
+            .unwrap();
+        }
+    }
+    program + "return 0; }\n"
+}
+
+/// The typedefs and prototypes of a header without its structs.
+pub fn prototypes(text: &str) -> String {
+    let code = code_of(text).replace("extern \"C\" {", "");
+    let (mut repeated, mut statement, mut depth) = (String::new(), String::new(), 0);
+    for c in code.chars() {
+        statement.push(c);
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ';' if depth == 0 => {
+                if !statement.contains('{') {
+                    repeated += &statement;
+                }
+                statement.clear();
+            }
+            _ => {}
+        }
+    }
+    repeated
+}
+
 /// A folder of the calling test's own, inside cargo's target folder.
 pub fn scratch(name: &str) -> PathBuf {
     let deps = std::env::current_exe().unwrap();
@@ -56,6 +129,15 @@ pub fn scratch(name: &str) -> PathBuf {
 pub fn compiler(cpp: bool) -> Command {
     let (variable, default) = if cpp { ("CXX", "c++") } else { ("CC", "cc") };
     Command::new(std::env::var(variable).unwrap_or_else(|_| default.into()))
+}
+
+/// The library that cargo built for this test: beside the test itself, in `deps`.
+pub fn library() -> PathBuf {
+    let deps = std::env::current_exe().unwrap().parent().unwrap().to_owned();
+    let name = format!("{}bhr{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let path = deps.join(name);
+    assert!(path.is_file(), "{} is not there: cargo builds it with crate-type cdylib", path.display());
+    path
 }
 
 /// Runs `command`; its stdout. Fails with all it said when it fails.

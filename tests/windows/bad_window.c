@@ -95,7 +95,7 @@ static void fields(const Scene *scene, const BhrWindow *good) {
     window.reserved = 1;
     refuse(scene, &window, BHR_ERROR_INVALID_ARGUMENT, "reserved");
     window = *good;
-    window.struct_size = sizeof window - 4;
+    window.struct_size = FIRST_WINDOW - 1;
     refuse(scene, &window, BHR_ERROR_INVALID_ARGUMENT, "struct_size");
     window.struct_size = 0;
     refuse(scene, &window, BHR_ERROR_INVALID_ARGUMENT, "struct_size");

@@ -833,6 +833,11 @@ impl KerrLens {
 }
 
 impl Grid {
+    /// Numbers of a `packed_row`.
+    pub fn packed_row_size(&self) -> usize {
+        (self.columns() + REPEATED) * self.quads()
+    }
+
     /// `node` of all columns of a row, one after the other.
     pub fn node_row(&self, branch: Branch, row: usize) -> impl Iterator<Item = f64> {
         (0..self.columns()).flat_map(move |column| self.node(branch, column, row))

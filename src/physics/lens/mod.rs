@@ -17,5 +17,8 @@ pub use plane::{OrbitPlane, PlaneImage, PlaneSky, Turn};
 pub use schwarzschild::{Branch, Column, Family, Resolution};
 pub use table::{Crossing, Look, SchwarzschildLens};
 
+/// What memory is asked for.
+pub const LENS: &str = "the tables of a lens";
+
 #[cfg(test)]
 mod tests;

@@ -20,7 +20,10 @@
 //! The parameter is sigma, phi = kappa sigma, kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is singular for
 //! radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi oddly.
 
+use super::LENS;
 use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE};
+use crate::allocate::{collected, with_room};
+use crate::error::Result;
 use crate::physics::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, rain_offset};
 use crate::physics::integrator::{B, D, Quintic, gauss_legendre};
 use crate::physics::observer::LocalFrame;
@@ -278,7 +281,8 @@ impl Family {
     }
 
     /// Integrates the ray of one column: once to its end, then again in even steps of y. `None`: it does not end.
-    pub fn column(&self, branch: Branch, index: usize) -> Option<Column> {
+    /// Errors: OUT_OF_MEMORY.
+    pub fn column(&self, branch: Branch, index: usize) -> Result<Option<Column>> {
         let (sign, end) = match branch {
             Branch::Escaping => (1.0, 0.0),
             Branch::Captured => (-1.0, CAPTURE_U),
@@ -287,16 +291,16 @@ impl Family {
         let node = if free { index - 1 } else { index };
         let ray = self.ray(&self.coordinate.angle(sign * self.coordinate.t_hat_at(node as f64)), free);
         let start = Point { e: self.e_eye, v: ray.v, dv: ray.slope, w: 0.0, dw: ray.slope_x };
-        let length = ray.length(start, end, self.resolution.step)?;
-        let points = self.points(&ray, start, length);
-        let last = points.last()?;
+        let Some(length) = ray.length(start, end, self.resolution.step) else { return Ok(None) };
+        let points = self.points(&ray, start, length)?;
+        let Some(last) = points.last() else { return Ok(None) };
         // By u(length(x); x) = end.
         let length_x = -last.w / last.du(&ray);
-        Some(Column {
+        Ok(Some(Column {
             swept: [ray.kappa * length, ray.kappa_x * length + ray.kappa * length_x],
-            v: self.row(&ray, &points, length, length_x),
-            delay: if self.with_delay { self.delay_row(&ray, &points, length) } else { Vec::new() },
-        })
+            v: self.row(&ray, &points, length, length_x)?,
+            delay: if self.with_delay { self.delay_row(&ray, &points, length)? } else { Vec::new() },
+        }))
     }
 
     /// `free`: v = u.
@@ -320,22 +324,22 @@ impl Family {
     }
 
     /// The points at even steps of y, substeps being taken where these exceed the resolution's step.
-    fn points(&self, ray: &Ray, start: Point, length: f64) -> Vec<Point> {
+    fn points(&self, ray: &Ray, start: Point, length: f64) -> Result<Vec<Point>> {
         let interval = length / f64::from(self.resolution.intervals);
         let substeps = (interval / self.resolution.step).ceil().max(1.0) as u32;
         let step = Step::new(ray, interval / f64::from(substeps));
-        let mut points = Vec::with_capacity(self.resolution.intervals as usize + 1);
+        let mut points = with_room(self.resolution.intervals as usize + 1, LENS)?;
         points.push(start);
         let mut point = start;
         for _ in 0..self.resolution.intervals {
             point = (0..substeps).fold(point, |p, _| ray.step(&p, &step));
             points.push(point);
         }
-        points
+        Ok(points)
     }
 
     /// v(x, y) = V(y length(x); x) with its derivatives. w being dU/dx at fixed sigma, that of V is w - u_s' kappa_x sigma.
-    fn row(&self, ray: &Ray, points: &[Point], length: f64, length_x: f64) -> Vec<[f64; 4]> {
+    fn row(&self, ray: &Ray, points: &[Point], length: f64, length_x: f64) -> Result<Vec<[f64; 4]>> {
         let values = points.iter().enumerate().map(|(i, p)| {
             let y = i as f64 / f64::from(self.resolution.intervals);
             let curvature = ray.accelerations(p.e, p.v, p.w)[0];
@@ -348,18 +352,18 @@ impl Family {
                 - phi_x * (slope_s + y * curvature_s * ray.kappa * length);
             [p.v, v_x, length * p.dv, v_xy]
         });
-        values.collect()
+        collected(values, LENS)
     }
 
     /// J and J_y: Gauss-Legendre on the dense output, as one form of the rate needs u'.
-    fn delay_row(&self, ray: &Ray, points: &[Point], length: f64) -> Vec<[f64; 2]> {
+    fn delay_row(&self, ray: &Ray, points: &[Point], length: f64) -> Result<Vec<[f64; 2]>> {
         let constants = self.constants(ray.b);
         let scale = length / ray.per_tau;
         // The last u is 0 but for rounding.
         let rate = |u: f64, du: f64| scale * constants.delay_rate(u.max(f64::MIN_POSITIVE), du * ray.per_tau, 0.0);
         let dy = 1.0 / f64::from(self.resolution.intervals);
         let h = length * dy;
-        let mut row = Vec::with_capacity(points.len());
+        let mut row = with_room(points.len(), LENS)?;
         let mut sum = 0.0;
         let mut before: Option<&Point> = None;
         for p in points {
@@ -376,7 +380,7 @@ impl Family {
             row.push([sum, rate(u, du)]);
             before = Some(p);
         }
-        row
+        Ok(row)
     }
 
     /// Impact parameter at E = 1 of the direction (sin psi, cos psi): b = sin psi / (f u_e (1 - beta cos psi)).

@@ -4,8 +4,11 @@
 //! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's integral part
 //! cubic Hermite in y and Lagrange with four nodes in x.
 
+use super::LENS;
 use super::coordinate::LEAST_T_HAT;
 use super::schwarzschild::{Branch, Column, Family, Resolution};
+use crate::allocate::with_room;
+use crate::error::Result;
 use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec3Swizzles};
 
@@ -76,42 +79,50 @@ fn lagrange(values: [f64; 4], x: f64) -> f64 {
 }
 
 impl BranchTable {
-    /// `None`: columns of other lengths than `family` makes.
-    fn new(family: &Family, branch: Branch, columns: Vec<Column>) -> Option<Self> {
+    /// `None`: columns of other lengths than `family` makes. Errors: OUT_OF_MEMORY.
+    fn new(family: &Family, branch: Branch, columns: Vec<Column>) -> Result<Option<Self>> {
         let length = family.resolution.intervals as usize + 1;
         let delays = if family.with_delay { length } else { 0 };
         let fit = columns.iter().all(|c| c.v.len() == length && c.delay.len() == delays);
         if columns.len() != family.columns(branch) || !fit {
-            return None;
+            return Ok(None);
         }
-        let mut table = Self::default();
+        let count = columns.len();
+        let mut table = Self {
+            swept: with_room(count, LENS)?,
+            v: with_room(count * length, LENS)?,
+            delay: with_room(count * delays, LENS)?,
+        };
         for mut column in columns {
             table.swept.push(column.swept);
             table.v.append(&mut column.v);
             table.delay.append(&mut column.delay);
         }
-        Some(table)
+        Ok(Some(table))
     }
 }
 
 impl SchwarzschildLens {
-    /// The table for the eye of `frame` at the default resolution, built on this thread. `None`: `Family::new` has none.
+    /// The table for the eye of `frame` at the default resolution, built on this thread. `None`: `Family::new` has
+    /// none, or there is no memory for it.
     pub fn new(frame: &LocalFrame, with_delay: bool) -> Option<Self> {
         Self::build(Family::new(frame, with_delay, Resolution::default())?)
     }
 
-    /// Builds all columns on this thread.
+    /// Builds all columns on this thread. `None`: there is no memory for them.
     pub fn build(family: Family) -> Option<Self> {
         let columns =
-            |branch| (0..family.columns(branch)).map(|i| family.column(branch, i)).collect::<Option<Vec<_>>>();
-        Self::from_columns(family, columns(Branch::Escaping)?, columns(Branch::Captured)?)
+            |branch| (0..family.columns(branch)).map(|i| family.column(branch, i).ok()?).collect::<Option<Vec<_>>>();
+        let [escaping, captured] = [columns(Branch::Escaping)?, columns(Branch::Captured)?];
+        Self::from_columns(family, escaping, captured).ok()?
     }
 
-    /// The table from all of `Family::column`, in order. `None`: their number or lengths are not the family's.
-    pub fn from_columns(family: Family, escaping: Vec<Column>, captured: Vec<Column>) -> Option<Self> {
+    /// The table from all of `Family::column`, in order. `None`: their number or lengths are not the family's. Errors:
+    /// OUT_OF_MEMORY.
+    pub fn from_columns(family: Family, escaping: Vec<Column>, captured: Vec<Column>) -> Result<Option<Self>> {
         let escaping = BranchTable::new(&family, Branch::Escaping, escaping)?;
         let captured = BranchTable::new(&family, Branch::Captured, captured)?;
-        Some(Self { family, escaping, captured })
+        Ok(escaping.zip(captured).map(|(escaping, captured)| Self { family, escaping, captured }))
     }
 
     pub fn family(&self) -> &Family {

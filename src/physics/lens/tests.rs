@@ -262,7 +262,7 @@ fn the_domain_is_served_to_its_ends() {
         let family = Family::new(&frame, true, resolution).unwrap();
         for branch in [Branch::Escaping, Branch::Captured] {
             for i in 0..family.columns(branch) {
-                let column = family.column(branch, i).unwrap();
+                let column = family.column(branch, i).unwrap().unwrap();
                 assert!(
                     column.swept.iter().chain(column.v.as_flattened()).all(|x| x.is_finite()),
                     "r {r} {branch:?} {i}"
@@ -283,12 +283,13 @@ fn the_domain_is_served_to_its_ends() {
 #[test]
 fn columns_that_do_not_fit_make_no_table() {
     let family = Family::new(&eye(10.0, 1.0, false), false, Resolution::default()).unwrap();
-    let columns =
-        |branch| -> Vec<_> { (0..family.columns(branch)).map(|i| family.column(branch, i).unwrap()).collect() };
+    let columns = |branch| -> Vec<_> {
+        (0..family.columns(branch)).map(|i| family.column(branch, i).unwrap().unwrap()).collect()
+    };
     let (escaping, captured) = (columns(Branch::Escaping), columns(Branch::Captured));
-    assert!(SchwarzschildLens::from_columns(family, escaping[1..].to_vec(), captured.clone()).is_none());
+    assert!(SchwarzschildLens::from_columns(family, escaping[1..].to_vec(), captured.clone()).unwrap().is_none());
     let mut short = captured.clone();
     short[3].v.pop();
-    assert!(SchwarzschildLens::from_columns(family, escaping.clone(), short).is_none());
-    assert!(SchwarzschildLens::from_columns(family, escaping, captured).is_some());
+    assert!(SchwarzschildLens::from_columns(family, escaping.clone(), short).unwrap().is_none());
+    assert!(SchwarzschildLens::from_columns(family, escaping, captured).unwrap().is_some());
 }

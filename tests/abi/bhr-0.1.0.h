@@ -1,0 +1,1333 @@
+/* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
+ *
+ * Made by build.rs from the Rust sources in src/capi; do not edit. A program needs nothing else to read: make a
+ * context (bhr_context_create), set mass, spin and camera, render into memory of your own (bhr_render_image).
+ *
+ * Units
+ *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild
+ *   radius is 2 M. Angles in radians, temperatures in kelvin, times in scene lengths. Only disk radii are in
+ *   units of M.
+ *
+ * Coordinates
+ *   The hole sits at the origin. x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the
+ *   Schwarzschild / Boyer-Lindquist coordinates about the spin axis, which is also the disk's normal: +z unless
+ *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that
+ *   takes +z to it (about +x for -z): r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart;
+ *   positions and directions stay in scene axes. Right-handed.
+ *
+ *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit
+ *   vectors of spherical coordinates there (on the axis e_th = x, e_ph = y), standing for the components along
+ *   the orthonormal frame of the local static observer (the ZAMO when the hole spins). Any non-zero length is
+ *   accepted and normalised (velocity: as it is). A moving camera's axes are that frame boosted without
+ *   rotation. Inside a spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a
+ *   spinning hole's horizon everything is BHR_ERROR_UNSUPPORTED.
+ *
+ *   Prograde always means +ph about the axis, retrograde -ph; with spin < 0 the hole turns towards -ph.
+ *
+ * Errors
+ *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message
+ *   says what was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call
+ *   fills in is NULL or 0 after a failure. Setters check their own argument only; what combinations forbid (a
+ *   static camera inside the horizon, say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for.
+ *   BHR_ERROR_INTERNAL means a bug in bhr: only bhr_context_destroy is valid on that context then. Below, errors
+ *   are named without BHR_ERROR_; those that any call may return for NULL, from inside a callback or after
+ *   BHR_ERROR_INTERNAL are not named each time.
+ *
+ * Structs
+ *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than
+ *   the library's first version is BHR_ERROR_INVALID_ARGUMENT; larger is accepted as input when the rest is zero,
+ *   and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear struct_size bytes
+ *   and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
+ *
+ * Pointers
+ *   A pointer is NULL only where this header says that it may be. Whatever is passed in is copied before the
+ *   call returns; what the host owns (windows, pixels) stays its own.
+ *
+ * Threads and callbacks
+ *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other.
+ *   (macOS: surfaces on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the
+ *   calling thread. From inside a callback, a call on a context, job or surface and bhr_adapter_count and _info
+ *   return BHR_ERROR_INVALID_STATE; calls on plain structs and images, versions and messages are allowed. A
+ *   callback must not wait for another thread's call on the same context. No callback runs after the destroy
+ *   call of its context has returned.
+ *
+ * The process
+ *   The library never writes to stdout or stderr, never calls exit or abort, installs no signal handler, and no
+ *   Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind. After fork()
+ *   the child may only exec: neither drivers nor threads live on in it.
+ */
+
+#ifndef BHR_H
+#define BHR_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- version ---- */
+
+/**
+ * Of this header. Before 1.0 a greater minor version may add functions and grow structs; it removes nothing within
+ * one BHR_ABI_VERSION.
+ */
+#define BHR_VERSION_MAJOR 0
+
+/** Of this header. */
+#define BHR_VERSION_MINOR 1
+
+/** Of this header. */
+#define BHR_VERSION_PATCH 0
+
+/** What bhr_context_create wants to be told: N of libbhr.so.N. */
+#define BHR_ABI_VERSION 0u
+
+/** Of the loaded library: major << 16 | minor << 8 | patch. Any thread, inside callbacks too. */
+uint32_t bhr_version(void);
+
+/** BHR_ABI_VERSION of the loaded library. Any thread, inside callbacks too. */
+uint32_t bhr_abi_version(void);
+
+/** Of the loaded library, such as "0.1.0"; static. Any thread, inside callbacks too. */
+const char *bhr_version_string(void);
+
+/* ---- status, messages ---- */
+
+/** What a call returns: 0 success, > 0 success with news, < 0 error. */
+typedef int32_t BhrStatus;
+
+/** Success. */
+#define BHR_OK 0
+
+/** bhr_job_wait: the job was still running when the timeout ran out. */
+#define BHR_NOT_READY 1
+
+/** bhr_render_surface: the window is 0 x 0 or hidden, or is being resized; nothing was presented. */
+#define BHR_FRAME_SKIPPED 2
+
+/**
+ * An argument is NULL, not finite, out of its range, or an unknown constant; the message names it, its value and
+ * the limit.
+ */
+#define BHR_ERROR_INVALID_ARGUMENT (0 - 1)
+
+/** Wrong order, a combination that cannot be, or a call from inside a callback. */
+#define BHR_ERROR_INVALID_STATE (0 - 2)
+
+/** The program was compiled against a header of another BHR_ABI_VERSION. */
+#define BHR_ERROR_INCOMPATIBLE_ABI (0 - 3)
+
+/** Valid, but not on this adapter, platform or build. */
+#define BHR_ERROR_UNSUPPORTED (0 - 4)
+
+/** No adapter of the kind asked for exists. */
+#define BHR_ERROR_NO_ADAPTER (0 - 5)
+
+/** Host or device memory ran out. */
+#define BHR_ERROR_OUT_OF_MEMORY (0 - 6)
+
+/** The progress callback, or bhr_job_cancel, stopped the work. */
+#define BHR_ERROR_CANCELLED (0 - 7)
+
+/** The window behind a surface is gone, or its context was recovered: destroy the surface. */
+#define BHR_ERROR_SURFACE_LOST (0 - 8)
+
+/** The GPU's device is gone; bhr_context_recover brings the context back. */
+#define BHR_ERROR_DEVICE_LOST (0 - 9)
+
+/** A file could not be read or written. */
+#define BHR_ERROR_IO (0 - 10)
+
+/** A bug in bhr was caught; only destroy calls are valid on this context, its jobs and surfaces from now on. */
+#define BHR_ERROR_INTERNAL (0 - 99)
+
+/**
+ * What this thread's last failed call says about it: the function, the argument, its value and the limit. Never
+ * NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from
+ * inside callbacks.
+ */
+const char *bhr_error_message(void);
+
+/** The constant's name, such as "BHR_ERROR_DEVICE_LOST"; static, never NULL. May be called from inside callbacks. */
+const char *bhr_status_name(BhrStatus status);
+
+/* ---- log ---- */
+
+/** How much a log callback hears: messages of this level and those more severe. */
+typedef int32_t BhrLogLevel;
+
+/**
+ * Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
+ * for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
+ * whichever thread the call runs; one from another thread goes to every context's callback. It may therefore run
+ * on several threads at once. It must not throw, unwind or longjmp. Calls on a context from inside it return
+ * BHR_ERROR_INVALID_STATE. None runs after bhr_context_destroy has returned.
+ */
+typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
+
+/** Nothing. */
+#define BHR_LOG_OFF 0
+
+/** Every failed call, and errors of the graphics stack. */
+#define BHR_LOG_ERROR 1
+
+/** Also what went wrong without failing a call, such as an adapter passed over. The default. */
+#define BHR_LOG_WARN 2
+
+/** Also the adapter that was chosen, and why. */
+#define BHR_LOG_INFO 3
+
+/** Also what the graphics stack (wgpu) reports about itself. */
+#define BHR_LOG_DEBUG 4
+
+/** Everything: slow. */
+#define BHR_LOG_TRACE 5
+
+/* ---- adapters ---- */
+
+/** BhrAdapterInfo.flags: a GPU with memory of its own. */
+#define BHR_ADAPTER_DISCRETE 1u
+
+/** BhrAdapterInfo.flags: a software driver, or the CPU tracer. */
+#define BHR_ADAPTER_SOFTWARE 2u
+
+/** The interface to an adapter. */
+typedef int32_t BhrBackend;
+
+/** One adapter. */
+typedef struct BhrAdapterInfo {
+    /** sizeof(BhrAdapterInfo), set by the caller. */
+    uint32_t struct_size;
+    BhrBackend backend;
+    /** BHR_ADAPTER_* bits. */
+    uint32_t flags;
+    /** PCI id of the vendor; 0 for the CPU tracer. */
+    uint32_t vendor_id;
+    /** PCI id of the device; 0 for the CPU tracer. */
+    uint32_t device_id;
+    /** 0. */
+    uint32_t reserved;
+    /** UTF-8, cut where it is longer. */
+    char name[256];
+    /** Name and version of the driver, UTF-8; "" where it is not known. */
+    char driver[256];
+} BhrAdapterInfo;
+
+/** The best GPU, else a software GPU, else the CPU tracer. */
+#define BHR_BACKEND_AUTO 0
+
+/** The built-in double-precision CPU tracer: needs no driver. */
+#define BHR_BACKEND_CPU 1
+
+/** Vulkan. */
+#define BHR_BACKEND_VULKAN 2
+
+/** Metal. */
+#define BHR_BACKEND_METAL 3
+
+/** Direct3D 12. */
+#define BHR_BACKEND_D3D12 4
+
+/** OpenGL or OpenGL ES. */
+#define BHR_BACKEND_GL 5
+
+/**
+ * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than
+ * GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+ */
+BhrStatus bhr_adapter_count(uint32_t *out_count);
+
+/**
+ * The adapter at index, best first. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong
+ * struct_size, or an index not below bhr_adapter_count.
+ */
+BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
+
+/* ---- windows of the host ---- */
+
+/** Which kind a BhrWindow is of. Fields that the kind does not name are ignored. */
+typedef int32_t BhrWindowKind;
+
+/**
+ * A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
+ * Begin with all bytes 0, then set struct_size, kind, and what the kind names. Handles are those of the
+ * raw-window-handle crate.
+ */
+typedef struct BhrWindow {
+    /** sizeof(BhrWindow). */
+    uint32_t struct_size;
+    /** BHR_WINDOW_*. */
+    BhrWindowKind kind;
+    /** As the kind says. */
+    void *display;
+    /** As the kind says. */
+    void *handle;
+    /** As the kind says. */
+    void *aux;
+    /** As the kind says: the id of an X11 window. */
+    uint64_t id;
+    /** X11: the id of the window's visual; may be 0. */
+    uint64_t visual_id;
+    /** X11: the number of the window's screen; may be 0. */
+    int32_t screen;
+    /** 0. */
+    uint32_t reserved;
+} BhrWindow;
+
+/** X11 through Xlib: display = Display *, id = Window. */
+#define BHR_WINDOW_XLIB 1
+
+/** X11 through XCB: display = xcb_connection_t *, id = xcb_window_t. */
+#define BHR_WINDOW_XCB 2
+
+/** Wayland: display = wl_display *, handle = wl_surface *. */
+#define BHR_WINDOW_WAYLAND 3
+
+/** Windows: handle = HWND, aux = HINSTANCE or NULL. */
+#define BHR_WINDOW_WIN32 4
+
+/** macOS: handle = NSView *. */
+#define BHR_WINDOW_APPKIT 5
+
+/** iOS: handle = UIView *. */
+#define BHR_WINDOW_UIKIT 6
+
+/** macOS, iOS: handle = CAMetalLayer *. */
+#define BHR_WINDOW_METAL_LAYER 7
+
+/** Android: handle = ANativeWindow *. */
+#define BHR_WINDOW_ANDROID 8
+
+/* ---- context ---- */
+
+/** BhrContextOptions.flags: the driver's validation layers, where installed, check bhr and report to the log. Slow. */
+#define BHR_CONTEXT_VALIDATION 1u
+
+/**
+ * A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
+ * wait for each other.
+ */
+typedef struct BhrContext BhrContext;
+
+/** How to make a context. Fill in with bhr_context_options_init first. */
+typedef struct BhrContextOptions {
+    /** sizeof(BhrContextOptions). */
+    uint32_t struct_size;
+    /** BHR_CONTEXT_* bits. Default 0. */
+    uint32_t flags;
+    /** Default BHR_BACKEND_AUTO. */
+    BhrBackend backend;
+    /**
+     * Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the
+     * library chooses.
+     */
+    int32_t adapter_index;
+    /** Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use. */
+    uint32_t cpu_threads;
+    /** What log_fn hears. Default BHR_LOG_WARN. */
+    BhrLogLevel log_level;
+    /** NULL (default): silent. */
+    BhrLogFn log_fn;
+    /** Handed to log_fn. */
+    void *log_user;
+    /**
+     * A window that the adapter must be able to present to; looked at during the call only. With AUTO adapters
+     * that cannot are passed over; the CPU tracer, whose frames reach windows in other ways, always serves. NULL
+     * (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
+     * present.
+     */
+    const BhrWindow *compatible_window;
+} BhrContextOptions;
+
+/** Clears struct_size bytes and fills in the defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_size);
+
+/**
+ * Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30,
+ * 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
+ * BHR_BACKEND_AUTO it succeeds on every machine: without a GPU or a driver the CPU tracer serves, and the log says
+ * why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
+ * INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform's; NO_ADAPTER when
+ * the backend or adapter asked for is not there, or cannot present to compatible_window.
+ */
+BhrStatus bhr_context_create(uint32_t abi_version,
+                             const BhrContextOptions *options,
+                             BhrContext **out_context);
+
+/** What the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
+
+/**
+ * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays,
+ * the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
+ * device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
+ * Errors: as bhr_context_create; the context then stays lost, and the call may be tried again.
+ */
+BhrStatus bhr_context_recover(BhrContext *context);
+
+/**
+ * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then
+ * frees it. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
+ * no-op. No callback runs after it has returned. No other thread may begin a call on it any more. From inside a
+ * callback it does nothing, as the context is in use: bhr_error_message then says so.
+ */
+void bhr_context_destroy(BhrContext *context);
+
+/* ---- the black hole ---- */
+
+/** Numbers about the hole and the camera's observer. Lengths in scene units; NaN where not defined. */
+typedef struct BhrHoleInfo {
+    /** sizeof(BhrHoleInfo), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** r+ = M + sqrt(M^2 - a^2). */
+    double horizon_radius;
+    /** 2 M. */
+    double ergosphere_equatorial_radius;
+    /** Equatorial circular photon orbit towards +ph. */
+    double photon_orbit_prograde;
+    /** The one towards -ph. */
+    double photon_orbit_retrograde;
+    /** Innermost stable circular orbit of matter towards +ph. */
+    double isco_prograde;
+    /** That of matter towards -ph. */
+    double isco_retrograde;
+    /** Spin 0: 3 sqrt(3) M; NaN with spin. */
+    double critical_impact_parameter;
+    /**
+     * Spin 0: angular radius of the shadow as the camera's observer sees it, radians (Synge 1966, with
+     * aberration); NaN with spin.
+     */
+    double shadow_angular_radius;
+    /** Boyer-Lindquist r of the camera. */
+    double camera_radius;
+    /** d tau / d t of the camera's observer. */
+    double camera_time_rate;
+} BhrHoleInfo;
+
+/**
+ * Sets the mass M in scene lengths (G = c = 1; the Schwarzschild radius is 2 M): finite, > 0. Default 1.
+ * Errors: INVALID_ARGUMENT.
+ */
+BhrStatus bhr_set_mass(BhrContext *context, double mass);
+
+/** Sets the spin a / M in [-0.999, 0.999]; < 0: the hole turns towards -ph. Default 0. Errors: INVALID_ARGUMENT. */
+BhrStatus bhr_set_spin(BhrContext *context, double spin);
+
+/**
+ * Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. Errors:
+ * INVALID_ARGUMENT.
+ *
+ */
+BhrStatus bhr_set_axis(BhrContext *context, const double axis[3]);
+
+/**
+ * The mass, spin and axis (unit) as they are set. Errors: INVALID_ARGUMENT for NULL.
+ *
+ */
+BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_spin, double out_axis[3]);
+
+/**
+ * Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
+ * NaN. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
+
+/**
+ * The metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph), signature - +
+ * + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
+ *
+ */
+BhrStatus bhr_metric_at(const BhrContext *context, const double position[3], double out_metric[16]);
+
+/**
+ * The Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist (t,
+ * r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
+ *
+ */
+BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
+
+/* ---- the camera: an observer with a lens ---- */
+
+/** The lens. Camera axes: right = forward x up, then up = right x forward. */
+typedef int32_t BhrProjection;
+
+/**
+ * How the camera's observer moves. What the hole forbids at the camera's place is INVALID_STATE when a frame or
+ * rays are asked for.
+ */
+typedef int32_t BhrMotion;
+
+/** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
+typedef struct BhrCamera {
+    /** sizeof(BhrCamera). */
+    uint32_t struct_size;
+    /** BHR_PROJECTION_*. Default PERSPECTIVE. */
+    BhrProjection projection;
+    /** Default (0, -30, 5). Not (0, 0, 0). */
+    double position[3];
+    /** Any non-zero length. Default: towards the hole. */
+    double forward[3];
+    /** Any non-zero length, not parallel to forward. Default +z. */
+    double up[3];
+    /** Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi / 3. */
+    double fov_y;
+    /** BHR_MOTION_*. Default STATIC. */
+    BhrMotion motion;
+    /** 0. */
+    uint32_t reserved;
+    /**
+     * For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
+     * direction given at position. Default 0.
+     */
+    double velocity[3];
+} BhrCamera;
+
+/** A flat picture; fov_y in (0, pi). */
+#define BHR_PROJECTION_PERSPECTIVE 0
+
+/**
+ * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y / 2
+ * (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in a
+ * TRANSPARENT image, NaN in views, rays without direction.
+ */
+#define BHR_PROJECTION_FISHEYE 1
+
+/**
+ * 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is ignored.
+ * A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels are far
+ * narrower than high, the light of single stars is not exact.
+ */
+#define BHR_PROJECTION_EQUIRECT 2
+
+/**
+ * 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
+ * forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
+ * ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
+ * Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
+ */
+#define BHR_PROJECTION_CUBE 3
+
+/** At rest; the zero angular momentum observer (ZAMO) when the hole spins. */
+#define BHR_MOTION_STATIC 0
+
+/** Radially from rest at infinity; inside a spin-0 horizon too. */
+#define BHR_MOTION_FREE_FALL 1
+
+/**
+ * Circular, along +ph. Spin 0: with beta = 1 / sqrt(r / M - 2), r > 3 M, at any latitude. With spin: the circular
+ * geodesic, in the equatorial plane only.
+ */
+#define BHR_MOTION_ORBIT 2
+
+/** With BhrCamera.velocity. */
+#define BHR_MOTION_VELOCITY 3
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_camera_init(BhrCamera *camera, size_t struct_size);
+
+/**
+ * Sets position, forward (towards target) and up of a camera; touches no context. Any thread, inside callbacks
+ * too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, numbers not finite, position (0,
+ * 0, 0) or equal to target, up zero or along the line of sight.
+ *
+ */
+BhrStatus bhr_camera_look_at(BhrCamera *camera,
+                             const double position[3],
+                             const double target[3],
+                             const double up[3]);
+
+/**
+ * Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
+ * towards +z (radians), looking at the hole: position = distance (cos el cos az, cos el sin az, sin el), up = +z.
+ * Within 1e-6 of a pole up is the limit of what it is on the way there, -sin el (cos az, sin az, 0). Any thread,
+ * inside callbacks too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, a number not
+ * finite, distance <= 0.
+ */
+BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, double elevation);
+
+/**
+ * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
+ * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
+ */
+BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
+
+/** The camera as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
+
+/**
+ * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
+ * stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
+ * *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
+ * fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as at
+ * bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
+ * where the motion cannot be; UNSUPPORTED for VELOCITY.
+ */
+BhrStatus bhr_camera_advance(const BhrContext *context,
+                             BhrCamera *camera,
+                             double proper_time,
+                             double *out_coordinate_time);
+
+/* ---- accretion disk ---- */
+
+/** BhrDisk.flags: the matter orbits towards -ph. */
+#define BHR_DISK_RETROGRADE 1u
+
+/**
+ * A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux. Radii in
+ * units of M.
+ */
+typedef struct BhrDisk {
+    /** sizeof(BhrDisk). */
+    uint32_t struct_size;
+    /** BHR_DISK_* bits. Default 0: prograde. */
+    uint32_t flags;
+    /** In M, 0 .. 1e6. 0 (default): the ISCO. Matter inside the ISCO does not shine. */
+    double inner_radius;
+    /** In M, greater than inner_radius, to 1e6. Default 20. */
+    double outer_radius;
+    /** Kelvin at the hottest radius of the profile, 500 .. 1e9. Default 6500. */
+    double temperature;
+    /** 0 .. 1. Default 1. */
+    double opacity;
+    /** 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
+    double brightness;
+    /**
+     * Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns about the smooth
+     * disk, is carried along by bhr_set_time, and lives for 120 M before it is made anew.
+     */
+    double turbulence;
+    /** Another one gives another turbulence, the same one always the same. Default 0. */
+    uint64_t seed;
+} BhrDisk;
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_disk_init(BhrDisk *disk, size_t struct_size);
+
+/**
+ * Sets the disk; NULL: no disk. A new context has the default one. Errors: INVALID_ARGUMENT for a number outside
+ * its range or an unknown flag.
+ */
+BhrStatus bhr_set_disk(BhrContext *context, const BhrDisk *disk);
+
+/**
+ * The disk as it is set. *out_present is 1 with a disk, else 0, and then disk gets the defaults. Errors:
+ * INVALID_ARGUMENT for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_present);
+
+/* ---- images in the host's memory ---- */
+
+/**
+ * BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom adds light
+ * and leaves alpha: glare over the host's own picture.
+ */
+#define BHR_IMAGE_TRANSPARENT 1u
+
+/** A pixel's bytes in memory order; row 0 is at the top. */
+typedef int32_t BhrFormat;
+
+/**
+ * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
+ * side or interleaved; different contexts may then render them at the same time.
+ */
+typedef struct BhrImage {
+    /** sizeof(BhrImage). */
+    uint32_t struct_size;
+    /** BHR_FORMAT_*. Default RGBA8_SRGB. */
+    BhrFormat format;
+    /** Pixels, 1 .. 2^20. */
+    uint32_t width;
+    /** Pixels, 1 .. 2^20. */
+    uint32_t height;
+    /** The top-left pixel; aligned to its channel: 1, 2 or 4 bytes. */
+    void *pixels;
+    /**
+     * Bytes to the next row down, a multiple of the channel's size. 0 (default): packed. < 0: bottom-up.
+     * |row_stride| must hold a row.
+     */
+    int64_t row_stride;
+    /**
+     * Of the host's block, which begins at its lowest address (row_stride < 0: at the last row). Needed: (height -
+     * 1) |row_stride| + width bytes-per-pixel; checked.
+     */
+    uint64_t byte_size;
+    /** BHR_IMAGE_* bits. Default 0. Matters for rendering only. */
+    uint32_t flags;
+    /** 0. */
+    uint32_t reserved;
+} BhrImage;
+
+/** 4 bytes: red, green, blue with the sRGB curve, alpha. */
+#define BHR_FORMAT_RGBA8_SRGB 1
+
+/** 4 bytes: blue, green, red with the sRGB curve, alpha. */
+#define BHR_FORMAT_BGRA8_SRGB 2
+
+/**
+ * 4 half floats, linear, Rec. 709 primaries. A radiance of 1 is the luminance of the default disk's hottest ring
+ * at rest.
+ */
+#define BHR_FORMAT_RGBA16F 3
+
+/** 4 floats, as above. */
+#define BHR_FORMAT_RGBA32F 4
+
+/** 1 float: views other than BHR_VIEW_LIGHT. */
+#define BHR_FORMAT_R32F 5
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
+
+/**
+ * Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
+ * grey. Alpha is written as it is. The file appears whole or not at all. Any thread, inside callbacks too. Errors:
+ * INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, or one that does not go with the
+ * format; IO, with the path in the message.
+ */
+BhrStatus bhr_image_save(const BhrImage *image, const char *path);
+
+/**
+ * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in. 8-bit files give
+ * RGBA8_SRGB, others RGBA32F (16-bit files are made linear). The pixels are the library's: give them back with
+ * bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
+ * struct_size; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, or larger than 4 GiB when
+ * decoded.
+ */
+BhrStatus bhr_image_load(const char *path, BhrImage *image);
+
+/**
+ * Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0. Any thread, inside
+ * callbacks too. Errors: INVALID_ARGUMENT for pixels that are NULL, the host's, or were given back before.
+ */
+BhrStatus bhr_image_release(BhrImage *image);
+
+/* ---- sky ---- */
+
+/** BhrSky.flags: the real sky, from the embedded star catalogue. */
+#define BHR_SKY_STARS 1u
+
+/**
+ * BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards the
+ * Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS the real
+ * ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and 110 MB of device
+ * memory.
+ */
+#define BHR_SKY_PROCEDURAL 2u
+
+/**
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s): true to
+ * about a degree, eight times as bright next to the stars as it is to the eye.
+ */
+#define BHR_SKY_MILKY_WAY 4u
+
+/** BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one. */
+#define BHR_SKY_MAP 8u
+
+/**
+ * BhrSky.flags: a grid in sky axes, which shows the lensing: right ascension every hour (15 degrees; every 6 hours
+ * within 15 degrees of the poles), declination every 15 degrees, the equator and right ascension 0 in another
+ * colour. Lines are 1.3 pixels wide and laid over the sky, whatever its brightness and the shift of its light; where
+ * less than 10 pixels apart they fade into an even tint.
+ */
+#define BHR_SKY_GRID 16u
+
+/** What lies at infinity. */
+typedef struct BhrSky {
+    /** sizeof(BhrSky). */
+    uint32_t struct_size;
+    /** BHR_SKY_* bits; 0: black. Default STARS | MILKY_WAY. */
+    uint32_t flags;
+    /** 0 .. 1e6. Default 1. */
+    double stars_brightness;
+    /** Of the Milky Way and the map: a factor on their light, 0 .. 1e6. Default 1. */
+    double map_brightness;
+    /**
+     * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
+     * to scene axes. Default (0, 0, 0, 1).
+     */
+    double orientation[4];
+    /** Of BHR_SKY_PROCEDURAL: any number. Default 0. */
+    uint64_t seed;
+} BhrSky;
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_sky_init(BhrSky *sky, size_t struct_size);
+
+/**
+ * Sets the sky; NULL: black. Errors: INVALID_ARGUMENT for a number outside its range, an orientation that is no
+ * unit quaternion, or an unknown flag; UNSUPPORTED for flags that this version cannot draw.
+ */
+BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
+
+/** The sky as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
+
+/**
+ * Gives BHR_SKY_MAP its picture, copied before return (a second or two for 16384 x 8192); NULL removes it. The next
+ * frames that are asked for show it. It covers the whole sky whatever its aspect: at x of width and y of height, from
+ * the top left, right ascension is 360 deg (1/2 - x / width), declination 180 deg (1/2 - y / height). So the north
+ * pole is at the top, right ascension 0 (+x of the sky axes) in the middle, and +y at a quarter of the width: the
+ * picture looks as the sky does from inside, as astronomers' maps do.
+ *
+ * Light at rest is what the picture holds, linear Rec. 709, 8-bit formats decoded, to within 0.2 % of the brightest
+ * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
+ * that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
+ * Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
+ * Pictures of more than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
+ * a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
+ */
+BhrStatus bhr_set_sky_map(BhrContext *context,
+                          const BhrImage *equirect);
+
+/* ---- film ---- */
+
+/** The curve from light to pixels. */
+typedef int32_t BhrToneMap;
+
+/**
+ * Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
+ * tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone map, the
+ * sRGB curve, dithering.
+ */
+typedef struct BhrFilm {
+    /** sizeof(BhrFilm). */
+    uint32_t struct_size;
+    /** BHR_TONE_MAP_*. Default ACES. */
+    BhrToneMap tone_map;
+    /** Stops, -20 .. 20. Default 0. */
+    double exposure_ev;
+    /**
+     * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
+     * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of integral 1,
+     * falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about H / 4: the eye's
+     * 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from 2 H away, with r0 = H / 180,
+     * r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
+     * reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
+     * and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
+     * they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
+     * borders interrupt it. Frames above 25 megapixels (12 on the CPU) are traced twice, as their light is not kept.
+     */
+    double bloom;
+} BhrFilm;
+
+/** Clips at 1. */
+#define BHR_TONE_MAP_NONE 0
+
+/** A filmic curve after ACES. */
+#define BHR_TONE_MAP_ACES 1
+
+/** AgX. */
+#define BHR_TONE_MAP_AGX 2
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
+
+/** Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map. */
+BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
+
+/** The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
+
+/* ---- relativistic effects, time ---- */
+
+/**
+ * Frequency shift by motion colours the light. The redshift g = g_gravity g_doppler is split at the local static
+ * observer (ZAMO) of emitter and camera.
+ */
+#define BHR_EFFECT_DOPPLER_SHIFT 1u
+
+/** Gravitational redshift colours the light. */
+#define BHR_EFFECT_GRAVITY_SHIFT 2u
+
+/** Intensity follows g^3 (I_nu), g^4 (bolometric). */
+#define BHR_EFFECT_BEAMING 4u
+
+/**
+ * The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all of the disk is seen
+ * as it is at the t that bhr_set_time gives.
+ */
+#define BHR_EFFECT_LIGHT_DELAY 8u
+
+/** What a new context has. */
+#define BHR_EFFECT_ALL 4294967295u
+
+/**
+ * Sets which effects colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
+ * Lensing itself stays. Errors: INVALID_ARGUMENT for NULL.
+ */
+BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
+
+/**
+ * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera, which ends at the
+ * horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time T = t + H(r), r in M, with
+ * H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that falls from rest at infinity shows.
+ * bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+ */
+BhrStatus bhr_set_time(BhrContext *context,
+                       double time);
+
+/* ---- quality ---- */
+
+/**
+ * How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here: of the look direction
+ * that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 + conditioning).
+ */
+typedef int32_t BhrMethod;
+
+/** How exactly to trace. */
+typedef struct BhrQuality {
+    /** sizeof(BhrQuality). */
+    uint32_t struct_size;
+    /** BHR_METHOD_*. Default AUTO. */
+    BhrMethod method;
+    /**
+     * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
+     * centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than BHR_VIEW_LIGHT take one.
+     * Where an edge of the disk, a steep change or the edge of the shadow runs through the pixel, each sample is the mean of 4
+     * or 32 rays over a pixel's area; BhrFrameStats does not count those.
+     */
+    uint32_t samples_per_pixel;
+    /** Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
+    uint32_t max_steps;
+    /** RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0: the default, 0.1. */
+    double step;
+    /** ADAPTIVE: relative, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers stop at their own. */
+    double tolerance;
+    /** Images of the disk to follow: 0 the direct one only .. 15. Default 3. */
+    uint32_t max_disk_order;
+    /** 0. */
+    uint32_t reserved;
+    /** Windows: traced size / window size, 0.1 .. 1. Default 1. */
+    double render_scale;
+} BhrQuality;
+
+/**
+ * The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye moves (not when
+ * the view turns or zooms): with spin in frames of 500000 samples or more, for eyes between 1.03 retrograde photon orbits
+ * (3.1 to 4.1 M) and 1e5 M,
+ * and max_disk_order to 15 (farther than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M, falling from 0.9 M, to 1e6 M. Elsewhere, and
+ * for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is integrated.
+ */
+#define BHR_METHOD_AUTO 0
+
+/** Fixed-step fourth-order Runge-Kutta, every ray by itself: 2e-5 with the default step. */
+#define BHR_METHOD_RK4 1
+
+/** Embedded Runge-Kutta with error control, every ray by itself: 1e-8 in double precision, 2e-6 in single. */
+#define BHR_METHOD_ADAPTIVE 2
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size.
+ */
+BhrStatus bhr_quality_init(BhrQuality *quality, size_t struct_size);
+
+/** Sets the quality. Errors: INVALID_ARGUMENT for NULL, a number outside its range, or an unknown method. */
+BhrStatus bhr_set_quality(BhrContext *context, const BhrQuality *quality);
+
+/** The quality as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *quality);
+
+/* ---- what a pixel shows ---- */
+
+/**
+ * What a pixel shows. 8-bit formats and windows: false colour, without film. R32F: the value, NaN where there is
+ * none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is INVALID_ARGUMENT. A
+ * backend may not have every view: then rendering is UNSUPPORTED.
+ *
+ * The colours of values, for a host's legend: s goes from 0 to 1 over the range that each view states, and stays at 0
+ * and 1 beyond it. Sequential map: CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78 s, from
+ * dark blue over purple, red and orange to light yellow. Diverging map: m = |2 s - 1|, L = 95 - 57 m, (a, b) = (52.00,
+ * 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, and light grey between them. White of Rec. 709,
+ * encoded as sRGB; equal steps of s differ by equal steps of colour and of lightness. NaN: grey, (128, 128, 128).
+ */
+typedef int32_t BhrView;
+
+/** The picture. The default. */
+#define BHR_VIEW_LIGHT 0
+
+/**
+ * g of the first crossing within the disk's radii, else the sky's redshift; NaN captured without such a crossing.
+ * Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is shifted, blue above 1, red
+ * below.
+ */
+#define BHR_VIEW_REDSHIFT 1
+
+/**
+ * 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential map, s = (order + 2) / 5:
+ * order 3 and above are one colour.
+ */
+#define BHR_VIEW_ORDER 2
+
+/**
+ * Angle between look direction and sky direction, radians; NaN captured. Sequential map, s = 1 + log2(angle / pi) / 6:
+ * angles from pi / 64 to pi.
+ */
+#define BHR_VIEW_DEFLECTION 3
+
+/**
+ * Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO). Sequential map, s =
+ * log2(steps / 8) / 6: 8 .. 512 steps.
+ */
+#define BHR_VIEW_STEPS 4
+
+/**
+ * -g_tt = 1 - 2 M / r at the first crossing of the equatorial plane; NaN without one. Sequential map, s = 1 - sqrt(1 -
+ * value): 0, the static limit, and less are its dark end; 1, infinity, its light one.
+ */
+#define BHR_VIEW_METRIC 5
+
+/** Sets the view. Default BHR_VIEW_LIGHT. Errors: INVALID_ARGUMENT for an unknown view. */
+BhrStatus bhr_set_view(BhrContext *context, BhrView view);
+
+/* ---- parts of a larger frame ---- */
+
+/**
+ * The image is this part of a larger frame: tiles, dome walls, render farms. Tiles joined give the same bytes as
+ * the frame.
+ */
+typedef struct BhrRegion {
+    /** sizeof(BhrRegion). */
+    uint32_t struct_size;
+    /** Pixels of the whole frame, 1 .. 2^20. */
+    uint32_t full_width;
+    /** Pixels of the whole frame, 1 .. 2^20. */
+    uint32_t full_height;
+    /** Column of the image's left pixels in the frame, < full_width. */
+    uint32_t x;
+    /** Row of the image's top pixels in the frame, < full_height. */
+    uint32_t y;
+    /** 0. */
+    uint32_t reserved;
+} BhrRegion;
+
+/**
+ * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes from
+ * the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image
+ * that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
+ * INVALID_ARGUMENT.
+ */
+BhrStatus bhr_set_region(BhrContext *context,
+                         const BhrRegion *region);
+
+/* ---- rendering into memory ---- */
+
+/**
+ * Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
+ * the frame is complete and the answer is ignored. Runs
+ * inside a bhr_ call only, on the calling thread. It must not throw, unwind or longjmp; calls on a context from
+ * inside it return BHR_ERROR_INVALID_STATE.
+ */
+typedef int32_t (*BhrProgressFn)(void *user, double fraction);
+
+/** Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context. */
+BhrStatus bhr_set_progress(BhrContext *context,
+                           BhrProgressFn fn,
+                           void *user);
+
+/**
+ * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
+ * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
+ * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for bloom
+ * with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST,
+ * OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the message says so, and
+ * what is not yet rendered is untouched.
+ */
+BhrStatus bhr_render_image(BhrContext *context,
+                           const BhrImage *target);
+
+/* ---- rendering in the background ---- */
+
+/**
+ * A frame that is rendered in the background. Any thread may call; end it with bhr_job_destroy, before or after
+ * its context.
+ */
+typedef struct BhrJob BhrJob;
+
+/**
+ * Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
+ * as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
+ * order, by a thread of the library's, several under way at a time: one is copied to the host while the next is
+ * traced. Other calls that render wait for the job that is being traced. At most 64 jobs of a context may be
+ * unfinished. target itself is copied; target->pixels is written until the job is done or destroyed, and must stay
+ * valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of
+ * bhr_render_image, some of which come from bhr_job_wait instead; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
+ */
+BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, BhrJob **out_job);
+
+/**
+ * Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
+ * it is still running. OK: the image is complete. *out_fraction, unless NULL, becomes the part that is done, 0 ..
+ * 1, and 0 after a failure. Meanwhile the progress callback that the context had when the job was begun is called,
+ * on this thread. A job that failed returns its failure here, with its message, each time: CANCELLED after
+ * bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
+ * bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
+ */
+BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
+
+/**
+ * Asks a job to stop, and does not wait: bhr_job_wait then returns CANCELLED, or OK when the job was done before.
+ * NULL is a no-op. Any thread, inside callbacks too.
+ */
+void bhr_job_cancel(BhrJob *job);
+
+/**
+ * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
+ * host's again. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
+ * bhr_error_message then says so.
+ */
+void bhr_job_destroy(BhrJob *job);
+
+/* ---- rendering into windows ---- */
+
+/**
+ * A window that a context renders into. It belongs to that context; end it with bhr_surface_destroy, before or
+ * after the context, before the window.
+ */
+typedef struct BhrSurface BhrSurface;
+
+/** How frames reach the screen. */
+typedef int32_t BhrPresentMode;
+
+/** At the display's rate, never torn: a frame waits for the display. Every window has it. */
+#define BHR_PRESENT_VSYNC 0
+
+/** At once; may tear. */
+#define BHR_PRESENT_IMMEDIATE 1
+
+/** The newest frame at the display's rate, never torn; frames that are not the newest any more are dropped. */
+#define BHR_PRESENT_MAILBOX 2
+
+/**
+ * Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
+ * this context to render into. Call it on the thread that uses the display. A window takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
+ * presents through a connection of its own, may they end first. On Wayland the driver crashes when a surface is
+ * destroyed after its display was closed.) Where the context's adapter cannot present to the window, or traces on
+ * the CPU, another adapter presents the frames, or they are put into the window as memory; the log (info) says
+ * which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for
+ * NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
+ * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
+ * have, where nothing can present to the window, and for a side that the device's images cannot have (mostly
+ * beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory), OUT_OF_MEMORY. A host that
+ * holds XGrabServer must not call on surfaces: it would wait for itself.
+ */
+BhrStatus bhr_surface_create(BhrContext *context,
+                             const BhrWindow *window,
+                             uint32_t width,
+                             uint32_t height,
+                             BhrPresentMode mode,
+                             BhrSurface **out_surface);
+
+/**
+ * Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
+ * size are made by the next frame. (X11: frames have the size that the window really has; this call says that it
+ * has changed. Wayland: call it also when a window that the host has hidden is shown again; VSYNC frames are skipped
+ * until then.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
+ * images cannot have; SURFACE_LOST.
+ */
+BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
+
+/**
+ * Changes how frames reach the screen, from the next one on. A mode that the window does not have becomes VSYNC.
+ * Errors: INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
+ */
+BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode);
+
+/**
+ * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
+ * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
+ * the window is not 6 times as wide as high. Returns when the
+ * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
+ * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
+ * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
+ * FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or is being resized; nothing was
+ * presented: wait for the window's next event, or try again a little later. Any thread (macOS: the main thread); two threads on one surface take
+ * turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as
+ * bhr_render_image; SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the
+ * surface, and make it again if there is a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
+ */
+BhrStatus bhr_render_surface(BhrContext *context,
+                             BhrSurface *surface);
+
+/**
+ * Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread
+ * may use the surface any more. From inside a callback it does nothing: bhr_error_message then says so.
+ */
+void bhr_surface_destroy(BhrSurface *surface);
+
+/* ---- rays: the same tracer, asked directly ---- */
+
+/** Crossings that a BhrHit lists. */
+#define BHR_MAX_CROSSINGS 4
+
+/** A ray, followed backward from the eye. */
+typedef struct BhrRay {
+    /** Scene axes and lengths. */
+    double position[3];
+    /**
+     * Where the eye looks, opposite to the photon's momentum; any non-zero length. Components as the conventions
+     * say: along the frame of the local static observer (ZAMO), inside a spin-0 horizon of the observer falling
+     * from rest at infinity.
+     */
+    double direction[3];
+    /**
+     * nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies every
+     * redshift of the hit.
+     */
+    double frequency_ratio;
+} BhrRay;
+
+/** What became of a ray. */
+typedef int32_t BhrFate;
+
+/** A crossing of the equatorial plane outside the horizon. */
+typedef struct BhrCrossing {
+    /** Boyer-Lindquist r, scene lengths. */
+    double radius;
+    /** Boyer-Lindquist ph in the chart, (-pi, pi]. */
+    double azimuth;
+    /** g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
+    double redshift;
+    /** Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon. */
+    double delay;
+} BhrCrossing;
+
+/** What a ray met. */
+typedef struct BhrHit {
+    /** BHR_FATE_*. */
+    BhrFate fate;
+    /** 0 .. BHR_MAX_CROSSINGS. */
+    uint32_t crossing_count;
+    /** Asymptotic, unit, scene axes; 0 unless escaped. */
+    double sky_direction[3];
+    /** nu(camera) / nu(at infinity); NaN unless escaped. */
+    double sky_redshift;
+    /** Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN. */
+    double swept_angle;
+    /** Integration steps. */
+    uint32_t steps;
+    /** 0. */
+    uint32_t reserved;
+    /** In order along the ray; 0 beyond crossing_count. */
+    BhrCrossing crossings[BHR_MAX_CROSSINGS];
+} BhrHit;
+
+/** It ends at the horizon. */
+#define BHR_FATE_CAPTURED 0
+
+/** It reaches the sky. */
+#define BHR_FATE_ESCAPED 1
+
+/** BhrQuality.max_steps ran out. */
+#define BHR_FATE_UNRESOLVED 2
+
+/** This ray's input is not valid: not finite, zero direction, no frame there. */
+#define BHR_FATE_INVALID 3
+
+/**
+ * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
+ * the pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
+ * circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors:
+ * INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
+ * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
+ * UNSUPPORTED inside a spinning hole's horizon. out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
+ */
+BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
+
+/**
+ * One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
+ * image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
+ * bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
+ */
+BhrStatus bhr_camera_ray(const BhrContext *context,
+                         uint32_t width,
+                         uint32_t height,
+                         double x,
+                         double y,
+                         BhrRay *out_ray);
+
+/**
+ * Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
+ * equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
+ * flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
+ * error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled; both
+ * arrays are packed. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below the first version's;
+ * UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+ */
+BhrStatus bhr_trace_rays(BhrContext *context,
+                         const BhrRay *rays,
+                         size_t ray_size,
+                         size_t count,
+                         BhrHit *out_hits,
+                         size_t hit_size);
+
+/**
+ * The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
+ * room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
+ * number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the eye's radius, but at
+ * least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
+ * < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
+ */
+BhrStatus bhr_trace_path(BhrContext *context,
+                         const BhrRay *ray,
+                         uint32_t capacity,
+                         double *out_points,
+                         uint32_t *out_count);
+
+/* ---- numbers about the last finished frame ---- */
+
+/** Numbers about the last finished frame; all 0 before the first. Times in nanoseconds. */
+typedef struct BhrFrameStats {
+    /** sizeof(BhrFrameStats), set by the caller. */
+    uint32_t struct_size;
+    /** 0. */
+    uint32_t reserved;
+    /** Counts the finished frames of a context from 1: images, jobs and windows. */
+    uint64_t frame_index;
+    /** Pixels times samples. */
+    uint64_t rays;
+    /** Integration steps of all rays; rays that were looked up take none. */
+    uint64_t steps;
+    /** From the call's begin to its end; of a job: from bhr_render_image_async until it was done. */
+    uint64_t cpu_ns;
+    /** Time on the GPU; 0: the adapter has no timestamps, or traces on the CPU. */
+    uint64_t gpu_ns;
+    /** Copying pixels from the GPU's memory to the host's, without the wait for the GPU. */
+    uint64_t readback_ns;
+    /** Device memory that the context holds. */
+    uint64_t device_bytes;
+} BhrFrameStats;
+
+/** Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
+
+/**
+ * Numbers about the frame of a job that is done. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size;
+ * INVALID_STATE for a job that is not done, or that failed.
+ */
+BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
