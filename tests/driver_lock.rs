@@ -4,7 +4,7 @@
 use bhr::gpu::{GpuTracer, Search, adapters, driver_lock};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// How wgpu's messages about drivers begin, those about what must not be done by two threads at once.
 const ALONE: [&str; 6] = [

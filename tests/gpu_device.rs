@@ -418,6 +418,7 @@ fn a_frame_whose_device_ends_while_it_is_copied_is_lost() {
     let scene = Scene { disk: None, ..Scene::default() };
     let (copying, begun) = std::sync::mpsc::channel();
     let (ended, end) = std::sync::mpsc::channel();
+    let end = std::sync::Mutex::new(end);
     let mut taken = 0;
     let rendered = std::thread::scope(|scope| {
         let device = &device;
@@ -432,7 +433,7 @@ fn a_frame_whose_device_ends_while_it_is_copied_is_lost() {
         let mut sink = |_: Tile, pixels: &[u8], _: usize| {
             if taken == 0 {
                 copying.send(()).unwrap();
-                end.recv().unwrap();
+                end.lock().unwrap().recv().unwrap();
                 std::thread::sleep(Duration::from_millis(100));
             }
             taken += pixels.len();

@@ -219,7 +219,7 @@ fn the_device_may_end_at_any_moment_of_jobs() {
     struct Shared<'a>(&'a Context);
     // SAFETY: any thread may call the API.
     unsafe impl Sync for Shared<'_> {}
-    let context = Context::new();
+    let context = Context::new(BHR_BACKEND_VULKAN);
     assert!(context.render(BHR_FORMAT_RGBA8_SRGB).is_ok());
     let mut finished = 0;
     for round in 0..8_u64 {
@@ -344,7 +344,7 @@ fn a_window_is_shown_again_after_the_recovery() {
 #[ignore = "needs an X server: run by tests/windows/run"]
 fn the_device_may_end_at_any_moment_of_a_window() {
     let window = XWindow::new();
-    let context = Context::new();
+    let context = Context::new(BHR_BACKEND_VULKAN);
     let mut shown = 0;
     for round in 0..8_u64 {
         let surface = window.surface(&context);

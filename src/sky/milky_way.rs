@@ -5,7 +5,8 @@
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE};
 use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
 use super::map::SkyMap;
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::image::file::decode_png;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::scene::turbulence::mix;
 use glam::{DMat3, DVec3};
@@ -87,13 +88,11 @@ fn equatorial_to_galactic() -> DMat3 {
 
 impl MilkyWay {
     fn decode() -> Result<Self> {
-        let error = |e| Error::internal(format!("the embedded Milky Way: {e}"));
-        let codes = image::load_from_memory_with_format(HEIGHTS, image::ImageFormat::Png).map_err(error)?.into_luma8();
-        let (width, height) = codes.dimensions();
+        let grey = decode_png(HEIGHTS)?;
         Ok(Self {
-            width,
-            height,
-            codes: codes.into_raw(),
+            width: grey.width,
+            height: grey.height,
+            codes: grey.pixels.as_bytes().iter().copied().step_by(4).collect(),
             to_galactic: equatorial_to_galactic(),
             colours: BlackbodyTable::shared(),
             brightest: brightest(),

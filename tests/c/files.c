@@ -92,6 +92,48 @@ static void round_trips(BhrContext *context) {
     }
 }
 
+/* An older file keeps its mode; of a link the target is written; what a killed process left does not matter; names are
+ * as long as names can be. */
+static void places(void) {
+    static unsigned char pixels[WIDTH * HEIGHT * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, sizeof pixels);
+    struct stat          about;
+    char                 name[256], left[64];
+    CHECK(mkdir(path_of("places"), 0777) == 0, "cannot make a folder");
+
+    write_file(path_of("places/mode.png"), "old", 3);
+    CHECK(chmod(path_of("places/mode.png"), 0640) == 0, "cannot change a mode");
+    CHECK_OK(bhr_image_save(&image, path_of("places/mode.png")));
+    CHECK(stat(path_of("places/mode.png"), &about) == 0 && (about.st_mode & 07777) == 0640 && about.st_size > 3,
+          "the mode is %o, of %u bytes", (unsigned)about.st_mode & 07777, (unsigned)about.st_size);
+
+    CHECK(symlink("places/mode.png", path_of("link.png")) == 0, "cannot make a link");
+    CHECK(symlink("places/new.png", path_of("dangling.png")) == 0, "cannot make a link");
+    write_file(path_of("places/mode.png"), "old", 3);
+    CHECK_OK(bhr_image_save(&image, path_of("link.png")));
+    CHECK_OK(bhr_image_save(&image, path_of("dangling.png")));
+    CHECK(lstat(path_of("link.png"), &about) == 0 && S_ISLNK(about.st_mode), "the link was replaced");
+    CHECK(lstat(path_of("dangling.png"), &about) == 0 && S_ISLNK(about.st_mode), "the dangling link was replaced");
+    CHECK(file_size(path_of("places/mode.png")) > 3, "the link's target was not written");
+    CHECK(file_size(path_of("places/new.png")) > 3, "the dangling link's target was not written");
+    CHECK(symlink("loop.png", path_of("loop.png")) == 0, "cannot make a link");
+    CHECK_FAILS(BHR_ERROR_IO, "symbolic link", bhr_image_save(&image, path_of("loop.png")));
+
+    /* The names that this process takes, and those that earlier versions took. */
+    for (unsigned i = 0; i < 200; i++) {
+        snprintf(left, sizeof left, "places/.bhr-%ld-%u.tmp", (long)getpid(), i);
+        write_file(path_of(left), "left", 4);
+        snprintf(left, sizeof left, "places/mode.png.%ld-%u.tmp", (long)getpid(), i);
+        write_file(path_of(left), "left", 4);
+    }
+    CHECK_OK(bhr_image_save(&image, path_of("places/mode.png")));
+
+    memset(name, 'x', 251);
+    memcpy(name + 251, ".png", 5);
+    CHECK_OK(bhr_image_save(&image, path_of(name)));
+    CHECK(file_size(path_of(name)) > 0, "there is no file of the longest name");
+}
+
 static void unwritable(void) {
     static unsigned char pixels[WIDTH * HEIGHT * 4];
     BhrImage             image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, sizeof pixels);
@@ -123,6 +165,60 @@ static void check_unreadable(const char *path, BhrStatus expected, const char *w
     check_fails(bhr_image_load(path, &image), expected, words, __FILE__, line, "bhr_image_load");
     CHECK(image.pixels == NULL && image.width == 0 && image.height == 0 && image.byte_size == 0,
           "line %d: a failed load left pixels behind", line);
+}
+
+/* Appends an attribute of an EXR header. */
+static size_t attribute(unsigned char *to, const char *name, const char *type, const void *value, uint32_t size) {
+    unsigned char *at = to;
+    memcpy(at, name, strlen(name) + 1);
+    at += strlen(name) + 1;
+    memcpy(at, type, strlen(type) + 1);
+    at += strlen(type) + 1;
+    for (unsigned i = 0; i < 4; i++) {
+        *at++ = (unsigned char)(size >> 8 * i);
+    }
+    memcpy(at, value, size);
+    return (size_t)(at - to) + size;
+}
+
+/* Small files that claim to be large: what they claim is refused before memory is taken for it. */
+static void bombs(void) {
+    /* A display window of 1 x 1, and a data window of 2^29 x 16 half floats R, G and B: 48 GiB in one block. */
+    static const unsigned char start[] = {0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0};
+    static const unsigned char channels[] = {'B', 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,
+                                             'G', 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,
+                                             'R', 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0};
+    static const unsigned char data[] = {0, 0, 0, 0, 0, 0, 0, 0, 0xff, 0xff, 0xff, 0x1f, 15, 0, 0, 0};
+    static const unsigned char zeros[16] = {0}, one[] = {0, 0, 0x80, 0x3f};
+    static const unsigned char compressions[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9};
+    for (size_t i = 0; i < COUNT_OF(compressions); i++) {
+        unsigned char file[512];
+        size_t        size = sizeof start;
+        memcpy(file, start, sizeof start);
+        size += attribute(file + size, "channels", "chlist", channels, sizeof channels);
+        size += attribute(file + size, "compression", "compression", &compressions[i], 1);
+        size += attribute(file + size, "dataWindow", "box2i", data, sizeof data);
+        size += attribute(file + size, "displayWindow", "box2i", zeros, 16);
+        size += attribute(file + size, "lineOrder", "lineOrder", zeros, 1);
+        size += attribute(file + size, "pixelAspectRatio", "float", one, 4);
+        size += attribute(file + size, "screenWindowCenter", "v2f", zeros, 8);
+        size += attribute(file + size, "screenWindowWidth", "float", one, 4);
+        file[size++] = 0;
+        memset(file + size, 0, 24); /* the offset of a block, and that block: y, its size, its bytes */
+        file[size] = (unsigned char)((size + 8) & 0xff);
+        file[size + 1] = (unsigned char)((size + 8) >> 8);
+        file[size + 12] = 8;
+        write_file(path_of("bomb.exr"), file, size + 24);
+        check_unreadable(path_of("bomb.exr"), BHR_ERROR_IO, "1048576", __LINE__);
+    }
+    /* 65536 x 65536 of 8 grey bits are 4 GiB, which are read; as RGBA they are 16 GiB, which are not. */
+    static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0, 1, 0,
+                                        0, 0, 1, 0, 0, 8, 0, 0, 0, 0, 0x49, 0xef, 0x6f, 0x3f};
+    write_file(path_of("bomb.png"), png, sizeof png);
+    check_unreadable(path_of("bomb.png"), BHR_ERROR_IO, "4294967296", __LINE__);
+    static const char pgm[] = "P5 65536 65536 255\n";
+    write_file(path_of("bomb.pgm"), pgm, sizeof pgm - 1);
+    check_unreadable(path_of("bomb.pgm"), BHR_ERROR_IO, "4294967296", __LINE__);
 }
 
 static void unreadable(void) {
@@ -162,6 +258,8 @@ static void unreadable(void) {
     CHECK(status == BHR_ERROR_IO || status == BHR_ERROR_OUT_OF_MEMORY, "an impossible size gives %s",
           bhr_status_name(status));
 
+    bombs();
+
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "path", bhr_image_load(NULL, &image));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "path", bhr_image_load("", &image));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "image", bhr_image_load(path_of("rgba.png"), NULL));
@@ -192,6 +290,7 @@ int main(int argc, char **argv) {
     }
     folder = argv[2];
     round_trips(context);
+    places();
     unwritable();
     unreadable();
     release();

@@ -1,0 +1,299 @@
+//! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, and one block at a time is held.
+
+use super::load::{Loaded, Pixels};
+use super::{MAX_SIDE, io_error, pixel_count, probe, zeros};
+use crate::error::{Error, ErrorKind, Result};
+use crate::image::memory::{ImageRef, PixelFormat};
+use ::exr::block::chunk::CompressedBlock;
+use ::exr::block::reader::ChunksReader;
+use ::exr::block::writer::ChunksWriter;
+use ::exr::block::{self, BlockIndex, UncompressedBlock};
+use ::exr::compression::Compression;
+use ::exr::math::{RoundingMode, Vec2};
+use ::exr::meta::attribute::{
+    ChannelDescription, IntegerBounds, LevelMode, LineOrder, SampleType, Text, TileDescription,
+};
+use ::exr::meta::header::{Header, ImageAttributes, LayerAttributes};
+use ::exr::meta::{BlockDescription, compute_block_count};
+use half::f16;
+use std::cell::Cell;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+/// Longest headers of all parts together, bytes.
+const MAX_HEADER_BYTES: u64 = 8 << 20;
+/// What a byte of header may take in memory: attributes of a few bytes become values of some hundred, in tables that grow by doubling.
+const HEADER_GROWTH: u64 = 64;
+/// What is read of headers at a time, bytes.
+const HEADER_STEP: usize = 64 << 10;
+/// Most channels of a part.
+const MAX_CHANNELS: usize = 4096;
+/// Largest block (tile, or 1 to 256 scan lines) when it is unpacked, bytes.
+const MAX_BLOCK_BYTES: u64 = 256 << 20;
+/// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the way.
+const BLOCKS_AT_A_TIME: u64 = 6;
+
+/// Errors: IO; OUT_OF_MEMORY.
+pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
+    let in_headers = Cell::new(true);
+    let headed = Headed { file, in_headers: &in_headers, taken: 0, probed: 0 };
+    let reader = block::read(headed, false).map_err(header_error)?;
+    in_headers.set(false);
+    let part = check(reader.headers())?;
+    let header = &reader.headers()[part];
+    let largest = reader.headers().iter().map(block_bytes).max().unwrap_or(0);
+    let mut picture = Picture::new(part, header)?;
+    probe(BLOCKS_AT_A_TIME * largest)?;
+
+    let mut chunks = reader.all_chunks(false).map_err(io_error)?;
+    while picture.missing > 0 {
+        let Some(chunk) = chunks.next() else {
+            return Err(io_error(format!("{} of its blocks are missing", picture.missing)));
+        };
+        let chunk = chunk.map_err(io_error)?;
+        let largest_level = match &chunk.compressed_block {
+            CompressedBlock::Tile(tile) => tile.coordinates.is_largest_resolution_level(),
+            _ => true,
+        };
+        if chunk.layer_index == part && largest_level {
+            let block = UncompressedBlock::decompress_chunk(chunk, chunks.meta_data(), false).map_err(io_error)?;
+            picture.put(&block)?;
+        }
+    }
+    if picture.opaque {
+        picture.pixels.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
+    }
+    Ok(Loaded {
+        format: PixelFormat::Rgba32F,
+        width: picture.size[0] as u32,
+        height: picture.size[1] as u32,
+        pixels: Pixels::Floats(picture.pixels),
+    })
+}
+
+fn header_error(error: ::exr::error::Error) -> Error {
+    match error {
+        ::exr::error::Error::Io(io) if io.kind() == io::ErrorKind::OutOfMemory => {
+            Error::new(ErrorKind::OutOfMemory, "there is no memory for its headers")
+        }
+        error => io_error(error),
+    }
+}
+
+/// A file whose headers come first, and end where there is no memory for more of them.
+struct Headed<'a, F> {
+    file: F,
+    in_headers: &'a Cell<bool>,
+    /// Bytes of headers that were read, and for how many there is memory.
+    taken: u64,
+    probed: u64,
+}
+
+impl<F: Read> Read for Headed<'_, F> {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        if !self.in_headers.get() {
+            return self.file.read(into);
+        }
+        if self.taken >= MAX_HEADER_BYTES {
+            return Err(io::Error::other(format!("its headers are longer than {MAX_HEADER_BYTES} bytes")));
+        }
+        let room = into.len().min(HEADER_STEP);
+        if self.taken + room as u64 > self.probed {
+            self.probed = 2 * self.taken + HEADER_STEP as u64;
+            probe(HEADER_GROWTH * self.probed).map_err(|_| io::ErrorKind::OutOfMemory)?;
+        }
+        let read = self.file.read(&mut into[..room])?;
+        self.taken += read as u64;
+        Ok(read)
+    }
+}
+
+impl<F: Seek> Seek for Headed<'_, F> {
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.file.seek(to)
+    }
+}
+
+/// Bytes of a whole block, of which buffers are made, also where the picture is smaller than a tile. Saturates.
+fn block_bytes(header: &Header) -> u64 {
+    let Vec2(width, height) = header.max_block_pixel_size();
+    let pixels = (width as u64).saturating_mul(height as u64);
+    pixels.saturating_mul(header.channels.bytes_per_pixel as u64)
+}
+
+/// The part that is read: the first with channels R, G and B. Errors: IO when there is none, or any part exceeds a limit.
+fn check(parts: &[Header]) -> Result<usize> {
+    for (i, part) in parts.iter().enumerate() {
+        let Vec2(width, height) = part.layer_size;
+        if width == 0 || height == 0 || width > MAX_SIDE as usize || height > MAX_SIDE as usize {
+            let claim = format!("the data window of its part {i} is {width} x {height} pixels");
+            return Err(io_error(format!("{claim}; a side may have 1 to {MAX_SIDE}")));
+        }
+        let channels = part.channels.list.len();
+        if channels > MAX_CHANNELS {
+            return Err(io_error(format!("its part {i} has {channels} channels; at most {MAX_CHANNELS} are read")));
+        }
+        let bytes = block_bytes(part);
+        if bytes > MAX_BLOCK_BYTES {
+            return Err(io_error(format!(
+                "a block of its part {i} has {bytes} bytes; at most {MAX_BLOCK_BYTES} are unpacked at a time"
+            )));
+        }
+    }
+    let has_light = |part: &Header| ["R", "G", "B"].iter().all(|name| channel(part, name).is_some());
+    parts.iter().position(has_light).ok_or_else(|| io_error("none of its parts has channels R, G and B"))
+}
+
+fn channel(part: &Header, name: &str) -> Option<usize> {
+    part.channels.list.iter().position(|channel| channel.name.as_slice() == name.as_bytes())
+}
+
+/// The picture as its blocks come in.
+struct Picture {
+    part: usize,
+    /// Of the display window.
+    size: [usize; 2],
+    /// Of the data window's first pixel in the display window.
+    offset: [i64; 2],
+    pixels: Vec<f32>,
+    /// Without alpha, which is 1 then.
+    opaque: bool,
+    /// For each channel of the part: its type and what it is of RGBA.
+    channels: Vec<(SampleType, Option<usize>)>,
+    /// Blocks in a row of blocks, and pixels in a block.
+    blocks_in_row: usize,
+    block: Vec2<usize>,
+    seen: Vec<u8>,
+    missing: usize,
+}
+
+impl Picture {
+    /// Errors: IO for a size past the limits; OUT_OF_MEMORY.
+    fn new(part: usize, header: &Header) -> Result<Self> {
+        let display = header.shared_attributes.display_window;
+        let Vec2(width, height) = display.size;
+        let count = pixel_count(width as u64, height as u64, PixelFormat::Rgba32F)?;
+        // The work is the data window's, most of which may not be displayed.
+        pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
+        let position = header.own_attributes.layer_position;
+        let of_rgba = ["R", "G", "B", "A"].map(|name| channel(header, name));
+        let block = header.max_block_pixel_size();
+        let blocks_in_row = compute_block_count(header.layer_size.0, block.0);
+        let blocks = blocks_in_row * compute_block_count(header.layer_size.1, block.1);
+        let channels = header.channels.list.iter().enumerate();
+        Ok(Self {
+            part,
+            size: [width, height],
+            offset: [
+                i64::from(position.0) - i64::from(display.position.0),
+                i64::from(position.1) - i64::from(display.position.1),
+            ],
+            pixels: zeros(4 * count)?,
+            opaque: of_rgba[3].is_none(),
+            channels: channels.map(|(i, c)| (c.sample_type, of_rgba.iter().position(|of| *of == Some(i)))).collect(),
+            blocks_in_row,
+            block,
+            seen: zeros(blocks)?,
+            missing: blocks,
+        })
+    }
+
+    /// Errors: IO for a block that was put before.
+    fn put(&mut self, block: &UncompressedBlock) -> Result<()> {
+        let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = block.index;
+        let index = top / self.block.1 * self.blocks_in_row + left / self.block.0;
+        match self.seen.get_mut(index) {
+            Some(seen) if *seen == 0 => *seen = 1,
+            _ => return Err(io_error(format!("its part {} has block {index} twice", self.part))),
+        }
+        self.missing -= 1;
+        // Columns of the block that are displayed.
+        let first = left as i64 + self.offset[0];
+        let from = (-first).clamp(0, width as i64) as usize;
+        let to = (self.size[0] as i64 - first).clamp(from as i64, width as i64) as usize;
+        let mut rest = block.data.as_slice();
+        for y in 0..height {
+            let row = usize::try_from((top + y) as i64 + self.offset[1]).ok().filter(|row| *row < self.size[1]);
+            for (kind, of_rgba) in &self.channels {
+                let bytes = kind.bytes_per_sample();
+                let Some((line, after)) = rest.split_at_checked(width * bytes) else {
+                    return Err(io_error("a block is shorter than its pixels"));
+                };
+                rest = after;
+                let (Some(row), Some(c)) = (row, of_rgba) else { continue };
+                if from == to {
+                    continue;
+                }
+                let start = row * self.size[0] + (first + from as i64) as usize;
+                let out = &mut self.pixels[4 * start..4 * (start + to - from)];
+                put_line(*kind, &line[from * bytes..to * bytes], out, *c);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A channel's samples, in this machine's byte order, as number `c` of each pixel.
+fn put_line(kind: SampleType, line: &[u8], out: &mut [f32], c: usize) {
+    let out = out.iter_mut().skip(c).step_by(4);
+    match kind {
+        SampleType::F16 => {
+            out.zip(line.as_chunks().0).for_each(|(out, half)| *out = f16::from_ne_bytes(*half).to_f32());
+        }
+        SampleType::F32 => out.zip(line.as_chunks().0).for_each(|(out, value)| *out = f32::from_ne_bytes(*value)),
+        SampleType::U32 => {
+            out.zip(line.as_chunks().0).for_each(|(out, value)| *out = u32::from_ne_bytes(*value) as f32);
+        }
+    }
+}
+
+/// Pixels a side of the tiles that are written.
+const TILE: usize = 64;
+
+/// Writes a float image: 32-bit channels B, G, R, and A where it has alpha, run-length encoded tiles. Errors: IO.
+pub(super) fn write(image: &ImageRef<'_>, file: impl Write + Seek) -> Result<()> {
+    // In files channels are sorted by name. Their places in RGBA; a single value is grey.
+    let channels: &[(&str, usize)] = match image.format() {
+        PixelFormat::R32F => &[("B", 0), ("G", 0), ("R", 0)],
+        _ => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],
+    };
+    let size = Vec2(image.width() as usize, image.height() as usize);
+    let list = channels.iter().map(|(name, _)| ChannelDescription::new(*name, SampleType::F32, false));
+    let tiles = TileDescription {
+        tile_size: Vec2(TILE, TILE),
+        level_mode: LevelMode::Singular,
+        rounding_mode: RoundingMode::Down,
+    };
+    let header = Header::new(Text::from("image"), size, list.collect())
+        .with_encoding(Compression::RLE, BlockDescription::Tiles(tiles), LineOrder::Unspecified)
+        .with_attributes(LayerAttributes { software_name: Some(Text::from("bhr")), ..Default::default() })
+        .with_shared_attributes(ImageAttributes::new(IntegerBounds::from_dimensions(size)));
+    let written = block::write(file, std::iter::once(header).collect(), true, |meta, chunks| {
+        let mut compressor = chunks.sequential_blocks_compressor(&meta);
+        for (index, block) in meta.collect_ordered_block_data(|index| tile(image, channels, index)) {
+            compressor.compress_block(index, block)?;
+        }
+        Ok(())
+    });
+    written.map_err(io_error)
+}
+
+/// A tile's values: row by row, in each row channel by channel.
+fn tile(image: &ImageRef<'_>, channels: &[(&str, usize)], at: BlockIndex) -> Vec<u8> {
+    let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = at;
+    let mut values = Vec::with_capacity(4 * width * height * channels.len());
+    let pixel_bytes = image.format().bytes_per_pixel();
+    let channel_bytes = image.format().channel_bytes();
+    for y in top..top + height {
+        let row = &image.row(y as u32)[left * pixel_bytes..(left + width) * pixel_bytes];
+        for (_, c) in channels {
+            for pixel in row.chunks_exact(pixel_bytes) {
+                let value = &pixel[c * channel_bytes..(c + 1) * channel_bytes];
+                match value.as_array::<2>() {
+                    Some(half) => values.extend(f16::from_ne_bytes(*half).to_f32().to_ne_bytes()),
+                    None => values.extend(value),
+                }
+            }
+        }
+    }
+    values
+}

@@ -1,0 +1,94 @@
+//! Reading image files: which kind a file is, by its first bytes, and what all kinds become.
+
+use super::{about, io_error, on_own_thread, pam, png, pnm, reserve};
+use crate::error::Result;
+use crate::image::memory::PixelFormat;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
+use std::path::Path;
+
+/// Packed pixels of a loaded file, aligned to their channel.
+#[derive(Debug)]
+pub enum Pixels {
+    Bytes(Vec<u8>),
+    Floats(Vec<f32>),
+}
+
+impl Pixels {
+    pub fn as_bytes(&self) -> &[u8] {
+        match self {
+            Self::Bytes(bytes) => bytes,
+            Self::Floats(floats) => bytemuck::cast_slice(floats),
+        }
+    }
+
+    pub(super) fn as_mut_bytes(&mut self) -> &mut [u8] {
+        match self {
+            Self::Bytes(bytes) => bytes,
+            Self::Floats(floats) => bytemuck::cast_slice_mut(floats),
+        }
+    }
+
+    pub fn as_mut_ptr(&mut self) -> *mut u8 {
+        self.as_mut_bytes().as_mut_ptr()
+    }
+}
+
+/// A file's pixels: `Rgba8Srgb` with `Bytes`, or `Rgba32F` with `Floats`.
+#[derive(Debug)]
+pub struct Loaded {
+    pub format: PixelFormat,
+    pub width: u32,
+    pub height: u32,
+    pub pixels: Pixels,
+}
+
+/// Reads a PNG, EXR or PNM file: 8-bit files as `Rgba8Srgb`, others as linear `Rgba32F` (16-bit files carry the sRGB curve, which is
+/// undone). EXR files: the largest level of the first part that has channels R, G and B, cut to the display window; 0 where the data window
+/// does not reach. Errors: IO for a file that is not there, not readable, broken, of another kind, or past a limit, which is named: 2^20
+/// pixels a side, 4 GiB as it is handed out, and for EXR 8 MiB of headers, 4096 channels and 256 MiB a block; UNSUPPORTED for EXR without the
+/// cargo feature; OUT_OF_MEMORY.
+pub fn load(path: &Path) -> Result<Loaded> {
+    let read = || on_own_thread(|| decode(open(path)?));
+    read().map_err(|error| about("read", path, &error))
+}
+
+/// A PNG in memory, as `load` reads it. Errors: IO; OUT_OF_MEMORY.
+pub fn decode_png(bytes: &[u8]) -> Result<Loaded> {
+    png::read(Cursor::new(bytes))
+}
+
+fn open(path: &Path) -> Result<BufReader<File>> {
+    if !fs::metadata(path).map_err(io_error)?.is_file() {
+        return Err(io_error("it is no regular file"));
+    }
+    File::open(path).map(BufReader::new).map_err(io_error)
+}
+
+fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {
+    let mut magic = Vec::with_capacity(8);
+    file.by_ref().take(8).read_to_end(&mut magic).map_err(io_error)?;
+    file.seek(SeekFrom::Start(0)).map_err(io_error)?;
+    match magic[..] {
+        [0x89, b'P', b'N', b'G', b'\r', b'\n', 0x1a, b'\n'] => png::read(file),
+        #[cfg(feature = "exr")]
+        [0x76, 0x2f, 0x31, 0x01, ..] => super::exr::read(file),
+        #[cfg(not(feature = "exr"))]
+        [0x76, 0x2f, 0x31, 0x01, ..] => Err(crate::error::Error::unsupported(super::WITHOUT_EXR)),
+        [b'P', b'1'..=b'6', ..] => pnm::read(file),
+        [b'P', b'7', ..] => pam::read(file),
+        _ => Err(io_error("it is no PNG, EXR or PNM file")),
+    }
+}
+
+/// The inverse of the sRGB curve, IEC 61966-2-1.
+pub fn srgb_to_linear(encoded: f32) -> f32 {
+    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
+/// The light of every 16-bit code. Errors: OUT_OF_MEMORY.
+pub(super) fn linear_codes() -> Result<Vec<f32>> {
+    let mut codes = reserve(1 << 16)?;
+    codes.extend((0..=u16::MAX).map(|code| srgb_to_linear(f32::from(code) / 65535.0)));
+    Ok(codes)
+}

@@ -1,0 +1,307 @@
+//! Image files that are broken, or made to do harm: each is an image or an error, within the memory there is. An allocation that fails inside
+//! a decoder ends the process, and nothing can catch that; so files are read in children that have little memory, and a child that dies is a
+//! failed test. Files are the same in every run. BHR_TESTS_ALL=1: 100,000 files of each kind instead of some thousand.
+#![cfg(target_os = "linux")]
+
+mod hostile;
+#[path = "../random/mod.rs"]
+mod random;
+mod seeds;
+
+use bhr::error::ErrorKind;
+use bhr::image::{self, Loaded};
+use random::{Random, count_from};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Bytes of address space that a child has for files, besides what it begins with.
+const CHILD_BYTES: u64 = 2 << 30;
+
+/// A folder of this process's own, removed at its end.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Self {
+        static NEXT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
+        let next = NEXT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("bhr-files-{}-{next}", std::process::id()));
+        fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn load(&self, bytes: &[u8]) -> bhr::error::Result<Loaded> {
+        let path = self.0.join("file");
+        fs::write(&path, bytes).unwrap();
+        image::load(&path)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// Bytes of address space that this process has taken.
+fn address_space() -> u64 {
+    let pages = fs::read_to_string("/proc/self/statm").unwrap();
+    pages.split(' ').next().unwrap().parse::<u64>().unwrap() * 4096
+}
+
+/// From now on this process gets `more` bytes at the most.
+fn limit_memory(more: u64) {
+    let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+    // SAFETY: `limit` is writable, then readable.
+    unsafe {
+        assert_eq!(libc::getrlimit(libc::RLIMIT_AS, &mut limit), 0);
+        limit.rlim_cur = address_space() + more;
+        assert_eq!(libc::setrlimit(libc::RLIMIT_AS, &limit), 0);
+    }
+}
+
+/// Runs an ignored test of this program in a process of its own; what it printed.
+fn child(test: &str, environment: &[(&str, String)]) -> String {
+    let child = Command::new(std::env::current_exe().unwrap())
+        .args(["--ignored", "--exact", test, "--nocapture", "--test-threads=1"])
+        .envs(environment.iter().map(|(name, value)| (name, value)))
+        .output()
+        .unwrap();
+    let (out, err) = (String::from_utf8_lossy(&child.stdout), String::from_utf8_lossy(&child.stderr));
+    assert!(child.status.success() && out.contains("1 passed"), "{test}: {}\n{out}{err}", child.status);
+    out.into_owned()
+}
+
+fn seeds(kind: &str) -> Vec<seeds::Seed> {
+    match kind {
+        "png" => seeds::png(),
+        "pnm" => seeds::pnm(),
+        #[cfg(feature = "exr")]
+        "exr" => seeds::exr(),
+        _ => panic!("seeds of {kind}"),
+    }
+}
+
+const KINDS: &[&str] = if cfg!(feature = "exr") { &["png", "pnm", "exr"] } else { &["png", "pnm"] };
+
+#[test]
+fn valid_files_of_every_kind_are_read() {
+    let folder = Folder::new();
+    for kind in KINDS {
+        for seed in seeds(kind) {
+            let loaded = folder.load(&seed.bytes).unwrap_or_else(|error| panic!("{}: {error}", seed.name));
+            let bytes = u64::from(loaded.width) * u64::from(loaded.height) * loaded.format.bytes_per_pixel() as u64;
+            assert_eq!(loaded.pixels.as_bytes().len() as u64, bytes, "{}", seed.name);
+        }
+    }
+}
+
+/// In lines or tiles, compressed as it may be, the same picture.
+#[cfg(feature = "exr")]
+#[test]
+fn lossless_exr_files_hold_the_same_picture() {
+    let folder = Folder::new();
+    let mut first = BTreeMap::new();
+    for seed in seeds("exr").into_iter().filter(|seed| !seed.name.contains("b44") && !seed.name.contains("parts")) {
+        let kind = seed.name.split(", ").nth(1).unwrap().to_owned();
+        let loaded = folder.load(&seed.bytes).unwrap();
+        let pixels = bytemuck::cast_slice::<u8, f32>(loaded.pixels.as_bytes()).to_vec();
+        assert_eq!((loaded.width, loaded.height, pixels.len()), (37, 21, 4 * 37 * 21));
+        let wanted = first.entry(kind.clone()).or_insert_with(|| pixels.clone());
+        assert!(*wanted == pixels, "{}", seed.name);
+        // Pixel (5, 2): x + y is 7 of 64, of whole numbers x; alpha is the first channel of the file.
+        let at = &pixels[4 * (2 * 37 + 5)..][..4];
+        let (value, x) = (7.0 / 64.0, 5.0);
+        let wanted = if kind == "mixed" { [value, x, value, value] } else { [value; 4] };
+        assert_eq!(at, wanted, "{}", seed.name);
+    }
+    assert_eq!(first.len(), 3);
+}
+
+#[test]
+#[ignore = "run by the tests below, in a process of its own"]
+fn child_reads_bombs() {
+    limit_memory(CHILD_BYTES);
+    let folder = Folder::new();
+    for bomb in hostile::bombs() {
+        let begin = Instant::now();
+        let error = match folder.load(&bomb.bytes) {
+            Ok(loaded) => panic!("{} was read: {} x {}", bomb.name, loaded.width, loaded.height),
+            Err(error) => error,
+        };
+        let kinds = [ErrorKind::Io, ErrorKind::OutOfMemory];
+        assert!(kinds.contains(&error.kind), "{}: {error}", bomb.name);
+        assert!(bomb.words.iter().any(|words| error.message.contains(words)), "{}: {error}", bomb.name);
+        assert!(begin.elapsed() < Duration::from_secs(10), "{}: {:?}", bomb.name, begin.elapsed());
+    }
+}
+
+/// Among them the 341-byte EXR whose data window, not its display window, was 103 GB in size, and a PNG that grows fourfold as it is read.
+#[test]
+fn small_files_that_claim_to_be_large_are_refused() {
+    child("child_reads_bombs", &[]);
+}
+
+#[test]
+#[ignore = "run by the tests below, in a process of its own"]
+fn child_reads_faulty_files() {
+    let kind = std::env::var("BHR_FILES_KIND").unwrap();
+    let count = count_from("BHR_FILES_COUNT", 1000);
+    let seeds = seeds(&kind);
+    let folder = Folder::new();
+    static PLACES: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
+    std::panic::set_hook(Box::new(|info| {
+        PLACES.lock().unwrap().extend(info.location().map(ToString::to_string));
+    }));
+    limit_memory(CHILD_BYTES);
+    let mut random = Random(count_from("BHR_FILES_SEED", 1) as u64);
+    let (mut read, mut panics) = (0, 0);
+    let mut slowest = (Duration::ZERO, 0);
+    for i in 0..count {
+        let bytes = hostile::faulty(&seeds, &mut random);
+        // What is there when this process dies is the file that killed it.
+        let begin = Instant::now();
+        match folder.load(&bytes) {
+            Ok(loaded) => {
+                read += 1;
+                let size = u64::from(loaded.width) * u64::from(loaded.height);
+                let bytes = size * loaded.format.bytes_per_pixel() as u64;
+                assert_eq!(loaded.pixels.as_bytes().len() as u64, bytes, "file {i}");
+            }
+            Err(error) => {
+                let kinds = [ErrorKind::Io, ErrorKind::OutOfMemory];
+                assert!(kinds.contains(&error.kind), "file {i}: {error}");
+                panics += usize::from(error.message.contains("the codec failed"));
+            }
+        }
+        slowest = slowest.max((begin.elapsed(), i));
+    }
+    for place in PLACES.lock().unwrap().iter() {
+        println!("a codec panicked at {place}");
+    }
+    println!("{kind}: {count} files, {read} of them read, {panics} caught panics, the slowest {slowest:?}");
+    assert!(read > count / 100 && read < count, "{read} of {count} were read: faults are too many or too few");
+}
+
+fn faulty_files(kind: &str) {
+    let all = std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1");
+    let count = if all { 100_000 } else { 5_000 };
+    let environment = [("BHR_FILES_KIND", kind.to_owned()), ("BHR_FILES_COUNT", count.to_string())];
+    let out = child("child_reads_faulty_files", &environment);
+    println!("{}", out.lines().find(|line| line.starts_with(kind)).unwrap_or_default());
+}
+
+#[test]
+fn faulty_png_files_are_images_or_errors() {
+    faulty_files("png");
+}
+
+#[test]
+fn faulty_pnm_files_are_images_or_errors() {
+    faulty_files("pnm");
+}
+
+#[cfg(feature = "exr")]
+#[test]
+fn faulty_exr_files_are_images_or_errors() {
+    faulty_files("exr");
+}
+
+/// Files with a block of 4 MiB, read with more and more memory: at first there is too little, and no amount in between ends the process.
+#[test]
+#[ignore = "run by the tests below, in a process of its own"]
+fn child_reads_with_more_and_more_memory() {
+    const STEP: u64 = 2 << 20;
+    let folder = Folder::new();
+    for (name, bytes) in large_files() {
+        let (mut refused, mut read) = (0, 0);
+        for step in 0..256 {
+            limit_memory(step * STEP);
+            match folder.load(&bytes) {
+                Ok(_) => read += 1,
+                Err(error) => {
+                    assert!(error.kind == ErrorKind::OutOfMemory, "{name} with {} bytes: {error}", step * STEP);
+                    refused += 1;
+                }
+            }
+            if read == 3 {
+                break;
+            }
+        }
+        assert!(refused > 1 && read > 1, "{name}: {refused} refused, {read} read");
+        limit_memory(4 << 30);
+    }
+}
+
+fn large_files() -> Vec<(String, Vec<u8>)> {
+    let mut files = Vec::new();
+    #[cfg(feature = "exr")]
+    {
+        use exr::compression::Compression::*;
+        use exr::meta::attribute::{LevelMode, SampleType};
+        for compression in [Uncompressed, RLE, ZIP1, ZIP16, PIZ, PXR24, B44, B44A] {
+            for kind in [SampleType::F16, SampleType::F32] {
+                let tiles = Some((512, LevelMode::Singular));
+                let part = seeds::part("a", [512, 512], [kind; 4], compression, tiles);
+                files.push((format!("{compression}, {kind:?}"), seeds::exr_file(vec![part])));
+            }
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1024, 1024);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    encoder.write_header().unwrap().write_image_data(&vec![7; 1024 * 1024 * 6]).unwrap();
+    files.push(("png".into(), bytes));
+    files.push(("pnm".into(), [&b"P6 1024 1024 65535\n"[..], &vec![7; 1024 * 1024 * 6]].concat()));
+    files.push(("bits".into(), [&b"P4 8192 4096\n"[..], &vec![7; 1024 * 4096]].concat()));
+    files
+}
+
+#[test]
+fn too_little_memory_is_an_error() {
+    child("child_reads_with_more_and_more_memory", &[]);
+}
+
+/// A write past the limit raises SIGXFSZ, which ends a process that does not expect it.
+#[test]
+#[ignore = "run by the test below, in a process of its own"]
+fn child_saves_past_the_file_size_limit() {
+    use bhr::image::{ImageRef, Layout, PixelFormat};
+    let folder = Folder::new();
+    let picture = (0..256 * 256 * 16_u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 24) as u8).collect::<Vec<_>>();
+    let layouts = [PixelFormat::Rgba8Srgb, PixelFormat::Rgba32F].map(|format| Layout::packed(format, 256, 256));
+    let mut files = vec![("a.png", layouts[0]), ("a.ppm", layouts[0])];
+    if cfg!(feature = "exr") {
+        files.push(("a.exr", layouts[1]));
+    }
+    for (name, layout) in files {
+        let path = folder.0.join(name);
+        fs::write(&path, "old").unwrap();
+        let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
+        // SAFETY: `limit` is writable, then readable.
+        let saved = unsafe {
+            assert_eq!(libc::getrlimit(libc::RLIMIT_FSIZE, &mut limit), 0);
+            let before = limit.rlim_cur;
+            limit.rlim_cur = 10_000;
+            assert_eq!(libc::setrlimit(libc::RLIMIT_FSIZE, &limit), 0);
+            let bytes = bytemuck::cast_slice(&picture);
+            let saved = image::save(&ImageRef::new(layout, bytes).unwrap(), &path);
+            limit.rlim_cur = before;
+            assert_eq!(libc::setrlimit(libc::RLIMIT_FSIZE, &limit), 0);
+            saved
+        };
+        let error = saved.unwrap_err();
+        assert!(error.kind == ErrorKind::Io && error.message.contains("too large"), "{name}: {error}");
+        assert_eq!(fs::read(&path).unwrap(), b"old", "{name}");
+    }
+    assert_eq!(fs::read_dir(&folder.0).unwrap().count(), if cfg!(feature = "exr") { 3 } else { 2 });
+}
+
+#[test]
+fn a_file_past_the_hosts_size_limit_is_an_error() {
+    child("child_saves_past_the_file_size_limit", &[]);
+}

@@ -1,0 +1,246 @@
+//! Small valid files of every kind that is read, made here: no corpus to carry. Knows the formats, not bhr.
+
+use crate::random::Random;
+
+/// A file's bytes, and what it is.
+pub struct Seed {
+    pub name: String,
+    pub bytes: Vec<u8>,
+}
+
+pub fn pnm() -> Vec<Seed> {
+    let seed = |name: &str, header: &str, raster: &[u8]| Seed {
+        name: format!("{name}.pnm"),
+        bytes: [header.as_bytes(), raster].concat(),
+    };
+    let raster = (0..96_u8).collect::<Vec<_>>();
+    let pam = |depth: u32, most: u32, kind: &str| {
+        format!("P7\nWIDTH 4\nHEIGHT 3\nDEPTH {depth}\nMAXVAL {most}\nTUPLTYPE {kind}\n# a comment\nENDHDR\n")
+    };
+    vec![
+        seed("plain bits", "P1\n# a comment\n4 3\n1 0 1 0\n0101 1 1 0 0\n", &[]),
+        seed("plain grey", "P2 4 3 15\n0 1 2 3 4 5 6 7 8 9 10 15\n", &[]),
+        seed("plain colour", "P3 2 2 65535\n0 1 2 65535 4 5 6 7 8 9 10 11\n", &[]),
+        seed("bits", "P4 11 3\n", &raster[..6]),
+        seed("grey", "P5 4 3 255\n", &raster[..12]),
+        seed("grey of 16 bits", "P5 4 3 1000\n", &raster[..24]),
+        seed("colour", "P6 4 3 255\n", &raster[..36]),
+        seed("colour of 16 bits", "P6\n4\n3\n65535\n", &raster[..72]),
+        seed("any grey", &pam(1, 255, "GRAYSCALE"), &raster[..12]),
+        seed("any colour", &pam(3, 255, "RGB"), &raster[..36]),
+        seed("any grey with alpha", &pam(2, 65535, "GRAYSCALE_ALPHA"), &raster[..48]),
+        seed("any colour with alpha", &pam(4, 255, "RGB_ALPHA"), &raster[..48]),
+        seed("any black and white", &pam(1, 1, "BLACKANDWHITE"), &[0, 1, 1, 0, 1, 0, 0, 1, 0, 1, 1, 1]),
+    ]
+}
+
+/// A PNG chunk, sealed.
+pub fn chunk(name: &[u8; 4], data: &[u8]) -> Vec<u8> {
+    let mut bytes = [&(data.len() as u32).to_be_bytes()[..], name, data].concat();
+    bytes.extend(crc(&bytes[4..]).to_be_bytes());
+    bytes
+}
+
+/// ISO 3309, as in PNG's annex D.
+fn crc(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(!0_u32, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 })
+    })
+}
+
+/// Makes every chunk's sum right again, so that what is broken inside is looked at.
+pub fn reseal(png: &mut [u8]) {
+    let mut at = 8;
+    while let Some(length) = png.get(at..at + 4) {
+        let length = u32::from_be_bytes(length.try_into().unwrap()) as usize;
+        let Some(sum) = at.checked_add(8).and_then(|data| data.checked_add(length)).filter(|sum| sum + 4 <= png.len())
+        else {
+            return;
+        };
+        let crc = crc(&png[at + 4..sum]);
+        png[sum..sum + 4].copy_from_slice(&crc.to_be_bytes());
+        at = sum + 4;
+    }
+}
+
+/// zlib without compression.
+fn stored(bytes: &[u8]) -> Vec<u8> {
+    let (a, b) = bytes.iter().fold((1_u32, 0_u32), |(a, b), byte| {
+        let a = (a + u32::from(*byte)) % 65521;
+        (a, (b + a) % 65521)
+    });
+    let length = bytes.len() as u16;
+    let mut out = [&[0x78, 0x01, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes(), bytes].concat();
+    out.extend((b << 16 | a).to_be_bytes());
+    out
+}
+
+/// `depth`: bits a sample; `color`: PNG's colour type.
+pub fn png_header(width: u32, height: u32, depth: u8, color: u8, interlaced: bool) -> Vec<u8> {
+    let about = [depth, color, 0, 0, u8::from(interlaced)];
+    let data = [&width.to_be_bytes()[..], &height.to_be_bytes(), &about].concat();
+    [b"\x89PNG\r\n\x1a\n".to_vec(), chunk(b"IHDR", &data)].concat()
+}
+
+pub fn png() -> Vec<Seed> {
+    const SIZE: [usize; 2] = [11, 7];
+    /// Of Adam7: the first column and row of a pass, and the steps.
+    const PASSES: [[usize; 4]; 7] =
+        [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
+    let mut seeds = Vec::new();
+    let kinds =
+        [(0, 1, &[1, 2, 4, 8, 16][..]), (2, 3, &[8, 16]), (3, 1, &[1, 2, 4, 8]), (4, 2, &[8, 16]), (6, 4, &[8, 16])];
+    for (color, samples, depths) in kinds {
+        for depth in depths {
+            for (interlaced, transparent) in [(false, false), (true, false), (false, true)] {
+                if transparent && color > 3 {
+                    continue;
+                }
+                let mut random = Random(u64::from(color) * 100 + *depth as u64);
+                let mut lines = Vec::new();
+                let mut add = |width: usize, height: usize| {
+                    for y in 0..height {
+                        if width > 0 {
+                            // Every filter in turn.
+                            lines.push(y as u8 % 5);
+                            lines.extend(
+                                (0..(width * samples * depth).div_ceil(8)).map(|_| (random.next() * 256.0) as u8),
+                            );
+                        }
+                    }
+                };
+                if interlaced {
+                    for [x, y, dx, dy] in PASSES {
+                        add((SIZE[0] - x).div_ceil(dx), (SIZE[1] - y).div_ceil(dy));
+                    }
+                } else {
+                    add(SIZE[0], SIZE[1]);
+                }
+                let mut bytes = png_header(SIZE[0] as u32, SIZE[1] as u32, *depth as u8, color, interlaced);
+                if color == 3 {
+                    let palette = (0..3 * (1 << depth)).map(|i| (i * 5 % 256) as u8).collect::<Vec<_>>();
+                    bytes.extend(chunk(b"PLTE", &palette));
+                }
+                if transparent {
+                    let alpha = [0, 1, 0, 2, 0, 3];
+                    bytes.extend(chunk(b"tRNS", &alpha[..[2, 0, 6, 2][color as usize]]));
+                }
+                bytes.extend(chunk(b"tEXt", b"Comment\0a text"));
+                let (first, second) = (stored(&lines), chunk(b"IEND", &[]));
+                let (first, last) = first.split_at(first.len() / 2);
+                bytes.extend([chunk(b"IDAT", first), chunk(b"IDAT", last), second].concat());
+                let name = format!("colour type {color}, {depth} bits, {interlaced}, {transparent}.png");
+                seeds.push(Seed { name, bytes });
+            }
+        }
+    }
+    // One that is compressed in earnest, by the encoder that bhr uses.
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 32, 32);
+    encoder.set_color(png::ColorType::Rgba);
+    let picture = (0..32 * 32 * 4).map(|i| (i / 7) as u8).collect::<Vec<_>>();
+    encoder.write_header().unwrap().write_image_data(&picture).unwrap();
+    seeds.push(Seed { name: "compressed.png".into(), bytes });
+    seeds
+}
+
+#[cfg(feature = "exr")]
+pub use self::exr::{exr, exr_file, part};
+
+#[cfg(feature = "exr")]
+mod exr {
+    use super::Seed;
+    use ::exr::block::writer::ChunksWriter;
+    use ::exr::compression::Compression::{self, *};
+    use ::exr::math::{RoundingMode, Vec2};
+    use ::exr::meta::attribute::*;
+    use ::exr::meta::header::{Header, LayerAttributes};
+    use ::exr::meta::{BlockDescription, attribute::LevelMode};
+    use std::io::Cursor;
+
+    /// A part with channels A, B, G, R of these types, in scan lines or tiles.
+    pub fn part(
+        name: &str,
+        size: [usize; 2],
+        types: [SampleType; 4],
+        compression: Compression,
+        tiles: Option<(usize, LevelMode)>,
+    ) -> Header {
+        let channels = ["A", "B", "G", "R"].iter().zip(types);
+        let channels = channels.map(|(name, kind)| ChannelDescription::new(*name, kind, false)).collect();
+        let (blocks, order) = match tiles {
+            None => (BlockDescription::ScanLines, LineOrder::Increasing),
+            Some((side, level_mode)) => {
+                let tile_size = Vec2(side, side);
+                let tiles = TileDescription { tile_size, level_mode, rounding_mode: RoundingMode::Up };
+                (BlockDescription::Tiles(tiles), LineOrder::Unspecified)
+            }
+        };
+        let attributes = LayerAttributes { layer_name: Some(Text::from(name)), ..Default::default() };
+        Header::new(Text::from(name), Vec2(size[0], size[1]), channels)
+            .with_encoding(compression, blocks, order)
+            .with_attributes(attributes)
+    }
+
+    /// A file of these parts, with a smooth picture.
+    pub fn exr_file(parts: Vec<Header>) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        let all = parts.clone();
+        ::exr::block::write(&mut file, parts.into_iter().collect(), false, |meta, chunks| {
+            let mut compressor = chunks.sequential_blocks_compressor(&meta);
+            for (index, block) in meta.collect_ordered_block_data(|block| {
+                let mut data = Vec::new();
+                let (Vec2(left, top), Vec2(width, height)) = (block.pixel_position, block.pixel_size);
+                for y in top..top + height {
+                    for channel in &all[block.layer].channels.list {
+                        for x in left..left + width {
+                            let value = ((x + y) % 64) as f32 / 64.0;
+                            match channel.sample_type {
+                                SampleType::F16 => data.extend(half::f16::from_f32(value).to_ne_bytes()),
+                                SampleType::F32 => data.extend(value.to_ne_bytes()),
+                                SampleType::U32 => data.extend((x as u32).to_ne_bytes()),
+                            }
+                        }
+                    }
+                }
+                data
+            }) {
+                compressor.compress_block(index, block)?;
+            }
+            Ok(())
+        })
+        .unwrap();
+        file.into_inner()
+    }
+
+    pub fn exr() -> Vec<Seed> {
+        const SIZE: [usize; 2] = [37, 21];
+        let types = [
+            ("half", [SampleType::F16; 4]),
+            ("float", [SampleType::F32; 4]),
+            ("mixed", [SampleType::F32, SampleType::F16, SampleType::U32, SampleType::F16]),
+        ];
+        let blocks = [
+            ("lines", None),
+            ("tiles", Some((16, LevelMode::Singular))),
+            ("mip maps", Some((16, LevelMode::MipMap))),
+            ("rip maps", Some((16, LevelMode::RipMap))),
+        ];
+        let mut seeds = Vec::new();
+        for compression in [Uncompressed, RLE, ZIP1, ZIP16, PIZ, PXR24, B44, B44A] {
+            for (kind, types) in types {
+                for (block, tiles) in blocks {
+                    let bytes = exr_file(vec![part("a", SIZE, types, compression, tiles)]);
+                    seeds.push(Seed { name: format!("{compression}, {kind}, {block}.exr"), bytes });
+                }
+            }
+        }
+        let parts = vec![
+            part("a", SIZE, types[0].1, ZIP16, None),
+            part("b", [5, 40], types[1].1, PIZ, blocks[2].1),
+            part("c", SIZE, types[2].1, RLE, blocks[1].1),
+        ];
+        seeds.push(Seed { name: "three parts.exr".into(), bytes: exr_file(parts) });
+        seeds
+    }
+}
