@@ -11,9 +11,9 @@
 #define PROGRESS_AFTER_SECONDS 0.5 /* a frame that is done sooner needs no bar */
 #define PROGRESS_CELLS 40
 /* Rays for each core below which the CPU tracer is done with a picture before Mesa's software driver, which traces a
- * ray in a quarter of the time (0.15 us of a core, not 0.6), has compiled its kernels, 1.2 s of one core (Debian 12,
- * LLVM 15, nothing cached). A picture of 1280 x 720 pixels and 4 samples has 1.8 million for each of two cores. */
-#define RAYS_WORTH_COMPILING 2500000.0
+ * ray in a third of the time (0.2 us of a core, not 0.6), has compiled its kernels: 1.5 s of a core (Debian 12, Mesa
+ * 22, nothing cached). A picture of 1280 x 720 pixels and 4 samples has 1.8 million for each of two cores. */
+#define RAYS_WORTH_COMPILING 2000000.0
 
 typedef struct Settings {
     uint32_t    size[2];
