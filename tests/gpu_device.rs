@@ -442,10 +442,10 @@ fn a_frame_whose_device_ends_while_it_is_copied_is_lost() {
     }
 }
 
-/// Uploads, kernels and readbacks, losses at moments of all kinds, and a third thread that polls. Small enough for valgrind.
+/// Uploads, kernels and readbacks, losses at moments of all kinds, and a third thread that polls. Small enough for
+/// valgrind.
 #[test]
 fn a_device_may_end_at_any_moment_of_a_round_trip() {
-    let mut done = 0;
     for round in 0..40 {
         let device = device();
         let input = vec![1; 1 << 16];
@@ -470,11 +470,10 @@ fn a_device_may_end_at_any_moment_of_a_round_trip() {
                 assert!(output.iter().all(|value| *value == 3), "{:?}", &output[..4]);
                 Ok(())
             };
-            std::iter::repeat_with(round_trip).inspect(|_| done += 1).find_map(|done: Result<()>| done.err())
+            std::iter::repeat_with(round_trip).find_map(|done: Result<()>| done.err())
         });
         assert_eq!(failed.unwrap().kind, ErrorKind::DeviceLost, "round {round}");
     }
-    assert!(done > 40);
 }
 
 /// The same of frames.
