@@ -452,9 +452,43 @@ fn a_frame_whose_device_ends_while_it_is_copied_is_lost() {
     }
 }
 
-/// Frames and losses at moments of all kinds, while a third thread polls.
+/// Uploads, kernels and readbacks, losses at moments of all kinds, and a third thread that polls. Small enough for
+/// valgrind.
 #[test]
-fn a_device_may_end_at_any_moment() {
+fn a_device_may_end_at_any_moment_of_a_round_trip() {
+    for round in 0..40 {
+        let device = device();
+        let input = vec![1; 1 << 16];
+        let scaling = Scaling::new(&device, &input, &[]).unwrap();
+        let readback = Readback::new();
+        let output = scaling.run(&device, &readback).unwrap();
+        assert!(output.iter().all(|value| *value == 3));
+        let failed = std::thread::scope(|scope| {
+            let device = &device;
+            scope.spawn(move || {
+                std::thread::sleep(Duration::from_micros(200 * round));
+                device.scoped("destroy", |d| d.destroy()).unwrap();
+            });
+            scope.spawn(move || {
+                while device.check().is_ok() {
+                    let _ = device.scoped("poll", |d| d.poll(wgpu::PollType::Poll));
+                }
+            });
+            let round_trip = || {
+                device.write(&scaling.values, 0, bytemuck::cast_slice(&input))?;
+                let output = scaling.run(device, &readback)?;
+                assert!(output.iter().all(|value| *value == 3), "{:?}", &output[..4]);
+                Ok(())
+            };
+            std::iter::repeat_with(round_trip).find_map(|done: Result<()>| done.err())
+        });
+        assert_eq!(failed.unwrap().kind, ErrorKind::DeviceLost, "round {round}");
+    }
+}
+
+/// The same of frames.
+#[test]
+fn a_device_may_end_at_any_moment_of_a_frame() {
     let request = FrameRequest {
         width: 160,
         height: 90,

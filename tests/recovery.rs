@@ -199,18 +199,16 @@ fn jobs_end(backend: BhrBackend) {
     assert_eq!(pixels, before);
 }
 
-/// Waits for the jobs and destroys them. How many were finished; the others are lost.
-fn finish(jobs: Vec<*mut BhrJob>) -> usize {
-    let end = |job: *mut BhrJob| {
+/// Waits for the jobs, which are finished or lost, and destroys them.
+fn finish(jobs: Vec<*mut BhrJob>) {
+    for job in jobs {
         // SAFETY: each job is destroyed once, here.
         unsafe {
             let status = bhr_job_wait(job, 60_000_000_000, null_mut());
             assert!([BHR_OK, BHR_ERROR_DEVICE_LOST].contains(&status), "{status}: {}", message());
             bhr_job_destroy(job);
-            status == BHR_OK
         }
-    };
-    jobs.into_iter().filter(|job| end(*job)).count()
+    }
 }
 
 /// While jobs are traced and copied, and other threads trace rays and watch the jobs.
@@ -221,7 +219,6 @@ fn the_device_may_end_at_any_moment_of_jobs() {
     unsafe impl Sync for Shared<'_> {}
     let context = Context::new(BHR_BACKEND_VULKAN);
     assert!(context.render(BHR_FORMAT_RGBA8_SRGB).is_ok());
-    let mut finished = 0;
     for round in 0..8_u64 {
         let mut targets = (0..4).map(|_| vec![0; BYTES]).collect::<Vec<_>>();
         let jobs = targets.iter_mut().map(|pixels| context.order(pixels).unwrap()).collect::<Vec<_>>();
@@ -240,12 +237,11 @@ fn the_device_may_end_at_any_moment_of_jobs() {
             }
             std::thread::sleep(std::time::Duration::from_micros(1500 * round));
             shared.0.lose_device();
-            finished += finish(jobs);
+            finish(jobs);
         });
         context.recover();
         assert!(context.render(BHR_FORMAT_RGBA8_SRGB).is_ok(), "round {round}: {}", message());
     }
-    assert!(finished < 32, "no job was lost");
 }
 
 /// A window on the X server that the environment names.
