@@ -8,8 +8,8 @@ use bhr::scene::{LensTables, Method, Motion, Projection, Scene, ToneMap, View};
 const SIZE: [u32; 2] = [96, 64];
 
 fn renderer() -> Renderer {
-    let mut renderer =
-        Renderer::new(RendererOptions { backend: Some(Backend::Vulkan), ..Default::default() }).expect("a Vulkan driver");
+    let mut renderer = Renderer::new(RendererOptions { backend: Some(Backend::Vulkan), ..Default::default() })
+        .expect("a Vulkan driver");
     renderer.scene.quality.lens_tables = LensTables::Always;
     renderer
 }

@@ -246,7 +246,10 @@ fn tables_give_the_same_bytes() {
             assert!(*first == tiled(&mut renderer, format, size), "{name}: tiles at {eye:?}");
             let frame = renderer.scene.observer().unwrap().frame;
             let pixels = u64::from(size[0] * size[1]);
-            assert!(renderer.scene.lensing(&frame, pixels, KerrWorth::GPU) != Lensing::Traced, "{name}: no tables at {eye:?}");
+            assert!(
+                renderer.scene.lensing(&frame, pixels, KerrWorth::GPU) != Lensing::Traced,
+                "{name}: no tables at {eye:?}"
+            );
         }
     }
 }

@@ -4,7 +4,7 @@
 use super::Device;
 use super::kernel_key::KernelKey;
 use super::kernels::Store;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -29,6 +29,46 @@ struct Queue {
     started: Vec<JoinHandle<()>>,
 }
 
+impl Queue {
+    /// Keeps a thread, to wait for its end.
+    fn keep(&mut self, thread: JoinHandle<()>) {
+        self.started.retain(|thread| !thread.is_finished());
+        self.started.push(thread);
+    }
+}
+
+/// Pipelines that a frame waits for, and those of them that nobody has begun.
+#[must_use]
+pub struct Wanted {
+    keys: Vec<KernelKey>,
+    left: Arc<Mutex<VecDeque<KernelKey>>>,
+}
+
+impl Wanted {
+    /// Takes part in making them until all are there. Errors: the first one's.
+    pub fn finish(self, store: &Store, device: &Device) -> Result<()> {
+        while make_next(&self.left, store, device) {}
+        self.keys.into_iter().try_for_each(|key| store.get(device, key).map(drop))
+    }
+}
+
+/// Makes one of those that are `left`, as well as it can be. Whether there was one.
+fn make_next(left: &Mutex<VecDeque<KernelKey>>, store: &Store, device: &Device) -> bool {
+    let key = left.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+    if let Some(key) = key {
+        make(key, store, device);
+    }
+    key.is_some()
+}
+
+/// What fails is left for the frame that needs it.
+fn make(key: KernelKey, store: &Store, device: &Device) {
+    // Unwind safe: the store settles a pipeline whose making panics.
+    if !matches!(catch_unwind(AssertUnwindSafe(|| store.get(device, key))), Ok(Ok(_))) {
+        log::debug!("a pipeline could not be made; the frame that needs it will tell why");
+    }
+}
+
 fn lock(queue: &Mutex<Queue>) -> MutexGuard<'_, Queue> {
     queue.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -43,31 +83,38 @@ impl Compilers {
         Self { threads, queue: Arc::default() }
     }
 
-    /// Makes `missing`, and waits. Errors: the first one's.
-    pub fn make_now(&self, store: &Store, device: &Device, missing: Vec<KernelKey>) -> Result<()> {
-        let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE).saturating_sub(1) } else { 0 };
-        let next = Mutex::new(missing.into_iter());
-        let work = || -> Result<()> {
-            loop {
-                let key = next.lock().unwrap_or_else(PoisonError::into_inner).next();
-                let Some(key) = key else { return Ok(()) };
-                store.get(device, key)?;
-            }
-        };
-        thread::scope(|scope| {
-            let started = (0..helpers).map_while(|_| {
-                // A machine that has no more threads makes do with fewer.
-                thread::Builder::new().name("bhr-kernels".into()).spawn_scoped(scope, work).ok()
-            });
-            let started = started.collect::<Vec<_>>();
-            let own = work();
-            let panicked = |_| Err(Error::internal("making a pipeline panicked"));
-            started.into_iter().map(|thread| thread.join().unwrap_or_else(panicked)).fold(own, Result::and)
-        })
+    /// Begins to make `missing` on several threads. What fails is tried again by [`Wanted::finish`].
+    pub fn make_now(&self, store: &Arc<Store>, device: &Arc<Device>, missing: Vec<KernelKey>) -> Wanted {
+        let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
+        let left = Arc::new(Mutex::new(missing.iter().copied().collect::<VecDeque<_>>()));
+        let mut queue = lock(&self.queue);
+        for _ in 0..helpers {
+            let (left, store, device) = (left.clone(), store.clone(), device.clone());
+            // A machine that has no more threads makes do with fewer.
+            let work = move || while make_next(&left, &store, &device) {};
+            let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { break };
+            queue.keep(thread);
+        }
+        Wanted { keys: missing, left }
     }
 
-    /// Makes those of `keys` that are not there in the background, in place of what waits since an earlier call. What fails
-    /// is left for the frame that needs it, which then tells of it.
+    /// Does `work` on a thread of low priority.
+    pub fn run_behind(&self, work: impl FnOnce() + Send + 'static) {
+        if !self.threads {
+            return;
+        }
+        let work = move || {
+            lower_priority();
+            if catch_unwind(AssertUnwindSafe(work)).is_err() {
+                log::debug!("work ahead of a frame panicked; the frame will do it again");
+            }
+        };
+        if let Ok(thread) = thread::Builder::new().name("bhr-ahead".into()).spawn(work) {
+            lock(&self.queue).keep(thread);
+        }
+    }
+
+    /// Makes those of `keys` that are not there in the background, in place of what waits since an earlier call.
     pub fn make_later(&self, store: &Arc<Store>, device: &Arc<Device>, keys: Vec<KernelKey>) {
         if !self.threads {
             return;
@@ -82,8 +129,7 @@ impl Compilers {
             let work = move || make_behind(&shared, &store, &device);
             let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { return };
             queue.running += 1;
-            queue.started.retain(|thread| !thread.is_finished());
-            queue.started.push(thread);
+            queue.keep(thread);
         }
     }
 
@@ -116,11 +162,7 @@ fn make_behind(queue: &Mutex<Queue>, store: &Store, device: &Device) {
             key
         };
         let Some(key) = key else { return };
-        // Unwind safe: the store settles a pipeline whose making panics.
-        let made = catch_unwind(AssertUnwindSafe(|| store.get(device, key)));
-        if !matches!(made, Ok(Ok(_))) {
-            log::debug!("a pipeline was not made in the background; the frame that needs it will tell why");
-        }
+        make(key, store, device);
     }
 }
 

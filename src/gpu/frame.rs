@@ -140,7 +140,8 @@ impl GpuTracer {
         if request.format == PixelFormat::Rgba8Srgb && !request.transparent {
             keys.extend(self.set_up(scene, request, PixelTarget::Screen)?.kernels());
         }
-        self.kernels.make_all(&keys)?;
+        let wanted = self.kernels.begin(&keys);
+        self.kernels.finish(wanted)?;
         // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as well.
         self.render(scene, request, &mut |_, _, _| Ok(()), &mut |_| true).map(|_| ())
     }
@@ -162,7 +163,7 @@ impl GpuTracer {
         };
         let mut setup = self.set_up(scene, request, kind)?;
         let needed = setup.kernels();
-        self.kernels.make_all(&needed)?;
+        let wanted = self.kernels.begin(&needed);
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
@@ -186,6 +187,8 @@ impl GpuTracer {
         }
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
+        // Meanwhile the sky and the buffers were made.
+        self.kernels.finish(wanted)?;
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
         let bloom = setup.bloom;
@@ -253,7 +256,7 @@ impl GpuTracer {
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
         let any_film = scene.quality.kernels_for_any_film.unwrap_or(!self.adapter.info.software);
-        let developed = if any_film { FilmLook::of_any(target) } else { FilmLook::new(&film, target) };
+        let developed = if any_film { FilmLook::of_any(&film, target) } else { FilmLook::new(&film, target) };
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,

@@ -7,6 +7,7 @@ use super::kernel_key::{KernelKey, PixelTarget, Refined, Source};
 use crate::image::PixelFormat;
 use crate::renderer::FrameRequest;
 use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMap, View};
+use crate::sky::SkyMap;
 
 impl Setup {
     /// Every kernel of the frame.
@@ -67,7 +68,9 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     list.extend([Motion::Static, Motion::FreeFall].map(|to| changed(&motion(to))));
     list.extend([View::Light, View::Redshift, View::Order, View::Deflection, View::Steps].map(|to| changed(&view(to))));
     list.extend([ToneMap::Aces, ToneMap::Agx, ToneMap::None].map(|to| changed(&tone_map(to))));
-    list.extend([Projection::Fisheye, Projection::Equirect, Projection::Perspective].map(|to| changed(&projection(to))));
+    list.extend(
+        [Projection::Fisheye, Projection::Equirect, Projection::Perspective].map(|to| changed(&projection(to))),
+    );
     list.push(changed(&|scene| {
         spin(scene);
         bloom(scene);
@@ -100,6 +103,10 @@ impl GpuTracer {
         if let Ok(setup) = self.set_up(&scene, &request, self.host_pixels(&scene)) {
             self.kernels.anticipate(setup.kernels());
         }
+        // Kept for the process; a frame that comes first waits for them, or makes them itself.
+        self.kernels.run_behind(move || {
+            let _ = (scene.stars(), SkyMap::milky_way());
+        });
     }
 
     /// Kernels of the frames that may follow a frame of `scene`, which takes `needed`, to be made in the background. Only when

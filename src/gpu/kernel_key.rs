@@ -6,8 +6,9 @@ use super::slots::{
 };
 use super::wgsl;
 use crate::film::FilmParams;
+use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
-use crate::scene::Projection;
+use crate::scene::{Projection, ToneMap, View};
 
 /// Everything that decides how the tracing kernels are compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -68,6 +69,8 @@ pub enum PixelTarget {
 
 /// `FROM_FILM` of film.wgsl.
 const FROM_FILM: u32 = u32::MAX;
+/// Format, tone map and view of the default scene in 8 bits: RGBA8_SRGB, ACES, LIGHT.
+const USUAL_FILM: (u32, u32, u32) = (PixelFormat::Rgba8Srgb as u32, ToneMap::Aces as u32, View::Light as u32);
 
 impl FilmLook {
     /// For `film` alone: software drivers run both sides of every branch.
@@ -75,9 +78,14 @@ impl FilmLook {
         Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
     }
 
-    /// For every film, which the kernel asks while it runs: a host that changes it waits for no pipeline.
-    pub fn of_any(target: PixelTarget) -> Self {
-        Self { format: FROM_FILM, tone_map: FROM_FILM, false_colour: FROM_FILM, target }
+    /// For every film, which the kernel asks while it runs, but for the usual one, which would lose 3 % of a frame (H200): a host that
+    /// changes its film waits for one pipeline at most.
+    pub fn of_any(film: &FilmParams, target: PixelTarget) -> Self {
+        let own = Self::new(film, target);
+        match (own.format, own.tone_map, own.false_colour) {
+            USUAL_FILM => own,
+            _ => Self { format: FROM_FILM, tone_map: FROM_FILM, false_colour: FROM_FILM, target },
+        }
     }
 
     /// Of light that bloom is to spread.
@@ -188,7 +196,6 @@ pub const GROUP: [u32; 2] = [8, 16];
 const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
-
 
 impl KernelKey {
     /// Group 3, the list of pixels with edges, is for the caller to set.

@@ -1,7 +1,7 @@
 //! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time. Knows what each
 //! kernel binds ([`KernelKey`]), not what with.
 
-use super::compilers::Compilers;
+use super::compilers::{Compilers, Wanted};
 use super::kernel_key::{GROUP, KernelKey};
 use super::slots::{Slot, edge_slots};
 use super::{Device, Kernel, Loops, ProvenFinite};
@@ -175,13 +175,7 @@ impl Drop for Settling<'_> {
 impl Kernels {
     pub fn new(device: Arc<Device>, threads: bool) -> Self {
         let store = Arc::new(Store { state: Mutex::default(), settled: Condvar::new() });
-        Self {
-            compilers: Compilers::new(threads),
-            store,
-            device,
-            waits: AtomicU64::new(0),
-            late: AtomicU64::new(0),
-        }
+        Self { compilers: Compilers::new(threads), store, device, waits: AtomicU64::new(0), late: AtomicU64::new(0) }
     }
 
     pub fn waits(&self) -> KernelWaits {
@@ -201,15 +195,22 @@ impl Kernels {
         self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
-    /// Makes all of `keys` that are not there, several at a time. Errors: as [`Self::get`], the first one.
-    pub fn make_all(&self, keys: &[KernelKey]) -> Result<()> {
+    /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are missing.
+    pub fn begin(&self, keys: &[KernelKey]) -> Option<Wanted> {
         let missing = keys.iter().copied().filter(|key| !self.store.has(*key)).collect::<Vec<_>>();
-        if missing.is_empty() {
-            return Ok(());
-        }
         self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
-        let made = self.compilers.make_now(&self.store, &self.device, missing);
+        (!missing.is_empty()).then(|| self.compilers.make_now(&self.store, &self.device, missing))
+    }
+
+    /// Waits for what was begun. Errors: as [`Self::get`], the first one.
+    pub fn finish(&self, wanted: Option<Wanted>) -> Result<()> {
+        let made = wanted.map_or(Ok(()), |wanted| wanted.finish(&self.store, &self.device));
         made.map_err(|error| self.device.explain(error))
+    }
+
+    /// Does `work`, which makes what frames will need, in the background.
+    pub fn run_behind(&self, work: impl FnOnce() + Send + 'static) {
+        self.compilers.run_behind(work);
     }
 
     /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an earlier

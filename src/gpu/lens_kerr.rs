@@ -154,7 +154,11 @@ impl KerrTables {
         let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
         let trace_nodes = match current {
             Some(_) => None,
-            None => Some(kernels.get(KernelKey::KerrNodes { delay: wanted.delay, pattern: wanted.pattern })?.stage(device, &[&shared])?),
+            None => Some(
+                kernels
+                    .get(KernelKey::KerrNodes { delay: wanted.delay, pattern: wanted.pattern })?
+                    .stage(device, &[&shared])?,
+            ),
         };
         let all = [shared.as_slice(), &[texture(&flags)]].concat();
         let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: wanted.pattern })?.stage(device, &[&all])?;

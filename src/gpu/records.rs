@@ -202,13 +202,7 @@ impl TracedRecords {
         Ok(self.resources()?.into())
     }
 
-    fn stages(
-        &self,
-        device: &Device,
-        kernels: &Kernels,
-        variant: Variant,
-        shared: &Shared<'_>,
-    ) -> Result<TraceStages> {
+    fn stages(&self, device: &Device, kernels: &Kernels, variant: Variant, shared: &Shared<'_>) -> Result<TraceStages> {
         let [sky, meta, disk] = self.resources()?;
         let Shared { frame, pass, step_sum } = shared.clone();
         Ok(TraceStages {

@@ -86,8 +86,8 @@ mod tests {
     fn tables_are_for_frames_that_pay_for_them() {
         let mut scene = Scene::default();
         let lensing = |scene: &Scene, pixels| {
-            let [cpu, gpu] =
-                [KerrWorth::CPU, KerrWorth::GPU].map(|worth| scene.lensing(&scene.observer().unwrap().frame, pixels, worth));
+            let [cpu, gpu] = [KerrWorth::CPU, KerrWorth::GPU]
+                .map(|worth| scene.lensing(&scene.observer().unwrap().frame, pixels, worth));
             assert!(cpu == gpu || (cpu, gpu) == (Lensing::Kerr, Lensing::Traced));
             gpu
         };

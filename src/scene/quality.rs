@@ -35,7 +35,7 @@ pub struct Quality {
     /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. Not the host's to choose.
     #[doc(hidden)]
     pub mapped_pixels: Option<bool>,
-    /// Whether one kernel serves all formats, tone maps and views' colours; `None`: on hardware. Not the host's to choose.
+    /// Whether one kernel serves all formats, tone maps and views' colours but the usual ones; `None`: on hardware. Not the host's to choose.
     #[doc(hidden)]
     pub kernels_for_any_film: Option<bool>,
     /// Whether pixels that edges run through get more rays; not the host's to choose.
