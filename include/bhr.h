@@ -1099,6 +1099,20 @@ BhrStatus bhr_set_progress(BhrContext *context,
 BhrStatus bhr_render_image(BhrContext *context,
                            const BhrImage *target);
 
+/**
+ * Makes now all that frames of the present scene need, so that the next ones take no longer than those after them:
+ * the GPU's programs (compiling one takes a driver 0.1 to 1 s where its own cache has none), tables and the sky. Frames
+ * do so themselves where it is missing; likely changes of the scene (spin, view, glare, projection ...) are also
+ * prepared in the background, at low priority, from bhr_context_create on.
+ *
+ * target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
+ * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: a window of 1920 x
+ * 1080. On a GPU it renders one frame that nobody sees, and takes at least as long; bhr_frame_stats does not
+ * count it. Waits for the job that is rendered just then. Any thread, not inside callbacks. Errors: as
+ * bhr_render_image.
+ */
+BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
+
 /* ---- rendering in the background ---- */
 
 /**

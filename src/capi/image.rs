@@ -109,13 +109,19 @@ pub(super) struct Given<'a> {
     pub transparent: bool,
 }
 
-/// Errors: INVALID_ARGUMENT for NULL or a field that breaks the rules of `BhrImage`.
+/// What an image is like, whatever its block. Errors: INVALID_ARGUMENT for NULL or a field that breaks the rules of `BhrImage`, `pixels`
+/// and `byte_size` aside.
 ///
 /// # Safety
-/// `image` is NULL or points to a BhrImage whose block is the host's during `'a`.
-pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Given<'a>> {
+/// `image` is NULL or points to a BhrImage.
+pub(super) unsafe fn read_layout(image: *const BhrImage, name: &str) -> Result<(Layout, u32)> {
     // SAFETY: this function's contract.
     let given = unsafe { versioned::read(image, name) }?;
+    layout(&given, name)
+}
+
+/// The layout and the flags.
+fn layout(given: &BhrImage, name: &str) -> Result<(Layout, u32)> {
     check_reserved(given.reserved, name)?;
     let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP;
     let flags = check_flags(given.flags, known, &format!("{name} flags"))?;
@@ -125,6 +131,18 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Give
         height: given.height,
         row_stride: given.row_stride,
     };
+    layout.check()?;
+    Ok((layout, flags))
+}
+
+/// Errors: INVALID_ARGUMENT for NULL or a field that breaks the rules of `BhrImage`.
+///
+/// # Safety
+/// `image` is NULL or points to a BhrImage whose block is the host's during `'a`.
+pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Given<'a>> {
+    // SAFETY: this function's contract.
+    let given = unsafe { versioned::read(image, name) }?;
+    let (layout, flags) = layout(&given, name)?;
     // SAFETY: the block of byte_size bytes is the host's, by this function's contract.
     let pixels = unsafe {
         match flags & BHR_IMAGE_BOTTOM_UP {

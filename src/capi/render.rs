@@ -2,10 +2,12 @@
 
 use super::context::BhrContext;
 use super::entry::{self, on_context};
-use super::image::{self, BhrImage};
+use super::image::{self, BHR_IMAGE_TRANSPARENT, BhrImage};
 use super::log::User;
 use super::status::BhrStatus;
 use crate::error::{Error, ErrorKind};
+use crate::image::PixelFormat;
+use crate::image::memory::Layout;
 use std::ffi::c_void;
 
 /// Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
@@ -97,6 +99,37 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
                 Err(_) => {}
             }
             frame
+        })
+    }
+}
+
+/// Size of the window that bhr_prepare thinks of without a target.
+const WINDOW: [u32; 2] = [1920, 1080];
+
+/// Makes now all that frames of the present scene need, so that the next ones take no longer than those after them:
+/// the GPU's programs (compiling one takes a driver 0.1 to 1 s where its own cache has none), tables and the sky. Frames
+/// do so themselves where it is missing; likely changes of the scene (spin, view, glare, projection ...) are also
+/// prepared in the background, at low priority, from bhr_context_create on.
+///
+/// target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
+/// RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: a window of 1920 x
+/// 1080. On a GPU it renders one frame that nobody sees, and takes at least as long; bhr_frame_stats does not
+/// count it. Waits for the job that is rendered just then. Any thread, not inside callbacks. Errors: as
+/// bhr_render_image.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_prepare", context, |state| {
+            let (layout, flags, region) = match target.is_null() {
+                true => (Layout::packed(PixelFormat::Rgba8Srgb, WINDOW[0], WINDOW[1]), 0, None),
+                false => {
+                    let (layout, flags) = image::read_layout(target, "target")?;
+                    (layout, flags, state.region)
+                }
+            };
+            let transparent = flags & BHR_IMAGE_TRANSPARENT != 0;
+            state.renderer.prepare(layout.format, [layout.width, layout.height], transparent, region)
         })
     }
 }

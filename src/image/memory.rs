@@ -87,7 +87,7 @@ impl Layout {
 
     /// Bytes of the block, (height - 1) |stride| + one row, and the stride. Errors: sides or stride out of their
     /// ranges.
-    fn check(&self) -> Result<(usize, isize)> {
+    pub fn check(&self) -> Result<(usize, isize)> {
         for (name, side) in [("width", self.width), ("height", self.height)] {
             if side == 0 || side > MAX_SIDE {
                 return Err(Error::argument(format!("image {name} is {side}; it must lie in [1, {MAX_SIDE}]")));

@@ -232,6 +232,39 @@ static void history(BhrContext *context) {
     free(before);
 }
 
+/* ---- prepared frames ---- */
+
+/* What was prepared is rendered as it would have been, and no frame is counted. */
+static void prepared(BhrContext *context) {
+    BhrFrameStats  before, after;
+    unsigned char *unprepared = packed_frame(context, BHR_FORMAT_RGBA8_SRGB);
+    before.struct_size = after.struct_size = sizeof before;
+    CHECK_OK(bhr_set_spin(context, 0.3));
+    CHECK_OK(bhr_frame_stats(context, &before));
+    const BhrImage nowhere = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, NULL, 0);
+    CHECK_OK(bhr_prepare(context, &nowhere));
+    CHECK_OK(bhr_frame_stats(context, &after));
+    CHECK(after.frame_index == before.frame_index, "frame %u after %u", (unsigned)after.frame_index,
+          (unsigned)before.frame_index);
+    CHECK_OK(bhr_set_spin(context, 0.0));
+    unsigned char *later = packed_frame(context, BHR_FORMAT_RGBA8_SRGB);
+    CHECK(memcmp(later, unprepared, WIDTH * HEIGHT * 4) == 0, "a frame changed");
+    free(later), free(unprepared);
+
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_prepare(NULL, &nowhere));
+    BhrImage bad = nowhere;
+    bad.width = 0;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "width is 0", bhr_prepare(context, &bad));
+    bad = nowhere, bad.format = 77;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "format is 77", bhr_prepare(context, &bad));
+    bad = nowhere, bad.flags = 1u << 30;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_prepare(context, &bad));
+    bad = nowhere, bad.struct_size = 1;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_prepare(context, &bad));
+    bad = nowhere, bad.format = BHR_FORMAT_R32F;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "R32F", bhr_prepare(context, &bad));
+}
+
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
     BhrContext      *context = check_context(backend);
@@ -241,6 +274,7 @@ int main(int argc, char **argv) {
     tile_rays(context);
     formats_agree(context);
     history(context);
+    prepared(context);
     transparent(context);
     BhrQuality quality;
     CHECK_OK(bhr_quality_init(&quality, sizeof quality));
