@@ -50,12 +50,14 @@ const CHANGES: [Change; 14] = [
 #[test]
 fn frames_list_every_kernel_that_they_run() {
     let mut renderer = renderer();
+    // Opening the device makes one by itself.
+    let at_first = missing(&renderer)[1];
     for (index, change) in CHANGES.iter().enumerate() {
         change(&mut renderer.scene);
         for mapped in [false, true] {
             renderer.scene.quality.mapped_pixels = Some(mapped);
             render(&mut renderer, PixelFormat::Rgba8Srgb);
-            assert_eq!(missing(&renderer)[1], 0, "change {index}, mapped {mapped}");
+            assert_eq!(missing(&renderer)[1], at_first, "change {index}, mapped {mapped}");
         }
     }
 }

@@ -151,7 +151,7 @@ impl Drop for Scope {
 /// The scope that this thread is in, for a thread that works for it.
 fn scope_of_caller() -> ThreadScope {
     let sink = CURRENT.try_with(|current| (*current.borrow()).clone()).ok();
-    let sink = sink.map_or(None, ManuallyDrop::into_inner);
+    let sink = sink.and_then(ManuallyDrop::into_inner);
     Arc::new(move || Box::new(Scope { before: change_current(sink.clone()) }))
 }
 

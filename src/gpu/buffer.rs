@@ -45,7 +45,7 @@ impl Device {
         let done = match self.backend() {
             #[cfg(not(target_vendor = "apple"))]
             Backend::Vulkan => while_it_exists::<wgpu::hal::api::Vulkan, _>(buffer, work),
-            #[cfg(not(target_vendor = "apple"))]
+            #[cfg(all(feature = "gl", not(target_vendor = "apple")))]
             Backend::Gl => while_it_exists::<wgpu::hal::api::Gles, _>(buffer, work),
             #[cfg(target_vendor = "apple")]
             Backend::Metal => while_it_exists::<wgpu::hal::api::Metal, _>(buffer, work),

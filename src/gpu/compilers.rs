@@ -5,6 +5,7 @@ use super::Device;
 use super::kernel_key::KernelKey;
 use super::kernels::Store;
 use crate::error::Result;
+use crate::thread_scope;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -87,11 +88,15 @@ impl Compilers {
     pub fn make_now(&self, store: &Arc<Store>, device: &Arc<Device>, missing: Vec<KernelKey>) -> Wanted {
         let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
         let left = Arc::new(Mutex::new(missing.iter().copied().collect::<VecDeque<_>>()));
+        let scope = thread_scope::of_caller();
         let mut queue = lock(&self.queue);
         for _ in 0..helpers {
-            let (left, store, device) = (left.clone(), store.clone(), device.clone());
+            let (left, store, device, scope) = (left.clone(), store.clone(), device.clone(), scope.clone());
             // A machine that has no more threads makes do with fewer.
-            let work = move || while make_next(&left, &store, &device) {};
+            let work = move || {
+                let _scope = scope();
+                while make_next(&left, &store, &device) {}
+            };
             let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { break };
             queue.keep(thread);
         }
@@ -103,7 +108,9 @@ impl Compilers {
         if !self.threads {
             return;
         }
+        let scope = thread_scope::of_caller();
         let work = move || {
+            let _scope = scope();
             lower_priority();
             if catch_unwind(AssertUnwindSafe(work)).is_err() {
                 log::debug!("work ahead of a frame panicked; the frame will do it again");
@@ -126,7 +133,11 @@ impl Compilers {
         let most = cores().div_ceil(2).min(MOST_BEHIND);
         while queue.running < most.min(queue.keys.len()) {
             let (shared, store, device) = (self.queue.clone(), store.clone(), device.clone());
-            let work = move || make_behind(&shared, &store, &device);
+            let scope = thread_scope::of_caller();
+            let work = move || {
+                let _scope = scope();
+                make_behind(&shared, &store, &device);
+            };
             let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { return };
             queue.running += 1;
             queue.keep(thread);
