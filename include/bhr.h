@@ -395,7 +395,7 @@ BhrStatus bhr_context_recover(BhrContext *context);
 
 /**
  * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then
- * frees it. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
+ * frees it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
  * no-op. No callback runs after it has returned. No other thread may begin a call on it any more. From inside a
  * callback it does nothing, as the context is in use: bhr_error_message then says so.
  */

@@ -158,16 +158,21 @@ impl Tracer {
     fn on_gpu(adapter: Adapter) -> Result<Self> {
         match adapter.info.backend {
             Backend::Gl => GlTracer::open(adapter).map(|t| Self::Gl(Box::new(t))),
-            _ => GpuTracer::new(adapter).map(|t| Self::Gpu(Box::new(t))),
+            _ => {
+                let name = adapter.info.name.clone();
+                let opened = catch_unwind(AssertUnwindSafe(|| GpuTracer::new(adapter)));
+                let panicked = |_| Err(Error::new(ErrorKind::NoAdapter, format!("{name}: opening it panicked")));
+                opened.unwrap_or_else(panicked).map(|t| Self::Gpu(Box::new(t)))
+            }
         }
     }
 
     /// Makes all that such frames need, and keeps it. Errors: as `Renderer::render`.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
         match self {
             Self::Cpu(t) => t.prepare(scene, request),
-            Self::Gpu(t) => t.prepare(scene, request),
-            Self::Gl(t) => t.prepare(scene, request),
+            Self::Gpu(t) => t.prepare(scene, request, progress),
+            Self::Gl(t) => t.prepare(scene, request, progress),
         }
     }
 
@@ -497,9 +502,10 @@ impl Renderer {
         size: [u32; 2],
         transparent: bool,
         region: Option<Region>,
+        progress: &mut Progress<'_>,
     ) -> Result<()> {
         let request = self.request(format, size, transparent, region)?;
-        self.tracer.lock().prepare(&self.scene, &request)
+        self.tracer.lock().prepare(&self.scene, &request, progress)
     }
 
     /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is

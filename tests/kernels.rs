@@ -67,7 +67,7 @@ fn after_prepare_frames_wait_for_no_pipeline() {
     let mut renderer = renderer();
     for (index, change) in CHANGES.iter().enumerate().filter(|(index, _)| [0, 3, 4, 7].contains(index)) {
         change(&mut renderer.scene);
-        renderer.prepare(PixelFormat::Rgba8Srgb, SIZE, false, None).unwrap();
+        renderer.prepare(PixelFormat::Rgba8Srgb, SIZE, false, None, &mut |_| true).unwrap();
         let before = missing(&renderer);
         render(&mut renderer, PixelFormat::Rgba8Srgb);
         assert_eq!(missing(&renderer), before, "change {index}");
@@ -77,6 +77,7 @@ fn after_prepare_frames_wait_for_no_pipeline() {
 #[test]
 fn what_a_host_changes_next_is_made_in_the_background() {
     let mut renderer = renderer();
+    renderer.scene.quality.anticipates = Some(true);
     render(&mut renderer, PixelFormat::Rgba8Srgb);
     let before = missing(&renderer);
     for change in [CHANGES[1], CHANGES[3], |scene: &mut Scene| scene.view = View::Order] {

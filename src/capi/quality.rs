@@ -96,6 +96,7 @@ impl TryFrom<BhrQuality> for Quality {
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
             kernels_for_any_film: None,
+            anticipates: None,
             refines: true,
             keep_light: None,
         };

@@ -129,7 +129,9 @@ pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const Bh
                 }
             };
             let transparent = flags & BHR_IMAGE_TRANSPARENT != 0;
-            state.renderer.prepare(layout.format, [layout.width, layout.height], transparent, region)
+            let mut report = Report::new(state.progress);
+            let mut progress = |fraction| report.tell(fraction);
+            state.renderer.prepare(layout.format, [layout.width, layout.height], transparent, region, &mut progress)
         })
     }
 }

@@ -24,7 +24,7 @@ use std::ops::Range;
 const LIKE: f64 = 1e-2;
 
 /// All but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast as so many rays are traced.
-const KERR_RESOLUTION: kerr::Resolution = kerr::Resolution { chi_nodes: 256, nodes_per_octave: [12; 2] };
+const KERR_RESOLUTION: kerr::Resolution = kerr::Resolution { chi_nodes: 256, nodes_per_octave: [16; 2] };
 
 /// The tables of the last frame that looked rays up in some.
 #[derive(Default)]

@@ -84,14 +84,14 @@ pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
         list.into_iter().filter_map(|raw| usable(raw, instance.clone(), None)).collect::<Vec<_>>()
     };
     let mut list = match search {
-        Search::All => [native(), gl()].into_iter().flatten().collect(),
+        Search::All => [native(), gl().unwrap_or_default()].into_iter().flatten().collect(),
         Search::Native => native(),
         Search::Auto => match native() {
             list if list.iter().any(|found| !found.adapter.info.software) => list,
             list => [list, gl_hardware()].into_iter().flatten().collect(),
         },
         Search::Only(Backend::Cpu) => Vec::new(),
-        Search::Only(Backend::Gl) => gl(),
+        Search::Only(Backend::Gl) => gl().unwrap_or_default(),
         Search::Only(backend) => {
             let mut list = native();
             list.retain(|found| found.adapter.info.backend == backend);
@@ -157,10 +157,10 @@ fn native(validation: bool) -> Found {
 }
 
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
-/// once. None without the feature `gl`.
-fn gl() -> Vec<Usable> {
+/// once. None without the feature `gl`; `None` when the search itself failed.
+fn gl() -> Option<Vec<Usable>> {
     if !cfg!(feature = "gl") {
-        return Vec::new();
+        return Some(Vec::new());
     }
     let search = || -> Result<Vec<Usable>> {
         let thread = GlThread::start()?;
@@ -172,10 +172,7 @@ fn gl() -> Vec<Usable> {
             list.into_iter().filter_map(|raw| usable(raw, None, Some(thread.clone()))).collect()
         })
     };
-    search().unwrap_or_else(|error| {
-        log::info!("adapters of GL passed over: {error}");
-        Vec::new()
-    })
+    search().inspect_err(|error| log::info!("adapters of GL passed over: {error}")).ok()
 }
 
 /// Those of [`gl`] that are no software.
@@ -183,7 +180,7 @@ fn gl_hardware() -> Vec<Usable> {
     if NO_GL_HARDWARE.load(Ordering::Relaxed) {
         return Vec::new();
     }
-    let mut list = gl();
+    let Some(mut list) = gl() else { return Vec::new() };
     list.retain(|found| !found.adapter.info.software);
     NO_GL_HARDWARE.store(list.is_empty(), Ordering::Relaxed);
     list

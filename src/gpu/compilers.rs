@@ -3,7 +3,8 @@
 
 use super::Device;
 use super::kernel_key::KernelKey;
-use super::kernels::Store;
+use super::kernels::{Compiled, Store};
+use crate::deferred::hold;
 use crate::error::Result;
 use crate::thread_scope;
 use std::collections::VecDeque;
@@ -45,11 +46,18 @@ pub struct Wanted {
     left: Arc<Mutex<VecDeque<KernelKey>>>,
 }
 
+impl Drop for Wanted {
+    /// A frame that failed before wants nothing more.
+    fn drop(&mut self) {
+        self.left.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+}
+
 impl Wanted {
     /// Takes part in making them until all are there. Errors: the first one's.
     pub fn finish(self, store: &Store, device: &Device) -> Result<()> {
         while make_next(&self.left, store, device) {}
-        self.keys.into_iter().try_for_each(|key| store.get(device, key).map(drop))
+        self.keys.iter().copied().try_for_each(|key| store.get(device, key).map(drop))
     }
 }
 
@@ -57,15 +65,17 @@ impl Wanted {
 fn make_next(left: &Mutex<VecDeque<KernelKey>>, store: &Store, device: &Device) -> bool {
     let key = left.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
     if let Some(key) = key {
-        make(key, store, device);
+        make(store, |store| store.get(device, key));
     }
     key.is_some()
 }
 
 /// What fails is left for the frame that needs it.
-fn make(key: KernelKey, store: &Store, device: &Device) {
+fn make(store: &Store, make_it: impl FnOnce(&Store) -> Result<Compiled>) {
+    // A host's callback hears of it once those who wait for the pipeline have it.
+    let _holding = hold();
     // Unwind safe: the store settles a pipeline whose making panics.
-    if !matches!(catch_unwind(AssertUnwindSafe(|| store.get(device, key))), Ok(Ok(_))) {
+    if !matches!(catch_unwind(AssertUnwindSafe(|| make_it(store))), Ok(Ok(_))) {
         log::debug!("a pipeline could not be made; the frame that needs it will tell why");
     }
 }
@@ -173,7 +183,7 @@ fn make_behind(queue: &Mutex<Queue>, store: &Store, device: &Device) {
             key
         };
         let Some(key) = key else { return };
-        make(key, store, device);
+        make(store, |store| store.get_ahead(device, key));
     }
 }
 
@@ -182,11 +192,13 @@ fn make_behind(queue: &Mutex<Queue>, store: &Store, device: &Device) {
 fn lower_priority() {
     #[cfg(target_os = "linux")]
     {
-        const NICE: i32 = 5;
+        const NICER: i32 = 5;
+        const NICEST: i32 = 19;
         // SAFETY: plain system calls on this thread.
         unsafe {
             let thread = libc::syscall(libc::SYS_gettid) as libc::id_t;
-            libc::setpriority(libc::PRIO_PROCESS, thread, NICE);
+            let own = libc::getpriority(libc::PRIO_PROCESS, thread);
+            libc::setpriority(libc::PRIO_PROCESS, thread, (own + NICER).min(NICEST));
         }
     }
 }

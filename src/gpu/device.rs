@@ -212,6 +212,7 @@ impl Device {
 
     /// Runs `work`, and what wgpu had against it.
     fn watched<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
+        driver_lock::guard();
         let _holding = hold();
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
@@ -308,6 +309,7 @@ impl Device {
 
     /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
     fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+        driver_lock::guard();
         let _holding = hold();
         catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
             self.health.lose(panic_text(&*panic));

@@ -3,8 +3,12 @@
 //! (gfx-rs/wgpu #5930, kvark/blade #336), devices and their first pipelines (gfx-rs/wgpu #10234; on an H200 with
 //! 580.159.04 in 1 of 8 runs of four threads), and ending them (gfx-rs/wgpu #8365). Knows no wgpu.
 //!
+//! A thread that ends runs the driver's thread-exit handlers, which take locks of the driver's; vkDestroyDevice takes them too and waits
+//! for the driver's own threads, which end the same way. On the H200 that hung one of eight to thirteen runs of tests/gpu_device for ever
+//! (backtrace: vkDestroyDevice in pthread_join, two ending threads in handlers of libEGL_nvidia and libnvidia-eglcore).
+//!
 //! So the lock is held while an instance is made or dropped, adapters are listed, a device is opened, until it has its
-//! first pipeline, and while the device is dropped. Who holds it waits for no other thread and calls no host: messages
+//! first pipeline, and while the device is dropped; on Linux also while a thread that has used a driver runs the handlers of its end. Who holds it waits for no other thread and calls no host: messages
 //! wait (`deferred`).
 
 use crate::deferred::{Holding, hold};
@@ -21,6 +25,7 @@ pub struct Alone {
 }
 
 pub fn lock() -> Alone {
+    thread_end::guard();
     let holding = hold();
     Alone { _lock: DRIVER.lock(), _holding: holding }
 }
@@ -28,4 +33,96 @@ pub fn lock() -> Alone {
 /// Whether this thread holds it: for tests.
 pub fn is_held() -> bool {
     DRIVER.is_owned_by_current_thread()
+}
+
+pub use thread_end::guard;
+
+/// The end of threads that have used a driver.
+#[cfg(target_os = "linux")]
+mod thread_end {
+    use super::DRIVER;
+    use std::cell::Cell;
+    use std::ffi::c_void;
+    use std::ptr::without_provenance_mut;
+    use std::sync::OnceLock;
+
+    /// A key of the system's for values of threads, whose handler runs at a thread's end. The keys' handlers run in the order in
+    /// which the keys were made, so it is made before a driver is loaded; and once more in a second round if the handler sets the
+    /// value again. So the lock is held from its first turn, before the driver's handlers, to its second, after them.
+    static KEY: OnceLock<Option<libc::pthread_key_t>> = OnceLock::new();
+
+    const USES_DRIVER: usize = 1;
+    const HOLDS_LOCK: usize = 2;
+
+    thread_local!(static GUARDED: Cell<bool> = const { Cell::new(false) });
+
+    /// To be called by each thread before it uses a driver.
+    pub fn guard() {
+        if GUARDED.try_with(|guarded| guarded.replace(true)).unwrap_or(true) {
+            return;
+        }
+        let key = KEY.get_or_init(|| {
+            let mut key = 0;
+            // SAFETY: the handler lives as long as the process, as the library is never unmapped.
+            (unsafe { libc::pthread_key_create(&mut key, Some(on_end)) } == 0).then_some(key)
+        });
+        if let Some(key) = key {
+            set(*key, USES_DRIVER);
+        }
+    }
+
+    fn set(key: libc::pthread_key_t, value: usize) -> bool {
+        // SAFETY: the key exists; the value is a number, and no memory.
+        unsafe { libc::pthread_setspecific(key, without_provenance_mut(value)) == 0 }
+    }
+
+    unsafe extern "C" fn on_end(value: *mut c_void) {
+        let Some(Some(key)) = KEY.get() else { return };
+        if value.addr() == HOLDS_LOCK {
+            // SAFETY: this thread holds it since its first turn.
+            unsafe { DRIVER.force_unlock() };
+        } else if set(*key, HOLDS_LOCK) {
+            std::mem::forget(DRIVER.lock());
+        }
+    }
+
+    #[cfg(test)]
+    mod tests {
+        use super::super::{guard, is_held};
+        use super::*;
+        use std::sync::atomic::{AtomicU32, Ordering};
+
+        static SEEN: AtomicU32 = AtomicU32::new(0);
+
+        /// In the place of a driver's handler: counts the ends of threads that hold the lock, and of those that do not.
+        unsafe extern "C" fn at_end(_: *mut c_void) {
+            SEEN.fetch_add(if is_held() { 1 } else { 1 << 16 }, Ordering::Relaxed);
+        }
+
+        #[test]
+        fn a_thread_that_used_a_driver_ends_alone() {
+            guard();
+            let mut of_driver = 0;
+            // SAFETY: the handler lives as long as the test.
+            assert_eq!(unsafe { libc::pthread_key_create(&mut of_driver, Some(at_end)) }, 0);
+            for (uses, seen) in [(true, 1), (true, 2), (false, 2 + (1 << 16))] {
+                let thread = std::thread::spawn(move || {
+                    if uses {
+                        guard();
+                    }
+                    set(of_driver, USES_DRIVER);
+                    assert!(!is_held());
+                });
+                thread.join().unwrap();
+                assert_eq!(SEEN.load(Ordering::Relaxed), seen);
+                // It is released again.
+                std::thread::spawn(|| drop(super::super::lock())).join().unwrap();
+            }
+        }
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+mod thread_end {
+    pub fn guard() {}
 }

@@ -135,7 +135,7 @@ impl GpuTracer {
     }
 
     /// Makes all that frames of the scene like this one need, in windows too, and keeps it. Errors: as `Renderer::render`.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
         let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
         if request.format == PixelFormat::Rgba8Srgb && !request.transparent {
             keys.extend(self.set_up(scene, request, PixelTarget::Screen)?.kernels());
@@ -143,7 +143,7 @@ impl GpuTracer {
         let wanted = self.kernels.begin(&keys);
         self.kernels.finish(wanted)?;
         // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as well.
-        self.render(scene, request, &mut |_, _, _| Ok(()), &mut |_| true).map(|_| ())
+        self.render(scene, request, &mut |_, _, _| Ok(()), progress).map(|_| ())
     }
 
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as `Renderer::render`;

@@ -5,7 +5,7 @@ use super::GpuTracer;
 use super::frame::Setup;
 use super::kernel_key::{KernelKey, PixelTarget, Refined, Source};
 use crate::image::PixelFormat;
-use crate::renderer::FrameRequest;
+use crate::renderer::{Backend, FrameRequest};
 use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMap, View};
 use crate::sky::SkyMap;
 
@@ -90,6 +90,9 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     list
 }
 
+/// Kinds of frames whose followers are anticipated, at most.
+const MOST_KINDS: usize = 64;
+
 /// What many hosts begin with.
 const FIRST_SIZE: [u32; 2] = [1920, 1080];
 
@@ -109,8 +112,8 @@ impl GpuTracer {
         });
     }
 
-    /// Kernels of the frames that may follow a frame of `scene`, which takes `needed`, to be made in the background. Only when
-    /// the frame is of another kind than the one before.
+    /// Kernels of the frames that may follow a frame of `scene`, which takes `needed`, to be made in the background. Only for the
+    /// first frame of its kind.
     pub(super) fn anticipate(
         &mut self,
         scene: &Scene,
@@ -118,7 +121,11 @@ impl GpuTracer {
         target: PixelTarget,
         needed: Vec<KernelKey>,
     ) {
-        if self.needed == needed {
+        let info = &self.adapter.info;
+        let anticipates = scene.quality.anticipates.unwrap_or(!info.software && info.backend != Backend::Gl);
+        // A host that has shown more kinds of frames than these has been to where it goes.
+        let known = self.anticipated.contains(&needed) || self.anticipated.len() >= MOST_KINDS;
+        if known || !anticipates {
             return;
         }
         let next = neighbours(scene).into_iter().filter_map(|next| self.set_up(&next, request, target).ok());
@@ -128,7 +135,7 @@ impl GpuTracer {
                 keys.push(key);
             }
         }
-        self.needed = needed;
+        self.anticipated.insert(needed);
         self.kernels.anticipate(keys);
     }
 }

@@ -114,11 +114,24 @@ impl GlTracer {
         sink: &mut TileSink<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
+        self.call_with_progress(progress, |tracer, progress| tracer.render(scene, request, sink, progress))
+    }
+
+    /// As [`GpuTracer::prepare`]; `progress` runs on this thread.
+    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
+        self.call_with_progress(progress, |tracer, progress| tracer.prepare(scene, request, progress))
+    }
+
+    fn call_with_progress<T: Send>(
+        &mut self,
+        progress: &mut Progress<'_>,
+        work: impl FnOnce(&mut GpuTracer, &mut Progress<'_>) -> Result<T> + Send,
+    ) -> Result<T> {
         let (ask, asked) = mpsc::channel();
         let (answer, answered) = mpsc::channel();
         let work = move |tracer: &mut GpuTracer| {
             let mut progress = |fraction: f64| ask.send(fraction).is_ok() && answered.recv().unwrap_or(false);
-            tracer.render(scene, request, sink, &mut progress)
+            work(tracer, &mut progress)
         };
         self.call_beside(work, move || {
             // Ends when the work has ended, which drops the other end.
@@ -126,11 +139,6 @@ impl GlTracer {
                 let _ = answer.send(progress(fraction));
             }
         })
-    }
-
-    /// As [`GpuTracer::prepare`].
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
-        self.call(|tracer| tracer.prepare(scene, request))
     }
 
     /// As [`GpuTracer::trace_rays`].

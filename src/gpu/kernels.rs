@@ -26,8 +26,9 @@ pub struct Stage {
     group: [u32; 2],
 }
 
-/// Pipelines that a device keeps. On software drivers each takes a megabyte or two of the host's memory.
+/// Pipelines that a device keeps, on hardware and on software drivers, where each that has run takes some 6 MiB of the host's memory.
 const MOST_KERNELS: usize = 160;
+const MOST_KERNELS_SOFTWARE: usize = 48;
 
 /// The pipelines of one device.
 pub struct Kernels {
@@ -51,6 +52,8 @@ pub struct KernelWaits {
 /// The pipelines that are there or being made; shared with the threads that make them.
 pub(super) struct Store {
     state: Mutex<State>,
+    /// Pipelines that are kept.
+    most: usize,
     /// A pipeline is there, or could not be made.
     settled: Condvar,
 }
@@ -78,6 +81,15 @@ impl Store {
     /// The kernel's pipeline, made now unless it is there; waits for a thread that is making it. Errors: as
     /// [`Device::compute_pipeline`].
     pub(super) fn get(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
+        self.get_for(device, key, false)
+    }
+
+    /// The same for frames that may come: takes the place of no pipeline that a frame has used.
+    pub(super) fn get_ahead(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
+        self.get_for(device, key, true)
+    }
+
+    fn get_for(&self, device: &Device, key: KernelKey, ahead: bool) -> Result<Compiled> {
         let mut state = self.lock();
         loop {
             match state.made.get(&key) {
@@ -95,7 +107,7 @@ impl Store {
         }
         state.made.insert(key, Progress::Making);
         drop(state);
-        let settling = Settling { store: self, key, made: None };
+        let settling = Settling { store: self, key, ahead, made: None };
         settling.settle(self.compile(device, key))
     }
 
@@ -134,7 +146,7 @@ impl Store {
             })
             .collect::<Vec<_>>();
         let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-        let layout = device.scoped("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
+        let layout = device.beside("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
         state.layouts.insert(slots.into(), layout.clone());
         Ok(layout)
     }
@@ -144,6 +156,8 @@ impl Store {
 struct Settling<'a> {
     store: &'a Store,
     key: KernelKey,
+    /// No frame has asked for it yet.
+    ahead: bool,
     made: Option<Compiled>,
 }
 
@@ -159,9 +173,10 @@ impl Drop for Settling<'_> {
         match self.made.take() {
             Some(compiled) => {
                 state.made.insert(self.key, Progress::Made(compiled));
-                state.used.push(self.key);
+                let place = if self.ahead { 0 } else { state.used.len() };
+                state.used.insert(place, self.key);
                 // The oldest go first.
-                let too_many = state.used.len().saturating_sub(MOST_KERNELS);
+                let too_many = state.used.len().saturating_sub(self.store.most);
                 let old = state.used.drain(..too_many).collect::<Vec<_>>();
                 old.iter().for_each(|key| drop(state.made.remove(key)));
             }
@@ -173,8 +188,10 @@ impl Drop for Settling<'_> {
 }
 
 impl Kernels {
-    pub fn new(device: Arc<Device>, threads: bool) -> Self {
-        let store = Arc::new(Store { state: Mutex::default(), settled: Condvar::new() });
+    /// `threads`: whether the device may be used from several.
+    pub fn new(device: Arc<Device>, threads: bool, software: bool) -> Self {
+        let most = if software { MOST_KERNELS_SOFTWARE } else { MOST_KERNELS };
+        let store = Arc::new(Store { state: Mutex::default(), most, settled: Condvar::new() });
         Self { compilers: Compilers::new(threads), store, device, waits: AtomicU64::new(0), late: AtomicU64::new(0) }
     }
 

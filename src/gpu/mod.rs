@@ -62,6 +62,7 @@ use crate::renderer::Backend;
 use crate::scene::{Method, Projection, Scene};
 use kernel_key::{KernelKey, Variant};
 use kernels::Kernels;
+use std::collections::HashSet;
 use std::sync::Arc;
 use tables::Tables;
 
@@ -73,8 +74,8 @@ const RAY_STEP: f64 = 0.2;
 /// Traces on one device.
 pub struct GpuTracer {
     kernels: Kernels,
-    /// The kernels of the last frame that was begun.
-    needed: Vec<KernelKey>,
+    /// The kernels of each kind of frame whose followers were anticipated.
+    anticipated: HashSet<Vec<KernelKey>>,
     /// Made when light is first shaded.
     tables: Option<Tables>,
     buffers: frame_buffers::FrameBuffers,
@@ -90,7 +91,7 @@ impl GpuTracer {
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Arc::new(Device::open(&adapter)?);
         // All of a GL device shares one context, which two threads cannot use at once.
-        let kernels = Kernels::new(device.clone(), adapter.info.backend != Backend::Gl);
+        let kernels = Kernels::new(device.clone(), adapter.info.backend != Backend::Gl, adapter.info.software);
         // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a device's first
         // pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by side.
         kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
@@ -98,7 +99,7 @@ impl GpuTracer {
             adapter: Arc::new(adapter),
             device,
             kernels,
-            needed: Vec::new(),
+            anticipated: HashSet::new(),
             tables: None,
             buffers: Default::default(),
             ray_buffers: Default::default(),

@@ -52,7 +52,7 @@ impl Device {
     /// Compiles a kernel; the driver may put its own part off to the first dispatch. Several threads may, whoever uses the device meanwhile.
     ///
     /// Errors: `Internal` with wgpu's message for source that is not valid, an unknown entry point or constant, or a layout
-    /// that does not fit, or when the device was lost a moment ago ([`Device::explain`] tells); `OutOfMemory`; `DeviceLost`.
+    /// that does not fit, or when the device was lost a moment ago (`Device::explain` tells); `OutOfMemory`; `DeviceLost`.
     pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
         let started = Instant::now();
         let module = self.module(kernel)?;

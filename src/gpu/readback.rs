@@ -175,7 +175,7 @@ pub struct Arrived<'a> {
 }
 
 impl Arrived<'_> {
-    /// Hands the bytes of `range`, from the piece's begin, to `take`, as [`Device::while_it_exists`] does. Large pieces
+    /// Hands the bytes of `range`, from the piece's begin, to `take`, as `Device::while_it_exists` does. Large pieces
     /// are better taken in parts.
     ///
     /// Errors: those of `take`; `DeviceLost`; `Internal` for bytes that the piece has not.

@@ -29,9 +29,9 @@ pub struct KerrWorth(u64);
 
 impl KerrWorth {
     pub const GPU: Self = Self(500_000);
-    /// At spin 0.9, r = 30 M building takes as long as 75,000 pixels (85,000 with turbulence) and reading a fifth of what integration takes;
-    /// at spin 0.998, r = 8 M a third.
-    pub const CPU: Self = Self(110_000);
+    /// At spin 0.9, r = 30 M building takes as long as 100,000 pixels (115,000 with turbulence) and reading a fifth of what integration
+    /// takes; at spin 0.998, r = 8 M a third.
+    pub const CPU: Self = Self(140_000);
 }
 
 /// Orders of crossings that tables within 32 MB hold with azimuth and delay (without: four times as many): for all eyes, and for those

@@ -38,6 +38,10 @@ pub struct Quality {
     /// Whether one kernel serves all formats, tone maps and views' colours but the usual ones; `None`: on hardware. Not the host's to choose.
     #[doc(hidden)]
     pub kernels_for_any_film: Option<bool>,
+    /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put most of their work off
+    /// until a kernel runs. Not the host's to choose.
+    #[doc(hidden)]
+    pub anticipates: Option<bool>,
     /// Whether pixels that edges run through get more rays; not the host's to choose.
     #[doc(hidden)]
     pub refines: bool,
@@ -59,6 +63,7 @@ impl Default for Quality {
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
             kernels_for_any_film: None,
+            anticipates: None,
             refines: true,
             keep_light: None,
         }

@@ -235,9 +235,12 @@ static void history(BhrContext *context) {
 /* ---- prepared frames ---- */
 
 /* What was prepared is rendered as it would have been, and no frame is counted. */
-static void prepared(BhrContext *context) {
-    BhrFrameStats  before, after;
-    unsigned char *unprepared = packed_frame(context, BHR_FORMAT_RGBA8_SRGB);
+static void prepared(BhrContext *context, BhrBackend backend) {
+    BhrFrameStats before, after;
+    BhrContext   *other = check_context(backend);
+    CHECK_OK(bhr_set_spin(other, 0.3));
+    unsigned char *unprepared = packed_frame(other, BHR_FORMAT_RGBA8_SRGB);
+    bhr_context_destroy(other);
     before.struct_size = after.struct_size = sizeof before;
     CHECK_OK(bhr_set_spin(context, 0.3));
     CHECK_OK(bhr_frame_stats(context, &before));
@@ -246,11 +249,12 @@ static void prepared(BhrContext *context) {
     CHECK_OK(bhr_frame_stats(context, &after));
     CHECK(after.frame_index == before.frame_index, "frame %u after %u", (unsigned)after.frame_index,
           (unsigned)before.frame_index);
-    CHECK_OK(bhr_set_spin(context, 0.0));
     unsigned char *later = packed_frame(context, BHR_FORMAT_RGBA8_SRGB);
-    CHECK(memcmp(later, unprepared, WIDTH * HEIGHT * 4) == 0, "a frame changed");
+    CHECK(memcmp(later, unprepared, WIDTH * HEIGHT * 4) == 0, "a frame that was prepared is another one");
+    CHECK_OK(bhr_set_spin(context, 0.0));
     free(later), free(unprepared);
 
+    CHECK_OK(bhr_prepare(context, NULL));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_prepare(NULL, &nowhere));
     BhrImage bad = nowhere;
     bad.width = 0;
@@ -274,7 +278,7 @@ int main(int argc, char **argv) {
     tile_rays(context);
     formats_agree(context);
     history(context);
-    prepared(context);
+    prepared(context, backend);
     transparent(context);
     BhrQuality quality;
     CHECK_OK(bhr_quality_init(&quality, sizeof quality));
