@@ -61,8 +61,11 @@ pub(super) struct Store {
 #[derive(Default)]
 struct State {
     made: HashMap<KernelKey, Progress>,
-    /// Those of `made` that are there; the one used last comes last.
+    /// Those of `made` that are there: first those that no frame has asked for yet, the one made last being the last of them; then the
+    /// others, the one used last being the last.
     used: Vec<KernelKey>,
+    /// How many no frame has asked for yet.
+    ahead: usize,
     /// Kernels that bind the same share the layout, so that they can share groups.
     layouts: HashMap<Vec<Slot>, wgpu::BindGroupLayout>,
 }
@@ -71,6 +74,17 @@ enum Progress {
     /// By a thread that will say so when it is done.
     Making,
     Made(Compiled),
+}
+
+impl State {
+    /// A frame asks for a pipeline that is there.
+    fn note_use(&mut self, key: KernelKey) {
+        if let Some(place) = self.used.iter().position(|used| *used == key) {
+            self.ahead -= usize::from(place < self.ahead);
+            self.used.remove(place);
+            self.used.push(key);
+        }
+    }
 }
 
 impl Store {
@@ -95,8 +109,9 @@ impl Store {
             match state.made.get(&key) {
                 Some(Progress::Made(compiled)) => {
                     let compiled = compiled.clone();
-                    state.used.retain(|used| *used != key);
-                    state.used.push(key);
+                    if !ahead {
+                        state.note_use(key);
+                    }
                     return Ok(compiled);
                 }
                 Some(Progress::Making) => {
@@ -173,11 +188,13 @@ impl Drop for Settling<'_> {
         match self.made.take() {
             Some(compiled) => {
                 state.made.insert(self.key, Progress::Made(compiled));
-                let place = if self.ahead { 0 } else { state.used.len() };
+                let place = if self.ahead { state.ahead } else { state.used.len() };
                 state.used.insert(place, self.key);
+                state.ahead += usize::from(self.ahead);
                 // The oldest go first.
                 let too_many = state.used.len().saturating_sub(self.store.most);
                 let old = state.used.drain(..too_many).collect::<Vec<_>>();
+                state.ahead = state.ahead.saturating_sub(too_many);
                 old.iter().for_each(|key| drop(state.made.remove(key)));
             }
             None => drop(state.made.remove(&self.key)),
@@ -232,7 +249,13 @@ impl Kernels {
 
     /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an earlier
     /// call asked for and that were not begun. Without effect where a device may be used from one thread only.
-    pub fn anticipate(&self, keys: Vec<KernelKey>) {
+    pub fn anticipate(&self, mut keys: Vec<KernelKey>) {
+        let asked_for = {
+            let state = self.store.lock();
+            state.used.len() - state.ahead
+        };
+        // The less likely ones would take the places of the more likely ones.
+        keys.truncate(self.store.most.saturating_sub(asked_for));
         self.compilers.make_later(&self.store, &self.device, keys);
     }
 
