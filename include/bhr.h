@@ -25,12 +25,12 @@
  *   Prograde always means +ph about the axis, retrograde -ph; with spin < 0 the hole turns towards -ph.
  *
  * Errors
- *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message
- *   says what was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call
- *   fills in is NULL or 0 after a failure. Setters check their own argument only; what combinations forbid (a
- *   static camera inside the horizon, say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for.
- *   BHR_ERROR_INTERNAL means a bug in bhr: only bhr_context_destroy is valid on that context then. Below, errors
- *   are named without BHR_ERROR_; those that any call may return for NULL, from inside a callback or after
+ *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message says
+ *   what was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call fills in
+ *   is NULL or 0 after a failure. Setters check their own argument only; what combinations forbid (a static camera
+ *   inside the horizon, say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means
+ *   a bug in bhr: only destroy calls are valid on that context, its jobs and its surfaces then. Below, errors are
+ *   named without BHR_ERROR_; those that any call may return for NULL, from inside a callback or after
  *   BHR_ERROR_INTERNAL are not named each time.
  *
  * Structs
@@ -53,20 +53,19 @@
  *   call of its context has returned.
  *
  * Memory
- *   What takes more than some tens of kilobytes (frames, maps, tables, rays, star fields) is asked for in such a way
- *   that a refusal is BHR_ERROR_OUT_OF_MEMORY with the size, and given only while a megabyte is left after it; a thread
- *   that cannot be started is the same error. The context goes on, and so does the next call once there is memory.
- * Three
- *   things cannot be caught, and end the process where no memory is left: small allocations of the Rust runtime and of
- *   the thread pool; those of graphics drivers and loaders; and those of wgpu, through which GPUs are reached. Hosts
- *   that must outlive exhaustion use BHR_BACKEND_CPU, or keep some memory back to free when this error comes.
+ *   Memory for what takes more than some tens of kilobytes (frames, maps, tables, rays, star fields) is asked for in
+ *   such a way that a refusal is BHR_ERROR_OUT_OF_MEMORY, with the size; it is refused as well when less than a
+ *   megabyte would be left. A thread that cannot be started is the same error. The context stays usable, and the call
+ *   succeeds once there is memory again. Four things cannot be caught, and end the process where no memory is left:
+ *   small allocations of the Rust runtime and of the thread pool; those of graphics drivers and loaders; those of
+ *   wgpu, through which GPUs are reached; and those of image codecs, when other threads take the memory that was
+ *   found free before a file is read or written. Hosts that must survive this use BHR_BACKEND_CPU, or keep some
+ *   memory in reserve and free it when this error comes.
  *
  * The process
  *   The library never writes to stdout or stderr, never calls exit or abort (but see Memory), installs no signal
- * handler,
- *   and no Rust panic leaves it. It stays mapped after dlclose: graphics drivers leave thread-exit handlers behind.
- * After fork()
- *   the child may only exec: neither drivers nor threads live on in it.
+ *   handler, and lets no Rust panic out. It stays mapped after dlclose: graphics drivers leave thread-exit handlers
+ *   behind. After fork() the child may only exec: neither drivers nor threads live on in it.
  */
 
 #ifndef BHR_H
@@ -82,27 +81,27 @@ extern "C" {
 /* ---- version ---- */
 
 /**
- * Of this header. Before 1.0 a greater minor version may add functions and grow structs; it removes nothing within
- * one BHR_ABI_VERSION.
+ * This header's major version. Before 1.0 a greater minor version may add functions and grow structs; it removes
+ * nothing within one BHR_ABI_VERSION.
  */
 #define BHR_VERSION_MAJOR 0
 
-/** Of this header. */
+/** This header's minor version. */
 #define BHR_VERSION_MINOR 1
 
-/** Of this header. */
+/** This header's patch version. */
 #define BHR_VERSION_PATCH 0
 
-/** What bhr_context_create wants to be told: N of libbhr.so.N. */
+/** The value to pass to bhr_context_create: N of libbhr.so.N. */
 #define BHR_ABI_VERSION 0u
 
-/** Of the loaded library: major << 16 | minor << 8 | patch. Any thread, inside callbacks too. */
+/** The loaded library's version: major << 16 | minor << 8 | patch. Any thread, inside callbacks too. */
 uint32_t bhr_version(void);
 
 /** BHR_ABI_VERSION of the loaded library. Any thread, inside callbacks too. */
 uint32_t bhr_abi_version(void);
 
-/** Of the loaded library, such as "0.1.0"; static. Any thread, inside callbacks too. */
+/** The loaded library's version, such as "0.1.0"; static. Any thread, inside callbacks too. */
 const char *bhr_version_string(void);
 
 /* ---- status, messages ---- */
@@ -171,12 +170,12 @@ const char *bhr_status_name(BhrStatus status);
 typedef int32_t BhrLogLevel;
 
 /**
- * Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
- * for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
- * whichever thread the call runs, or on a thread of the library's that works for the call, which waits; one from
- * another thread goes to every context's callback. It may therefore run on several threads at once. It must not throw,
- * unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads'
- * calls on other contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
+ * Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives for
+ * the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on whichever
+ * thread the call runs, or on a thread of the library that works for that context; one from another thread goes to
+ * every context's callback. It may therefore run on several threads at once. It must not throw, unwind or longjmp.
+ * Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads' calls on other
+ * contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
  */
 typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
 
@@ -229,8 +228,9 @@ typedef struct BhrAdapterInfo {
 } BhrAdapterInfo;
 
 /**
- * The best GPU, whatever its interface; else a software driver (Mesa's lavapipe, for Vulkan), but none of OpenGL's,
- * which take seconds to begin; else the CPU tracer.
+ * The best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches; else a software
+ * driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which needs seconds for
+ * its first frame, is never chosen.
  */
 #define BHR_BACKEND_AUTO 0
 
@@ -247,22 +247,25 @@ typedef struct BhrAdapterInfo {
 #define BHR_BACKEND_D3D12 4
 
 /**
- * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library's makes all calls, and ends
- * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa it lives on the EGL
- * display without windows, which a process has only one of: bhr never terminates it; a host that does (eglTerminate)
- * brings BHR_ERROR_DEVICE_LOST to contexts of bhr's, and must not do so during a call or a job of theirs.
+ * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
+ * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
+ * uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
+ * (eglTerminate), contexts on this backend return BHR_ERROR_DEVICE_LOST; it must not do so while one of their calls
+ * or jobs is running.
  */
 #define BHR_BACKEND_GL 5
 
 /**
- * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than
- * GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+ * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than GL are
+ * looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors:
+ * INVALID_ARGUMENT for NULL.
  */
 BhrStatus bhr_adapter_count(uint32_t *out_count);
 
 /**
- * The adapter at index, best first. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong
- * struct_size, or an index not below bhr_adapter_count.
+ * The adapter at index: GPUs first, then software drivers, the CPU tracer last. BHR_BACKEND_AUTO need not take the
+ * first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong struct_size, or an index
+ * not below bhr_adapter_count.
  */
 BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
 
@@ -369,14 +372,14 @@ typedef struct BhrContextOptions {
 BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_size);
 
 /**
- * Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30,
- * 5) that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With
- * BHR_BACKEND_AUTO it succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a
- * driver the CPU tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not
- * inside callbacks. Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window
- * of another platform's, and for a window or BHR_BACKEND_GL in a library that was built without (cargo features
- * window, gl); NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
- * compatible_window.
+ * Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30, 5)
+ * that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With BHR_BACKEND_AUTO it
+ * succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a driver the CPU
+ * tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks.
+ * Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another
+ * platform, for any window in a library that was built without the cargo feature window, and for BHR_BACKEND_GL in
+ * one that was built without the feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot
+ * be opened, or cannot present to compatible_window.
  */
 BhrStatus bhr_context_create(uint32_t abi_version,
                              const BhrContextOptions *options,
@@ -386,10 +389,11 @@ BhrStatus bhr_context_create(uint32_t abi_version,
 BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 
 /**
- * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays,
- * the sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
- * device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns DEVICE_LOST; setters go on working.
- * Errors: as bhr_context_create; the context then stays lost, and the call may be tried again.
+ * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays, the
+ * sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
+ * device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns
+ * DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost, and the call may
+ * be tried again.
  */
 BhrStatus bhr_context_recover(BhrContext *context);
 
@@ -499,7 +503,10 @@ typedef struct BhrCamera {
     double forward[3];
     /** Any non-zero length, not parallel to forward. Default +z. */
     double up[3];
-    /** Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi / 3. */
+    /**
+     * Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default
+     * pi / 3.
+     */
     double fov_y;
     /** BHR_MOTION_*. Default STATIC. */
     BhrMotion motion;
@@ -516,16 +523,16 @@ typedef struct BhrCamera {
 #define BHR_PROJECTION_PERSPECTIVE 0
 
 /**
- * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y / 2
- * (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in a
- * TRANSPARENT image, NaN in views, rays without direction.
+ * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
+ * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
+ * 0 in a TRANSPARENT image, NaN in views, rays without direction.
  */
 #define BHR_PROJECTION_FISHEYE 1
 
 /**
- * 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is ignored.
- * A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels are far
- * narrower than high, the light of single stars is not exact.
+ * 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is
+ * ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels
+ * are far narrower than high, the light of single stars is not exact.
  */
 #define BHR_PROJECTION_EQUIRECT 2
 
@@ -591,9 +598,9 @@ BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
  * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
  * stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
  * *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
- * fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as at
- * bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
- * where the motion cannot be; UNSUPPORTED for VELOCITY.
+ * fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as
+ * at bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was.
+ * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion cannot be; UNSUPPORTED for VELOCITY.
  */
 BhrStatus bhr_camera_advance(const BhrContext *context,
                              BhrCamera *camera,
@@ -625,8 +632,9 @@ typedef struct BhrDisk {
     /** 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
     double brightness;
     /**
-     * Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns about the smooth
-     * disk, is carried along by bhr_set_time, and lives for 120 M before it is made anew.
+     * Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns
+     * about the smooth disk, and is carried along by bhr_set_time. A pattern lives for 120 M, and every 60 M a new
+     * one begins: they fade in and out, two at a time.
      */
     double turbulence;
     /** Another one gives another turbulence, the same one always the same. Default 0. */
@@ -654,14 +662,14 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 /* ---- images in the host's memory ---- */
 
 /**
- * BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom adds light
- * and leaves alpha: glare over the host's own picture.
+ * BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom
+ * adds light and leaves alpha: glare over the host's own picture.
  */
 #define BHR_IMAGE_TRANSPARENT 1u
 
 /**
  * BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
- * address of the block, as without the flag, and row_stride > 0 leads to the next row up.
+ * address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
 
@@ -672,9 +680,9 @@ typedef int32_t BhrFormat;
  * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
  * side or interleaved; different contexts may then render them at the same time.
  *
- * Rows from the bottom up are best asked for by BHR_IMAGE_BOTTOM_UP. A negative row_stride, with pixels at the last
- * row of the block, says the same; but with pixels left at the block's begin, an easy slip, it has all rows but one
- * written before the block, which nothing can check.
+ * For rows from the bottom up, use BHR_IMAGE_BOTTOM_UP. A negative row_stride with pixels at the last row of the
+ * block means the same. Beware: if pixels is left at the beginning of the block, all rows but one are written in
+ * front of it, and no check can find that.
  */
 typedef struct BhrImage {
     /** sizeof(BhrImage). */
@@ -694,8 +702,8 @@ typedef struct BhrImage {
      */
     int64_t row_stride;
     /**
-     * Of the host's block, which begins at its lowest address: at pixels, but (height - 1) |row_stride| before it
-     * where row_stride < 0. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
+     * Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
+     * |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
      */
     uint64_t byte_size;
     /** BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only. */
@@ -730,25 +738,26 @@ BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 
 /**
  * Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
- * grey. Alpha is written as it is. The file appears whole, and on the disk (fsync), or not at all: it is written as
- * .bhr-*.tmp beside its place, then renamed. An older file keeps its mode; of a symbolic link the target is
- * written; another hard link keeps the old picture. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for
- * a bad image or NULL; UNSUPPORTED for another extension, one that does not go with the format, or .exr in a
- * library that was built without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for a full disk, a
- * quota and RLIMIT_FSIZE (without SIGXFSZ).
+ * grey. Alpha is written as it is. The file is written as .bhr-*.tmp in the same folder, brought to the disk
+ * (fsync), then renamed, so that it appears whole or not at all. A file that is replaced keeps its mode, and its
+ * owner where the process may set it. Where path is a symbolic link, its target is written. Other hard links keep
+ * the old picture. A process that is killed leaves the temporary file. Any thread, inside callbacks too. Errors:
+ * INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, one that does not go with the format,
+ * or .exr in a library that was built without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for a full
+ * disk, a quota and RLIMIT_FSIZE (without SIGXFSZ).
  */
 BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
 /**
  * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
- * down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with
- * channels R, G and B is read, its largest level, cut to the display window, 0 where the data window does not reach;
- * 8 MiB of headers, 4096 channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the
- * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
- * for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
- * built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
- * side, or of more than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before
- * memory is taken for it.
+ * down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
+ * level of the first part with channels R, G and B is read and cut to the display window; pixels that the data
+ * window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, a block 256 MiB; deep data and
+ * subsampling are IO. The pixels are the library's: give them back with bhr_image_release, once. Any thread, inside
+ * callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions
+ * DWA and HTJ2K, or in a library that was built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not
+ * readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels in memory, however small the
+ * file is. What a file claims is checked before memory is taken for it.
  */
 BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
@@ -764,10 +773,10 @@ BhrStatus bhr_image_release(BhrImage *image);
 #define BHR_SKY_STARS 1u
 
 /**
- * BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards the
- * Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS the real
- * ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and 110 MB of device
- * memory.
+ * BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards
+ * the Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS
+ * the real ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and
+ * 110 MB of device memory.
  */
 #define BHR_SKY_PROCEDURAL 2u
 
@@ -796,14 +805,14 @@ typedef struct BhrSky {
     uint32_t flags;
     /** 0 .. 1e6. Default 1. */
     double stars_brightness;
-    /** Of the Milky Way and the map: a factor on their light, 0 .. 1e6. Default 1. */
+    /** A factor on the light of the Milky Way and the map, 0 .. 1e6. Default 1. */
     double map_brightness;
     /**
      * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
      * to scene axes. Default (0, 0, 0, 1).
      */
     double orientation[4];
-    /** Of BHR_SKY_PROCEDURAL: any number. Default 0. */
+    /** Selects the stars of BHR_SKY_PROCEDURAL: any number. Default 0. */
     uint64_t seed;
 } BhrSky;
 
@@ -830,14 +839,14 @@ BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
  * picture looks as the sky does from inside, as astronomers' maps do.
  *
  * Light at rest is what the picture holds, linear Rec. 709, 8-bit formats decoded, to within 0.2 % of the brightest
- * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
- * that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
- * Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
- * Pictures of more than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
- * a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
+ * channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift
+ * is that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's
+ * does. Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
+ * Pictures of more than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that,
+ * and on the device to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device. Errors:
+ * INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
  */
-BhrStatus bhr_set_sky_map(BhrContext *context,
-                          const BhrImage *equirect);
+BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
 /* ---- film ---- */
 
@@ -846,8 +855,8 @@ typedef int32_t BhrToneMap;
 
 /**
  * Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
- * tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone map, the
- * sRGB curve, dithering.
+ * tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone
+ * map, the sRGB curve, dithering.
  */
 typedef struct BhrFilm {
     /** sizeof(BhrFilm). */
@@ -858,14 +867,15 @@ typedef struct BhrFilm {
     double exposure_ev;
     /**
      * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
-     * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of integral 1,
-     * falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about H / 4: the eye's
-     * 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from 2 H away, with r0 = H / 180,
-     * r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
-     * reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
-     * and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
-     * they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
-     * borders interrupt it. Frames above 25 megapixels (12 on the CPU) are traced twice, as their light is not kept.
+     * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of
+     * integral 1, falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about
+     * H / 4: the eye's 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from
+     * 2 H away, with r0 = H / 180, r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is
+     * lost: what would leave the frame is reflected at its border. Light is limited to 65504 after exposure. In
+     * transparent images glare is added light, and alpha stays coverage. Glare comes from the whole frame: with a
+     * region set, 8-bit images of light are INVALID_STATE when they are rendered. It spreads over the picture, not
+     * over the sphere: in EQUIRECT and CUBE frames seams and faces' borders interrupt it. Frames above 25 megapixels
+     * (12 on the CPU) are traced twice, as their light is not kept.
      */
     double bloom;
 } BhrFilm;
@@ -906,12 +916,12 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 #define BHR_EFFECT_BEAMING 4u
 
 /**
- * The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all of the disk is seen
- * as it is at the t that bhr_set_time gives.
+ * The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all
+ * of the disk is seen as it is at the t that bhr_set_time gives.
  */
 #define BHR_EFFECT_LIGHT_DELAY 8u
 
-/** What a new context has. */
+/** All effects, as a new context has them. */
 #define BHR_EFFECT_ALL 4294967295u
 
 /**
@@ -921,19 +931,19 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 
 /**
- * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera, which ends at the
- * horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time T = t + H(r), r in M, with
- * H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that falls from rest at infinity shows.
- * bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+ * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera,
+ * which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time
+ * T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that
+ * falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_time(BhrContext *context,
-                       double time);
+BhrStatus bhr_set_time(BhrContext *context, double time);
 
 /* ---- quality ---- */
 
 /**
- * How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here: of the look direction
- * that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 + conditioning).
+ * How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here:
+ * of the look direction that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 +
+ * conditioning).
  */
 typedef int32_t BhrMethod;
 
@@ -944,10 +954,10 @@ typedef struct BhrQuality {
     /** BHR_METHOD_*. Default AUTO. */
     BhrMethod method;
     /**
-     * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
-     * centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than BHR_VIEW_LIGHT take one.
-     * Where an edge of the disk, a steep change or the edge of the shadow runs through the pixel, each sample is the mean of 4
-     * or 32 rays over a pixel's area; BhrFrameStats does not count those.
+     * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the
+     * pixel's centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than
+     * BHR_VIEW_LIGHT take one. Where an edge of the disk, a steep change or the edge of the shadow runs through the
+     * pixel, each sample is the mean of 4 or 32 rays over a pixel's area; BhrFrameStats does not count those.
      */
     uint32_t samples_per_pixel;
     /** Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
@@ -965,11 +975,12 @@ typedef struct BhrQuality {
 } BhrQuality;
 
 /**
- * The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye moves (not when
- * the view turns or zooms): with spin in frames of 500000 samples or more, for eyes between 1.03 retrograde photon orbits
- * (3.1 to 4.1 M) and 1e5 M,
- * and max_disk_order to 15 (farther than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M, falling from 0.9 M, to 1e6 M. Elsewhere, and
- * for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is integrated.
+ * The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye
+ * moves (not when the view turns or zooms): with spin in frames of 500000 samples or more on a GPU, 110000 on the
+ * CPU, for eyes between 1.03 retrograde photon orbits (3.1 to 4.1 M) and 1e5 M, and max_disk_order to 15 (farther
+ * than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M,
+ * falling from 0.9 M, to 1e6 M. Elsewhere, and for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is
+ * integrated.
  */
 #define BHR_METHOD_AUTO 0
 
@@ -1065,13 +1076,12 @@ typedef struct BhrRegion {
 } BhrRegion;
 
 /**
- * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes from
- * the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image
- * that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
+ * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes
+ * from the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image that
+ * reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
  * INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_region(BhrContext *context,
-                         const BhrRegion *region);
+BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 
 /* ---- rendering into memory ---- */
 
@@ -1083,33 +1093,32 @@ BhrStatus bhr_set_region(BhrContext *context,
  */
 typedef int32_t (*BhrProgressFn)(void *user, double fraction);
 
-/** Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context. */
-BhrStatus bhr_set_progress(BhrContext *context,
-                           BhrProgressFn fn,
-                           void *user);
-
 /**
- * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
- * a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for bloom
- * with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST,
- * OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the message says so, and
- * what is not yet rendered is untouched.
+ * Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL:
+ * nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
  */
-BhrStatus bhr_render_image(BhrContext *context,
-                           const BhrImage *target);
+BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
 
 /**
- * Makes now all that frames of the present scene need, so that the next ones take no longer than those after them:
- * the GPU's programs (compiling one takes a driver 0.1 to 1 s where its own cache has none), tables and the sky. Frames
- * do so themselves where it is missing; likely changes of the scene (spin, view, glare, projection ...) are also
- * prepared in the background, at low priority, from bhr_context_create on.
+ * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for a
+ * bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
+ * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for
+ * bloom with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
+ * DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the
+ * message says so, and what is not yet rendered is untouched.
+ */
+BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
+
+/**
+ * Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
+ * programs (a driver compiles one in 0.1 to 1 s if its cache lacks it), tables and the sky. A frame makes whatever
+ * is still missing. Programs for likely changes of the scene (spin, view, glare, projection ...) are also made in
+ * the background, at low priority, from bhr_context_create on, except with BHR_BACKEND_GL.
  *
  * target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
  * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: a window of 1920 x
- * 1080. On a GPU it renders one frame that nobody sees, and takes at least as long; bhr_frame_stats does not
- * count it. Waits for the job that is rendered just then. Any thread, not inside callbacks. Errors: as
- * bhr_render_image.
+ * 1080. On a GPU it renders one frame that is thrown away and that bhr_frame_stats does not count. It waits for a
+ * job that is being rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
  */
 BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
 
@@ -1124,7 +1133,7 @@ typedef struct BhrJob BhrJob;
 /**
  * Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
  * as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
- * order, by a thread of the library's, several under way at a time: one is copied to the host while the next is
+ * order, by a thread of the library, several under way at a time: one is copied to the host while the next is
  * traced. Other calls that render wait for the job that is being traced. At most 64 jobs of a context may be
  * unfinished. target itself is copied; target->pixels is written until the job is done or destroyed, and must stay
  * valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of
@@ -1177,17 +1186,17 @@ typedef int32_t BhrPresentMode;
 
 /**
  * Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
- * this context to render into. Call it on the thread that uses the display. A window takes one surface at a time. The window and its display must outlive the surface. (Only on X11, where bhr
- * presents through a connection of its own, may they end first. On Wayland the driver crashes when a surface is
- * destroyed after its display was closed.) Where the context's adapter cannot present to the window, or traces on
- * the CPU, another adapter presents the frames, or they are put into the window as memory; the log (info) says
- * which. macOS: on the main thread only. End *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for
- * NULL, a bad window, one that does not exist (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a
- * window that has a surface; UNSUPPORTED, with every reason, for a kind of window that this platform does not
- * have, for all in a library that was built without windows (cargo feature window), where nothing can present to the
- * window, and for a side that the device's images cannot have (mostly beyond 16384); DEVICE_LOST (also for images that
- * do not fit into the device's memory), OUT_OF_MEMORY. A host that holds XGrabServer must not call on surfaces: it
- * would wait for itself.
+ * this context to render into. Call it on the thread that uses the display. A window takes one surface at a time.
+ * The window and its display must outlive the surface. (Only on X11, where bhr presents through a connection of its
+ * own, may they end first. On Wayland the driver crashes when a surface is destroyed after its display was closed.)
+ * Where the context's adapter cannot present to the window, or traces on the CPU, another adapter presents the
+ * frames, or they are put into the window as memory; the log (info) says which. macOS: on the main thread only. End
+ * *out_surface with bhr_surface_destroy. Errors: INVALID_ARGUMENT for NULL, a bad window, one that does not exist
+ * (X11), a side beyond 2^20 or an unknown mode; INVALID_STATE for a window that has a surface; UNSUPPORTED, with
+ * every reason, for a kind of window that this platform does not have, for every window in a library that was built
+ * without the cargo feature window, where nothing can present to the window, and for a side that the device's images
+ * cannot have (mostly beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory),
+ * OUT_OF_MEMORY. A host that holds XGrabServer must not call on surfaces: it would wait for itself.
  */
 BhrStatus bhr_surface_create(BhrContext *context,
                              const BhrWindow *window,
@@ -1214,18 +1223,17 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
 /**
  * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
  * The frame is traced at BhrQuality.render_scale times the window's size and stretched to it; a CUBE's faces too, if
- * the window is not 6 times as wide as high. Returns when the
- * frame is on its way to the screen; bhr_frame_stats tells of the last frame that is finished, which may be an
- * earlier one. (Frames that go through the host's memory are finished.) With VSYNC it first waits until the window
- * takes another frame, at most a second, and so do calls on the context and the surface from other threads.
- * FRAME_SKIPPED: the window is 0 x 0, hidden as far as the platform tells, or is being resized; nothing was
- * presented: wait for the window's next event, or try again a little later. Any thread (macOS: the main thread); two threads on one surface take
- * turns. Errors: INVALID_ARGUMENT for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as
- * bhr_render_image; SURFACE_LOST, from then on, when the window is gone or the context was recovered: destroy the
- * surface, and make it again if there is a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
+ * the window is not 6 times as wide as high. Returns when the frame is on its way to the screen; bhr_frame_stats
+ * tells of the last frame that is finished, which may be an earlier one. (Frames that go through the host's memory
+ * are finished.) With VSYNC it first waits until the window takes another frame, at most a second, and so do calls
+ * on the context and the surface from other threads. FRAME_SKIPPED: the window is 0 x 0, hidden as far as the
+ * platform tells, or is being resized; nothing was presented: wait for the window's next event, or try again a
+ * little later. Any thread (macOS: the main thread); two threads on one surface take turns. Errors: INVALID_ARGUMENT
+ * for NULL or a surface of another context; INVALID_STATE and UNSUPPORTED as bhr_render_image; SURFACE_LOST, from
+ * then on, when the window is gone or the context was recovered: destroy the surface, and make it again if there is
+ * a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_surface(BhrContext *context,
-                             BhrSurface *surface);
+BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
 
 /**
  * Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread
@@ -1306,12 +1314,12 @@ typedef struct BhrHit {
 #define BHR_FATE_INVALID 3
 
 /**
- * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
- * the pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
- * circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors:
- * INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
- * INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
- * UNSUPPORTED inside a spinning hole's horizon. out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
+ * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through the
+ * pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
+ * circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors: INVALID_ARGUMENT for NULL, a
+ * side of 0 or above 2^20, an image that reaches out of the region's frame; INVALID_STATE where the camera's motion
+ * cannot be, or for a CUBE whose frame is not 6 times as wide as high; UNSUPPORTED inside a spinning hole's horizon.
+ * out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
  */
 BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
 
@@ -1346,9 +1354,10 @@ BhrStatus bhr_trace_rays(BhrContext *context,
 /**
  * The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
  * room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
- * number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the eye's radius, but at
- * least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
- * < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
+ * number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the
+ * eye's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double
+ * precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity < 2, or a ray that is not
+ * valid; UNSUPPORTED inside a spinning hole's horizon.
  */
 BhrStatus bhr_trace_path(BhrContext *context,
                          const BhrRay *ray,

@@ -1,11 +1,12 @@
-//! Memory in amounts that depend on what a host asks for, or that are large: where the system refuses it, these are
-//! OUT_OF_MEMORY errors, while `vec!`, `collect` and `push` would end the process. Knows nothing of what it is for.
+//! Allocates memory in amounts that are large, or that depend on the host's requests: where the system refuses it,
+//! these functions return OUT_OF_MEMORY, while `vec!`, `collect` and `push` would end the process. Knows nothing of
+//! what the memory is for.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fmt::Write;
 
-/// What is left for small allocations, of names, messages, queues, threads: they cannot be refused, and end the
-/// process instead.
+/// Bytes that must be left for small allocations (names, messages, queues, threads), which end the process where they
+/// are refused.
 const SMALL: usize = 1 << 20;
 
 /// Bytes from which on an allocation is given only if `SMALL` is left after it.
@@ -15,17 +16,18 @@ const LARGE: usize = 1 << 15;
 pub const THREAD_ROOM: usize = 3 << 20;
 
 fn refused(bytes: usize, what: &str) -> Error {
-    // The error is not to fail for want of memory too: without any it has no message.
+    // Making the error must not fail for lack of memory too: where there is none, it has no message.
     let mut message = String::new();
     if message.try_reserve(what.len() + 64).is_ok() {
-        // Within what is reserved; to a String it cannot fail.
+        // Writing to a String cannot fail, and this stays within what is reserved.
         let _ = write!(message, "no memory for {what}, {bytes} bytes");
     }
     Error::new(ErrorKind::OutOfMemory, message)
 }
 
-/// Whether the system would give so much memory just now. The allocator may hold as much that was freed, but not to
-/// every thread: glibc's new threads take theirs from the system, and end the process where it has none.
+/// Whether the system would give this much memory just now. The allocator may hold as much that was freed, but does
+/// not give it to every thread: glibc's new threads take theirs from the system, and end the process where it has
+/// none.
 #[cfg(unix)]
 fn can_be_mapped(bytes: usize) -> bool {
     let access = libc::PROT_READ | libc::PROT_WRITE;
@@ -66,7 +68,7 @@ pub fn filled<T: Clone>(count: usize, value: T, what: &str) -> Result<Vec<T>> {
     Ok(items)
 }
 
-/// All items, of which there are about as many as the iterator says. Errors: OUT_OF_MEMORY, naming `what`.
+/// Collects all items, of which there are about as many as the iterator says. Errors: OUT_OF_MEMORY, naming `what`.
 pub fn collected<T>(items: impl Iterator<Item = T>, what: &str) -> Result<Vec<T>> {
     let (least, most) = items.size_hint();
     let mut all = with_room(most.unwrap_or(least), what)?;
@@ -76,10 +78,10 @@ pub fn collected<T>(items: impl Iterator<Item = T>, what: &str) -> Result<Vec<T>
     Ok(all)
 }
 
-/// Appends one of a number of items that is not known before. Errors: OUT_OF_MEMORY, naming `what`.
+/// Appends an item to a vector whose length is not known beforehand. Errors: OUT_OF_MEMORY, naming `what`.
 pub fn push<T>(items: &mut Vec<T>, item: T, what: &str) -> Result<()> {
     if items.len() == items.capacity() {
-        // By half, as growing by one at a time would copy all each time.
+        // It grows by half, as growing by one item at a time would copy all items each time.
         reserve(items, (items.len() / 2).max(16), what)?;
     }
     items.push(item);
@@ -87,7 +89,7 @@ pub fn push<T>(items: &mut Vec<T>, item: T, what: &str) -> Result<()> {
 }
 
 /// Errors: OUT_OF_MEMORY where `bytes`, and what small allocations may take, could not be had just now. Nothing is
-/// kept: it says early, before small allocations can fail, what is hopeless.
+/// kept: the check finds a lack of memory early, before small allocations can fail.
 pub fn check_room(bytes: usize, what: &str) -> Result<()> {
     let bytes = bytes.saturating_add(SMALL);
     if can_be_mapped(bytes) { Ok(()) } else { Err(refused(bytes, what)) }

@@ -1,6 +1,6 @@
-# needs.sh -- what the tests need of the machine: finding it, and installing it on Debian and Ubuntu. Sourced by
-# tests/run after lib.sh; runs no test. Its functions answer by their exit status, or print the Debian packages of what
-# is missing.
+# needs.sh -- finds the programs and libraries that the tests need, and installs them on Debian and Ubuntu. Sourced by
+# tests/run after lib.sh; runs no test. Its functions answer by their exit status, or print the Debian packages of
+# what is missing.
 # shellcheck shell=bash
 
 # No pipe into grep -q, here or in any script: grep ends at its first match, what feeds it is killed by SIGPIPE as soon
@@ -35,7 +35,7 @@ missing() {
     done
 }
 
-# What windows are made and looked at with: the Debian packages of what is missing.
+# The Debian packages of missing programs and libraries that make windows and look at them.
 missing_window_packages() {
     missing xvfb Xvfb
     missing weston weston

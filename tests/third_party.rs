@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Of each platform one; what is linked does not depend on the processor.
+/// One target for each platform: which crates are linked does not depend on the processor.
 const PLATFORMS: [&str; 6] = [
     "x86_64-unknown-linux-gnu",
     "x86_64-unknown-freebsd",
@@ -40,7 +40,7 @@ const ALLOWED: [&str; 19] = [
     "Zlib OR Apache-2.0 OR MIT",
 ];
 
-/// Those of crates that only build or test the library.
+/// Crates that only build or test the library, with their licences.
 const ALLOWED_TOOLS: [(&str, &str); 2] = [("cbindgen", "MPL-2.0"), ("r-efi", "MIT OR Apache-2.0 OR LGPL-2.1-or-later")];
 
 const HEAD: &str = "\
@@ -73,7 +73,7 @@ impl Crate {
         format!("{} {}", self.name, self.version)
     }
 
-    /// What its folder has of licences and notices, by file name.
+    /// The licences and notices in its folder, sorted by file name.
     fn texts(&self) -> Vec<(String, String)> {
         let begins = ["licen", "unlicen", "copying", "copyright", "notice"];
         let mut texts = Vec::new();
@@ -87,7 +87,8 @@ impl Crate {
         texts
     }
 
-    /// For a crate that comes without: the licence's own words, MIT's where there is a choice, as it is the shortest.
+    /// The standard words of the licence, for a crate that comes without a licence file: MIT's where there is a
+    /// choice, as it is the shortest.
     fn standard_text(&self) -> String {
         if !self.licence.contains("MIT") {
             assert!(self.licence.contains("Apache-2.0"), "{} has no licence text: {}", self.title(), self.licence);
@@ -110,7 +111,7 @@ fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// What cargo says, about the repository's lock file.
+/// Cargo's output for the repository, with its lock file.
 fn cargo(arguments: &[&str]) -> String {
     let cargo = std::env::var_os("CARGO").expect("cargo runs the tests");
     let out = Command::new(cargo).current_dir(root()).args(arguments).arg("--locked").output().unwrap();
@@ -151,7 +152,7 @@ fn linked() -> BTreeSet<String> {
     linked
 }
 
-/// The text alone, whatever its line breaks and markup.
+/// Letters and digits alone: the same for texts that differ in line breaks and markup.
 fn letters(text: &str) -> String {
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
@@ -160,7 +161,7 @@ fn notices() -> String {
     let linked = linked();
     let crates = crates().into_iter().filter(|one| linked.contains(&one.title())).collect::<Vec<_>>();
     let mut out = format!("{HEAD}\n{DATA}\n");
-    // Of each text, the first form of it, and whose it is.
+    // For each text: the form that came first, and the crates that have it.
     let mut texts = BTreeMap::<String, (String, Vec<String>)>::new();
     let mut order = Vec::new();
     let mut add = |text: String, whose: String| {
@@ -188,7 +189,7 @@ fn notices() -> String {
     out
 }
 
-/// With BHR_UPDATE_NOTICES set, this is the command that brings THIRD-PARTY.txt up to date.
+/// With BHR_UPDATE_NOTICES set, this test brings THIRD-PARTY.txt up to date.
 #[test]
 fn the_committed_notices_name_what_is_linked() {
     let (committed, made) = (root().join("THIRD-PARTY.txt"), notices());

@@ -10,8 +10,9 @@ use std::ffi::c_char;
 
 /// The interface to an adapter.
 pub type BhrBackend = i32;
-/// The best GPU, whatever its interface; else a software driver (Mesa's lavapipe, for Vulkan), but none of OpenGL's,
-/// which take seconds to begin; else the CPU tracer.
+/// The best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches; else a software
+/// driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which needs seconds for
+/// its first frame, is never chosen.
 pub const BHR_BACKEND_AUTO: BhrBackend = 0;
 /// The built-in double-precision CPU tracer: needs no driver.
 pub const BHR_BACKEND_CPU: BhrBackend = 1;
@@ -21,10 +22,11 @@ pub const BHR_BACKEND_VULKAN: BhrBackend = 2;
 pub const BHR_BACKEND_METAL: BhrBackend = 3;
 /// Direct3D 12.
 pub const BHR_BACKEND_D3D12: BhrBackend = 4;
-/// OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library's makes all calls, and ends
-/// with the context: whatever GL context is current on a thread of the host's stays so. With Mesa it lives on the EGL
-/// display without windows, which a process has only one of: bhr never terminates it; a host that does (eglTerminate)
-/// brings BHR_ERROR_DEVICE_LOST to contexts of bhr's, and must not do so during a call or a job of theirs.
+/// OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
+/// with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
+/// uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
+/// (eglTerminate), contexts on this backend return BHR_ERROR_DEVICE_LOST; it must not do so while one of their calls
+/// or jobs is running.
 pub const BHR_BACKEND_GL: BhrBackend = 5;
 
 /// BhrAdapterInfo.flags: a GPU with memory of its own.
@@ -112,8 +114,9 @@ pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
     }))
 }
 
-/// How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than
-/// GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL.
+/// How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than GL are
+/// looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors:
+/// INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -125,8 +128,9 @@ pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     })
 }
 
-/// The adapter at index, best first. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong
-/// struct_size, or an index not below bhr_adapter_count.
+/// The adapter at index: GPUs first, then software drivers, the CPU tracer last. BHR_BACKEND_AUTO need not take the
+/// first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong struct_size, or an index
+/// not below bhr_adapter_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_info(index: u32, info: *mut BhrAdapterInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -13,13 +13,13 @@ use glam::DVec3;
 pub type BhrProjection = i32;
 /// A flat picture; fov_y in (0, pi).
 pub const BHR_PROJECTION_PERSPECTIVE: BhrProjection = 0;
-/// Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to fov_y / 2
-/// (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha 0 in a
-/// TRANSPARENT image, NaN in views, rays without direction.
+/// Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
+/// fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
+/// 0 in a TRANSPARENT image, NaN in views, rays without direction.
 pub const BHR_PROJECTION_FISHEYE: BhrProjection = 1;
-/// 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is ignored.
-/// A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels are far
-/// narrower than high, the light of single stars is not exact.
+/// 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is
+/// ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels
+/// are far narrower than high, the light of single stars is not exact.
 pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
 /// 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
 /// forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
@@ -54,7 +54,8 @@ pub struct BhrCamera {
     pub forward: [f64; 3],
     /// Any non-zero length, not parallel to forward. Default +z.
     pub up: [f64; 3],
-    /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default pi / 3.
+    /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default
+    /// pi / 3.
     pub fov_y: f64,
     /// BHR_MOTION_*. Default STATIC.
     pub motion: BhrMotion,
@@ -236,9 +237,9 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
 /// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
 /// stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
 /// *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
-/// fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as at
-/// bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE
-/// where the motion cannot be; UNSUPPORTED for VELOCITY.
+/// fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as
+/// at bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was.
+/// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion cannot be; UNSUPPORTED for VELOCITY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_advance(
     context: *const BhrContext,

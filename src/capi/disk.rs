@@ -30,8 +30,9 @@ pub struct BhrDisk {
     pub opacity: f64,
     /// 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1.
     pub brightness: f64,
-    /// Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns about the smooth
-    /// disk, is carried along by bhr_set_time, and lives for 120 M before it is made anew.
+    /// Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns
+    /// about the smooth disk, and is carried along by bhr_set_time. A pattern lives for 120 M, and every 60 M a new
+    /// one begins: they fade in and out, two at a time.
     pub turbulence: f64,
     /// Another one gives another turbulence, the same one always the same. Default 0.
     pub seed: u64,

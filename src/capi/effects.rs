@@ -13,10 +13,10 @@ pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
 pub const BHR_EFFECT_GRAVITY_SHIFT: u32 = 2u32;
 /// Intensity follows g^3 (I_nu), g^4 (bolometric).
 pub const BHR_EFFECT_BEAMING: u32 = 4u32;
-/// The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all of the disk is seen
-/// as it is at the t that bhr_set_time gives.
+/// The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all
+/// of the disk is seen as it is at the t that bhr_set_time gives.
 pub const BHR_EFFECT_LIGHT_DELAY: u32 = 8u32;
-/// What a new context has.
+/// All effects, as a new context has them.
 pub const BHR_EFFECT_ALL: u32 = 0xffff_ffffu32;
 
 const _: () = assert!(
@@ -40,10 +40,10 @@ pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32)
     }
 }
 
-/// Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera, which ends at the
-/// horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time T = t + H(r), r in M, with
-/// H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that falls from rest at infinity shows.
-/// bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+/// Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera,
+/// which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time
+/// T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that
+/// falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_time(context: *mut BhrContext, time: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -18,8 +18,8 @@ pub const BHR_TONE_MAP_ACES: BhrToneMap = 1;
 pub const BHR_TONE_MAP_AGX: BhrToneMap = 2;
 
 /// Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
-/// tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone map, the
-/// sRGB curve, dithering.
+/// tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone
+/// map, the sRGB curve, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {
@@ -30,14 +30,15 @@ pub struct BhrFilm {
     /// Stops, -20 .. 20. Default 0.
     pub exposure_ev: f64,
     /// Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
-    /// 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of integral 1,
-    /// falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about H / 4: the eye's
-    /// 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from 2 H away, with r0 = H / 180,
-    /// r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost: what would leave the frame is
-    /// reflected at its border. Light is limited to 65504 after exposure. In transparent images glare is added light,
-    /// and alpha stays coverage. Glare comes from the whole frame: with a region set, 8-bit images of light are INVALID_STATE when
-    /// they are rendered. It spreads over the picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces'
-    /// borders interrupt it. Frames above 25 megapixels (12 on the CPU) are traced twice, as their light is not kept.
+    /// 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of
+    /// integral 1, falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about
+    /// H / 4: the eye's 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from
+    /// 2 H away, with r0 = H / 180, r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is
+    /// lost: what would leave the frame is reflected at its border. Light is limited to 65504 after exposure. In
+    /// transparent images glare is added light, and alpha stays coverage. Glare comes from the whole frame: with a
+    /// region set, 8-bit images of light are INVALID_STATE when they are rendered. It spreads over the picture, not
+    /// over the sphere: in EQUIRECT and CUBE frames seams and faces' borders interrupt it. Frames above 25 megapixels
+    /// (12 on the CPU) are traced twice, as their light is not kept.
     pub bloom: f64,
 }
 

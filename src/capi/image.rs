@@ -27,20 +27,20 @@ pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
 /// 1 float: views other than BHR_VIEW_LIGHT.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
 
-/// BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom adds light
-/// and leaves alpha: glare over the host's own picture.
+/// BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom
+/// adds light and leaves alpha: glare over the host's own picture.
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
 /// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
-/// address of the block, as without the flag, and row_stride > 0 leads to the next row up.
+/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
 /// side or interleaved; different contexts may then render them at the same time.
 ///
-/// Rows from the bottom up are best asked for by BHR_IMAGE_BOTTOM_UP. A negative row_stride, with pixels at the last
-/// row of the block, says the same; but with pixels left at the block's begin, an easy slip, it has all rows but one
-/// written before the block, which nothing can check.
+/// For rows from the bottom up, use BHR_IMAGE_BOTTOM_UP. A negative row_stride with pixels at the last row of the
+/// block means the same. Beware: if pixels is left at the beginning of the block, all rows but one are written in
+/// front of it, and no check can find that.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrImage {
@@ -58,8 +58,8 @@ pub struct BhrImage {
     /// (default): packed. < 0: the next row down lies lower in memory, and pixels is the block's last row; not together
     /// with BHR_IMAGE_BOTTOM_UP. |row_stride| must hold a row.
     pub row_stride: i64,
-    /// Of the host's block, which begins at its lowest address: at pixels, but (height - 1) |row_stride| before it
-    /// where row_stride < 0. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
+    /// Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
+    /// |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
     pub byte_size: u64,
     /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only.
     pub flags: u32,
@@ -109,8 +109,8 @@ pub(super) struct Given<'a> {
     pub transparent: bool,
 }
 
-/// What an image is like, whatever its block. Errors: INVALID_ARGUMENT for NULL or a field that breaks the rules of `BhrImage`, `pixels`
-/// and `byte_size` aside.
+/// The image's layout and flags, without its block. Errors: INVALID_ARGUMENT for NULL or a field that breaks the
+/// rules of `BhrImage`, `pixels` and `byte_size` aside.
 ///
 /// # Safety
 /// `image` is NULL or points to a BhrImage.
@@ -184,12 +184,13 @@ unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 }
 
 /// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
-/// grey. Alpha is written as it is. The file appears whole, and on the disk (fsync), or not at all: it is written as
-/// .bhr-*.tmp beside its place, then renamed. An older file keeps its mode; of a symbolic link the target is
-/// written; another hard link keeps the old picture. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for
-/// a bad image or NULL; UNSUPPORTED for another extension, one that does not go with the format, or .exr in a
-/// library that was built without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for a full disk, a
-/// quota and RLIMIT_FSIZE (without SIGXFSZ).
+/// grey. Alpha is written as it is. The file is written as .bhr-*.tmp in the same folder, brought to the disk
+/// (fsync), then renamed, so that it appears whole or not at all. A file that is replaced keeps its mode, and its
+/// owner where the process may set it. Where path is a symbolic link, its target is written. Other hard links keep
+/// the old picture. A process that is killed leaves the temporary file. Any thread, inside callbacks too. Errors:
+/// INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, one that does not go with the format,
+/// or .exr in a library that was built without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for a full
+/// disk, a quota and RLIMIT_FSIZE (without SIGXFSZ).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_char) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -200,14 +201,14 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 }
 
 /// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
-/// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with
-/// channels R, G and B is read, its largest level, cut to the display window, 0 where the data window does not reach;
-/// 8 MiB of headers, 4096 channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the
-/// library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
-/// built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
-/// side, or of more than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before
-/// memory is taken for it.
+/// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
+/// level of the first part with channels R, G and B is read and cut to the display window; pixels that the data
+/// window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, a block 256 MiB; deep data and
+/// subsampling are IO. The pixels are the library's: give them back with bhr_image_release, once. Any thread, inside
+/// callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions
+/// DWA and HTJ2K, or in a library that was built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not
+/// readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels in memory, however small the
+/// file is. What a file claims is checked before memory is taken for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

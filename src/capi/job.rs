@@ -74,7 +74,7 @@ pub(super) unsafe fn on_job<T: entry::Success>(
 
 /// Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
 /// as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
-/// order, by a thread of the library's, several under way at a time: one is copied to the host while the next is
+/// order, by a thread of the library, several under way at a time: one is copied to the host while the next is
 /// traced. Other calls that render wait for the job that is being traced. At most 64 jobs of a context may be
 /// unfinished. target itself is copied; target->pixels is written until the job is done or destroyed, and must stay
 /// valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of

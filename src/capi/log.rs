@@ -28,12 +28,12 @@ pub const BHR_LOG_DEBUG: BhrLogLevel = 4;
 /// Everything: slow.
 pub const BHR_LOG_TRACE: BhrLogLevel = 5;
 
-/// Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives
-/// for the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on
-/// whichever thread the call runs, or on a thread of the library's that works for the call, which waits; one from
-/// another thread goes to every context's callback. It may therefore run on several threads at once. It must not throw,
-/// unwind or longjmp. Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads'
-/// calls on other contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
+/// Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives for
+/// the call only. A message that arises inside a bhr_ call on a context goes to that context's callback, on whichever
+/// thread the call runs, or on a thread of the library that works for that context; one from another thread goes to
+/// every context's callback. It may therefore run on several threads at once. It must not throw, unwind or longjmp.
+/// Calls on a context from inside it return BHR_ERROR_INVALID_STATE. It may wait for other threads' calls on other
+/// contexts, not for calls on its own. None runs after bhr_context_destroy has returned.
 pub type BhrLogFn = Option<unsafe extern "C" fn(user: *mut c_void, level: BhrLogLevel, message: *const c_char)>;
 
 /// A non-null [`BhrLogFn`].

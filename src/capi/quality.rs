@@ -8,14 +8,16 @@ use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::{LensTables, Method, Quality};
 
-/// How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here: of the look direction
-/// that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 + conditioning).
+/// How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here:
+/// of the look direction that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 +
+/// conditioning).
 pub type BhrMethod = i32;
-/// The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye moves (not when
-/// the view turns or zooms): with spin in frames of 500000 samples or more, for eyes between 1.03 retrograde photon orbits
-/// (3.1 to 4.1 M) and 1e5 M,
-/// and max_disk_order to 15 (farther than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M, falling from 0.9 M, to 1e6 M. Elsewhere, and
-/// for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is integrated.
+/// The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye
+/// moves (not when the view turns or zooms): with spin in frames of 500000 samples or more on a GPU, 110000 on the
+/// CPU, for eyes between 1.03 retrograde photon orbits (3.1 to 4.1 M) and 1e5 M, and max_disk_order to 15 (farther
+/// than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M,
+/// falling from 0.9 M, to 1e6 M. Elsewhere, and for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is
+/// integrated.
 pub const BHR_METHOD_AUTO: BhrMethod = 0;
 /// Fixed-step fourth-order Runge-Kutta, every ray by itself: 2e-5 with the default step.
 pub const BHR_METHOD_RK4: BhrMethod = 1;
@@ -30,10 +32,10 @@ pub struct BhrQuality {
     pub struct_size: u32,
     /// BHR_METHOD_*. Default AUTO.
     pub method: BhrMethod,
-    /// 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the pixel's
-    /// centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than BHR_VIEW_LIGHT take one.
-    /// Where an edge of the disk, a steep change or the edge of the shadow runs through the pixel, each sample is the mean of 4
-    /// or 32 rays over a pixel's area; BhrFrameStats does not count those.
+    /// 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the
+    /// pixel's centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than
+    /// BHR_VIEW_LIGHT take one. Where an edge of the disk, a steep change or the edge of the shadow runs through the
+    /// pixel, each sample is the mean of 4 or 32 rays over a pixel's area; BhrFrameStats does not count those.
     pub samples_per_pixel: u32,
     /// Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
     pub max_steps: u32,

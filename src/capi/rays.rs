@@ -135,12 +135,12 @@ fn frame_pixels(width: u32, height: u32) -> Result<usize> {
     }
 }
 
-/// The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through
-/// the pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
-/// circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors:
-/// INVALID_ARGUMENT for NULL, a side of 0 or above 2^20, an image that reaches out of the region's frame;
-/// INVALID_STATE where the camera's motion cannot be, or for a CUBE whose frame is not 6 times as wide as high;
-/// UNSUPPORTED inside a spinning hole's horizon. out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
+/// The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through the
+/// pixel centres; out_rays has room for width * height. Where a projection shows nothing (outside a FISHEYE's
+/// circle): direction 0, frequency_ratio 1, which is traced to BHR_FATE_INVALID. Errors: INVALID_ARGUMENT for NULL, a
+/// side of 0 or above 2^20, an image that reaches out of the region's frame; INVALID_STATE where the camera's motion
+/// cannot be, or for a CUBE whose frame is not 6 times as wide as high; UNSUPPORTED inside a spinning hole's horizon.
+/// out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_rays(
     context: *const BhrContext,
@@ -327,9 +327,10 @@ pub unsafe extern "C" fn bhr_trace_rays(
 
 /// The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
 /// room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
-/// number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the eye's radius, but at
-/// least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity
-/// < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
+/// number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the
+/// eye's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double
+/// precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity < 2, or a ray that is not
+/// valid; UNSUPPORTED inside a spinning hole's horizon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(
     context: *mut BhrContext,

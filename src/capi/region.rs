@@ -47,9 +47,9 @@ impl TryFrom<BhrRegion> for Region {
     }
 }
 
-/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes from
-/// the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image
-/// that reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
+/// Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes
+/// from the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image that
+/// reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
 /// INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_region(context: *mut BhrContext, region: *const BhrRegion) -> BhrStatus {

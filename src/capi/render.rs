@@ -55,7 +55,8 @@ impl Report {
     }
 }
 
-/// Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
+/// Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL:
+/// nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_progress(
     context: *mut BhrContext,
@@ -71,12 +72,12 @@ pub unsafe extern "C" fn bhr_set_progress(
     }
 }
 
-/// Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for
-/// a bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
-/// INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for bloom
-/// with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback; DEVICE_LOST,
-/// OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the message says so, and
-/// what is not yet rendered is untouched.
+/// Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for a
+/// bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
+/// INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for
+/// bloom with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
+/// DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the
+/// message says so, and what is not yet rendered is untouched.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -106,16 +107,15 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
 /// Size of the window that bhr_prepare thinks of without a target.
 const WINDOW: [u32; 2] = [1920, 1080];
 
-/// Makes now all that frames of the present scene need, so that the next ones take no longer than those after them:
-/// the GPU's programs (compiling one takes a driver 0.1 to 1 s where its own cache has none), tables and the sky. Frames
-/// do so themselves where it is missing; likely changes of the scene (spin, view, glare, projection ...) are also
-/// prepared in the background, at low priority, from bhr_context_create on.
+/// Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
+/// programs (a driver compiles one in 0.1 to 1 s if its cache lacks it), tables and the sky. A frame makes whatever
+/// is still missing. Programs for likely changes of the scene (spin, view, glare, projection ...) are also made in
+/// the background, at low priority, from bhr_context_create on, except with BHR_BACKEND_GL.
 ///
 /// target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
 /// RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: a window of 1920 x
-/// 1080. On a GPU it renders one frame that nobody sees, and takes at least as long; bhr_frame_stats does not
-/// count it. Waits for the job that is rendered just then. Any thread, not inside callbacks. Errors: as
-/// bhr_render_image.
+/// 1080. On a GPU it renders one frame that is thrown away and that bhr_frame_stats does not count. It waits for a
+/// job that is being rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

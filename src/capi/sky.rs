@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 /// BhrSky.flags: the real sky, from the embedded star catalogue.
 pub const BHR_SKY_STARS: u32 = 1u32;
-/// BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards the
-/// Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS the real
-/// ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and 110 MB of device
-/// memory.
+/// BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards
+/// the Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS
+/// the real ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and
+/// 110 MB of device memory.
 pub const BHR_SKY_PROCEDURAL: u32 = 2u32;
 /// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s): true to
 /// about a degree, eight times as bright next to the stars as it is to the eye.
@@ -39,12 +39,12 @@ pub struct BhrSky {
     pub flags: u32,
     /// 0 .. 1e6. Default 1.
     pub stars_brightness: f64,
-    /// Of the Milky Way and the map: a factor on their light, 0 .. 1e6. Default 1.
+    /// A factor on the light of the Milky Way and the map, 0 .. 1e6. Default 1.
     pub map_brightness: f64,
     /// Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
     /// to scene axes. Default (0, 0, 0, 1).
     pub orientation: [f64; 4],
-    /// Of BHR_SKY_PROCEDURAL: any number. Default 0.
+    /// Selects the stars of BHR_SKY_PROCEDURAL: any number. Default 0.
     pub seed: u64,
 }
 
@@ -127,11 +127,12 @@ pub unsafe extern "C" fn bhr_get_sky(context: *const BhrContext, sky: *mut BhrSk
 /// picture looks as the sky does from inside, as astronomers' maps do.
 ///
 /// Light at rest is what the picture holds, linear Rec. 709, 8-bit formats decoded, to within 0.2 % of the brightest
-/// channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift is
-/// that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's does.
-/// Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
-/// Pictures of more than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that, and on the device to its largest texture. Memory: 5.4 bytes
-/// a texel in the context and 6 on the device. Errors: INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
+/// channel: black up to 2^-25, 65408 at most; NaN and negative numbers are 0, alpha is ignored. Its frequency shift
+/// is that of the blackbody of its blue-to-red ratio, of 2500 K to 25000 K: each channel changes as that blackbody's
+/// does. Pixels get the mean of the map over their patch of sky, the first and the last row in each case their mean.
+/// Pictures of more than 16384 x 8192, or of more rows than 1024 and four times their columns, are reduced to that,
+/// and on the device to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device. Errors:
+/// INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -1,5 +1,6 @@
-//! Structs that may grow: they begin with `struct_size`, the size the host was compiled with. The rule of the
-//! header's conventions stands here once. Copies in and out; never a reference into the host's memory.
+//! Structs that may grow: they begin with `struct_size`, the size the host was compiled with. The rule in the
+//! header's preface is implemented here, and nowhere else. Copies in and out; never a reference into the host's
+//! memory.
 
 use super::pointer::is_null;
 use crate::error::{Error, Result};
@@ -18,15 +19,15 @@ pub(super) unsafe trait Versioned: Copy {
     /// Its size in the first release that had it, then its size in each later release in which it had grown; the last
     /// one is today's. Numbers, not `size_of`: hosts compiled back then go on saying them. Append only.
     const SIZES: &'static [usize];
-    /// What `*_init` fills in, and what fields hold that the caller's version does not have.
+    /// The values that `*_init` fills in, and that fields have which the caller's version lacks.
     fn defaults() -> Self;
 }
 
-/// Of a pointer in a struct: the part of [`Versioned::SIZES`] that is not the same on every platform.
+/// Bytes of a pointer in a struct: the part of [`Versioned::SIZES`] that is not the same on every platform.
 pub(super) const POINTER: usize = size_of::<*const ()>();
 
-/// The size of the first release, with `SIZES` checked: a struct that has grown without being said to, or has shrunk,
-/// does not compile.
+/// The size of the first release, with `SIZES` checked: a struct that has grown without a new entry there, or has
+/// shrunk, does not compile.
 const fn first_size<T: Versioned>() -> usize {
     let sizes = T::SIZES;
     assert!(!sizes.is_empty() && sizes[0] >= size_of::<u32>(), "a struct has its first release's size");
@@ -71,7 +72,8 @@ pub(super) unsafe fn caller_size<T: Versioned>(pointer: *const T, name: &str) ->
     check_size::<T>(size as usize, name)
 }
 
-/// The host's struct: what a shorter one lacks has its default, what a longer one has beyond ours must be zero.
+/// Reads the host's struct: fields that a shorter one lacks have their defaults, bytes of a longer one beyond ours
+/// must be zero.
 ///
 /// # Safety
 /// `pointer` is NULL or points to `struct_size` readable bytes.
@@ -94,7 +96,7 @@ pub(super) unsafe fn read<T: Versioned>(pointer: *const T, name: &str) -> Result
     Ok(value)
 }
 
-/// Fills the host's struct: its `struct_size` stays, what it has beyond ours becomes zero.
+/// Fills the host's struct: its `struct_size` stays, its bytes beyond ours become zero.
 ///
 /// # Safety
 /// `pointer` is NULL or points to `struct_size` writable bytes.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Bytes of a whole frame's light; a frame with bloom that needs more is traced twice instead.
 const LIGHT_MEMORY: u64 = 192 << 20;
-/// What memory is asked for.
+/// Named in out-of-memory errors.
 const LIGHT: &str = "the light of a tile";
 /// Bytes of a pixel's light.
 const LIGHT_BYTES: u64 = size_of::<[f32; 4]>() as u64;

@@ -42,7 +42,7 @@ pub const TAIL: usize = 4;
 /// What the six nearest cells of a finer grid give of their light: the B-spline of degree 4.
 const SPLINE: [f64; 6] = [1.0 / 16.0, 5.0 / 16.0, 10.0 / 16.0, 10.0 / 16.0, 5.0 / 16.0, 1.0 / 16.0];
 
-/// What memory is asked for.
+/// Named in out-of-memory errors.
 const GRIDS: &str = "the grids of bloom";
 
 /// How a frame's light is spread.

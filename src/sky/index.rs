@@ -284,7 +284,7 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
     }
 }
 
-/// What memory is asked for.
+/// Named in out-of-memory errors.
 const STARS: &str = "the index of a sky's stars";
 
 /// Stable; in place but for the keys, as `sort_by_cached_key`, which cannot be refused memory.

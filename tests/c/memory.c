@@ -24,7 +24,7 @@
 #define RAYS 20000u
 #define JOBS 3
 
-/* What calls write to and read from; there before any limit is. */
+/* Calls write to and read from these, which are there before any limit is set. */
 static unsigned char pixels[JOBS][WIDE * HIGH * 16];
 static BhrRay        rays[RAYS];
 static BhrHit        hits[RAYS];
@@ -39,7 +39,7 @@ static const char *const MOMENT_NAMES[MOMENTS] = {"before the context", "in a ne
 enum { WITHOUT_MEMORY = 1, REFUSED_OTHERWISE = 2 };
 static int outcome; /* bits of what happened: the child's exit status */
 
-/* Whether the call succeeded; it may fail for want of memory, and no other way. */
+/* Whether the call succeeded. It may fail for lack of memory, and for no other reason. */
 static int took(BhrStatus status, const char *call) {
     if (status == BHR_ERROR_OUT_OF_MEMORY) {
         outcome |= WITHOUT_MEMORY;
@@ -73,7 +73,7 @@ static void limit_memory(size_t more) {
     }
 }
 
-/* No further thread for this user, who is nobody else's: limits do not bind root. */
+/* Allows this user no further thread. Limits do not bind root, who therefore becomes a user that nobody else is. */
 static void limit_threads(size_t unused) {
     const struct rlimit limit = {0, 0};
     (void)unused;
@@ -130,7 +130,7 @@ static void trace(BhrContext *context) {
     }
 }
 
-/* All that takes memory. Frames of WIDE x HIGH are looked up in tables. */
+/* Makes all calls that take memory. Frames of WIDE x HIGH are looked up in tables. */
 static void use(BhrContext *context) {
     BhrFilm film;
     frame(context, BHR_FORMAT_RGBA8_SRGB, 16, 9);
@@ -189,7 +189,7 @@ static void child(Moment moment, void (*limit)(size_t), size_t more) {
 
 /* ---- the parent ---- */
 
-/* What the child said, -1 when it died; a child that runs out of time dies of SIGALRM. */
+/* The child's exit status, -1 when it died. SIGALRM ends a child that runs out of time. */
 static int run(Moment moment, void (*limit)(size_t), size_t more, const char *what) {
     int         status = 0;
     const pid_t pid = fork();
@@ -215,7 +215,7 @@ static void memory(Moment moment, int all) {
         const int said = run(moment, limit_memory, some[i], "memory");
         without += said > 0 && (said & WITHOUT_MEMORY);
     }
-    /* Each a quarter more than the one before, from 16 KiB on. */
+    /* Each limit is a quarter above the one before, from 16 KiB on. */
     for (size_t more = 0; all && more <= 64 * MIB; more = more == 0 ? 16 * KIB : more + more / 4) {
         const int said = run(moment, limit_memory, more, "memory");
         without += said > 0 && (said & WITHOUT_MEMORY);

@@ -3,7 +3,7 @@
 use crate::random::Random;
 use crate::seeds::{self, Seed};
 
-/// A file, and words of which the error must have one.
+/// A file, and words: its error must contain one of them.
 pub struct Bomb {
     pub name: String,
     pub bytes: Vec<u8>,
@@ -15,7 +15,7 @@ pub fn bombs() -> Vec<Bomb> {
     let mut add = |name: &str, bytes: Vec<u8>, words: &'static [&'static str]| {
         bombs.push(Bomb { name: name.into(), bytes, words });
     };
-    // Sizes that are within 4 GiB as they are decoded, and past it as they are handed out.
+    // The sizes are within 4 GiB when they are decoded, and past it when they are handed out.
     let small_codes = seeds::png_header(65536, 65536, 8, 0, false);
     add("a grey picture of 4 GiB.png", small_codes, &["at most 4294967296"]);
     add("bits.png", seeds::png_header(65536, 65536, 1, 0, false), &["at most 4294967296"]);
@@ -26,14 +26,14 @@ pub fn bombs() -> Vec<Bomb> {
         add(&format!("{name}.pnm"), header.into(), &["at most 4294967296"]);
     }
     add("a long side.pnm", "P6 2000000000 2 255\n".into(), &["at most 1048576"]);
-    // A claim within the limits, which nothing follows.
+    // The claim is within the limits, but no pixels follow it.
     add("nothing.pnm", "P6 16384 16384 255\n".into(), &["0 bytes follow"]);
     add("nothing in digits.pnm", "P3 4096 4096 255\n".into(), &["0 bytes follow"]);
     let few = ["P2 64 64 255\n", &" ".repeat(1 << 14), "1 2 3"].concat();
     add("few digits.pnm", few.into(), &["ends before"]);
     let nothing = [seeds::png_header(16384, 16384, 16, 6, false), seeds::chunk(b"IDAT", &[0x78, 1])].concat();
     add("nothing.png", nothing, &["end of file", "of memory", "more data"]);
-    // Headers without an end.
+    // These headers never end.
     let words = ["P6 ".as_bytes(), &vec![b'1'; 1 << 17]].concat();
     add("a word without end.pnm", words, &["parsing"]);
     let line = ["P7\nWIDTH ".as_bytes(), &vec![b'1'; 1 << 17]].concat();
@@ -49,7 +49,7 @@ pub fn bombs() -> Vec<Bomb> {
     bombs
 }
 
-/// Of a scan line file: an 8-bit attribute's bytes.
+/// The bytes of an attribute in an EXR header.
 #[cfg(feature = "exr")]
 fn attribute(name: &str, kind: &str, value: &[u8]) -> Vec<u8> {
     [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &(value.len() as u32).to_le_bytes(), value].concat()
@@ -105,7 +105,7 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
         add(&format!("a tile, {name}.exr"), bytes, &["at most 268435456", "tile"]);
         let bytes = exr_header([16, 16], [16, 16], code, 4, Some([1 << 16, 1 << 16]));
         add(&format!("a tile of 32 GiB, {name}.exr"), bytes, &["at most 268435456"]);
-        // Just within the limits: no data follow, and memory for them may not be there.
+        // The sizes are just within the limits; no data follow, and there may be no memory for them.
         let bytes = exr_header([64, 64], [1 << 12, 1 << 13], code, 4, Some([1 << 12, 1 << 13]));
         let words = &["of memory", "missing bytes"];
         add(&format!("a tile of 256 MiB, {name}.exr"), bytes, words);
@@ -136,7 +136,7 @@ pub fn faulty(seeds: &[Seed], random: &mut Random) -> Vec<u8> {
         if bytes.is_empty() {
             break;
         }
-        // Every second fault near the beginning, where headers are.
+        // Every second fault is near the beginning, where headers are.
         let reach = if below(2) == 0 { bytes.len() } else { bytes.len().min(400) };
         let at = below(reach);
         match below(8) {
@@ -166,7 +166,7 @@ pub fn faulty(seeds: &[Seed], random: &mut Random) -> Vec<u8> {
             }
         }
     }
-    // Numbers in words.
+    // PNM files have numbers in digits.
     if bytes.starts_with(b"P") && below(3) == 0 {
         let odd = ODD[below(ODD.len())].to_string();
         let at = below(bytes.len().min(40));

@@ -22,10 +22,10 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 
 /// Longest headers of all parts together, bytes.
 const MAX_HEADER_BYTES: u64 = 8 << 20;
-/// What a byte of header may take in memory: attributes of a few bytes become values of some hundred, in tables that
-/// grow by doubling.
+/// Bytes of memory that one byte of header may take: attributes of a few bytes become values of some hundred, in
+/// tables that grow by doubling.
 const HEADER_GROWTH: u64 = 64;
-/// What is read of headers at a time, bytes.
+/// Bytes of headers that are read at a time.
 const HEADER_STEP: usize = 64 << 10;
 /// Most channels of a part.
 const MAX_CHANNELS: usize = 4096;
@@ -88,11 +88,12 @@ fn header_error(error: ::exr::error::Error) -> Error {
     }
 }
 
-/// A file whose headers come first, and end where there is no memory for more of them.
+/// A file whose headers come first. Reading them fails past `MAX_HEADER_BYTES`, and where there is no memory for
+/// more.
 struct Headed<'a, F> {
     file: F,
     in_headers: &'a Cell<bool>,
-    /// Bytes of headers that were read, and for how many there is memory.
+    /// Bytes of headers that were read, and that memory was found for.
     taken: u64,
     probed: u64,
 }
@@ -122,7 +123,7 @@ impl<F: Seek> Seek for Headed<'_, F> {
     }
 }
 
-/// Bytes of a whole block, of which buffers are made, also where the picture is smaller than a tile. Saturates.
+/// Bytes of a whole block. Buffers have this size even where the picture is smaller than a tile. Saturates.
 fn block_bytes(header: &Header) -> u64 {
     let Vec2(width, height) = header.max_block_pixel_size();
     let pixels = (width as u64).saturating_mul(height as u64);
@@ -160,14 +161,14 @@ fn channel(part: &Header, name: &str) -> Option<usize> {
 /// The picture as its blocks come in.
 struct Picture {
     part: usize,
-    /// Of the display window.
+    /// Width and height of the display window.
     size: [usize; 2],
-    /// Of the data window's first pixel in the display window.
+    /// Place of the data window's first pixel in the display window.
     offset: [i64; 2],
     pixels: Vec<f32>,
-    /// Without alpha, which is 1 then.
+    /// The part has no channel A: alpha is 1.
     opaque: bool,
-    /// For each channel of the part: its type and what it is of RGBA.
+    /// For each channel of the part: its type, and its index in RGBA if it has one.
     channels: Vec<(SampleType, Option<usize>)>,
     /// Blocks in a row of blocks, and pixels in a block.
     blocks_in_row: usize,
@@ -182,7 +183,7 @@ impl Picture {
         let display = header.shared_attributes.display_window;
         let Vec2(width, height) = display.size;
         let count = pixel_count(width as u64, height as u64, PixelFormat::Rgba32F)?;
-        // The work is the data window's, most of which may not be displayed.
+        // The data window decides the work, however little of it is displayed.
         pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
         let position = header.own_attributes.layer_position;
         let of_rgba = ["R", "G", "B", "A"].map(|name| channel(header, name));
@@ -261,7 +262,7 @@ const TILE: usize = 64;
 
 /// Writes a float image: 32-bit channels B, G, R, and A where it has alpha, run-length encoded tiles. Errors: IO.
 pub(super) fn write(image: &ImageRef<'_>, file: impl Write + Seek) -> Result<()> {
-    // In files channels are sorted by name. Their places in RGBA; a single value is grey.
+    // Files list channels sorted by name. The numbers are indices in RGBA; a single value becomes grey.
     let channels: &[(&str, usize)] = match image.format() {
         PixelFormat::R32F => &[("B", 0), ("G", 0), ("R", 0)],
         _ => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],

@@ -1,6 +1,7 @@
 //! Image files: PNG, OpenEXR (cargo feature `exr`) and PNM. A file appears whole or not at all; a broken one is an
-//! error, and what it claims to hold is checked before memory is taken for it. Each kind has its room; this one has
-//! what they share: limits, errors, memory. Decoders and encoders run on a thread of their own: see `on_own_thread`.
+//! error, and what it claims to hold is checked before memory is taken for it. Each kind of file has a module of its
+//! own; this one holds what they share: limits, errors, memory. Decoders and encoders run on a thread of their own:
+//! see `on_own_thread`.
 
 #[cfg(feature = "exr")]
 mod exr;
@@ -23,14 +24,14 @@ use std::fmt::Display;
 /// Most bytes of pixels that a file may become: a 16384 x 16384 RGBA32F image.
 const MAX_LOAD_BYTES: u64 = 4 << 30;
 
-/// Readers, tables and messages, which take their memory as if there were always some.
+/// Bytes for readers, tables and messages: small allocations, which cannot be refused.
 const SMALL_BYTES: u64 = 1 << 20;
 
 /// Address space that a thread takes as it begins: its stack of 2 MiB, and the heap of 64 MiB that glibc sets apart
 /// for it.
 const THREAD_BYTES: u64 = 72 << 20;
 
-/// What a library without the cargo feature `exr` says of EXR files.
+/// The error for EXR files in a library without the cargo feature `exr`.
 #[cfg(not(feature = "exr"))]
 const WITHOUT_EXR: &str = "this library was built without EXR (its cargo feature exr)";
 
@@ -64,7 +65,7 @@ fn pixel_count(width: u64, height: u64, format: PixelFormat) -> Result<usize> {
     }
 }
 
-/// Room for `count` values. Errors: OUT_OF_MEMORY.
+/// An empty vector with room for `count` values. Errors: OUT_OF_MEMORY.
 fn reserve<T>(count: usize) -> Result<Vec<T>> {
     let mut room = Vec::new();
     match room.try_reserve_exact(count) {
@@ -79,8 +80,8 @@ fn zeros<T: bytemuck::Zeroable>(count: usize) -> Result<Vec<T>> {
     bytemuck::allocation::try_zeroed_vec(count).map_err(|()| no_memory(count as u128 * size_of::<T>() as u128))
 }
 
-/// Whether `bytes` more bytes could be had right now. Decoders take memory in ways that end the process where there
-/// is none; so much as they need at the most is asked for, and given back, before they are let loose. Errors:
+/// Fails unless `bytes` more bytes could be had right now. Codecs allocate in ways that end the process where there
+/// is no memory; therefore the most that one may need is allocated, and freed again, before it starts. Errors:
 /// OUT_OF_MEMORY.
 fn probe(bytes: u64) -> Result<()> {
     match usize::try_from(bytes) {
@@ -93,8 +94,8 @@ fn no_memory(bytes: u128) -> Error {
     Error::new(ErrorKind::OutOfMemory, format!("there are no {bytes} bytes of memory for it"))
 }
 
-/// Runs `work` on a thread that ends with it, for three reasons. Panics in a decoder are that file's error. What
-/// codecs keep for each thread (exr: as much as its largest block) goes at once. And a write past the host's
+/// Runs `work` on a thread that ends with it, for three reasons. Panics in a decoder are that file's error. Memory
+/// that codecs keep for each thread (exr: as much as its largest block) is freed at once. And a write past the host's
 /// RLIMIT_FSIZE is an error here, while elsewhere SIGXFSZ ends the process. Errors: OUT_OF_MEMORY for no thread; IO
 /// for a panic; those of `work`.
 fn on_own_thread<T: Send>(work: impl FnOnce() -> Result<T> + Send) -> Result<T> {

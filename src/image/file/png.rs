@@ -9,7 +9,7 @@ use ::png::{
 };
 use std::io::{BufRead, Seek, SeekFrom, Write};
 
-/// What the decoder may hold besides two rows, bytes; its own default.
+/// Bytes that the decoder may hold besides two rows: its own default.
 const MAX_CHUNK_BYTES: usize = 64 << 20;
 
 /// Errors: IO; OUT_OF_MEMORY.
@@ -33,7 +33,7 @@ pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
     let row_bytes = width as usize * pixel_bytes;
     let mut wide = zeros::<u32>(row_bytes / 4)?;
     let wide: &mut [u8] = bytemuck::cast_slice_mut(&mut wide);
-    // Rows as they are filtered and as they are handed out, of at most 8 bytes a pixel, and chunks, in a vector that
+    // The decoder holds rows, filtered and unfiltered, of at most 8 bytes a pixel, and chunks in a vector that
     // doubles as they come in.
     probe(64 * u64::from(width) + 2 * length.min(MAX_CHUNK_BYTES as u64))?;
 
@@ -58,8 +58,8 @@ pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
     Ok(Loaded { format, width, height, pixels })
 }
 
-/// Turns a row's samples into RGBA: bytes, or with `codes` from 16-bit codes into floats. The part of `out` that was
-/// written.
+/// Turns a row's samples into RGBA: bytes, or with `codes` from 16-bit codes into floats. Returns the part of `out`
+/// that was written.
 fn widen<'a>(row: &[u8], color: ColorType, codes: &[f32], out: &'a mut [u8]) -> &'a [u8] {
     if codes.is_empty() {
         let written = row.len() / color.samples() * 4;
@@ -105,7 +105,7 @@ fn widen<'a>(row: &[u8], color: ColorType, codes: &[f32], out: &'a mut [u8]) -> 
 /// Writes an 8-bit image, alpha as it is. Errors: IO; OUT_OF_MEMORY.
 pub(super) fn write(image: &ImageRef<'_>, file: impl Write) -> Result<()> {
     let mut row = zeros::<u8>(4 * image.width() as usize)?;
-    // The rows that filters compare, and one chunk.
+    // The encoder holds the rows that filters compare, and one chunk.
     probe(16 * u64::from(image.width()) + (1 << 20))?;
     let mut encoder = Encoder::new(file, image.width(), image.height());
     encoder.set_color(ColorType::Rgba);

@@ -14,7 +14,8 @@ const MAX_HEADER_BYTES: u64 = 64 << 10;
 
 /// Errors: IO; OUT_OF_MEMORY.
 pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
-    // A first time only as far as a header may reach; what is read without an error then is no longer the second time.
+    // The header is read twice. The first time only as many bytes as it may have are there, so the second time it is
+    // no longer than that.
     PnmDecoder::new(Read::take(&mut file, MAX_HEADER_BYTES)).map_err(io_error)?;
     let header = file.stream_position().map_err(io_error)?;
     let raster = file.seek(SeekFrom::End(0)).map_err(io_error)? - header;
@@ -34,7 +35,7 @@ pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
     let needed = match decoder.subtype() {
         PnmSubtype::Bitmap(SampleEncoding::Binary) => u64::from(width.div_ceil(8)) * u64::from(height),
         PnmSubtype::Bitmap(SampleEncoding::Ascii) => samples,
-        // Digits, and what is between them.
+        // Each sample is at least a digit, and a separator stands between two.
         PnmSubtype::Graymap(SampleEncoding::Ascii) | PnmSubtype::Pixmap(SampleEncoding::Ascii) => 2 * samples - 1,
         _ => decoded_bytes as u64,
     };
@@ -42,12 +43,12 @@ pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
         let claim = format!("it claims {width} x {height} pixels, which take at least {needed} bytes");
         return Err(io_error(format!("{claim}; {raster} bytes follow")));
     }
-    // What the decoder reads, in a vector that grows, and one that it expands bits into.
+    // The decoder reads into a vector that grows, and expands bits into another one.
     probe(4 * decoded_bytes as u64)?;
     let mut decoded = zeros::<u32>(decoded_bytes.div_ceil(4))?;
     let decoded = &mut bytemuck::cast_slice_mut::<u32, u8>(&mut decoded)[..decoded_bytes];
     decoder.read_image(decoded).map_err(io_error)?;
-    // The last number may end with the file; where more are missing the decoder takes them for zeros.
+    // The end of the file may end the last number; numbers that are missing altogether the decoder takes for zeros.
     if ends.get() > 1 {
         return Err(io_error("it ends before its pixels do"));
     }

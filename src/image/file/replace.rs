@@ -1,5 +1,5 @@
-//! Files that appear whole or not at all: written beside their place under another name, brought to the disk, then
-//! renamed.
+//! Files that appear whole or not at all: each is written in the same folder under another name, brought to the disk,
+//! then renamed.
 
 use super::io_error;
 use crate::error::Result;
@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// Links to links that are followed, as many as Linux does.
 const MAX_LINKS: u32 = 40;
-/// Names that are tried for the temporary file; where process numbers repeat, as in containers, left-over ones have
-/// the first.
+/// Most names that are tried for the temporary file. Where process numbers repeat, as in containers, files that
+/// earlier processes left have the first names.
 const MAX_NAMES: u32 = 10_000;
 
 /// Lets `fill` write a file, gets it back, and puts it in the place of `path`. Errors: IO, and nothing is changed;
@@ -29,14 +29,14 @@ pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Resu
     match renamed {
         Ok(()) => sync_folder(&place).map_err(io_error),
         Err(error) => {
-            // The error that is told is the first one.
+            // The first error is the one to report.
             let _ = fs::remove_file(&temporary);
             Err(error)
         }
     }
 }
 
-/// What `path` names after all symbolic links, whether that is there or not: a rename would replace the link.
+/// The path behind all symbolic links, whether or not a file is there: a rename would replace the link.
 fn end_of_links(path: &Path) -> Result<Cow<'_, Path>> {
     let mut place = Cow::Borrowed(path);
     for _ in 0..MAX_LINKS {
@@ -89,7 +89,7 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, Fi
     Err(io_error(format!("its folder holds {MAX_NAMES} left-over files .bhr-*.tmp")))
 }
 
-/// The new file is at no time open to more than the old one was.
+/// The new file is at no time accessible to more users than the old one.
 #[cfg(unix)]
 fn never_wider(options: &mut OpenOptions, before: Option<&Metadata>) {
     use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
@@ -113,7 +113,7 @@ fn finish(file: File, before: Option<&Metadata>) -> io::Result<()> {
 fn keep_mode(file: &File, before: Option<&Metadata>) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let Some(before) = before else { return Ok(()) };
-    // Where this process may; else the file becomes its own, as any new file does.
+    // A process that may not give files away keeps the file as its own, like any new file.
     let _ = fchown(file, Some(before.uid()), Some(before.gid()));
     file.set_permissions(fs::Permissions::from_mode(before.mode() & 0o777))
 }
@@ -123,7 +123,7 @@ fn keep_mode(_: &File, _: Option<&Metadata>) -> io::Result<()> {
     Ok(())
 }
 
-/// File systems without a way to the disk have nothing to report.
+/// These errors come from file systems that cannot sync, and say nothing about the data.
 fn synced(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if matches!(error.kind(), ErrorKind::InvalidInput | ErrorKind::Unsupported) => Ok(()),
@@ -131,7 +131,7 @@ fn synced(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// As dropping it, which keeps the error to itself.
+/// Closes the file as dropping it does, but returns the error, which a drop ignores.
 #[cfg(unix)]
 fn close(file: File) -> io::Result<()> {
     use std::os::fd::IntoRawFd;
@@ -151,7 +151,7 @@ fn close(file: File) -> io::Result<()> {
     Ok(())
 }
 
-/// The name is on the disk when its folder is. A folder that may not be read is left to the system.
+/// Brings the file's name to the disk, which is in its folder. A folder that may not be read is left to the system.
 #[cfg(unix)]
 fn sync_folder(place: &Path) -> io::Result<()> {
     match File::open(folder_of(place)) {

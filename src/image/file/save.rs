@@ -29,9 +29,9 @@ fn kind_for(path: &Path, format: PixelFormat) -> Result<FileKind> {
 }
 
 /// Writes `image`: 8-bit formats to `.png` or `.ppm` (which drops alpha), float formats to `.exr` (32-bit; `R32F` as
-/// grey), alpha as it is. The file appears whole, on the disk, or not at all; an older one keeps its mode, and of a
-/// symbolic link the target is written. Errors: UNSUPPORTED for another extension, and for EXR without the cargo
-/// feature; IO; OUT_OF_MEMORY.
+/// grey), alpha as it is. The file appears whole, and on the disk, or not at all. A file that is replaced keeps its
+/// mode, and its owner where the process may set it; where `path` is a symbolic link, its target is written. Errors:
+/// UNSUPPORTED for another extension, and for EXR without the cargo feature; IO; OUT_OF_MEMORY.
 pub fn save(image: &ImageRef<'_>, path: &Path) -> Result<()> {
     let kind = kind_for(path, image.format())?;
     let write = || {

@@ -17,7 +17,7 @@ pub use plane::{OrbitPlane, PlaneImage, PlaneSky, Turn};
 pub use schwarzschild::{Branch, Column, Family, Resolution};
 pub use table::{Crossing, Look, SchwarzschildLens};
 
-/// What memory is asked for.
+/// Named in out-of-memory errors.
 pub const LENS: &str = "the tables of a lens";
 
 #[cfg(test)]
