@@ -60,11 +60,11 @@ fn ints(values: &[i32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// An EXR header with half channels `channels`, and a first block of no bytes. `tiles`: their sides, for a tiled file.
+/// An EXR header with half channels `channels`, 3 of them without alpha, and a first block of no bytes. `tiles`: their sides, for a tiled file.
 #[cfg(feature = "exr")]
 fn exr_header(display: [i32; 2], data: [i32; 2], compression: u8, channels: usize, tiles: Option<[i32; 2]>) -> Vec<u8> {
     let window = |[width, height]: [i32; 2]| ints(&[0, 0, width - 1, height - 1]);
-    let mut names = ["A", "B", "G", "R"].map(String::from).to_vec();
+    let mut names = ["A", "B", "G", "R"].map(String::from)[4 - channels.min(4)..].to_vec();
     names.extend((4..channels).map(|i| format!("Z{i:05}")));
     let mut list = Vec::new();
     for name in &names {
@@ -122,6 +122,17 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
     let mut header = exr_header([16, 16], [16, 16], 3, 4, None);
     header.splice(8..8, attribute("preview", "preview", &ints(&[0x7fff_ffff, 0x3fff_ffff])));
     add("a preview.exr", header, &["missing bytes"]);
+}
+
+/// A valid file of some 300 bytes, one white pixel without alpha in a display window of 1 GiB as it is handed out.
+#[cfg(feature = "exr")]
+pub fn exr_pixel() -> Vec<u8> {
+    let mut bytes = exr_header([8192, 8192], [1, 1], 0, 3, None);
+    // The block's size, and its bytes.
+    bytes.truncate(bytes.len() - 13);
+    bytes.extend(ints(&[6]));
+    bytes.extend([0, 0x3c, 0, 0x3c, 0, 0x3c]);
+    bytes
 }
 
 /// Numbers that programs trip over.

@@ -68,9 +68,6 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
             picture.put(&block)?;
         }
     }
-    if picture.opaque {
-        picture.pixels.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
-    }
     Ok(Loaded {
         format: PixelFormat::Rgba32F,
         width: picture.size[0] as u32,
@@ -165,7 +162,7 @@ struct Picture {
     /// Of the data window's first pixel in the display window.
     offset: [i64; 2],
     pixels: Vec<f32>,
-    /// Without alpha, which is 1 then.
+    /// Without alpha, which is 1 then where the data window reaches.
     opaque: bool,
     /// For each channel of the part: its type and what it is of RGBA.
     channels: Vec<(SampleType, Option<usize>)>,
@@ -223,19 +220,26 @@ impl Picture {
         let mut rest = block.data.as_slice();
         for y in 0..height {
             let row = usize::try_from((top + y) as i64 + self.offset[1]).ok().filter(|row| *row < self.size[1]);
+            // The displayed part of the row, among the picture's floats.
+            let shown = match row {
+                Some(row) if from < to => {
+                    let start = row * self.size[0] + (first + from as i64) as usize;
+                    4 * start..4 * (start + to - from)
+                }
+                _ => 0..0,
+            };
+            if self.opaque {
+                self.pixels[shown.clone()].iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
+            }
             for (kind, of_rgba) in &self.channels {
                 let bytes = kind.bytes_per_sample();
                 let Some((line, after)) = rest.split_at_checked(width * bytes) else {
                     return Err(io_error("a block is shorter than its pixels"));
                 };
                 rest = after;
-                let (Some(row), Some(c)) = (row, of_rgba) else { continue };
-                if from == to {
-                    continue;
+                if let Some(c) = of_rgba {
+                    put_line(*kind, &line[from * bytes..to * bytes], &mut self.pixels[shown.clone()], *c);
                 }
-                let start = row * self.size[0] + (first + from as i64) as usize;
-                let out = &mut self.pixels[4 * start..4 * (start + to - from)];
-                put_line(*kind, &line[from * bytes..to * bytes], out, *c);
             }
         }
         Ok(())

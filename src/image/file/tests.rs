@@ -284,7 +284,8 @@ fn names_may_be_as_long_as_names_can_be() {
     assert_eq!(folder.names(), [OsString::from(name)]);
 }
 
-/// An RGB file has alpha 1; what the data window leaves free of the display window is 0, and what lies outside is cut.
+/// An RGB file has alpha 1 in its data window; what that leaves free of the display window is 0 with alpha, and what
+/// lies outside is cut.
 #[cfg(feature = "exr")]
 #[test]
 fn data_windows_are_placed_in_display_windows() {
@@ -315,10 +316,10 @@ fn data_windows_are_placed_in_display_windows() {
         })
         .unwrap();
         let loaded = load(&folder.file("a.exr")).unwrap();
-        let clear = if channels.len() == 4 { 0.0 } else { 1.0 };
         let pixel = |value: Option<f32>| match value {
             Some(value) if channels.len() == 4 => [value; 4],
-            value => [value.unwrap_or(0.0), value.unwrap_or(0.0), value.unwrap_or(0.0), clear],
+            Some(value) => [value, value, value, 1.0],
+            None => [0.0; 4],
         };
         let rows = [[None; 4], [Some(1.0), Some(2.0), None, None], [Some(11.0), Some(12.0), None, None]];
         let wanted = rows.as_flattened().iter().flat_map(|value| pixel(*value)).collect::<Vec<_>>();
