@@ -19,10 +19,7 @@ const MAX_NAMES: u32 = 10_000;
 /// those of `fill`.
 pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Result<()> {
     let place = end_of_links(path)?;
-    let before = fs::metadata(&place).ok();
-    if let Some(before) = &before {
-        refuse_as_target(before)?;
-    }
+    let before = older(path, &place)?;
     let (temporary, file) = create_beside(&place, before.as_ref())?;
     let written = fill(file).and_then(|file| finish(file, before.as_ref()).map_err(io_error));
     let renamed = written.and_then(|()| fs::rename(&temporary, &place).map_err(io_error));
@@ -40,13 +37,75 @@ pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Resu
 fn end_of_links(path: &Path) -> Result<Cow<'_, Path>> {
     let mut place = Cow::Borrowed(path);
     for _ in 0..MAX_LINKS {
-        if !fs::symlink_metadata(&place).is_ok_and(|there| there.is_symlink()) {
-            return Ok(place);
+        let Some(link) = fs::symlink_metadata(&place).ok().filter(Metadata::is_symlink) else { return Ok(place) };
+        if !may_follow(&link, &place).map_err(io_error)? {
+            let link = place.display();
+            return Err(io_error(format!("{link} is a symbolic link of another user in a folder that all may write")));
         }
         let target = fs::read_link(&place).map_err(io_error)?;
         place = Cow::Owned(folder_of(&place).join(target));
     }
     Err(io_error(format!("it is a chain of more than {MAX_LINKS} symbolic links")))
+}
+
+/// In folders such as /tmp anyone may leave a link in the way of a file that is about to be written. There only links
+/// of this user and of the folder's owner are followed, as Linux does it with fs.protected_symlinks.
+#[cfg(unix)]
+fn may_follow(link: &Metadata, place: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let folder = fs::metadata(folder_of(place))?;
+    // Sticky, and written by all.
+    let shared = folder.mode() & 0o1002 == 0o1002;
+    // SAFETY: it has no conditions.
+    let user = unsafe { libc::geteuid() };
+    Ok(!shared || link.uid() == user || link.uid() == folder.uid())
+}
+
+#[cfg(not(unix))]
+fn may_follow(_: &Metadata, _: &Path) -> io::Result<bool> {
+    Ok(true)
+}
+
+/// The file at `place`, which `path` leads to, if there is one. It is opened for writing, and nothing is written: so
+/// the system refuses what it would refuse any program that writes by that path (permissions, links, read-only file
+/// systems, immutable files), and a rename would do.
+fn older(path: &Path, place: &Path) -> Result<Option<Metadata>> {
+    let before = match fs::metadata(place) {
+        Ok(before) => before,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(io_error(error)),
+    };
+    // Before it is opened, which devices may take for a command.
+    refuse_as_target(&before)?;
+    let mut options = OpenOptions::new();
+    without_waiting(options.write(true));
+    let opened = options.open(path).and_then(|file| file.metadata()).map_err(io_error)?;
+    refuse_as_target(&opened)?;
+    match is_same_file(&before, &opened) {
+        true => Ok(Some(opened)),
+        false => Err(io_error("it became another file just now")),
+    }
+}
+
+/// A FIFO that has come in the file's place just now does not hold the caller up.
+#[cfg(unix)]
+pub(super) fn without_waiting(options: &mut OpenOptions) {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.custom_flags(libc::O_NONBLOCK);
+}
+
+#[cfg(not(unix))]
+pub(super) fn without_waiting(_: &mut OpenOptions) {}
+
+#[cfg(unix)]
+fn is_same_file(a: &Metadata, b: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn is_same_file(_: &Metadata, _: &Metadata) -> bool {
+    true
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -56,7 +115,7 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Renaming would replace what opening for writing refuses.
+/// Renaming would replace what is no file, and what is marked read-only, which root may open all the same.
 fn refuse_as_target(there: &Metadata) -> Result<()> {
     let why = match (there.is_dir(), there.is_file(), there.permissions().readonly()) {
         (true, _, _) => "it is a directory",
