@@ -208,6 +208,11 @@ static void leave_links(const BhrImage *image) {
     CHECK(symlink("../nothing.png", "sticky/dangling.png") == 0, "cannot make a link");
 }
 
+/* A file that all may write becomes this user's own. */
+static void open_file(const BhrImage *image) {
+    CHECK_OK(bhr_image_save(image, "shared/open.png"));
+}
+
 /* What a program may not write by opening a file it may not replace either. Where it is not root, a program has no
  * files of another user. */
 static void other_users(void) {
@@ -221,6 +226,12 @@ static void other_users(void) {
     write_file(path_of("shared/roots.png"), "old", 3);
     CHECK(passes_as_nobody(roots_file, &image), "a part of the test failed");
     CHECK(file_size(path_of("shared/roots.png")) == 3, "root's file was replaced");
+    write_file(path_of("shared/open.png"), "old", 3);
+    CHECK(chmod(path_of("shared/open.png"), 0676) == 0, "cannot change a mode");
+    CHECK(passes_as_nobody(open_file, &image), "a part of the test failed");
+    struct stat about;
+    CHECK(stat(path_of("shared/open.png"), &about) == 0 && about.st_gid == NOBODY && (about.st_mode & 07777) == 0606,
+          "another group has the old group's rights: the mode is %o", (unsigned)about.st_mode & 07777);
 
     /* Links in the way of root, whether the system protects them or not. */
     CHECK(mkdir(path_of("sticky"), 0777) == 0 && chmod(path_of("sticky"), 01777) == 0, "cannot make a folder");

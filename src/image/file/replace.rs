@@ -153,7 +153,8 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, Fi
 fn never_wider(options: &mut OpenOptions, before: Option<&Metadata>) {
     use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
     if let Some(before) = before {
-        options.mode(before.mode() & 0o777);
+        // Until `keep_mode` its group is another one.
+        options.mode(before.mode() & 0o707);
     }
 }
 
@@ -172,9 +173,15 @@ fn finish(file: File, before: Option<&Metadata>) -> io::Result<()> {
 fn keep_mode(file: &File, before: Option<&Metadata>) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let Some(before) = before else { return Ok(()) };
-    // Where this process may; else the file becomes its own, as any new file does.
-    let _ = fchown(file, Some(before.uid()), Some(before.gid()));
-    file.set_permissions(fs::Permissions::from_mode(before.mode() & 0o777))
+    // Where this process may; else the file becomes its own, as any new file does, and its group's if need be: that is
+    // not given the rights of the group before it.
+    let _ = fchown(file, Some(before.uid()), Some(before.gid())).or_else(|_| fchown(file, None, Some(before.gid())));
+    let now = file.metadata()?;
+    let mode = before.mode() & if now.gid() == before.gid() { 0o777 } else { 0o707 };
+    match now.mode() & 0o7777 == mode {
+        true => Ok(()),
+        false => file.set_permissions(fs::Permissions::from_mode(mode)),
+    }
 }
 
 #[cfg(not(unix))]
