@@ -202,8 +202,8 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 /// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
 /// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with
 /// channels R, G and B is read, its largest level, cut to the display window, 0 where the data window does not reach;
-/// 8 MiB of headers, 4096 channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the
-/// library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// 8 MiB of headers, 4096 channels, blocks of 256 MiB and 16 GiB of samples (width x height of the data window x bytes
+/// of all channels) at the most, no deep data or subsampling. The pixels are the library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
 /// for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
 /// built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
 /// side, or of more than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before

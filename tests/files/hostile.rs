@@ -112,6 +112,8 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
     }
     add("a display window.exr", exr_header([1 << 20, 1 << 20], [16, 16], 3, 4, None), &["at most 4294967296"]);
     add("channels.exr", exr_header([16, 16], [16, 16], 3, 5000, None), &["at most 4096"]);
+    let unused = exr_header([16, 16], [4096, 1024], 0, 4096, None);
+    add("unused channels.exr", unused, &["at most 17179869184"]);
     for (code, name) in [(8, "dwaa"), (9, "dwab")] {
         add(&format!("{name}.exr"), exr_header([16, 16], [16, 16], code, 4, None), &["compression is not read"]);
     }

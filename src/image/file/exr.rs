@@ -31,6 +31,8 @@ const HEADER_STEP: usize = 64 << 10;
 const MAX_CHANNELS: usize = 4096;
 /// Largest block (tile, or 1 to 256 scan lines) when it is unpacked, bytes.
 const MAX_BLOCK_BYTES: u64 = 256 << 20;
+/// Largest samples of the part that is read, bytes: unpacking them takes seconds. Most channels may be none of RGBA.
+const MAX_SAMPLE_BYTES: u64 = 16 << 30;
 /// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the
 /// way.
 const BLOCKS_AT_A_TIME: u64 = 6;
@@ -179,8 +181,13 @@ impl Picture {
         let display = header.shared_attributes.display_window;
         let Vec2(width, height) = display.size;
         let count = pixel_count(width as u64, height as u64, PixelFormat::Rgba32F)?;
-        // The work is the data window's, most of which may not be displayed.
-        pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
+        // The work is the data window's, most of which may not be displayed, and all channels'.
+        let data = pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
+        let bytes = (data as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
+        if bytes > MAX_SAMPLE_BYTES {
+            let claim = format!("its part {part} has {bytes} bytes of samples");
+            return Err(io_error(format!("{claim}; at most {MAX_SAMPLE_BYTES} are read")));
+        }
         let position = header.own_attributes.layer_position;
         let of_rgba = ["R", "G", "B", "A"].map(|name| channel(header, name));
         let block = header.max_block_pixel_size();
