@@ -24,7 +24,10 @@ pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Resu
     let written = fill(file).and_then(|file| finish(file, before.as_ref()).map_err(io_error));
     let renamed = written.and_then(|()| fs::rename(&temporary, &place).map_err(io_error));
     match renamed {
-        Ok(()) => sync_folder(&place).map_err(io_error),
+        Ok(()) => {
+            sync_folder(&place);
+            Ok(())
+        }
         Err(error) => {
             // The error that is told is the first one.
             let _ = fs::remove_file(&temporary);
@@ -217,16 +220,12 @@ fn close(file: File) -> io::Result<()> {
     Ok(())
 }
 
-/// The name is on the disk when its folder is. A folder that may not be read is left to the system.
+/// The name is on the disk when its folder is. The file is in its place by now: an error would say that it is not, so
+/// that stays with the system, as does a folder that may not be read.
 #[cfg(unix)]
-fn sync_folder(place: &Path) -> io::Result<()> {
-    match File::open(folder_of(place)) {
-        Ok(folder) => synced(folder.sync_all()),
-        Err(_) => Ok(()),
-    }
+fn sync_folder(place: &Path) {
+    let _ = File::open(folder_of(place)).and_then(|folder| folder.sync_all());
 }
 
 #[cfg(not(unix))]
-fn sync_folder(_: &Path) -> io::Result<()> {
-    Ok(())
-}
+fn sync_folder(_: &Path) {}
