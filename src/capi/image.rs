@@ -131,7 +131,10 @@ fn layout(given: &BhrImage, name: &str) -> Result<(Layout, u32)> {
         height: given.height,
         row_stride: given.row_stride,
     };
-    layout.check()?;
+    match flags & BHR_IMAGE_BOTTOM_UP {
+        0 => layout.check()?,
+        _ => layout.check_bottom_up()?,
+    };
     Ok((layout, flags))
 }
 
