@@ -21,17 +21,32 @@ pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Resu
     let place = end_of_links(path)?;
     let before = older(path, &place)?;
     let (temporary, file) = create_beside(&place, before.as_ref())?;
-    let written = fill(file).and_then(|file| finish(file, before.as_ref()).map_err(io_error));
-    let renamed = written.and_then(|()| fs::rename(&temporary, &place).map_err(io_error));
-    match renamed {
-        Ok(()) => {
-            sync_folder(&place);
-            Ok(())
-        }
-        Err(error) => {
+    let file = fill(file)?;
+    finish(file, before.as_ref()).map_err(io_error)?;
+    temporary.rename(&place).map_err(io_error)?;
+    sync_folder(&place);
+    Ok(())
+}
+
+/// The temporary file; it is removed where writing or renaming it fails or panics.
+struct Temporary {
+    path: PathBuf,
+    renamed: bool,
+}
+
+impl Temporary {
+    fn rename(mut self, place: &Path) -> io::Result<()> {
+        fs::rename(&self.path, place)?;
+        self.renamed = true;
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.renamed {
             // The error that is told is the first one.
-            let _ = fs::remove_file(&temporary);
-            Err(error)
+            let _ = fs::remove_file(&self.path);
         }
     }
 }
@@ -131,7 +146,7 @@ fn refuse_as_target(there: &Metadata) -> Result<()> {
 
 /// A new file in the folder of `place`, under a name that does not depend on `place`'s: that may be as long as names
 /// can be.
-fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, File)> {
+fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(Temporary, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     if place.file_name().is_none() {
         return Err(io_error("it names no file"));
@@ -141,9 +156,9 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, Fi
     never_wider(&mut options, before);
     for _ in 0..MAX_NAMES {
         let name = format!(".bhr-{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let temporary = folder_of(place).join(name);
-        match options.open(&temporary) {
-            Ok(file) => return Ok((temporary, file)),
+        let path = folder_of(place).join(name);
+        match options.open(&path) {
+            Ok(file) => return Ok((Temporary { path, renamed: false }, file)),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
             Err(error) => return Err(io_error(error)),
         }

@@ -213,6 +213,26 @@ fn a_library_without_exr_says_so() {
     assert_eq!(folder.names(), ["a.exr"]);
 }
 
+/// The codec's panic is an error above this; here the panic is the test's own.
+#[test]
+fn a_panic_while_a_file_is_written_leaves_no_file() {
+    let folder = Folder::new("panic");
+    let path = folder.file("a.png");
+    fs::write(&path, "old").unwrap();
+    let saved = std::panic::catch_unwind(|| replace::with(&path, |_| panic!("in the test of a codec that panics")));
+    assert!(saved.is_err());
+    assert_eq!(folder.names(), ["a.png"]);
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+}
+
+#[test]
+fn pam_comments_may_be_in_any_encoding() {
+    let folder = Folder::new("latin");
+    let header = b"P7\n# caf\xe9\nWIDTH 1\nHEIGHT 1\nDEPTH 1\nMAXVAL 255\nENDHDR\n\x07";
+    fs::write(folder.file("a.pam"), header).unwrap();
+    assert_eq!(load(&folder.file("a.pam")).unwrap().pixels.as_bytes(), [7, 7, 7, 255]);
+}
+
 /// What a process of this number left when it was killed, before this one.
 #[test]
 fn left_over_temporary_files_are_passed_over() {
