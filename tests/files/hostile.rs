@@ -60,7 +60,8 @@ fn ints(values: &[i32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// An EXR header with half channels `channels`, 3 of them without alpha, and a first block of no bytes. `tiles`: their sides, for a tiled file.
+/// An EXR header with half channels `channels`, without alpha where they are 3, and a first block of no bytes. `tiles`:
+/// their sides, for a tiled file.
 #[cfg(feature = "exr")]
 fn exr_header(display: [i32; 2], data: [i32; 2], compression: u8, channels: usize, tiles: Option<[i32; 2]>) -> Vec<u8> {
     let window = |[width, height]: [i32; 2]| ints(&[0, 0, width - 1, height - 1]);
