@@ -1,6 +1,8 @@
 /* common.c -- see common.h. Asks more of the system than C99, which else only video.c does: a monotonic clock,
  * whether a stream is a terminal, a new folder, the number of cores. */
-#ifndef _WIN32
+#if defined(__linux__)
+#define _GNU_SOURCE /* sched_getaffinity, and what POSIX has */
+#elif !defined(_WIN32)
 #define _POSIX_C_SOURCE 199506L /* clock_gettime, isatty, fileno */
 #endif
 
@@ -18,6 +20,9 @@
 #else
 #include <sys/stat.h>
 #include <unistd.h>
+#endif
+#ifdef __linux__
+#include <sched.h>
 #endif
 
 const Choice BACKENDS[] = {{"auto", BHR_BACKEND_AUTO},   {"cpu", BHR_BACKEND_CPU},     {"vulkan", BHR_BACKEND_VULKAN},
@@ -255,6 +260,9 @@ uint32_t cores(void) {
     SYSTEM_INFO info;
     GetSystemInfo(&info);
     return info.dwNumberOfProcessors > 0 ? (uint32_t)info.dwNumberOfProcessors : 1;
+#elif defined(__linux__)
+    cpu_set_t allowed; /* to this process, which taskset and containers may give fewer than the machine has */
+    return sched_getaffinity(0, sizeof allowed, &allowed) == 0 ? (uint32_t)CPU_COUNT(&allowed) : 1;
 #elif defined(_SC_NPROCESSORS_ONLN)
     long count = sysconf(_SC_NPROCESSORS_ONLN);
     return count > 0 ? (uint32_t)count : 1;

@@ -3,11 +3,12 @@
 
 use bhr::capi::adapter::*;
 use bhr::capi::context::*;
+use bhr::capi::image::*;
 use bhr::capi::status::*;
 use bhr::capi::surface::*;
 use bhr::capi::version::*;
 use bhr::capi::window::*;
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 use std::ptr::{null_mut, without_provenance_mut};
 
 fn message() -> String {
@@ -72,7 +73,8 @@ fn opengl_is_the_feature_gl() {
     match context(BHR_BACKEND_GL, None) {
         // SAFETY: it was made here.
         Ok(context) => unsafe { bhr_context_destroy(context) },
-        Err(refused) => assert_eq!(was_built_without(&refused, "gl"), !cfg!(feature = "gl"), "{refused:?}"),
+        Err(refused) if cfg!(feature = "gl") => assert_eq!(refused.0, BHR_ERROR_NO_ADAPTER, "{refused:?}"),
+        Err(refused) => assert!(was_built_without(&refused, "gl"), "{refused:?}"),
     }
     if cfg!(feature = "gl") {
         return;
@@ -89,5 +91,37 @@ fn opengl_is_the_feature_gl() {
             assert_ne!(info.backend, BHR_BACKEND_GL);
         }
         bhr_context_destroy(context(BHR_BACKEND_AUTO, None).unwrap());
+    }
+}
+
+#[test]
+fn exr_files_are_the_feature_exr() {
+    let path = std::env::temp_dir().join(format!("bhr-features-{}.exr", std::process::id()));
+    let name = CString::new(path.to_str().unwrap()).unwrap();
+    let mut pixels = [0.5_f32, 1.0, 2.0, 1.0];
+    // SAFETY: zeros are a valid BhrImage, and everything lives here.
+    let (saved, loaded) = unsafe {
+        let mut image = std::mem::zeroed::<BhrImage>();
+        assert_eq!(bhr_image_init(&mut image, size_of_val(&image)), BHR_OK);
+        (image.format, image.width, image.height) = (BHR_FORMAT_RGBA32F, 1, 1);
+        (image.pixels, image.byte_size) = (pixels.as_mut_ptr().cast(), size_of_val(&pixels) as u64);
+        let saved = (bhr_image_save(&image, name.as_ptr()), message());
+        if !cfg!(feature = "exr") {
+            assert!(!path.exists());
+            std::fs::write(&path, [0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0]).unwrap();
+        }
+        let loaded = (bhr_image_load(name.as_ptr(), &mut image), message());
+        if loaded.0 == BHR_OK {
+            assert_eq!(std::slice::from_raw_parts(image.pixels.cast::<f32>(), 4), pixels);
+            assert_eq!(bhr_image_release(&mut image), BHR_OK);
+        }
+        (saved, loaded)
+    };
+    std::fs::remove_file(&path).unwrap();
+    for done in [saved, loaded] {
+        match cfg!(feature = "exr") {
+            true => assert_eq!(done.0, BHR_OK, "{done:?}"),
+            false => assert!(was_built_without(&done, "exr"), "{done:?}"),
+        }
     }
 }

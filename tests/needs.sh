@@ -68,9 +68,12 @@ install_missing() {
     local packages as_root=()
     mapfile -t packages < <(missing_packages)
     [ ${#packages[@]} -gt 0 ] || return 0
-    local advice="sudo apt-get update && sudo apt-get install --no-install-recommends ${packages[*]}"
+    local install="apt-get install --no-install-recommends ${packages[*]}"
+    local advice="apt-get update && $install"
     command -v apt-get >/dev/null || stop "Missing here, by their Debian names: ${packages[*]}"
     if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || stop "Packages are missing, and there is no sudo here. Run as root:" "    $advice"
+        advice="sudo apt-get update && sudo $install"
         sudo -n true 2>/dev/null || stop "Packages are missing, and sudo asks for a password here. Run:" "    $advice"
         as_root=(sudo -n)
     fi

@@ -1,6 +1,6 @@
 //! THIRD-PARTY.txt is made here, from Cargo.lock and the crates' own licence files: it names all that a built library
-//! contains, on one platform or another. A licence that nobody has agreed to fails, as does a noted advisory that no
-//! longer holds.
+//! contains, on one platform or another. A licence that nobody has agreed to fails. Security advisories are not
+//! checked: the tests run offline, without a database of them.
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 /// The interfaces that a search looks at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -192,9 +192,9 @@ static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
 /// With its last instance on an EGL display wgpu terminates the display, which is one for the whole process: with it go
 /// the contexts of a host that uses it too. So the first instance stays.
 fn keep_display(instance: Option<wgpu::Instance>) {
-    static KEPT: Once = Once::new();
+    static KEPT: OnceLock<wgpu::Instance> = OnceLock::new();
     if let Some(instance) = instance.filter(|_| !cfg!(windows)) {
-        KEPT.call_once(|| std::mem::forget(instance));
+        KEPT.get_or_init(|| instance);
     }
 }
 

@@ -131,14 +131,13 @@ impl Compilers {
         }
     }
 
-    /// Makes those of `keys` that are not there in the background, in place of what waits since an earlier call.
+    /// Makes those of `keys` that are not there, and keeps those that are, in the background, in place of what waits since an earlier call.
     pub fn make_later(&self, store: &Arc<Store>, device: &Arc<Device>, keys: Vec<KernelKey>) {
         if !self.threads {
             return;
         }
-        let keys = keys.into_iter().filter(|key| !store.has(*key)).collect::<VecDeque<_>>();
         let mut queue = lock(&self.queue);
-        queue.keys = keys;
+        queue.keys = keys.into();
         // Half of the cores are left to the host, where there are several.
         let most = cores().div_ceil(2).min(MOST_BEHIND);
         while queue.running < most.min(queue.keys.len()) {

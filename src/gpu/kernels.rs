@@ -77,13 +77,18 @@ enum Progress {
 }
 
 impl State {
-    /// A frame asks for a pipeline that is there.
-    fn note_use(&mut self, key: KernelKey) {
-        if let Some(place) = self.used.iter().position(|used| *used == key) {
-            self.ahead -= usize::from(place < self.ahead);
-            self.used.remove(place);
-            self.used.push(key);
+    /// A frame asks for a pipeline that is there, or one that may come (`ahead`).
+    fn note_use(&mut self, key: KernelKey, ahead: bool) {
+        let Some(place) = self.used.iter().position(|used| *used == key) else { return };
+        let was_ahead = place < self.ahead;
+        if ahead && !was_ahead {
+            return;
         }
+        self.used.remove(place);
+        self.ahead -= usize::from(was_ahead);
+        let place = if ahead { self.ahead } else { self.used.len() };
+        self.used.insert(place, key);
+        self.ahead += usize::from(ahead);
     }
 }
 
@@ -109,9 +114,7 @@ impl Store {
             match state.made.get(&key) {
                 Some(Progress::Made(compiled)) => {
                     let compiled = compiled.clone();
-                    if !ahead {
-                        state.note_use(key);
-                    }
+                    state.note_use(key, ahead);
                     return Ok(compiled);
                 }
                 Some(Progress::Making) => {

@@ -118,6 +118,19 @@ impl Layout {
             ))),
         }
     }
+
+    /// As `check`, where the bottom row comes first in memory: `BHR_IMAGE_BOTTOM_UP`. Errors: those, or a negative
+    /// stride.
+    pub fn check_bottom_up(&self) -> Result<(usize, isize)> {
+        let given = self.row_stride;
+        if given < 0 {
+            return Err(Error::argument(format!(
+                "image row_stride is {given}; where BHR_IMAGE_BOTTOM_UP says that the bottom row comes first it is 0 \
+                 or more, and pixels the lowest address"
+            )));
+        }
+        self.check()
+    }
 }
 
 /// Which row of a picture begins at the pixels that a host names.
@@ -139,18 +152,14 @@ struct Rows {
 }
 
 impl Rows {
-    /// `pixels` as `first_row` says. Errors: as `Layout::check`; a negative stride with `FirstRow::Bottom`; a block
+    /// `pixels` as `first_row` says. Errors: as `Layout::check` or `Layout::check_bottom_up`; a block
     /// of fewer bytes than that needs; NULL or misaligned pixels, or ones whose rows would lie outside the address
     /// space.
     fn new(layout: Layout, first_row: FirstRow, pixels: *mut u8, byte_size: u64) -> Result<Self> {
-        let given = layout.row_stride;
-        if matches!(first_row, FirstRow::Bottom) && given < 0 {
-            return Err(Error::argument(format!(
-                "image row_stride is {given}; where BHR_IMAGE_BOTTOM_UP says that the bottom row comes first it is 0 \
-                 or more, and pixels the lowest address"
-            )));
-        }
-        let (bytes, stride) = layout.check()?;
+        let (bytes, stride) = match first_row {
+            FirstRow::Top => layout.check()?,
+            FirstRow::Bottom => layout.check_bottom_up()?,
+        };
         if pixels.is_null() {
             return Err(Error::argument("image pixels is NULL"));
         }

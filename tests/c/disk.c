@@ -16,7 +16,7 @@
 
 #define SIZE 64u
 
-enum Step { NONE, WRITE, FSYNC, CLOSE, RENAME };
+enum Step { NONE, WRITE, FSYNC, CLOSE, RENAME, FSYNC_FOLDER };
 
 static enum Step failing;
 static int       failing_errno;
@@ -44,7 +44,7 @@ int fsync(int fd) {
     const int ours = is_ours(fd);
     fsyncs_of_files += (unsigned)ours;
     fsyncs_of_folders += saving && !ours;
-    return ours && fails(FSYNC) ? -1 : (int)syscall(SYS_fsync, fd);
+    return saving && fails(ours ? FSYNC : FSYNC_FOLDER) ? -1 : (int)syscall(SYS_fsync, fd);
 }
 
 int close(int fd) {
@@ -124,6 +124,10 @@ int main(int argc, char **argv) {
               renames_after_fsync, fsyncs_of_folders);
         /* File systems that know no fsync have nothing to tell. */
         CHECK_OK(save(&image, path, FSYNC, EINVAL));
+        /* The file is in its place already. */
+        fsyncs_of_folders = 0;
+        CHECK_OK(save(&image, path, FSYNC_FOLDER, EIO));
+        CHECK(fsyncs_of_folders == 1, "%s: the folder was not synced", files[i].name);
         CHECK(unlink(path) == 0, "cannot remove %s", path);
     }
     return check_end();

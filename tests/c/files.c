@@ -4,10 +4,12 @@
 
 #include "check.h"
 
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #define WIDTH 31u
@@ -150,10 +152,8 @@ static void unwritable(void) {
     CHECK_FAILS(BHR_ERROR_IO, "absent", bhr_image_save(&image, path_of("absent/frame.png")));
     CHECK(mkdir(path_of("folder.png"), 0777) == 0, "cannot make a folder");
     CHECK_FAILS(BHR_ERROR_IO, "folder.png", bhr_image_save(&image, path_of("folder.png")));
-    /* A disk that is full only when the bytes arrive. */
-    if (access("/dev/full", W_OK) == 0 && symlink("/dev/full", path_of("full.png")) == 0) {
-        CHECK_FAILS(BHR_ERROR_IO, "full.png", bhr_image_save(&image, path_of("full.png")));
-    }
+    CHECK(symlink("/dev/null", path_of("device.png")) == 0, "cannot make a link");
+    CHECK_FAILS(BHR_ERROR_IO, "no regular file", bhr_image_save(&image, path_of("device.png")));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "path", bhr_image_save(&image, NULL));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "image", bhr_image_save(NULL, path_of("null.png")));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "path", bhr_image_save(&image, ""));
@@ -164,6 +164,85 @@ static void unwritable(void) {
     image.byte_size--;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "byte_size", bhr_image_save(&image, path_of("short.png")));
     CHECK(file_size(path_of("short.png")) == 0, "a refused image left a file");
+}
+
+#define NOBODY 65534
+
+/* Runs `part` in a child of another user, where this one is root, in the folder `place` (which others may enter, and
+ * those above it perhaps not); whether all its checks passed. */
+static int passes_as_nobody(const char *place, void (*part)(const BhrImage *), const BhrImage *image) {
+    fflush(stdout);
+    const pid_t child = fork();
+    if (child == 0) {
+        CHECK(chdir(path_of(place)) == 0, "cannot go to %s", place);
+        if (geteuid() == 0) {
+            CHECK(setgid(NOBODY) == 0 && setuid(NOBODY) == 0, "cannot become another user");
+        }
+        part(image);
+        const int status = check_end();
+        fflush(stdout);
+        _exit(status);
+    }
+    int status = 1;
+    return child > 0 && waitpid(child, &status, 0) == child && status == 0;
+}
+
+/* A file of this user's own that only its group may write, in a folder where it could be replaced. */
+static void not_my_file(const BhrImage *image) {
+    const int file = open("not-mine.png", O_CREAT | O_EXCL | O_WRONLY, 0600);
+    CHECK(file >= 0 && write(file, "old", 3) == 3 && close(file) == 0, "cannot make a file");
+    CHECK(chmod("not-mine.png", 0464) == 0, "cannot change a mode");
+    CHECK_FAILS(BHR_ERROR_IO, "ermission", bhr_image_save(image, "not-mine.png"));
+    CHECK(file_size("not-mine.png") == 3, "a file that its user may not write was replaced");
+}
+
+static void roots_file(const BhrImage *image) {
+    CHECK_FAILS(BHR_ERROR_IO, "ermission", bhr_image_save(image, "roots.png"));
+}
+
+static void leave_links(const BhrImage *image) {
+    (void)image;
+    CHECK(symlink("../target.png", "there.png") == 0, "cannot make a link");
+    CHECK(symlink("../nothing.png", "dangling.png") == 0, "cannot make a link");
+}
+
+/* A file that all may write becomes this user's own. */
+static void open_file(const BhrImage *image) {
+    CHECK_OK(bhr_image_save(image, "open.png"));
+}
+
+/* What a program may not write by opening a file it may not replace either. Where it is not root, a program has no
+ * files of another user. */
+static void other_users(void) {
+    static unsigned char pixels[WIDTH * HEIGHT * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, sizeof pixels);
+    CHECK(mkdir(path_of("shared"), 0777) == 0 && chmod(path_of("shared"), 0777) == 0, "cannot make a folder");
+    CHECK(passes_as_nobody("shared", not_my_file, &image), "a part of the test failed");
+    if (geteuid() != 0) {
+        return;
+    }
+    write_file(path_of("shared/roots.png"), "old", 3);
+    CHECK(passes_as_nobody("shared", roots_file, &image), "a part of the test failed");
+    CHECK(file_size(path_of("shared/roots.png")) == 3, "root's file was replaced");
+    write_file(path_of("shared/open.png"), "old", 3);
+    CHECK(chmod(path_of("shared/open.png"), 0676) == 0, "cannot change a mode");
+    CHECK(passes_as_nobody("shared", open_file, &image), "a part of the test failed");
+    struct stat about;
+    CHECK(stat(path_of("shared/open.png"), &about) == 0, "the file is gone");
+    CHECK(about.st_gid == NOBODY && (about.st_mode & 07777) == 0606,
+          "another group has the old group's rights: the mode is %o", (unsigned)about.st_mode & 07777);
+
+    /* Links in the way of root, whether the system protects them or not. */
+    CHECK(mkdir(path_of("sticky"), 0777) == 0 && chmod(path_of("sticky"), 01777) == 0, "cannot make a folder");
+    write_file(path_of("target.png"), "old", 3);
+    CHECK(passes_as_nobody("sticky", leave_links, &image), "a part of the test failed");
+    CHECK_FAILS(BHR_ERROR_IO, "another user", bhr_image_save(&image, path_of("sticky/there.png")));
+    CHECK_FAILS(BHR_ERROR_IO, "another user", bhr_image_save(&image, path_of("sticky/dangling.png")));
+    CHECK(file_size(path_of("target.png")) == 3, "another user's link was followed");
+    CHECK(access(path_of("nothing.png"), F_OK) != 0, "another user's dangling link was followed");
+    CHECK(symlink("../target.png", path_of("sticky/own.png")) == 0, "cannot make a link");
+    CHECK_OK(bhr_image_save(&image, path_of("sticky/own.png")));
+    CHECK(file_size(path_of("target.png")) > 3, "the user's own link was not followed");
 }
 
 static void check_unreadable(const char *path, BhrStatus expected, const char *words, int line) {
@@ -293,12 +372,14 @@ static void release(void) {
 }
 
 int main(int argc, char **argv) {
-    BhrContext *context = check_context(check_begin(argc, argv));
+    const BhrBackend backend = check_begin(argc, argv);
     if (argc < 3) {
         fprintf(stderr, "usage: %s BACKEND FOLDER\n", argv[0]);
         return 2;
     }
     folder = argv[2];
+    other_users(); /* first: children have none of a context's threads */
+    BhrContext *context = check_context(backend);
     round_trips(context);
     places();
     unwritable();

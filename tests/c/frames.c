@@ -263,6 +263,8 @@ static void prepared(BhrContext *context, BhrBackend backend) {
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "format is 77", bhr_prepare(context, &bad));
     bad = nowhere, bad.flags = 1u << 30;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_prepare(context, &bad));
+    bad = nowhere, bad.flags = BHR_IMAGE_BOTTOM_UP, bad.row_stride = -(int64_t)WIDTH * 4;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "BHR_IMAGE_BOTTOM_UP", bhr_prepare(context, &bad));
     bad = nowhere, bad.struct_size = 1;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_prepare(context, &bad));
     bad = nowhere, bad.format = BHR_FORMAT_R32F;

@@ -60,11 +60,12 @@ fn ints(values: &[i32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
-/// An EXR header with half channels `channels`, and a first block of no bytes. `tiles`: their sides, for a tiled file.
+/// An EXR header with half channels `channels`, without alpha where they are 3, and a first block of no bytes. `tiles`:
+/// their sides, for a tiled file.
 #[cfg(feature = "exr")]
 fn exr_header(display: [i32; 2], data: [i32; 2], compression: u8, channels: usize, tiles: Option<[i32; 2]>) -> Vec<u8> {
     let window = |[width, height]: [i32; 2]| ints(&[0, 0, width - 1, height - 1]);
-    let mut names = ["A", "B", "G", "R"].map(String::from).to_vec();
+    let mut names = ["A", "B", "G", "R"].map(String::from)[4 - channels.min(4)..].to_vec();
     names.extend((4..channels).map(|i| format!("Z{i:05}")));
     let mut list = Vec::new();
     for name in &names {
@@ -112,6 +113,8 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
     }
     add("a display window.exr", exr_header([1 << 20, 1 << 20], [16, 16], 3, 4, None), &["at most 4294967296"]);
     add("channels.exr", exr_header([16, 16], [16, 16], 3, 5000, None), &["at most 4096"]);
+    let unused = exr_header([16, 16], [4096, 1024], 0, 4096, None);
+    add("unused channels.exr", unused, &["at most 17179869184"]);
     for (code, name) in [(8, "dwaa"), (9, "dwab")] {
         add(&format!("{name}.exr"), exr_header([16, 16], [16, 16], code, 4, None), &["compression is not read"]);
     }
@@ -122,6 +125,17 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
     let mut header = exr_header([16, 16], [16, 16], 3, 4, None);
     header.splice(8..8, attribute("preview", "preview", &ints(&[0x7fff_ffff, 0x3fff_ffff])));
     add("a preview.exr", header, &["missing bytes"]);
+}
+
+/// A valid file of some 300 bytes, one white pixel without alpha in a display window of 1 GiB as it is handed out.
+#[cfg(feature = "exr")]
+pub fn exr_pixel() -> Vec<u8> {
+    let mut bytes = exr_header([8192, 8192], [1, 1], 0, 3, None);
+    // The block's size, and its bytes.
+    bytes.truncate(bytes.len() - 13);
+    bytes.extend(ints(&[6]));
+    bytes.extend([0, 0x3c, 0, 0x3c, 0, 0x3c]);
+    bytes
 }
 
 /// Numbers that programs trip over.

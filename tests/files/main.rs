@@ -147,6 +147,37 @@ fn small_files_that_claim_to_be_large_are_refused() {
     child("child_reads_bombs", &[]);
 }
 
+/// The most memory of the machine's that this process has had at a time, bytes.
+#[cfg(feature = "exr")]
+fn peak_resident() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+    line.trim().trim_end_matches(" kB").parse::<u64>().unwrap() * 1024
+}
+
+#[cfg(feature = "exr")]
+#[test]
+#[ignore = "run by the test below, in a process of its own"]
+fn child_reads_one_pixel_of_a_large_picture() {
+    limit_memory(CHILD_BYTES);
+    let folder = Folder::new();
+    let before = peak_resident();
+    let loaded = folder.load(&hostile::exr_pixel()).unwrap();
+    let taken = peak_resident() - before;
+    assert!(taken < 32 << 20, "{taken} bytes became resident");
+    assert_eq!((loaded.width, loaded.height), (8192, 8192));
+    let floats: &[f32] = bytemuck::cast_slice(loaded.pixels.as_bytes());
+    assert_eq!(floats[..8], [1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0]);
+    assert_eq!(floats[floats.len() - 4..], [0.0; 4]);
+}
+
+/// Pixels that no block reaches are not written, alpha neither: they take no memory of the machine's.
+#[cfg(feature = "exr")]
+#[test]
+fn a_small_file_takes_little_memory_however_large_its_display_window() {
+    child("child_reads_one_pixel_of_a_large_picture", &[]);
+}
+
 #[test]
 #[ignore = "run by the tests below, in a process of its own"]
 fn child_reads_faulty_files() {

@@ -31,6 +31,8 @@ const HEADER_STEP: usize = 64 << 10;
 const MAX_CHANNELS: usize = 4096;
 /// Largest block (tile, or 1 to 256 scan lines) when it is unpacked, bytes.
 const MAX_BLOCK_BYTES: u64 = 256 << 20;
+/// Largest samples of the part that is read, bytes: unpacking them takes seconds. Most channels may be none of RGBA.
+const MAX_SAMPLE_BYTES: u64 = 16 << 30;
 /// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the
 /// way.
 const BLOCKS_AT_A_TIME: u64 = 6;
@@ -67,9 +69,6 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
             let block = UncompressedBlock::decompress_chunk(chunk, chunks.meta_data(), false).map_err(io_error)?;
             picture.put(&block)?;
         }
-    }
-    if picture.opaque {
-        picture.pixels.iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
     }
     Ok(Loaded {
         format: PixelFormat::Rgba32F,
@@ -166,7 +165,7 @@ struct Picture {
     /// Place of the data window's first pixel in the display window.
     offset: [i64; 2],
     pixels: Vec<f32>,
-    /// The part has no channel A: alpha is 1.
+    /// The part has no channel A: alpha is 1 where the data window reaches.
     opaque: bool,
     /// For each channel of the part: its type, and its index in RGBA if it has one.
     channels: Vec<(SampleType, Option<usize>)>,
@@ -183,8 +182,13 @@ impl Picture {
         let display = header.shared_attributes.display_window;
         let Vec2(width, height) = display.size;
         let count = pixel_count(width as u64, height as u64, PixelFormat::Rgba32F)?;
-        // The data window decides the work, however little of it is displayed.
-        pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
+        // The work is the data window's, most of which may not be displayed, and all channels'.
+        let data = pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
+        let bytes = (data as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
+        if bytes > MAX_SAMPLE_BYTES {
+            let claim = format!("its part {part} has {bytes} bytes of samples");
+            return Err(io_error(format!("{claim}; at most {MAX_SAMPLE_BYTES} are read")));
+        }
         let position = header.own_attributes.layer_position;
         let of_rgba = ["R", "G", "B", "A"].map(|name| channel(header, name));
         let block = header.max_block_pixel_size();
@@ -224,19 +228,26 @@ impl Picture {
         let mut rest = block.data.as_slice();
         for y in 0..height {
             let row = usize::try_from((top + y) as i64 + self.offset[1]).ok().filter(|row| *row < self.size[1]);
+            // The displayed part of the row, among the picture's floats.
+            let shown = match row {
+                Some(row) if from < to => {
+                    let start = row * self.size[0] + (first + from as i64) as usize;
+                    4 * start..4 * (start + to - from)
+                }
+                _ => 0..0,
+            };
+            if self.opaque {
+                self.pixels[shown.clone()].iter_mut().skip(3).step_by(4).for_each(|alpha| *alpha = 1.0);
+            }
             for (kind, of_rgba) in &self.channels {
                 let bytes = kind.bytes_per_sample();
                 let Some((line, after)) = rest.split_at_checked(width * bytes) else {
                     return Err(io_error("a block is shorter than its pixels"));
                 };
                 rest = after;
-                let (Some(row), Some(c)) = (row, of_rgba) else { continue };
-                if from == to {
-                    continue;
+                if let Some(c) = of_rgba {
+                    put_line(*kind, &line[from * bytes..to * bytes], &mut self.pixels[shown.clone()], *c);
                 }
-                let start = row * self.size[0] + (first + from as i64) as usize;
-                let out = &mut self.pixels[4 * start..4 * (start + to - from)];
-                put_line(*kind, &line[from * bytes..to * bytes], out, *c);
             }
         }
         Ok(())

@@ -1,9 +1,10 @@
 //! Reading image files: which kind a file is, by its first bytes, and what all kinds become.
 
+use super::replace::without_waiting;
 use super::{about, io_error, on_own_thread, pam, png, pnm, reserve};
 use crate::error::Result;
 use crate::image::memory::PixelFormat;
-use std::fs::{self, File};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
@@ -47,8 +48,8 @@ pub struct Loaded {
 /// curve, which is undone). EXR files: the largest level of the first part that has channels R, G and B, cut to the
 /// display window; 0 where the data window does not reach. Errors: IO for a file that is not there, not readable,
 /// broken, of another kind, or past a limit, which is named: 2^20 pixels a side, 4 GiB as it is handed out, and for
-/// EXR 8 MiB of headers, 4096 channels and 256 MiB a block; UNSUPPORTED for EXR without the cargo feature, and for
-/// its compressions DWA and HTJ2K; OUT_OF_MEMORY.
+/// EXR 8 MiB of headers, 4096 channels, 256 MiB a block and 16 GiB of samples; UNSUPPORTED for EXR without the cargo
+/// feature, and for its compressions DWA and HTJ2K; OUT_OF_MEMORY.
 pub fn load(path: &Path) -> Result<Loaded> {
     let read = || on_own_thread(|| decode(open(path)?));
     read().map_err(|error| about("read", path, &error))
@@ -60,10 +61,17 @@ pub fn decode_png(bytes: &[u8]) -> Result<Loaded> {
 }
 
 fn open(path: &Path) -> Result<BufReader<File>> {
-    if !fs::metadata(path).map_err(io_error)?.is_file() {
-        return Err(io_error("it is no regular file"));
-    }
-    File::open(path).map(BufReader::new).map_err(io_error)
+    // Before it is opened, which devices may take for a command; and then whether it is still so.
+    refuse_as_source(&fs::metadata(path).map_err(io_error)?)?;
+    let mut options = OpenOptions::new();
+    without_waiting(options.read(true));
+    let file = options.open(path).map_err(io_error)?;
+    refuse_as_source(&file.metadata().map_err(io_error)?)?;
+    Ok(BufReader::new(file))
+}
+
+fn refuse_as_source(there: &Metadata) -> Result<()> {
+    if there.is_file() { Ok(()) } else { Err(io_error("it is no regular file")) }
 }
 
 fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {

@@ -82,12 +82,14 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Loaded> {
 
 fn read_header(mut lines: impl BufRead) -> Result<Header> {
     let mut header = Header::default();
-    let mut line = String::new();
+    let mut bytes = Vec::new();
     loop {
-        line.clear();
-        if lines.read_line(&mut line).map_err(io_error)? == 0 {
+        bytes.clear();
+        if lines.read_until(b'\n', &mut bytes).map_err(io_error)? == 0 {
             return Err(io_error(format!("its header does not end within {MAX_HEADER_BYTES} bytes")));
         }
+        // Comments may be in any encoding.
+        let line = String::from_utf8_lossy(&bytes);
         let mut words = line.split_ascii_whitespace();
         let (name, value) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
         let number = match name {

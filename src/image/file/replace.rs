@@ -19,19 +19,34 @@ const MAX_NAMES: u32 = 10_000;
 /// those of `fill`.
 pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Result<()> {
     let place = end_of_links(path)?;
-    let before = fs::metadata(&place).ok();
-    if let Some(before) = &before {
-        refuse_as_target(before)?;
-    }
+    let before = older(path, &place)?;
     let (temporary, file) = create_beside(&place, before.as_ref())?;
-    let written = fill(file).and_then(|file| finish(file, before.as_ref()).map_err(io_error));
-    let renamed = written.and_then(|()| fs::rename(&temporary, &place).map_err(io_error));
-    match renamed {
-        Ok(()) => sync_folder(&place).map_err(io_error),
-        Err(error) => {
-            // The first error is the one to report.
-            let _ = fs::remove_file(&temporary);
-            Err(error)
+    let file = fill(file)?;
+    finish(file, before.as_ref()).map_err(io_error)?;
+    temporary.rename(&place).map_err(io_error)?;
+    sync_folder(&place);
+    Ok(())
+}
+
+/// The temporary file; it is removed where writing or renaming it fails or panics.
+struct Temporary {
+    path: PathBuf,
+    renamed: bool,
+}
+
+impl Temporary {
+    fn rename(mut self, place: &Path) -> io::Result<()> {
+        fs::rename(&self.path, place)?;
+        self.renamed = true;
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        if !self.renamed {
+            // The error that is told is the first one.
+            let _ = fs::remove_file(&self.path);
         }
     }
 }
@@ -40,13 +55,75 @@ pub(super) fn with(path: &Path, fill: impl FnOnce(File) -> Result<File>) -> Resu
 fn end_of_links(path: &Path) -> Result<Cow<'_, Path>> {
     let mut place = Cow::Borrowed(path);
     for _ in 0..MAX_LINKS {
-        if !fs::symlink_metadata(&place).is_ok_and(|there| there.is_symlink()) {
-            return Ok(place);
+        let Some(link) = fs::symlink_metadata(&place).ok().filter(Metadata::is_symlink) else { return Ok(place) };
+        if !may_follow(&link, &place).map_err(io_error)? {
+            let link = place.display();
+            return Err(io_error(format!("{link} is a symbolic link of another user in a folder that all may write")));
         }
         let target = fs::read_link(&place).map_err(io_error)?;
         place = Cow::Owned(folder_of(&place).join(target));
     }
     Err(io_error(format!("it is a chain of more than {MAX_LINKS} symbolic links")))
+}
+
+/// In folders such as /tmp anyone may leave a link in the way of a file that is about to be written. There only links
+/// of this user and of the folder's owner are followed, as Linux does it with fs.protected_symlinks.
+#[cfg(unix)]
+fn may_follow(link: &Metadata, place: &Path) -> io::Result<bool> {
+    use std::os::unix::fs::MetadataExt;
+    let folder = fs::metadata(folder_of(place))?;
+    // Sticky, and written by all.
+    let shared = folder.mode() & 0o1002 == 0o1002;
+    // SAFETY: it has no conditions.
+    let user = unsafe { libc::geteuid() };
+    Ok(!shared || link.uid() == user || link.uid() == folder.uid())
+}
+
+#[cfg(not(unix))]
+fn may_follow(_: &Metadata, _: &Path) -> io::Result<bool> {
+    Ok(true)
+}
+
+/// The file at `place`, which `path` leads to, if there is one. It is opened for writing, and nothing is written: so
+/// the system refuses what it would refuse any program that writes by that path (permissions, links, read-only file
+/// systems, immutable files), and a rename would do.
+fn older(path: &Path, place: &Path) -> Result<Option<Metadata>> {
+    let before = match fs::metadata(place) {
+        Ok(before) => before,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(io_error(error)),
+    };
+    // Before it is opened, which devices may take for a command.
+    refuse_as_target(&before)?;
+    let mut options = OpenOptions::new();
+    without_waiting(options.write(true));
+    let opened = options.open(path).and_then(|file| file.metadata()).map_err(io_error)?;
+    refuse_as_target(&opened)?;
+    match is_same_file(&before, &opened) {
+        true => Ok(Some(opened)),
+        false => Err(io_error("it became another file just now")),
+    }
+}
+
+/// A FIFO that has come in the file's place just now does not hold the caller up.
+#[cfg(unix)]
+pub(super) fn without_waiting(options: &mut OpenOptions) {
+    use std::os::unix::fs::OpenOptionsExt;
+    options.custom_flags(libc::O_NONBLOCK);
+}
+
+#[cfg(not(unix))]
+pub(super) fn without_waiting(_: &mut OpenOptions) {}
+
+#[cfg(unix)]
+fn is_same_file(a: &Metadata, b: &Metadata) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    (a.dev(), a.ino()) == (b.dev(), b.ino())
+}
+
+#[cfg(not(unix))]
+fn is_same_file(_: &Metadata, _: &Metadata) -> bool {
+    true
 }
 
 fn folder_of(path: &Path) -> &Path {
@@ -56,7 +133,7 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Renaming would replace what opening for writing refuses.
+/// Renaming would replace what is no file, and what is marked read-only, which root may open all the same.
 fn refuse_as_target(there: &Metadata) -> Result<()> {
     let why = match (there.is_dir(), there.is_file(), there.permissions().readonly()) {
         (true, _, _) => "it is a directory",
@@ -69,7 +146,7 @@ fn refuse_as_target(there: &Metadata) -> Result<()> {
 
 /// A new file in the folder of `place`, under a name that does not depend on `place`'s: that may be as long as names
 /// can be.
-fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, File)> {
+fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(Temporary, File)> {
     static COUNT: AtomicU32 = AtomicU32::new(0);
     if place.file_name().is_none() {
         return Err(io_error("it names no file"));
@@ -79,9 +156,9 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, Fi
     never_wider(&mut options, before);
     for _ in 0..MAX_NAMES {
         let name = format!(".bhr-{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let temporary = folder_of(place).join(name);
-        match options.open(&temporary) {
-            Ok(file) => return Ok((temporary, file)),
+        let path = folder_of(place).join(name);
+        match options.open(&path) {
+            Ok(file) => return Ok((Temporary { path, renamed: false }, file)),
             Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
             Err(error) => return Err(io_error(error)),
         }
@@ -94,7 +171,8 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(PathBuf, Fi
 fn never_wider(options: &mut OpenOptions, before: Option<&Metadata>) {
     use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
     if let Some(before) = before {
-        options.mode(before.mode() & 0o777);
+        // Until `keep_mode` its group is another one.
+        options.mode(before.mode() & 0o707);
     }
 }
 
@@ -113,9 +191,15 @@ fn finish(file: File, before: Option<&Metadata>) -> io::Result<()> {
 fn keep_mode(file: &File, before: Option<&Metadata>) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let Some(before) = before else { return Ok(()) };
-    // A process that may not give files away keeps the file as its own, like any new file.
-    let _ = fchown(file, Some(before.uid()), Some(before.gid()));
-    file.set_permissions(fs::Permissions::from_mode(before.mode() & 0o777))
+    // Where this process may; else the file becomes its own, as any new file does, and its group's if need be: that is
+    // not given the rights of the group before it.
+    let _ = fchown(file, Some(before.uid()), Some(before.gid())).or_else(|_| fchown(file, None, Some(before.gid())));
+    let now = file.metadata()?;
+    let mode = before.mode() & if now.gid() == before.gid() { 0o777 } else { 0o707 };
+    match now.mode() & 0o7777 == mode {
+        true => Ok(()),
+        false => file.set_permissions(fs::Permissions::from_mode(mode)),
+    }
 }
 
 #[cfg(not(unix))]
@@ -151,16 +235,12 @@ fn close(file: File) -> io::Result<()> {
     Ok(())
 }
 
-/// Brings the file's name to the disk, which is in its folder. A folder that may not be read is left to the system.
+/// The name is on the disk when its folder is. The file is in its place by now: an error would say that it is not, so
+/// that stays with the system, as does a folder that may not be read.
 #[cfg(unix)]
-fn sync_folder(place: &Path) -> io::Result<()> {
-    match File::open(folder_of(place)) {
-        Ok(folder) => synced(folder.sync_all()),
-        Err(_) => Ok(()),
-    }
+fn sync_folder(place: &Path) {
+    let _ = File::open(folder_of(place)).and_then(|folder| folder.sync_all());
 }
 
 #[cfg(not(unix))]
-fn sync_folder(_: &Path) -> io::Result<()> {
-    Ok(())
-}
+fn sync_folder(_: &Path) {}

@@ -213,6 +213,26 @@ fn a_library_without_exr_says_so() {
     assert_eq!(folder.names(), ["a.exr"]);
 }
 
+/// The codec's panic is an error above this; here the panic is the test's own.
+#[test]
+fn a_panic_while_a_file_is_written_leaves_no_file() {
+    let folder = Folder::new("panic");
+    let path = folder.file("a.png");
+    fs::write(&path, "old").unwrap();
+    let saved = std::panic::catch_unwind(|| replace::with(&path, |_| panic!("in the test of a codec that panics")));
+    assert!(saved.is_err());
+    assert_eq!(folder.names(), ["a.png"]);
+    assert_eq!(fs::read(&path).unwrap(), b"old");
+}
+
+#[test]
+fn pam_comments_may_be_in_any_encoding() {
+    let folder = Folder::new("latin");
+    let header = b"P7\n# caf\xe9\nWIDTH 1\nHEIGHT 1\nDEPTH 1\nMAXVAL 255\nENDHDR\n\x07";
+    fs::write(folder.file("a.pam"), header).unwrap();
+    assert_eq!(load(&folder.file("a.pam")).unwrap().pixels.as_bytes(), [7, 7, 7, 255]);
+}
+
 /// What a process of this number left when it was killed, before this one.
 #[test]
 fn left_over_temporary_files_are_passed_over() {
@@ -284,7 +304,8 @@ fn names_may_be_as_long_as_names_can_be() {
     assert_eq!(folder.names(), [OsString::from(name)]);
 }
 
-/// An RGB file has alpha 1; what the data window leaves free of the display window is 0, and what lies outside is cut.
+/// An RGB file has alpha 1 in its data window; what that leaves free of the display window is 0 with alpha, and what
+/// lies outside is cut.
 #[cfg(feature = "exr")]
 #[test]
 fn data_windows_are_placed_in_display_windows() {
@@ -315,10 +336,10 @@ fn data_windows_are_placed_in_display_windows() {
         })
         .unwrap();
         let loaded = load(&folder.file("a.exr")).unwrap();
-        let clear = if channels.len() == 4 { 0.0 } else { 1.0 };
         let pixel = |value: Option<f32>| match value {
             Some(value) if channels.len() == 4 => [value; 4],
-            value => [value.unwrap_or(0.0), value.unwrap_or(0.0), value.unwrap_or(0.0), clear],
+            Some(value) => [value, value, value, 1.0],
+            None => [0.0; 4],
         };
         let rows = [[None; 4], [Some(1.0), Some(2.0), None, None], [Some(11.0), Some(12.0), None, None]];
         let wanted = rows.as_flattened().iter().flat_map(|value| pixel(*value)).collect::<Vec<_>>();
