@@ -731,11 +731,12 @@ BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 /**
  * Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
  * grey. Alpha is written as it is. The file appears whole, and on the disk (fsync), or not at all: it is written as
- * .bhr-*.tmp beside its place, then renamed. An older file keeps its mode; of a symbolic link the target is
- * written; another hard link keeps the old picture. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for
- * a bad image or NULL; UNSUPPORTED for another extension, one that does not go with the format, or .exr in a
- * library that was built without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for a full disk, a
- * quota and RLIMIT_FSIZE (without SIGXFSZ).
+ * .bhr-*.tmp beside its place, then renamed. An older file keeps its mode (where its group cannot be kept, without
+ * the group's rights); of a symbolic link the target is written; another hard link keeps the old picture. Any thread,
+ * inside callbacks too. Errors: INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, one that
+ * does not go with the format, or .exr in a library that was built without EXR; OUT_OF_MEMORY; IO, with the path in
+ * the message, also for an older file that this process may not write, for another user's symbolic link in a sticky
+ * folder that all may write (such as /tmp), for a full disk, a quota and RLIMIT_FSIZE (without SIGXFSZ).
  */
 BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
@@ -743,12 +744,13 @@ BhrStatus bhr_image_save(const BhrImage *image, const char *path);
  * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
  * down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). Of EXR files the first part with
  * channels R, G and B is read, its largest level, cut to the display window, 0 where the data window does not reach;
- * 8 MiB of headers, 4096 channels and blocks of 256 MiB at the most, no deep data or subsampling. The pixels are the
- * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
- * for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
- * built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
- * side, or of more than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before
- * memory is taken for it.
+ * 8 MiB of headers, 4096 channels, blocks of 256 MiB and 16 GiB of samples (width x height of the data window x bytes
+ * of all channels) at the most, no deep data or subsampling. The pixels are the library's: give them back with
+ * bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
+ * struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR;
+ * OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more
+ * than 4 GiB as it is handed out, whatever it takes as a file. What a file claims is checked before memory is taken
+ * for it.
  */
 BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
