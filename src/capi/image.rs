@@ -189,11 +189,13 @@ unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
 /// Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
 /// grey. Alpha is written as it is. The file is written as .bhr-*.tmp in the same folder, brought to the disk
 /// (fsync), then renamed, so that it appears whole or not at all. A file that is replaced keeps its mode, and its
-/// owner where the process may set it. Where path is a symbolic link, its target is written. Other hard links keep
-/// the old picture. A process that is killed leaves the temporary file. Any thread, inside callbacks too. Errors:
-/// INVALID_ARGUMENT for a bad image or NULL; UNSUPPORTED for another extension, one that does not go with the format,
-/// or .exr in a library that was built without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for a full
-/// disk, a quota and RLIMIT_FSIZE (without SIGXFSZ).
+/// owner where the process may set it; where its group cannot be kept, the mode loses the group's rights. Where path
+/// is a symbolic link, its target is written. Other hard links keep the old picture. A process that is killed leaves
+/// the temporary file. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for a bad image or NULL;
+/// UNSUPPORTED for another extension, one that does not go with the format, or .exr in a library that was built
+/// without EXR; OUT_OF_MEMORY; IO, with the path in the message, also for an older file that this process may not
+/// write, for another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk,
+/// a quota and RLIMIT_FSIZE (without SIGXFSZ).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_char) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
