@@ -77,6 +77,8 @@ fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     let mut renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
     set(&mut renderer.scene);
+    // What is made ahead is no frame's.
+    renderer.settled_waits();
     let format = match renderer.scene.view {
         View::Light => PixelFormat::Rgba8Srgb,
         _ => PixelFormat::R32F,

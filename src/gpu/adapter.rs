@@ -111,10 +111,10 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
 }
 
 /// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
-/// through the old one's adapters; devices in use keep theirs.
+/// through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search costs Mesa half a
+/// megabyte that it never frees.
 pub fn forget_drivers() {
     let forgotten = std::mem::take(&mut *found());
-    NO_GL_HARDWARE.store(false, Ordering::Relaxed);
     let _alone = driver_lock::lock();
     drop(forgotten);
 }
