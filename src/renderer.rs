@@ -361,14 +361,16 @@ impl Renderer {
     /// Destroys the GPU device, as a driver may at any time: for tests.
     #[doc(hidden)]
     pub fn lose_device(&self) -> Result<()> {
-        match (&self.runs_on, &self.tracer) {
+        let destroyed = match (&self.runs_on, &self.tracer) {
             (RunsOn::Cpu, _) => Ok(()),
             (RunsOn::Gpu(_, device), _) => device.scoped("destroying the device", |raw| raw.destroy()),
             (RunsOn::Gl(_), tracer) => match &mut *tracer.lock() {
                 Tracer::Gl(tracer) => tracer.lose_device(),
                 _ => Ok(()),
             },
-        }
+        };
+        // Another thread may have been told of the loss by now.
+        destroyed.or_else(|error| if error.kind == ErrorKind::DeviceLost { Ok(()) } else { Err(error) })
     }
 
     /// How often frames found pipelines missing, once those that are made in the background are there; for tests. `None` on the CPU

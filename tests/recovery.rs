@@ -288,9 +288,16 @@ impl XWindow {
     }
 }
 
+/// Windows of two tests at once would lie over each other.
+fn alone_on_the_display() -> std::sync::MutexGuard<'static, ()> {
+    static DISPLAY: std::sync::Mutex<()> = std::sync::Mutex::new(());
+    DISPLAY.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
 #[test]
 #[ignore = "needs an X server: run by tests/windows/run"]
 fn a_window_is_shown_again_after_the_recovery() {
+    let _alone = alone_on_the_display();
     let window = XWindow::new();
     let context = Context::new(BHR_BACKEND_VULKAN);
     let wanted = context.render(BHR_FORMAT_BGRA8_SRGB).unwrap();
@@ -339,6 +346,7 @@ fn a_window_is_shown_again_after_the_recovery() {
 #[test]
 #[ignore = "needs an X server: run by tests/windows/run"]
 fn the_device_may_end_at_any_moment_of_a_window() {
+    let _alone = alone_on_the_display();
     let window = XWindow::new();
     let context = Context::new(BHR_BACKEND_VULKAN);
     let mut shown = 0;
