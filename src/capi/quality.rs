@@ -13,7 +13,7 @@ use crate::scene::{LensTables, Method, Quality};
 /// conditioning).
 pub type BhrMethod = i32;
 /// The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye
-/// moves (not when the view turns or zooms): with spin in frames of 500000 samples or more on a GPU, 110000 on the
+/// moves (not when the view turns or zooms): with spin in frames of 500000 samples or more on a GPU, 140000 on the
 /// CPU, for eyes between 1.03 retrograde photon orbits (3.1 to 4.1 M) and 1e5 M, and max_disk_order to 15 (farther
 /// than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M,
 /// falling from 0.9 M, to 1e6 M. Elsewhere, and for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is
