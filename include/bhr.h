@@ -1097,8 +1097,8 @@ BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 typedef int32_t (*BhrProgressFn)(void *user, double fraction);
 
 /**
- * Sets what bhr_render_image reports to, and the jobs that are begun from now on, inside bhr_job_wait; fn NULL:
- * nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
+ * Sets what bhr_render_image and bhr_prepare report to, and the jobs that are begun from now on, inside
+ * bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
  */
 BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
 
@@ -1116,12 +1116,14 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
  * Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
  * programs (a driver compiles one in 0.1 to 1 s if its cache lacks it), tables and the sky. A frame makes whatever
  * is still missing. Programs for likely changes of the scene (spin, view, glare, projection ...) are also made in
- * the background, at low priority, from bhr_context_create on, except with BHR_BACKEND_GL.
+ * the background, at low priority: those of the default scene from bhr_context_create on, those of changes while
+ * frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
  *
  * target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
- * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: a window of 1920 x
- * 1080. On a GPU it renders one frame that is thrown away and that bhr_frame_stats does not count. It waits for a
- * job that is being rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
+ * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: 1920 x 1080 and
+ * RGBA8_SRGB (a CUBE needs a target, 6 times as wide as high). On a GPU it renders one frame that is thrown away,
+ * that bhr_frame_stats does not count and that the progress callback may cancel. It waits for a job that is being
+ * rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
  */
 BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
 

@@ -1,4 +1,5 @@
-//! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames that may
+//! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames
+//! that may
 //! come. They end with their owner. Knows no scene.
 
 use super::Device;
@@ -26,7 +27,7 @@ pub struct Compilers {
 #[derive(Default)]
 struct Queue {
     keys: VecDeque<KernelKey>,
-    /// That take from the queue. A thread that finds it empty ends.
+    /// Threads that take from the queue. One that finds it empty ends.
     running: usize,
     started: Vec<JoinHandle<()>>,
 }
@@ -70,7 +71,7 @@ fn make_next(left: &Mutex<VecDeque<KernelKey>>, store: &Store, device: &Device) 
     key.is_some()
 }
 
-/// What fails is left for the frame that needs it.
+/// Makes a pipeline; a failure is left for the frame that needs it.
 fn make(store: &Store, make_it: impl FnOnce(&Store) -> Result<Compiled>) {
     // A host's callback hears of it once those who wait for the pipeline have it.
     let _holding = hold();
@@ -131,7 +132,8 @@ impl Compilers {
         }
     }
 
-    /// Makes those of `keys` that are not there, and keeps those that are, in the background, in place of what waits since an earlier call.
+    /// Makes those of `keys` that are not there, and keeps those that are, in the background, in place of what waits
+    /// since an earlier call.
     pub fn make_later(&self, store: &Arc<Store>, device: &Arc<Device>, keys: Vec<KernelKey>) {
         if !self.threads {
             return;
@@ -186,7 +188,8 @@ fn make_behind(queue: &Mutex<Queue>, store: &Store, device: &Device) {
     }
 }
 
-/// On Linux a thread has a priority of its own, which it may lower; elsewhere their small number has to do. Lowered to a third of the
+/// On Linux a thread has a priority of its own, which it may lower; elsewhere their small number has to do. Lowered
+/// to a third of the
 /// usual share and no further, as a frame may come to wait for the pipeline that such a thread is making.
 fn lower_priority() {
     #[cfg(target_os = "linux")]

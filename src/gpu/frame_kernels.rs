@@ -1,5 +1,6 @@
-//! Which kernels a frame runs, known before any is bound, so that all are made at once; and those that the host's next frames
-//! may need. tests/kernels.rs holds the list against what frames ask for.
+//! The list of kernels that a frame runs, known before any is bound, so that all are made at once; and the list of
+//! those that
+//! the host's next frames may need. tests/kernels.rs holds the list against what frames ask for.
 
 use super::GpuTracer;
 use super::frame::Setup;
@@ -93,7 +94,7 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
 /// Kinds of frames whose followers are anticipated, at most.
 const MOST_KINDS: usize = 64;
 
-/// What many hosts begin with.
+/// The size that many hosts begin with.
 const FIRST_SIZE: [u32; 2] = [1920, 1080];
 
 impl GpuTracer {
@@ -112,7 +113,8 @@ impl GpuTracer {
         });
     }
 
-    /// Kernels of the frames that may follow a frame of `scene`, which takes `needed`, to be made in the background. Only for the
+    /// Kernels of the frames that may follow a frame of `scene`, which takes `needed`, to be made in the background.
+    /// Only for the
     /// first frame of its kind.
     pub(super) fn anticipate(
         &mut self,

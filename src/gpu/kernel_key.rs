@@ -1,4 +1,5 @@
-//! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings. Knows neither
+//! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings.
+//! Knows neither
 //! devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
@@ -78,7 +79,8 @@ impl FilmLook {
         Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
     }
 
-    /// For every film, which the kernel asks while it runs, but for the usual one, which would lose 3 % of a frame (H200): a host that
+    /// For every film, which the kernel asks while it runs, but for the usual one, which would lose 3 % of a frame
+    /// (H200): a host that
     /// changes its film waits for one pipeline at most.
     pub fn of_any(film: &FilmParams, target: PixelTarget) -> Self {
         let own = Self::new(film, target);
@@ -128,7 +130,7 @@ impl FilmLook {
     }
 }
 
-/// Who makes the ray records that a kernel reads.
+/// The maker of the ray records that a kernel reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Source {
     /// traced.wgsl

@@ -1,4 +1,5 @@
-//! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time. Knows what each
+//! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time.
+//! Knows what each
 //! kernel binds ([`KernelKey`]), not what with.
 
 use super::compilers::{Compilers, Wanted};
@@ -26,7 +27,8 @@ pub struct Stage {
     group: [u32; 2],
 }
 
-/// Pipelines that a device keeps, on hardware and on software drivers, where each that has run takes some 6 MiB of the host's memory.
+/// Pipelines that a device keeps, on hardware and on software drivers, where each that has run takes some 6 MiB of
+/// the host's memory.
 const MOST_KERNELS: usize = 160;
 const MOST_KERNELS_SOFTWARE: usize = 48;
 
@@ -61,7 +63,8 @@ pub(super) struct Store {
 #[derive(Default)]
 struct State {
     made: HashMap<KernelKey, Progress>,
-    /// Those of `made` that are there: first those that no frame has asked for yet, the one made last being the last of them; then the
+    /// Those of `made` that are there: first those that no frame has asked for yet, the one made last being the last
+    /// of them; then the
     /// others, the one used last being the last.
     used: Vec<KernelKey>,
     /// How many no frame has asked for yet.
@@ -232,7 +235,8 @@ impl Kernels {
         self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
-    /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are missing.
+    /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are
+    /// missing.
     pub fn begin(&self, keys: &[KernelKey]) -> Option<Wanted> {
         let missing = keys.iter().copied().filter(|key| !self.store.has(*key)).collect::<Vec<_>>();
         self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
@@ -250,7 +254,8 @@ impl Kernels {
         self.compilers.run_behind(work);
     }
 
-    /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an earlier
+    /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an
+    /// earlier
     /// call asked for and that were not begun. Without effect where a device may be used from one thread only.
     pub fn anticipate(&self, mut keys: Vec<KernelKey>) {
         let asked_for = {
@@ -268,11 +273,17 @@ impl Kernels {
     }
 }
 
-/// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in every turn before
-/// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a step;
-/// loops counted over constants (of a pipeline or of all), over the samples of a pixel (32 at most), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings` and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
-/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the bits of a word, which loses a bit in every turn; and the two of `star_light`, of
-/// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
+/// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in
+/// every turn before
+/// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a
+/// step;
+/// loops counted over constants (of a pipeline or of all), over the samples of a pixel (32 at most), over the words
+/// of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings`
+/// and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
+/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the
+/// bits of a word, which loses a bit in every turn; and the two of `star_light`, of
+/// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends
+/// the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
 impl Compiled {

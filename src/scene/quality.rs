@@ -32,20 +32,24 @@ pub struct Quality {
     /// Whether AUTO looks rays up; not the host's to choose.
     #[doc(hidden)]
     pub lens_tables: LensTables,
-    /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. Not the host's to choose.
+    /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. Not the host's to
+    /// choose.
     #[doc(hidden)]
     pub mapped_pixels: Option<bool>,
-    /// Whether one kernel serves all formats, tone maps and views' colours but the usual ones; `None`: on hardware. Not the host's to choose.
+    /// Whether one kernel serves all formats, tone maps and views' colours but the usual ones; `None`: on hardware.
+    /// Not the host's to choose.
     #[doc(hidden)]
     pub kernels_for_any_film: Option<bool>,
-    /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put most of their work off
+    /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put
+    /// most of their work off
     /// until a kernel runs. Not the host's to choose.
     #[doc(hidden)]
     pub anticipates: Option<bool>,
     /// Whether pixels that edges run through get more rays; not the host's to choose.
     #[doc(hidden)]
     pub refines: bool,
-    /// Whether a frame with bloom keeps its light instead of being traced twice; `None`: as its size allows. Not the host's to choose.
+    /// Whether a frame with bloom keeps its light instead of being traced twice; `None`: as its size allows. Not the
+    /// host's to choose.
     #[doc(hidden)]
     pub keep_light: Option<bool>,
 }
