@@ -52,8 +52,8 @@ const TOUR: [(&str, Change); 20] = [
     ("no disk", |scene, _| scene.disk = None),
 ];
 
-/// Prints what bhr logs, for `--verbose`.
-struct Printer;
+/// Prints what bhr logs and when, for `--verbose`.
+struct Printer(Instant);
 
 impl log::Log for Printer {
     fn enabled(&self, metadata: &log::Metadata<'_>) -> bool {
@@ -62,7 +62,7 @@ impl log::Log for Printer {
 
     fn log(&self, record: &log::Record<'_>) {
         if self.enabled(record.metadata()) {
-            println!("    {}", record.args());
+            println!("    {:9.1} {}", 1e3 * self.0.elapsed().as_secs_f64(), record.args());
         }
     }
 
@@ -75,7 +75,7 @@ const FRAME_TIME: Duration = Duration::from_nanos(16_666_667);
 fn main() {
     let arguments = std::env::args().skip(1).filter(|word| !word.starts_with("--")).collect::<Vec<_>>();
     if std::env::args().any(|word| word == "--verbose") {
-        log::set_logger(&Printer).expect("no other logger");
+        log::set_logger(Box::leak(Box::new(Printer(Instant::now())))).expect("no other logger");
         log::set_max_level(log::LevelFilter::Debug);
     }
     let size = arguments.first().map_or("1920x1080", String::as_str);

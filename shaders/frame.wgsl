@@ -45,6 +45,8 @@ struct Frame {
     pattern: vec2<u32>,
     // Columns and rows of the finest levels of the Milky Way and of the host's map.
     map_sizes: vec4<u32>,
+    // BHR_PROJECTION_*, for kernels that serve all.
+    projection: u32,
 }
 
 const RAIN_CLOCK: u32 = 2u;

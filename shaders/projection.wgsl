@@ -1,9 +1,10 @@
 // How the camera's projection takes positions of the full frame, in pixels, to look directions. Mirrors src/scene/projection.rs, where
 // the formulas and conventions are. Reads the uniform `frame`, declared where the bindings are.
 
-// BHR_PROJECTION_*.
+// BHR_PROJECTION_* that the kernel is for, or FROM_FRAME where it serves all and the uniform says which.
 override PROJECTION: u32 = 0u;
 
+const FROM_FRAME: u32 = 0xffffffffu;
 const PERSPECTIVE: u32 = 0u;
 const FISHEYE: u32 = 1u;
 const EQUIRECT: u32 = 2u;
@@ -25,14 +26,22 @@ struct CameraView {
     dy: vec3<f32>,
 }
 
+// Whether the frame's projection is `kind`, one of those below.
+fn projects(kind: u32) -> bool {
+    if PROJECTION == FROM_FRAME {
+        return deciding(frame.projection) == kind;
+    }
+    return PROJECTION == kind;
+}
+
 // No early returns here: camera_look is called from loops (Mesa 22.3).
 fn camera_point(x: f32, y: f32) -> FramePoint {
     var p: FramePoint;
-    if PROJECTION == FISHEYE {
+    if projects(FISHEYE) {
         p = fisheye_point(x, y);
-    } else if PROJECTION == EQUIRECT {
+    } else if projects(EQUIRECT) {
         p = equirect_point(x, y);
-    } else if PROJECTION == CUBE {
+    } else if projects(CUBE) {
         p = cube_point(x, y);
     } else {
         p.at = vec3<f32>(2.0 * x / frame.size.x - 1.0, 1.0 - 2.0 * y / frame.size.y, 1.0);
@@ -57,7 +66,7 @@ fn camera_view(x: f32, y: f32) -> CameraView {
     // Of a perspective frame most components are 0, which no compiler may leave out.
     var dx = frame.right.xyz * p.dx.x;
     var dy = frame.up.xyz * p.dy.y;
-    if PROJECTION != PERSPECTIVE {
+    if !projects(PERSPECTIVE) {
         dx = in_frame(p.dx);
         dy = in_frame(p.dy);
     }
@@ -68,12 +77,12 @@ fn camera_view(x: f32, y: f32) -> CameraView {
 fn has_look(place: vec2<f32>) -> bool {
     let p = place - 0.5 * frame.size.xy;
     let radius = 0.5 * min(frame.size.x, frame.size.y);
-    return PROJECTION != FISHEYE || dot(p, p) <= radius * radius;
+    return !projects(FISHEYE) || dot(p, p) <= radius * radius;
 }
 
 // Whether no border between two faces of a cube lies between positions of a row.
 fn same_face(x0: f32, x1: f32) -> bool {
-    return PROJECTION != CUBE || cube_face(x0) == cube_face(x1);
+    return !projects(CUBE) || cube_face(x0) == cube_face(x1);
 }
 
 // right.w is the angle of a pixel along the radius.

@@ -80,7 +80,7 @@ fn what_a_host_changes_next_is_made_in_the_background() {
     let mut renderer = renderer();
     // As on hardware.
     let quality = &mut renderer.scene.quality;
-    (quality.anticipates, quality.kernels_for_any_film) = (Some(true), Some(true));
+    (quality.anticipates, quality.shares_kernels) = (Some(true), Some(true));
     render(&mut renderer, PixelFormat::Rgba8Srgb);
     let before = missing(&renderer);
     for change in [CHANGES[1], CHANGES[3], |scene: &mut Scene| scene.view = View::Order] {
@@ -90,17 +90,19 @@ fn what_a_host_changes_next_is_made_in_the_background() {
     }
 }
 
-/// On hardware one kernel serves all films; on software drivers each film has its own. Their pixels are the same.
+/// On hardware one kernel serves all films and projections but the usual ones; on software drivers each has its own. Their pixels are
+/// the same.
 #[test]
-fn a_kernel_for_any_film_puts_the_same_bytes() {
+fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
     let mut renderer = renderer();
     let mut compare = |scene: Change, format| {
         scene(&mut renderer.scene);
         let [own, any] = [false, true].map(|any| {
-            renderer.scene.quality.kernels_for_any_film = Some(any);
+            renderer.scene.quality.shares_kernels = Some(any);
             render(&mut renderer, format)
         });
-        assert!(own == any, "{format:?}, {:?}, {:?}", renderer.scene.film.tone_map, renderer.scene.view);
+        let scene = &renderer.scene;
+        assert!(own == any, "{format:?}, {:?}, {:?}, {:?}", scene.film.tone_map, scene.view, scene.camera.projection);
     };
     // RGBA8_SRGB with ACES, the usual film, has its own kernel in either case.
     compare(|_| (), PixelFormat::Bgra8Srgb);
@@ -108,6 +110,11 @@ fn a_kernel_for_any_film_puts_the_same_bytes() {
     compare(|scene| scene.film.tone_map = ToneMap::None, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.quality.mapped_pixels = Some(true), PixelFormat::Rgba16F);
     compare(|_| (), PixelFormat::Rgba32F);
+    compare(|scene| scene.camera.projection = Projection::Fisheye, PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.camera.projection = Projection::Equirect, PixelFormat::Rgba16F);
+    compare(|scene| scene.hole.spin = 0.5, PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.quality.lens_tables = LensTables::Never, PixelFormat::Rgba8Srgb);
+    compare(|scene| scene.film.bloom = 0.3, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.view = View::Redshift, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.view = View::Order, PixelFormat::R32F);
 }

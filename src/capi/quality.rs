@@ -97,7 +97,7 @@ impl TryFrom<BhrQuality> for Quality {
             render_scale: given.render_scale,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
-            kernels_for_any_film: None,
+            shares_kernels: None,
             anticipates: None,
             refines: true,
             keep_light: None,

@@ -10,18 +10,26 @@ use crate::error::Result;
 use crate::thread_scope;
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// Threads that make pipelines in the background at most, and at most for a frame that waits.
-const MOST_BEHIND: usize = 8;
+/// Threads that make pipelines in the background at most, and at most for a frame that waits. More in the background make the same
+/// number in the same time, and each, so also the one that is needed first, takes longer (H200: 8 at once take twice as long as one).
+const MOST_BEHIND: usize = 5;
 const MOST_AT_ONCE: usize = 12;
 
 /// Their owner's drop ends the threads, after the pipeline that each is making.
 pub struct Compilers {
     /// Whether pipelines may be made on threads other than their user's.
     threads: bool,
-    queue: Arc<Mutex<Queue>>,
+    queue: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Shared {
+    queue: Mutex<Queue>,
+    /// No frame waits any more, or nothing is left to be made.
+    free: Condvar,
 }
 
 #[derive(Default)]
@@ -29,6 +37,9 @@ struct Queue {
     keys: VecDeque<KernelKey>,
     /// Threads that take from the queue. One that finds it empty ends.
     running: usize,
+    /// Frames that wait for pipelines. Meanwhile nothing is begun for frames that may come: it would take the cores, and the locks of
+    /// the driver.
+    waiting: usize,
     started: Vec<JoinHandle<()>>,
 }
 
@@ -40,21 +51,48 @@ impl Queue {
     }
 }
 
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What to make next in the background, once no frame waits; `None`: nothing is left, and the thread that asks has ended.
+    fn next(&self) -> Option<KernelKey> {
+        let mut queue = self.lock();
+        while queue.waiting > 0 && !queue.keys.is_empty() {
+            queue = self.free.wait(queue).unwrap_or_else(PoisonError::into_inner);
+        }
+        let key = queue.keys.pop_front();
+        if key.is_none() {
+            queue.running = queue.running.saturating_sub(1);
+        }
+        key
+    }
+}
+
 /// Pipelines that a frame waits for, and those of them that nobody has begun.
 #[must_use]
 pub struct Wanted {
     keys: Vec<KernelKey>,
     left: Arc<Mutex<VecDeque<KernelKey>>>,
+    shared: Arc<Shared>,
 }
 
 impl Drop for Wanted {
     /// A frame that failed before wants nothing more.
     fn drop(&mut self) {
         self.left.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.shared.lock().waiting -= 1;
+        self.shared.free.notify_all();
     }
 }
 
 impl Wanted {
+    /// The entry points, for the log.
+    pub fn names(&self) -> String {
+        self.keys.iter().map(|key| key.entry_point()).collect::<Vec<_>>().join(", ")
+    }
+
     /// Takes part in making them until all are there. Errors: the first one's.
     pub fn finish(self, store: &Store, device: &Device) -> Result<()> {
         while make_next(&self.left, store, device) {}
@@ -81,10 +119,6 @@ fn make(store: &Store, make_it: impl FnOnce(&Store) -> Result<Compiled>) {
     }
 }
 
-fn lock(queue: &Mutex<Queue>) -> MutexGuard<'_, Queue> {
-    queue.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 fn cores() -> usize {
     thread::available_parallelism().map_or(1, usize::from)
 }
@@ -100,7 +134,8 @@ impl Compilers {
         let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
         let left = Arc::new(Mutex::new(missing.iter().copied().collect::<VecDeque<_>>()));
         let scope = thread_scope::of_caller();
-        let mut queue = lock(&self.queue);
+        let mut queue = self.queue.lock();
+        queue.waiting += 1;
         for _ in 0..helpers {
             let (left, store, device, scope) = (left.clone(), store.clone(), device.clone(), scope.clone());
             // A machine that has no more threads makes do with fewer.
@@ -111,7 +146,7 @@ impl Compilers {
             let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { break };
             queue.keep(thread);
         }
-        Wanted { keys: missing, left }
+        Wanted { keys: missing, left, shared: self.queue.clone() }
     }
 
     /// Does `work` on a thread of low priority.
@@ -128,7 +163,7 @@ impl Compilers {
             }
         };
         if let Ok(thread) = thread::Builder::new().name("bhr-ahead".into()).spawn(work) {
-            lock(&self.queue).keep(thread);
+            self.queue.lock().keep(thread);
         }
     }
 
@@ -138,7 +173,7 @@ impl Compilers {
         if !self.threads {
             return;
         }
-        let mut queue = lock(&self.queue);
+        let mut queue = self.queue.lock();
         queue.keys = keys.into();
         // Half of the cores are left to the host, where there are several.
         let most = cores().div_ceil(2).min(MOST_BEHIND);
@@ -157,7 +192,7 @@ impl Compilers {
 
     /// Waits until the queue is empty and its threads have ended.
     pub fn settle(&self) {
-        let started = std::mem::take(&mut lock(&self.queue).started);
+        let started = std::mem::take(&mut self.queue.lock().started);
         for thread in started {
             // It catches its panics itself.
             let _ = thread.join();
@@ -167,23 +202,15 @@ impl Compilers {
 
 impl Drop for Compilers {
     fn drop(&mut self) {
-        lock(&self.queue).keys.clear();
+        self.queue.lock().keys.clear();
+        self.queue.free.notify_all();
         self.settle();
     }
 }
 
-fn make_behind(queue: &Mutex<Queue>, store: &Store, device: &Device) {
+fn make_behind(shared: &Shared, store: &Store, device: &Device) {
     lower_priority();
-    loop {
-        let key = {
-            let mut queue = lock(queue);
-            let key = queue.keys.pop_front();
-            if key.is_none() {
-                queue.running = queue.running.saturating_sub(1);
-            }
-            key
-        };
-        let Some(key) = key else { return };
+    while let Some(key) = shared.next() {
         make(store, |store| store.get_ahead(device, key));
     }
 }

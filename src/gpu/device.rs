@@ -43,7 +43,7 @@ pub struct Device {
     limits: wgpu::Limits,
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
-    pub(super) modules: super::pipeline::Modules,
+    pub(super) shaders: super::pipeline::Shaders,
     pub(super) bindings: super::bindings::Bindings,
     pub(super) uploads: super::upload::Uploads,
 }
@@ -102,7 +102,7 @@ impl Device {
             limits,
             health,
             bytes: Arc::default(),
-            modules: Default::default(),
+            shaders: Default::default(),
             bindings: Default::default(),
             uploads: Default::default(),
         })
@@ -352,7 +352,6 @@ impl Drop for Device {
         let close = || {
             self.bindings.clear();
             drop(self.uploads.take());
-            lock(&self.modules).clear();
             if self.health.hung.load(Ordering::Relaxed) {
                 // Dropping it would wait for the work that never ends.
                 std::mem::forget(queue);

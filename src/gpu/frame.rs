@@ -192,7 +192,7 @@ impl GpuTracer {
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let source = setup.making.source;
         let bloom = setup.bloom;
-        let projection = setup.looks.look.projection;
+        let projection = scene.camera.projection;
         let request = *request;
         self.anticipate(scene, &request, kind, needed);
         Ok(BegunFrame { stages, request, target: kind, samples, projection, source, steps, bloom, submitted: 0 })
@@ -255,8 +255,16 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
-        let any_film = scene.quality.kernels_for_any_film.unwrap_or(!self.adapter.info.software);
-        let developed = if any_film { FilmLook::of_any(&film, target) } else { FilmLook::new(&film, target) };
+        // On hardware, whose branches cost next to nothing, all but the usual projection and film share kernels, so that a host that goes
+        // through them does not wait for the driver's compiler each time. Software drivers run both sides of every branch.
+        let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
+        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, FilmLook::is_usual(&film));
+        // Where one kernel both looks and develops, what is unusual in either is left open in both.
+        let develops = bloom.is_none() && samples == 1;
+        let own_view = !shares || (usual_view && (usual_film || !develops));
+        let own_film = !shares || (usual_film && (usual_view || !develops));
+        let developed = if own_film { FilmLook::new(&film, target) } else { FilmLook::of_any(target) };
+        let projection = own_view.then_some(scene.camera.projection);
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,
@@ -268,7 +276,7 @@ impl GpuTracer {
                 disk: scene.disk_u().is_some(),
                 opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
                 footprints: scene.turbulence().is_some(),
-                projection: scene.camera.projection,
+                projection,
                 refines: scene.view == View::Light && scene.quality.refines,
             },
             film: if bloom.is_some() { FilmLook::of_light() } else { developed },
@@ -276,13 +284,20 @@ impl GpuTracer {
             several_samples: samples > 1,
             rows: target == PixelTarget::Rows,
         };
-        let making = self.making(scene, &lens, &settings, &request.region);
+        let making = self.making(scene, &lens, &settings, &request.region, projection);
         let uniform = FrameUniform::new(scene, &lens, &settings)?;
         Ok(Setup { making, looks, samples, uniform, film, bloom })
     }
 
     /// How the records of a frame are made.
-    fn making(&self, scene: &Scene, lens: &Lens, settings: &Settings, region: &Region) -> Making {
+    fn making(
+        &self,
+        scene: &Scene,
+        lens: &Lens,
+        settings: &Settings,
+        region: &Region,
+        projection: Option<Projection>,
+    ) -> Making {
         let eye = lens.observer.frame;
         let pattern = scene.turbulence().is_some();
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
@@ -298,11 +313,7 @@ impl GpuTracer {
         let disk_u = scene.disk_u();
         Making {
             source,
-            variant: Variant {
-                azimuth: pattern,
-                projection: scene.camera.projection,
-                ..variant(scene, settings, inside)
-            },
+            variant: Variant { azimuth: pattern, projection, ..variant(scene, settings, inside) },
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             eye,
@@ -337,21 +348,20 @@ impl GpuTracer {
             .zip(buffers.sized.as_ref())
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
-        let (scene, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
+        let (common, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
         let records = buffers.makers.stages(device, &self.kernels, &setup.making, &shared)?;
         let group = buffers.makers.group(setup.making.source)?;
         let take = |kernels: &Kernels, source| {
-            kernels.get(KernelKey::export(source, setup.looks.look))?.stage(device, &[&scene, &group, &exported])
+            kernels.get(KernelKey::export(source, setup.looks.look))?.stage(device, &[&common, &group, &exported])
         };
         let taking = Taking::new(&self.kernels, &setup.making, self.adapter.info.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
-        fixed.passes.write(
-            device,
-            bytemuck::bytes_of(&pass_of(request, whole, (0, 1), setup.looks.look.projection, 0, [0, 0])),
-        )?;
+        fixed
+            .passes
+            .write(device, bytemuck::bytes_of(&pass_of(request, whole, (0, 1), scene.camera.projection, 0, [0, 0])))?;
         let mut encoder = device.encoder("records")?;
         buffers.makers.reset(setup.making.source, &fixed.step_sum, &mut encoder);
         {

@@ -11,7 +11,7 @@ use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMa
 use crate::sky::SkyMap;
 
 impl Setup {
-    /// Every kernel of the frame.
+    /// Every kernel of the frame; those that take longest to make come last.
     pub fn kernels(&self) -> Vec<KernelKey> {
         let (making, looks) = (&self.making, &self.looks);
         let mut keys = match making.source {
@@ -65,13 +65,11 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     let projection = |projection| move |scene: &mut Scene| scene.camera.projection = projection;
     let sky = |flag| move |scene: &mut Scene| scene.sky.flags ^= flag;
     let tone_map = |tone_map| move |scene: &mut Scene| scene.film.tone_map = tone_map;
-    // One of each kind is enough where one kernel serves all: films but the usual one, views.
+    // One of each kind is enough where one kernel serves all: films and projections but the usual ones, views.
     let mut list = vec![changed(&spin), changed(&turbulence), changed(&bloom), changed(&tone_map(ToneMap::Agx))];
     list.extend([Motion::FreeFall, Motion::Static].map(|to| changed(&motion(to))));
     list.extend([View::Redshift, View::Light].map(|to| changed(&view(to))));
-    list.extend(
-        [Projection::Fisheye, Projection::Equirect, Projection::Perspective].map(|to| changed(&projection(to))),
-    );
+    list.extend([Projection::Fisheye, Projection::Perspective].map(|to| changed(&projection(to))));
     list.push(changed(&|scene| {
         let samples = &mut scene.quality.samples_per_pixel;
         *samples = if *samples == 1 { 4 } else { 1 };
@@ -79,6 +77,14 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     list.push(changed(&|scene| {
         spin(scene);
         bloom(scene);
+    }));
+    list.push(changed(&|scene| {
+        bloom(scene);
+        projection(Projection::Fisheye)(scene);
+    }));
+    list.push(changed(&|scene| {
+        bloom(scene);
+        turbulence(scene);
     }));
     list.push(changed(&|scene| {
         spin(scene);
@@ -105,7 +111,7 @@ impl GpuTracer {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         let request = FrameRequest { width, height, region, format: PixelFormat::Rgba8Srgb, transparent: false };
         if let Ok(setup) = self.set_up(&scene, &request, self.host_pixels(&scene)) {
-            self.kernels.anticipate(setup.kernels());
+            self.kernels.anticipate(setup.kernels().into_iter().rev().collect());
         }
         // Kept for the process; a frame that comes first waits for them, or makes them itself.
         self.kernels.run_behind(move || {
@@ -132,7 +138,7 @@ impl GpuTracer {
         }
         let next = neighbours(scene).into_iter().filter_map(|next| self.set_up(&next, request, target).ok());
         let mut keys = Vec::<KernelKey>::new();
-        for key in next.flat_map(|setup| setup.kernels()) {
+        for key in next.flat_map(|setup| setup.kernels().into_iter().rev()) {
             if !keys.contains(&key) {
                 keys.push(key);
             }

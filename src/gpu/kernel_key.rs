@@ -20,8 +20,8 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
-    /// Of pixels; given rays have none.
-    pub projection: Projection,
+    /// Of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
+    pub projection: Option<Projection>,
 }
 
 /// Everything that decides how shading is compiled.
@@ -40,7 +40,8 @@ pub struct Look {
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
-    pub projection: Projection,
+    /// `None`: any, which the kernel asks while it runs.
+    pub projection: Option<Projection>,
     /// Whether pixels with edges get more rays; values of views are not to be averaged.
     pub refines: bool,
 }
@@ -68,8 +69,8 @@ pub enum PixelTarget {
     Light,
 }
 
-/// `FROM_FILM` of film.wgsl.
-const FROM_FILM: u32 = u32::MAX;
+/// `FROM_FILM` of film.wgsl and `FROM_FRAME` of projection.wgsl: the uniform says which.
+const FROM_UNIFORM: u32 = u32::MAX;
 /// Format, tone map and view of the default scene in 8 bits: RGBA8_SRGB, ACES, LIGHT.
 const USUAL_FILM: (u32, u32, u32) = (PixelFormat::Rgba8Srgb as u32, ToneMap::Aces as u32, View::Light as u32);
 
@@ -79,15 +80,14 @@ impl FilmLook {
         Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
     }
 
-    /// For every film, which the kernel asks while it runs, but for the usual one, which would lose 3 % of a frame
-    /// (H200): a host that
-    /// changes its film waits for one pipeline at most.
-    pub fn of_any(film: &FilmParams, target: PixelTarget) -> Self {
-        let own = Self::new(film, target);
-        match (own.format, own.tone_map, own.false_colour) {
-            USUAL_FILM => own,
-            _ => Self { format: FROM_FILM, tone_map: FROM_FILM, false_colour: FROM_FILM, target },
-        }
+    /// For every film, which the kernel asks while it runs.
+    pub fn of_any(target: PixelTarget) -> Self {
+        Self { format: FROM_UNIFORM, tone_map: FROM_UNIFORM, false_colour: FROM_UNIFORM, target }
+    }
+
+    /// Whether `film` is the one that hosts begin with. A kernel for every film would cost its frames 3 % (H200).
+    pub fn is_usual(film: &FilmParams) -> bool {
+        (film.format, film.tone_map, film.false_colour) == USUAL_FILM
     }
 
     /// Of light that bloom is to spread.
@@ -178,7 +178,7 @@ pub enum KernelKey {
     Gather(u32, bool),
     GatherBase,
     GiveBack,
-    Export(Source, bool, Projection),
+    Export(Source, bool, Option<Projection>),
     SchwarzschildEnds,
     SchwarzschildColumns {
         delay: bool,
@@ -382,8 +382,8 @@ fn trace_constants(variant: Variant) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn projection_constant(projection: Projection) -> (&'static str, f64) {
-    ("PROJECTION", f64::from(projection as i32))
+fn projection_constant(projection: Option<Projection>) -> (&'static str, f64) {
+    ("PROJECTION", projection.map_or(FROM_UNIFORM, |projection| projection as u32).into())
 }
 
 fn look_constants(look: Look) -> Vec<(&'static str, f64)> {

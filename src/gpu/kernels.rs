@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
 
 /// A pipeline and the layouts of its groups.
 #[derive(Clone)]
@@ -245,7 +246,10 @@ impl Kernels {
 
     /// Waits for what was begun. Errors: as [`Self::get`], the first one.
     pub fn finish(&self, wanted: Option<Wanted>) -> Result<()> {
-        let made = wanted.map_or(Ok(()), |wanted| wanted.finish(&self.store, &self.device));
+        let Some(wanted) = wanted else { return Ok(()) };
+        let (started, names) = (Instant::now(), wanted.names());
+        let made = wanted.finish(&self.store, &self.device);
+        log::debug!("a frame waited {} ms for kernels: {names}", started.elapsed().as_millis());
         made.map_err(|error| self.device.explain(error))
     }
 

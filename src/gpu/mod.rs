@@ -27,6 +27,7 @@ mod records;
 mod refine;
 mod sky_maps;
 mod slots;
+mod specialise;
 mod stages;
 mod steps;
 mod submission;
@@ -151,6 +152,6 @@ fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant 
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
         azimuth: false,
-        projection: Projection::Perspective,
+        projection: Some(Projection::Perspective),
     }
 }

@@ -1,14 +1,16 @@
-//! Compute pipelines from WGSL, and the shader modules they share. Knows no shader.
+//! Compute pipelines from WGSL. Knows no shader.
 
 use super::device::Device;
+use super::specialise::Parsed;
 use crate::error::Result;
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// The modules of a device by their source, so that pipelines which differ in constants share one translation.
-/// Each has a lock of its own, so that several are translated at a time.
-pub(super) type Modules = Mutex<HashMap<(String, Loops), Arc<Mutex<Option<wgpu::ShaderModule>>>>>;
+/// The shaders of a device by their WGSL, so that pipelines which differ in constants share the reading of it. Each has a lock of its
+/// own, so that several are read at a time.
+pub(super) type Shaders = Mutex<HashMap<String, Arc<Mutex<Option<Arc<Parsed>>>>>>;
 
 /// What keeps the loops of a shader finite, which drivers rely on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -55,7 +57,17 @@ impl Device {
     /// that does not fit, or when the device was lost a moment ago (`Device::explain` tells); `OutOfMemory`; `DeviceLost`.
     pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
         let started = Instant::now();
-        let module = self.module(kernel)?;
+        let specialised = self.parsed(kernel)?.specialised(kernel.label, kernel.entry_point, kernel.constants)?;
+        let checks = wgpu::ShaderRuntimeChecks {
+            force_loop_bounding: kernel.loops == Loops::Counted,
+            ..wgpu::ShaderRuntimeChecks::checked()
+        };
+        let source = wgpu::ShaderSource::Naga(Cow::Owned(specialised));
+        let module = self.beside(kernel.label, |device| {
+            let descriptor = wgpu::ShaderModuleDescriptor { label: Some(kernel.label), source };
+            // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches for them.
+            unsafe { device.create_shader_module_trusted(descriptor, checks) }
+        })?;
         let translated = started.elapsed();
         let groups = kernel.groups.iter().map(|group| Some(*group)).collect::<Vec<_>>();
         let pipeline = self.beside(kernel.label, |device| {
@@ -70,7 +82,7 @@ impl Device {
                 module: &module,
                 entry_point: Some(kernel.entry_point),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: kernel.constants,
+                    constants: &[],
                     zero_initialize_workgroup_memory: kernel.zero_workgroup_memory,
                 },
                 cache: None,
@@ -86,25 +98,16 @@ impl Device {
         Ok(pipeline)
     }
 
-    fn module(&self, kernel: &Kernel<'_>) -> Result<wgpu::ShaderModule> {
-        let key = (kernel.source.join("\n"), kernel.loops);
-        let source = key.0.clone();
-        let place = self.modules.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
+    fn parsed(&self, kernel: &Kernel<'_>) -> Result<Arc<Parsed>> {
+        let source = kernel.source.join("\n");
+        let place =
+            self.shaders.lock().unwrap_or_else(PoisonError::into_inner).entry(source.clone()).or_default().clone();
         let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(module) = &*place {
-            return Ok(module.clone());
+        if let Some(parsed) = &*place {
+            return Ok(parsed.clone());
         }
-        let descriptor =
-            wgpu::ShaderModuleDescriptor { label: Some(kernel.label), source: wgpu::ShaderSource::Wgsl(source.into()) };
-        let checks = wgpu::ShaderRuntimeChecks {
-            force_loop_bounding: kernel.loops == Loops::Counted,
-            ..wgpu::ShaderRuntimeChecks::checked()
-        };
-        let module = self.beside(kernel.label, |device| {
-            // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches for them.
-            unsafe { device.create_shader_module_trusted(descriptor, checks) }
-        })?;
-        *place = Some(module.clone());
-        Ok(module)
+        let parsed = Arc::new(Parsed::new(kernel.label, &source)?);
+        *place = Some(parsed.clone());
+        Ok(parsed)
     }
 }

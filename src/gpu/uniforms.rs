@@ -44,6 +44,8 @@ pub struct FrameUniform {
     pattern: [u32; 2],
     /// Known once the textures are there (`Tables::map_sizes`).
     pub map_sizes: [u32; 4],
+    projection: u32,
+    padding: [u32; 3],
 }
 
 #[repr(C)]
@@ -129,6 +131,8 @@ impl FrameUniform {
             view: scene.view as u32,
             pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
             map_sizes: [1; 4],
+            projection: scene.camera.projection as u32,
+            padding: [0; 3],
         })
     }
 }

@@ -36,10 +36,10 @@ pub struct Quality {
     /// choose.
     #[doc(hidden)]
     pub mapped_pixels: Option<bool>,
-    /// Whether one kernel serves all formats, tone maps and views' colours but the usual ones; `None`: on hardware.
+    /// Whether one kernel serves all projections, formats, tone maps and views' colours but the usual ones; `None`: on hardware.
     /// Not the host's to choose.
     #[doc(hidden)]
-    pub kernels_for_any_film: Option<bool>,
+    pub shares_kernels: Option<bool>,
     /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put
     /// most of their work off
     /// until a kernel runs. Not the host's to choose.
@@ -66,7 +66,7 @@ impl Default for Quality {
             render_scale: 1.0,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
-            kernels_for_any_film: None,
+            shares_kernels: None,
             anticipates: None,
             refines: true,
             keep_light: None,

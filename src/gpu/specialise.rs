@@ -1,0 +1,330 @@
+//! Shaders without what their constants switch off. naga puts the values of `override` constants into a shader, and leaves both sides of
+//! every `if` to the driver, which takes in all functions that either side calls before it finds that one never runs: in the kernels of
+//! this tracer up to three quarters of the code. Without it lavapipe makes a pipeline in a third to a half of the time. Knows no kernel.
+
+use crate::error::{Error, Result};
+use std::collections::{HashMap, HashSet};
+use wgpu::naga::back::pipeline_constants::process_overrides;
+use wgpu::naga::compact::{KeepUnused, compact};
+use wgpu::naga::front::wgsl;
+use wgpu::naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use wgpu::naga::{
+    BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, ShaderStage, Statement,
+    SwitchCase, UnaryOperator,
+};
+
+/// WGSL that was read once, for any values of its constants.
+#[derive(Debug)]
+pub struct Parsed {
+    module: Module,
+    info: ModuleInfo,
+}
+
+impl Parsed {
+    /// Errors: INTERNAL with naga's message, which begins with `label`, for WGSL that is not valid.
+    pub fn new(label: &str, source: &str) -> Result<Self> {
+        let module = wgsl::parse_str(source)
+            .map_err(|error| Error::internal(format!("{label}: {}", error.emit_to_string(source))))?;
+        // What this device lacks wgpu will find.
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all())
+            .validate(&module)
+            .map_err(|error| Error::internal(format!("{label}: {}", error.emit_to_string(source))))?;
+        Ok(Self { module, info })
+    }
+
+    /// The shader of one entry point, with the values of its constants. Errors: INTERNAL with naga's message, for constants that it does
+    /// not have, or that lack a value.
+    pub fn specialised(&self, label: &str, entry_point: &str, constants: &[(&str, f64)]) -> Result<Module> {
+        let values = constants.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect();
+        let (module, _) =
+            process_overrides(&self.module, &self.info, Some((ShaderStage::Compute, entry_point)), &values)
+                .map_err(|error| Error::internal(format!("{label}: {error}")))?;
+        let mut module = module.into_owned();
+        leave_out_what_never_runs(&mut module);
+        Ok(module)
+    }
+}
+
+fn leave_out_what_never_runs(module: &mut Module) {
+    let mut answers = Answers::new();
+    let mut functions = std::mem::take(&mut module.functions);
+    // Those that are called come before those that call them.
+    for (handle, function) in functions.iter_mut() {
+        if let Some(answer) = Pruned::prune(module, function, &answers) {
+            answers.insert(handle, answer);
+        }
+    }
+    module.functions = functions;
+    let mut entry_points = std::mem::take(&mut module.entry_points);
+    for entry in &mut entry_points {
+        Pruned::prune(module, &mut entry.function, &answers);
+    }
+    module.entry_points = entry_points;
+    // Functions that nothing calls any more.
+    compact(module, KeepUnused::No);
+}
+
+/// Functions that do nothing but return a value that is known.
+type Answers = HashMap<Handle<Function>, Literal>;
+
+/// A function whose constant conditions are being decided.
+struct Pruned<'a> {
+    module: &'a Module,
+    function: &'a Function,
+    answers: &'a Answers,
+    /// Variables that hold one value throughout: naga makes one for each `&&` and `||`.
+    known: HashMap<Handle<LocalVariable>, Literal>,
+}
+
+impl<'a> Pruned<'a> {
+    /// Leaves out of `function` what never runs; the value that is all it returns, if that is known.
+    fn prune(module: &'a Module, function: &mut Function, answers: &'a Answers) -> Option<Literal> {
+        let mut known = HashMap::new();
+        let answer = loop {
+            let body = std::mem::take(&mut function.body);
+            let pruned = Pruned { module, function, answers, known };
+            let body = pruned.block(body);
+            let found = pruned.constant_variables(&body);
+            let answer = pruned.answer(&body);
+            let more = found.len() > pruned.known.len();
+            known = found;
+            function.body = body;
+            // A variable that turned out constant may decide more.
+            if !more {
+                break answer;
+            }
+        };
+        let mut evaluated = HashSet::new();
+        visit(&function.body, &mut |statement| match statement {
+            Statement::Emit(range) => evaluated.extend(range.clone()),
+            Statement::Call { result: Some(result), .. }
+            | Statement::Atomic { result: Some(result), .. }
+            | Statement::WorkGroupUniformLoad { result, .. } => {
+                evaluated.insert(*result);
+            }
+            _ => {}
+        });
+        // Names of what was left out; naga takes what has a name for used.
+        let expressions = &function.expressions;
+        function
+            .named_expressions
+            .retain(|handle, _| evaluated.contains(handle) || expressions[*handle].needs_pre_emit());
+        answer
+    }
+
+    /// The value that `body` returns, if it is known and the body does nothing else.
+    fn answer(&self, body: &Block) -> Option<Literal> {
+        let (mut answers, mut acts) = (Vec::new(), false);
+        visit(body, &mut |statement| match statement {
+            Statement::Emit(_) | Statement::Block(_) => {}
+            Statement::Return { value: Some(value) } => answers.push(self.value(*value)),
+            _ => acts = true,
+        });
+        match answers[..] {
+            [answer] if !acts => answer,
+            _ => None,
+        }
+    }
+
+    fn block(&self, block: Block) -> Block {
+        let mut kept = Block::with_capacity(block.len());
+        for (statement, span) in block.span_into_iter() {
+            let statement = self.statement(statement);
+            let leaves = leaves(&statement);
+            if !matches!(&statement, Statement::Block(inner) if inner.is_empty()) {
+                kept.push(statement, span);
+            }
+            // Nothing behind a statement that leaves the block runs.
+            if leaves {
+                break;
+            }
+        }
+        kept
+    }
+
+    fn statement(&self, statement: Statement) -> Statement {
+        match statement {
+            Statement::If { condition, accept, reject } => match self.value(condition) {
+                Some(Literal::Bool(true)) => Statement::Block(self.block(accept)),
+                Some(Literal::Bool(false)) => Statement::Block(self.block(reject)),
+                _ => Statement::If { condition, accept: self.block(accept), reject: self.block(reject) },
+            },
+            Statement::Block(block) => Statement::Block(self.block(block)),
+            Statement::Loop { body, continuing, break_if } => {
+                Statement::Loop { body: self.block(body), continuing: self.block(continuing), break_if }
+            }
+            Statement::Switch { selector, cases } => {
+                let cases = cases.into_iter().map(|case| SwitchCase { body: self.block(case.body), ..case });
+                Statement::Switch { selector, cases: cases.collect() }
+            }
+            other => other,
+        }
+    }
+
+    /// Value of an expression if it is known without running the shader.
+    fn value(&self, expression: Handle<Expression>) -> Option<Literal> {
+        match self.function.expressions[expression] {
+            Expression::Literal(literal) => Some(literal),
+            Expression::Constant(constant) => {
+                match self.module.global_expressions[self.module.constants[constant].init] {
+                    Expression::Literal(literal) => Some(literal),
+                    _ => None,
+                }
+            }
+            Expression::CallResult(function) => self.answers.get(&function).copied(),
+            Expression::Select { condition, accept, reject } => match self.value(condition)? {
+                Literal::Bool(on) => self.value(if on { accept } else { reject }),
+                _ => None,
+            },
+            Expression::Load { pointer } => self.known.get(&self.variable(pointer)?).copied(),
+            Expression::Unary { op: UnaryOperator::LogicalNot, expr } => match self.value(expr)? {
+                Literal::Bool(on) => Some(Literal::Bool(!on)),
+                _ => None,
+            },
+            Expression::Binary { op, left, right } => {
+                let value = match (op, self.value(left)?, self.value(right)?) {
+                    (BinaryOperator::LogicalAnd, Literal::Bool(a), Literal::Bool(b)) => a && b,
+                    (BinaryOperator::LogicalOr, Literal::Bool(a), Literal::Bool(b)) => a || b,
+                    (BinaryOperator::Equal, Literal::U32(a), Literal::U32(b)) => a == b,
+                    (BinaryOperator::NotEqual, Literal::U32(a), Literal::U32(b)) => a != b,
+                    _ => return None,
+                };
+                Some(Literal::Bool(value))
+            }
+            _ => None,
+        }
+    }
+
+    fn variable(&self, pointer: Handle<Expression>) -> Option<Handle<LocalVariable>> {
+        match self.function.expressions[pointer] {
+            Expression::LocalVariable(variable) => Some(variable),
+            _ => None,
+        }
+    }
+
+    /// Variables without a name, which naga makes and writes just before it reads them, all of whose writes in `body` are of one known value.
+    fn constant_variables(&self, body: &Block) -> HashMap<Handle<LocalVariable>, Literal> {
+        let mut written = HashMap::<Handle<LocalVariable>, Option<Literal>>::new();
+        visit(body, &mut |statement| {
+            let Statement::Store { pointer, value } = statement else { return };
+            let Some(variable) = self.variable(*pointer) else { return };
+            let local = &self.function.local_variables[variable];
+            if local.name.is_none() && local.init.is_none() {
+                let value = self.value(*value);
+                let same = written.entry(variable).or_insert(value);
+                *same = same.filter(|same| Some(*same) == value);
+            }
+        });
+        written.into_iter().filter_map(|(variable, value)| Some((variable, value?))).collect()
+    }
+}
+
+/// Whether nothing that follows the statement in its block runs.
+fn leaves(statement: &Statement) -> bool {
+    match statement {
+        Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue => true,
+        Statement::Block(block) => block.last().is_some_and(leaves),
+        _ => false,
+    }
+}
+
+/// Calls `each` for every statement of a block, those within others too.
+fn visit(block: &Block, each: &mut dyn FnMut(&Statement)) {
+    for statement in block.iter() {
+        each(statement);
+        match statement {
+            Statement::Block(block) => visit(block, each),
+            Statement::If { accept, reject, .. } => [accept, reject].into_iter().for_each(|block| visit(block, each)),
+            Statement::Loop { body, continuing, .. } => {
+                [body, continuing].into_iter().for_each(|block| visit(block, each));
+            }
+            Statement::Switch { cases, .. } => cases.iter().for_each(|case| visit(&case.body, each)),
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::naga::back::wgsl::{WriterFlags, write_string};
+
+    /// The WGSL of a specialised shader, after naga found it valid.
+    fn specialised(source: &str, constants: &[(&str, f64)]) -> String {
+        let module = Parsed::new("test", source).unwrap().specialised("test", "main", constants).unwrap();
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all()).validate(&module).unwrap();
+        write_string(&module, &info, WriterFlags::empty()).unwrap()
+    }
+
+    const SOURCE: &str = "
+        override ON: bool = false;
+        override KIND: u32 = 0u;
+        override ASKED: u32 = 7u;
+        @group(0) @binding(0) var<storage, read_write> out: array<f32>;
+        fn left_out(x: f32) -> f32 { return sinh(x); }
+        fn kept(x: f32) -> f32 { return cosh(x); }
+        fn early(x: f32) -> f32 {
+            if KIND == 2u { return x; }
+            let y = left_out(x);
+            return y + 1.0;
+        }
+        fn sometimes() -> bool {
+            if !ON { if out[1] > 0.0 { return true; } }
+            return false;
+        }
+        fn kind() -> u32 { return select(ASKED, u32(out[0]), ASKED == 9u); }
+        fn is_kind(wanted: u32) -> bool {
+            if ASKED == 9u { return u32(out[0]) == wanted; }
+            return ASKED == 7u;
+        }
+        @compute @workgroup_size(1)
+        fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+            var x = out[id.x];
+            if kind() != 7u || !is_kind(id.y) { x = atanh(x); }
+            if sometimes() { x = sqrt(x); }
+            if ON && x > 1.0 { x = left_out(x); } else { x = kept(x); }
+            for (var i = 0u; i < id.y; i += 1u) {
+                if !ON || KIND != 2u { x += 1.0; } else { let z = left_out(x); x = z; }
+            }
+            out[id.x] = early(x);
+        }";
+
+    #[test]
+    fn what_a_constant_switches_off_is_left_out() {
+        let off = specialised(SOURCE, &[("ON", 0.0), ("KIND", 2.0)]);
+        assert!(off.contains("cosh") && !off.contains("sinh"), "{off}");
+        assert!(!off.contains("atanh") && off.contains("sqrt"), "{off}");
+        assert!(!specialised(SOURCE, &[("ON", 1.0)]).contains("sqrt"));
+        assert!(specialised(SOURCE, &[("ASKED", 9.0)]).contains("atanh"));
+        assert!(specialised(SOURCE, &[("ASKED", 8.0)]).contains("atanh"));
+        // Each of the three calls stays where a constant leaves it on.
+        for (on, kind) in [(1.0, 2.0), (0.0, 0.0)] {
+            let text = specialised(SOURCE, &[("ON", on), ("KIND", kind)]);
+            assert!(text.contains("sinh") && text.contains("cosh"), "{on} {kind}: {text}");
+        }
+    }
+
+    #[test]
+    fn what_the_input_decides_stays() {
+        let source = "
+            @group(0) @binding(0) var<storage, read_write> out: array<f32>;
+            @compute @workgroup_size(1)
+            fn main() {
+                if out[0] > 1.0 && out[1] > 2.0 { out[2] = sinh(out[0]); }
+                switch u32(out[3]) { case 1u: { out[4] = cosh(out[3]); } default: { return; } }
+                out[5] = tanh(out[5]);
+            }";
+        let text = specialised(source, &[]);
+        assert!(["sinh", "cosh", "tanh"].iter().all(|name| text.contains(name)), "{text}");
+    }
+
+    #[test]
+    fn a_shader_or_constant_that_is_wrong_is_an_error_with_its_label() {
+        let error = Parsed::new("broken", "fn f( {").unwrap_err();
+        assert!(error.message.starts_with("broken: "), "{error}");
+        let error = Parsed::new("broken", "fn f() -> f32 { return 1u; }").unwrap_err();
+        assert!(error.message.starts_with("broken: "), "{error}");
+        let error = Parsed::new("test", SOURCE).unwrap().specialised("test", "main", &[("NONE", 1.0)]).unwrap_err();
+        assert!(error.message.starts_with("test: ") && error.message.contains("NONE"), "{error}");
+    }
+}
