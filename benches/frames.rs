@@ -4,7 +4,7 @@
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
-use bhr::scene::{Camera, LensTables, Method, Sky};
+use bhr::scene::{Camera, LensTables, Method, Projection, Sky};
 use criterion::Criterion;
 use glam::DQuat;
 use std::cell::RefCell;
@@ -160,6 +160,8 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
     }
     measured("spin 0, ADAPTIVE", size, Change::Nothing, Box::new(method(0.0, Method::Adaptive)));
+    let fisheye = |r: &mut Renderer| (r.scene.hole.spin, r.scene.camera.projection) = (0.9, Projection::Fisheye);
+    measured("spin 0.9, FISHEYE", size, Change::Nothing, Box::new(fisheye));
     measured("spin 0, no disk", size, Change::Nothing, Box::new(|r| r.scene.disk = None));
     measured("spin 0, no stars", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = 0));
     measured("spin 0, no Milky Way", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = Sky::STARS));
