@@ -87,7 +87,7 @@ extern "C" {
 #define BHR_VERSION_MAJOR 0
 
 /** This header's minor version. */
-#define BHR_VERSION_MINOR 1
+#define BHR_VERSION_MINOR 2
 
 /** This header's patch version. */
 #define BHR_VERSION_PATCH 0
@@ -101,7 +101,7 @@ uint32_t bhr_version(void);
 /** BHR_ABI_VERSION of the loaded library. Any thread, inside callbacks too. */
 uint32_t bhr_abi_version(void);
 
-/** The loaded library's version, such as "0.1.0"; static. Any thread, inside callbacks too. */
+/** The loaded library's version, such as "0.2.0"; static. Any thread, inside callbacks too. */
 const char *bhr_version_string(void);
 
 /* ---- status, messages ---- */
@@ -670,7 +670,8 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 
 /**
  * BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
- * address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
+ * address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
+ * 0.2.0.
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
 
@@ -1126,7 +1127,7 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
  * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: 1920 x 1080 and
  * RGBA8_SRGB (a CUBE needs a target, 6 times as wide as high). On a GPU it renders one frame that is thrown away,
  * that bhr_frame_stats does not count and that the progress callback may cancel. It waits for a job that is being
- * rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
+ * rendered. Any thread, not inside callbacks. Errors: as bhr_render_image. Since 0.2.0.
  */
 BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
 

@@ -32,7 +32,8 @@ pub const BHR_FORMAT_R32F: BhrFormat = 5;
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
 /// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
-/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
+/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
+/// 0.2.0.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
