@@ -1124,8 +1124,10 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
  * frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
  *
  * target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
- * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: 1920 x 1080 and
- * RGBA8_SRGB (a CUBE needs a target, 6 times as wide as high). On a GPU it renders one frame that is thrown away,
+ * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: frames in windows
+ * of 1920 x 1080 only, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
+ * BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
+ * must be 6 times as wide as high). On a GPU it renders one frame that is thrown away,
  * that bhr_frame_stats does not count and that the progress callback may cancel. It waits for a job that is being
  * rendered. Any thread, not inside callbacks. Errors: as bhr_render_image. Since 0.2.0.
  */

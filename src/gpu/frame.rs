@@ -21,7 +21,6 @@ use crate::allocate::collected;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::image::PixelFormat;
 use crate::physics::trace::Settings;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::observer::Lens;
@@ -134,16 +133,29 @@ impl GpuTracer {
         Ok(stats)
     }
 
-    /// Makes all that frames of the scene like this one need, in windows too, and keeps it. Errors: as `Renderer::render`.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
+    /// Makes all that frames of the scene like this one need, and frames like `window` on a screen, and keeps it.
+    /// Errors: as `Renderer::render`.
+    pub fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
         let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
-        if request.format == PixelFormat::Rgba8Srgb && !request.transparent {
-            keys.extend(self.set_up(scene, request, PixelTarget::Screen)?.kernels());
+        if let Some(window) = window {
+            keys.extend(self.set_up(scene, window, PixelTarget::Screen)?.kernels());
         }
         let wanted = self.kernels.begin(&keys);
         self.kernels.finish(wanted)?;
         // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as well.
         self.render(scene, request, &mut |_, _, _| Ok(()), progress).map(|_| ())
+    }
+
+    /// How many pipelines are not there that such a frame would run in a window; for tests. Errors: as
+    /// `Renderer::render`.
+    pub fn missing_on_screen(&self, scene: &Scene, request: &FrameRequest) -> Result<usize> {
+        Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::Screen)?.kernels()).len())
     }
 
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as `Renderer::render`;

@@ -231,8 +231,14 @@ impl GlTracer {
     }
 
     /// As [`GpuTracer::prepare`]; `progress` runs on this thread.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
-        self.call_with_progress(progress, |tracer, progress| tracer.prepare(scene, request, progress))
+    pub fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        self.call_with_progress(progress, |tracer, progress| tracer.prepare(scene, request, window, progress))
     }
 
     fn call<T: Send>(&mut self, work: impl FnOnce(&mut GpuTracer) -> Result<T> + Send) -> Result<T> {

@@ -235,10 +235,15 @@ impl Kernels {
         self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
+    /// Those of `keys` whose pipelines are not there.
+    pub fn missing(&self, keys: &[KernelKey]) -> Vec<KernelKey> {
+        keys.iter().copied().filter(|key| !self.store.has(*key)).collect()
+    }
+
     /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are
     /// missing.
     pub fn begin(&self, keys: &[KernelKey]) -> Option<Wanted> {
-        let missing = keys.iter().copied().filter(|key| !self.store.has(*key)).collect::<Vec<_>>();
+        let missing = self.missing(keys);
         self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
         (!missing.is_empty()).then(|| self.compilers.make_now(&self.store, &self.device, missing))
     }
