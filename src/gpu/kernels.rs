@@ -6,6 +6,7 @@ use super::compilers::{Compilers, Wanted};
 use super::kernel_key::{GROUP, KernelKey};
 use super::slots::{Slot, edge_slots};
 use super::{Device, Kernel, Loops, ProvenFinite};
+use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -128,6 +129,8 @@ impl Store {
         }
         state.made.insert(key, Progress::Making);
         drop(state);
+        // Messages wait until those who wait for the pipeline have it.
+        let _holding = hold();
         let settling = Settling { store: self, key, ahead, made: None };
         settling.settle(self.compile(device, key))
     }
@@ -152,6 +155,8 @@ impl Store {
     }
 
     fn layout(&self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
+        // Messages wait until the lock is released.
+        let _holding = hold();
         let mut state = self.lock();
         if let Some(layout) = state.layouts.get(slots) {
             return Ok(layout.clone());

@@ -1,6 +1,7 @@
 //! Compute pipelines from WGSL, and the shader modules they share. Knows no shader.
 
 use super::device::Device;
+use crate::deferred::hold;
 use crate::error::Result;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -89,6 +90,8 @@ impl Device {
     fn module(&self, kernel: &Kernel<'_>) -> Result<wgpu::ShaderModule> {
         let key = (kernel.source.join("\n"), kernel.loops);
         let source = key.0.clone();
+        // Messages wait until the module's place is free.
+        let _holding = hold();
         let place = self.modules.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone();
         let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(module) = &*place {
