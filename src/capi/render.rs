@@ -115,9 +115,9 @@ const WINDOW: [u32; 2] = [1920, 1080];
 /// RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: frames in windows
 /// of 1920 x 1080 only, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
 /// BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
-/// must be 6 times as wide as high). On a GPU it renders one frame that is thrown away,
-/// that bhr_frame_stats does not count and that the progress callback may cancel. It waits for a job that is being
-/// rendered. Any thread, not inside callbacks. Errors: as bhr_render_image. Since 0.2.0.
+/// must be 6 times as wide as high). On a GPU it renders one frame that is thrown away, that bhr_frame_stats does not
+/// count and that the progress callback may cancel. It waits for a job that is being rendered. Any thread, not inside
+/// callbacks. Errors: as bhr_render_image. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
