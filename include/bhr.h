@@ -759,14 +759,13 @@ BhrStatus bhr_image_save(const BhrImage *image, const char *path);
  * window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, and a block, whose channels are all
  * unpacked together, 64 MiB (256 MiB where the image has as many); all blocks that reach the display window may have
  * 1 GiB, or four times the bytes of the image if that is more. Deep data and subsampling are IO. The pixels are the
- * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
- * struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR;
- * OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more
- * than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before memory is taken
- * for it.
+ * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
+ * built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
+ * side, or of more than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before
+ * memory is taken for it.
  */
-BhrStatus bhr_image_load(const char *path,
-                         BhrImage *image);
+BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
 /**
  * Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0. Any thread, inside

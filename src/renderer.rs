@@ -167,7 +167,8 @@ impl Tracer {
         }
     }
 
-    /// Makes all that such frames need, and a window's frames like `window`, and keeps it. Errors: as `Renderer::render`.
+    /// Makes all that such frames need, and a window's frames like `window`, and keeps it. Errors: as
+    /// `Renderer::render`.
     fn prepare(
         &mut self,
         scene: &Scene,

@@ -72,8 +72,8 @@ impl GlThread {
         Ok(Arc::new(Self { line: Mutex::new(Some(line)), handle: Some(handle) }))
     }
 
-    /// Runs `work` on the thread and waits for it. Errors: INTERNAL when it panics; once the thread is parked, DEVICE_LOST, and `work` is
-    /// leaked, as what it has of wgpu's may be dropped nowhere else.
+    /// Runs `work` on the thread and waits for it. Errors: INTERNAL when it panics; once the thread is parked,
+    /// DEVICE_LOST, and `work` is leaked, as what it has of wgpu's may be dropped nowhere else.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T> {
         self.run_with_progress(|_| work(), &mut |_| true)
     }
