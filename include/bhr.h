@@ -249,10 +249,12 @@ typedef struct BhrAdapterInfo {
 /**
  * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
  * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
- * uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does, at any
- * time (eglTerminate), contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover, and
- * bhr_context_create BHR_ERROR_NO_ADAPTER if it was at work. Each time some 10 MiB and a sleeping thread may stay
- * behind until the process ends, as what has lost its display cannot be closed.
+ * uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
+ * (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover, and
+ * bhr_context_create BHR_ERROR_NO_ADAPTER if it was at work. It may do so while a call or a job of one context is
+ * running, but not while several contexts on this backend have some: EGL may give the handle of a context that has
+ * ended to another one. Each time some 10 MiB and a sleeping thread for each context may stay behind until the process
+ * ends, as what has lost its display cannot be closed.
  */
 #define BHR_BACKEND_GL 5
 

@@ -5,7 +5,7 @@
 //!
 //! On its own thread wgpu panics as well, when another library of the process terminates the EGL display. A panic that
 //! unwinds from there drops what wgpu has made, which panics again. So where the process's panic hook is the library's
-//! own (the C API's), it calls [`park_after_panic`]: nothing unwinds, and the thread stands still for good.
+//! own (the C API's), it calls [`park`]: nothing unwinds, and the thread stands still for good.
 
 use super::device::{Loss, panic_text};
 use super::{Adapter, GpuTracer, driver_lock};
@@ -18,12 +18,33 @@ use parking_lot::Mutex;
 use std::cell::RefCell;
 use std::mem::transmute;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread::{self, JoinHandle};
 
 thread_local! {
     /// On a thread for GL that is at work: who waits for it.
     static CALLER: RefCell<Option<mpsc::Sender<News>>> = const { RefCell::new(None) };
+}
+
+/// How many threads for GL were parked. All contexts of the process are on one EGL display, and have gone with it when
+/// one has. EGL's handles are addresses, so that a context that is opened later may have the handle of one that has
+/// gone, and would be used, or destroyed, in its place: nothing from before is used any more.
+static PARKED: AtomicU64 = AtomicU64::new(0);
+
+/// The time of an EGL display's life at which a context was opened.
+#[derive(Clone, Copy)]
+pub(super) struct DisplayAge(u64);
+
+impl DisplayAge {
+    pub fn now() -> Self {
+        Self(PARKED.load(Ordering::SeqCst))
+    }
+
+    /// Whether the display has ended since, as far as a thread for GL has found.
+    pub fn is_over(self) -> bool {
+        self.0 != Self::now().0
+    }
 }
 
 type Work<'a> = Box<dyn FnOnce() + Send + 'a>;
@@ -38,14 +59,16 @@ enum News {
     Parked(String),
 }
 
-/// From a panic hook, before anything unwinds: on a thread for GL that is at work, hands `text` to the caller that
-/// waits, and does not return. The thread and all that it has are lost. On any other thread it does nothing.
+/// On a thread for GL that is at work: hands `text` to the caller that waits, and does not return. The thread and all
+/// that it has are lost. On any other thread it does nothing. For panic hooks, which run before anything unwinds, and
+/// for where a GL context turns out to be gone.
 ///
-/// While it stands still in the hook, the standard library holds the lock of hooks for reading: other panics are as
+/// While it stands still in a hook, the standard library holds the lock of hooks for reading: other panics are as
 /// ever, but setting another hook would wait for ever. So this is for a hook that is never replaced.
-pub fn park_after_panic(text: &str) {
+pub fn park(text: &str) {
     let caller = CALLER.try_with(|caller| caller.try_borrow_mut().ok()?.take()).ok().flatten();
     let Some(caller) = caller else { return };
+    PARKED.fetch_add(1, Ordering::SeqCst);
     driver_lock::abandon();
     let _ = caller.send(News::Parked(text.to_owned()));
     loop {
@@ -91,7 +114,7 @@ impl GlThread {
         let mut line = self.line.lock();
         let Some(sender) = &*line else {
             std::mem::forget(work);
-            return Err(Error::new(ErrorKind::DeviceLost, "the thread for GL panicked before"));
+            return Err(Error::new(ErrorKind::DeviceLost, "the thread for GL has stopped"));
         };
         let scope = thread_scope::of_caller();
         let (tell, news) = mpsc::channel();
@@ -126,7 +149,7 @@ impl GlThread {
         drop(waiting);
         if let Some(panic) = parked {
             *line = None;
-            return Err(Error::internal(format!("GL panicked: {panic}")));
+            return Err(Error::internal(format!("GL stopped: {panic}")));
         }
         match done {
             Some(Ok(done)) => Ok(done),
@@ -188,7 +211,7 @@ impl Drop for GlThread {
     }
 }
 
-const CONTEXT_GONE: &str = "its GL context is gone: the EGL display was terminated, or the driver failed";
+pub(super) const CONTEXT_GONE: &str = "its GL context is gone: the EGL display was terminated, or the driver failed";
 
 /// A [`GpuTracer`] on a GL adapter, whose calls run on the adapter's thread. Any thread may call and drop it, whatever
 /// GL context is current there.
@@ -198,16 +221,18 @@ pub struct GlTracer {
     /// `None` only while it is being dropped.
     tracer: Option<GpuTracer>,
     thread: Arc<GlThread>,
+    age: DisplayAge,
 }
 
 impl GlTracer {
     /// Errors: as [`GpuTracer::new`]; NO_ADAPTER when the driver panics.
     pub fn open(adapter: Adapter) -> Result<Self> {
+        let age = DisplayAge::now();
         let info = adapter.info.clone();
         let thread = adapter.gl_thread().ok_or_else(|| Error::internal("an adapter of GL without its thread"))?;
         let opened = thread.run(move || GpuTracer::new(adapter));
         let tracer = opened.map_err(|panic| Error::new(ErrorKind::NoAdapter, panic.message))??;
-        Ok(Self { info, loss: tracer.device.loss(), tracer: Some(tracer), thread })
+        Ok(Self { info, loss: tracer.device.loss(), tracer: Some(tracer), thread, age })
     }
 
     pub fn info(&self) -> &AdapterInfo {
@@ -251,6 +276,9 @@ impl GlTracer {
         progress: &mut Progress<'_>,
         work: impl FnOnce(&mut GpuTracer, &mut Progress<'_>) -> Result<T> + Send,
     ) -> Result<T> {
+        if self.age.is_over() {
+            self.loss.lose(CONTEXT_GONE);
+        }
         self.loss.check()?;
         let tracer = self.tracer.as_mut().ok_or_else(|| Error::internal("a tracer that is being dropped"))?;
         let checked = |progress: &mut Progress<'_>| {
@@ -288,6 +316,11 @@ impl GlTracer {
 impl Drop for GlTracer {
     fn drop(&mut self) {
         let Some(tracer) = self.tracer.take() else { return };
+        if self.age.is_over() {
+            log::warn!("a GL device that cannot be closed stays behind: its context is gone");
+            std::mem::forget(tracer);
+            return;
+        }
         let end = move || match tracer.device.answers() {
             true => drop(tracer),
             false => {
@@ -316,7 +349,7 @@ impl GpuTracer {
 mod tests {
     use super::*;
     use std::panic::resume_unwind;
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::atomic::AtomicBool;
     use std::thread::current;
     use std::time::Duration;
 

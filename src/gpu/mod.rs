@@ -46,7 +46,7 @@ pub use frame::{BegunFrame, FrameTarget, Recording};
 #[cfg(test)]
 pub(crate) use gl_thread::GlThread;
 pub use gl_thread::GlTracer;
-pub(crate) use gl_thread::park_after_panic;
+pub(crate) use gl_thread::park;
 pub use kernels::KernelWaits;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
