@@ -169,7 +169,8 @@ impl Device {
         self.health.check()
     }
 
-    /// Where the EGL display has ended, on the thread for GL, this does not return: nothing may be dropped on the way out.
+    /// Where the EGL display has ended, on the thread for GL, this does not return: nothing may be dropped on the way
+    /// out.
     fn leave_what_is_gone(&self) {
         if self.gl_age.is_some_and(DisplayAge::is_over) {
             self.health.lose(CONTEXT_GONE);
