@@ -87,7 +87,7 @@ extern "C" {
 #define BHR_VERSION_MAJOR 0
 
 /** This header's minor version. */
-#define BHR_VERSION_MINOR 1
+#define BHR_VERSION_MINOR 2
 
 /** This header's patch version. */
 #define BHR_VERSION_PATCH 0
@@ -101,7 +101,7 @@ uint32_t bhr_version(void);
 /** BHR_ABI_VERSION of the loaded library. Any thread, inside callbacks too. */
 uint32_t bhr_abi_version(void);
 
-/** The loaded library's version, such as "0.1.0"; static. Any thread, inside callbacks too. */
+/** The loaded library's version, such as "0.2.0"; static. Any thread, inside callbacks too. */
 const char *bhr_version_string(void);
 
 /* ---- status, messages ---- */
@@ -250,8 +250,11 @@ typedef struct BhrAdapterInfo {
  * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
  * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
  * uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
- * (eglTerminate), contexts on this backend return BHR_ERROR_DEVICE_LOST; it must not do so while one of their calls
- * or jobs is running.
+ * (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover, and
+ * bhr_context_create BHR_ERROR_NO_ADAPTER if it was at work. It may do so while a call or a job of one context is
+ * running, but not while several contexts on this backend have some: EGL may give the handle of a context that has
+ * ended to another one. Each time some 10 MiB and a sleeping thread for each context may stay behind until the process
+ * ends, as what has lost its display cannot be closed.
  */
 #define BHR_BACKEND_GL 5
 
@@ -669,7 +672,8 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 
 /**
  * BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
- * address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
+ * address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
+ * 0.2.0.
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
 
@@ -754,13 +758,14 @@ BhrStatus bhr_image_save(const BhrImage *image, const char *path);
  * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
  * down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
  * level of the first part with channels R, G and B is read and cut to the display window; pixels that the data
- * window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, a block 256 MiB, and all channels of the
- * data window 16 GiB; deep data and subsampling are IO. The pixels are the library's: give them back with
- * bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
- * struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR;
- * OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more
- * than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before memory is taken
- * for it.
+ * window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, and a block, whose channels are all
+ * unpacked together, 64 MiB (256 MiB where the image has as many); all blocks that reach the display window may have
+ * 1 GiB, or four times the bytes of the image if that is more. Deep data and subsampling are IO. The pixels are the
+ * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
+ * built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
+ * side, or of more than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before
+ * memory is taken for it.
  */
 BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
@@ -1120,10 +1125,12 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
  * frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
  *
  * target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
- * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: 1920 x 1080 and
- * RGBA8_SRGB (a CUBE needs a target, 6 times as wide as high). On a GPU it renders one frame that is thrown away,
- * that bhr_frame_stats does not count and that the progress callback may cancel. It waits for a job that is being
- * rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
+ * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: frames in windows
+ * of 1920 x 1080 only, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
+ * BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
+ * must be 6 times as wide as high). On a GPU it renders one frame that is thrown away, that bhr_frame_stats does not
+ * count and that the progress callback may cancel. It waits for a job that is being rendered. Any thread, not inside
+ * callbacks. Errors: as bhr_render_image. Since 0.2.0.
  */
 BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
 

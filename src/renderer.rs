@@ -9,7 +9,7 @@ use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::job::{Job, Order, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
-use crate::window::{NativeWindow, PresentMode, Showing, Shown, Surface, Tracing, Window};
+use crate::window::{NativeWindow, PresentMode, Showing, Shown, Surface, Tracing, Window, frame_request};
 use parking_lot::Mutex;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Weak};
@@ -167,12 +167,19 @@ impl Tracer {
         }
     }
 
-    /// Makes all that such frames need, and keeps it. Errors: as `Renderer::render`.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
+    /// Makes all that such frames need, and a window's frames like `window`, and keeps it. Errors: as
+    /// `Renderer::render`.
+    fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
         match self {
-            Self::Cpu(t) => t.prepare(scene, request),
-            Self::Gpu(t) => t.prepare(scene, request, progress),
-            Self::Gl(t) => t.prepare(scene, request, progress),
+            Self::Cpu(t) => window.into_iter().chain([request]).try_for_each(|request| t.prepare(scene, request)),
+            Self::Gpu(t) => t.prepare(scene, request, window, progress),
+            Self::Gl(t) => t.prepare(scene, request, window, progress),
         }
     }
 
@@ -494,8 +501,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes all that frames of the present scene need as images of this format and size, and as windows' frames of this size: the next
-    /// ones then wait for nothing but themselves.
+    /// Makes all that frames of the present scene need as images of this format and size, and in windows of this size:
+    /// the next ones then wait for nothing but themselves.
     ///
     /// Errors: as [`Self::render`].
     pub fn prepare(
@@ -507,7 +514,27 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let request = self.request(format, size, transparent, region)?;
-        self.tracer.lock().prepare(&self.scene, &request, progress)
+        let shown = format == PixelFormat::Rgba8Srgb && !transparent;
+        let window = shown.then(|| frame_request(&self.scene, size, format));
+        self.tracer.lock().prepare(&self.scene, &request, window.as_ref(), progress)
+    }
+
+    /// The same for windows of `size` only. Errors: as [`Self::render`].
+    pub fn prepare_window(&mut self, size: [u32; 2], progress: &mut Progress<'_>) -> Result<()> {
+        let window = frame_request(&self.scene, size, PixelFormat::Rgba8Srgb);
+        self.tracer.lock().prepare(&self.scene, &window, Some(&window), progress)
+    }
+
+    /// How many pipelines are not there that a frame in a window of `size` would run; for tests. `None` as in
+    /// [`Self::settled_waits`]. Errors: as [`Self::render`].
+    #[doc(hidden)]
+    pub fn missing_in_window(&self, size: [u32; 2]) -> Result<Option<usize>> {
+        match &*self.tracer.lock() {
+            Tracer::Gpu(t) => {
+                t.missing_on_screen(&self.scene, &frame_request(&self.scene, size, PixelFormat::Rgba8Srgb)).map(Some)
+            }
+            Tracer::Cpu(_) | Tracer::Gl(_) => Ok(None),
+        }
     }
 
     /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is

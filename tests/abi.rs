@@ -76,6 +76,31 @@ fn hosts_of_every_release_run_with_todays_library() {
     }
 }
 
+/// The comment before the line of `text` that holds `word` outside comments.
+fn comment_before(text: &str, word: &str) -> String {
+    let is_word = |line: &str| line.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').any(|found| found == word);
+    let declares = |line: &&str| is_word(line) && !line.trim_start().starts_with(['*', '/']);
+    let line = text.lines().find(declares).unwrap_or_else(|| panic!("{word} is not declared"));
+    let before = &text[..line.as_ptr() as usize - text.as_ptr() as usize];
+    let comment = before.rfind("/**").map_or("", |begin| &before[begin..]);
+    comment.split(['*', ' ', '\n']).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
+/// A host that must run with older libraries too finds out here what they have not.
+#[test]
+fn what_the_last_release_has_not_says_since_when_it_is_there() {
+    let (release, _) = RELEASES[RELEASES.len() - 1];
+    let old = header(release);
+    let functions = &functions(HEADER) - &functions(&old);
+    let constants = &constants(HEADER) - &constants(&old);
+    let today = env!("CARGO_PKG_VERSION");
+    for name in functions.iter().chain(&constants) {
+        assert_ne!(today, release, "{name} is not in the release of this version: raise the version");
+        let comment = comment_before(HEADER, name);
+        assert!(comment.contains(&format!("Since {today}.")), "{name}: {comment}");
+    }
+}
+
 /// The constants and fields that `text` declares, with their values and places in the header `name` of `folder`, as a
 /// C compiler sees them.
 fn places(text: &str, folder: &str, name: &str) -> Vec<String> {

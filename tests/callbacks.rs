@@ -6,9 +6,14 @@ use bhr::capi::hole::*;
 use bhr::capi::log::*;
 use bhr::capi::status::*;
 use bhr::capi::version::*;
+use bhr::gpu::{Buffer, Device, Kernel, Loops, Search, adapters};
+use bhr::renderer::Backend;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, OnceLock, mpsc};
+use std::thread::{ThreadId, current};
+use std::time::Duration;
 
 /// What a callback saw: its messages, and what calls back in returned.
 #[derive(Default)]
@@ -109,4 +114,95 @@ fn one_context_serves_four_threads() {
     // SAFETY: no call runs any more.
     unsafe { bhr_context_destroy(context as *mut BhrContext) };
     assert!(heard.lock().unwrap().messages.is_empty());
+}
+
+const DOUBLE: &str = "
+@group(0) @binding(0) var<storage, read_write> values: array<u32>;
+@compute @workgroup_size(64)
+fn double(@builtin(global_invocation_id) id: vec3<u32>) { values[id.x] *= 2u; }";
+
+/// A device of which the callback of a context without one hears.
+struct Watched {
+    device: Device,
+    layout: wgpu::BindGroupLayout,
+    buffer: Buffer,
+    /// The thread whose messages count, and how many came.
+    thread: ThreadId,
+    messages: AtomicU32,
+    hung: AtomicU32,
+}
+
+impl Watched {
+    /// Takes the locks of the device's modules and uploads; wgpu has much to say meanwhile.
+    fn use_device(&self) {
+        let kernel = Kernel {
+            label: "double",
+            source: &[DOUBLE],
+            loops: Loops::Counted,
+            entry_point: "double",
+            constants: &[],
+            zero_workgroup_memory: false,
+            groups: &[&self.layout],
+        };
+        self.device.compute_pipeline(&kernel).unwrap();
+        self.device.write(&self.buffer, 0, &[0; 4]).unwrap();
+    }
+}
+
+/// At some of the messages waits for another thread, which does what this one is doing.
+unsafe extern "C" fn wait_for_another_thread(user: *mut c_void, _: BhrLogLevel, _: *const c_char) {
+    // SAFETY: the test passes the Arc below, which outlives the context.
+    let watched = unsafe { &*user.cast::<OnceLock<Arc<Watched>>>() };
+    let Some(watched) = watched.get().filter(|watched| watched.thread == current().id()).cloned() else { return };
+    if watched.hung.load(Relaxed) > 0 || watched.messages.fetch_add(1, Relaxed) % 4 != 0 {
+        return;
+    }
+    let (tell, told) = mpsc::channel();
+    let other = watched.clone();
+    std::thread::spawn(move || {
+        other.use_device();
+        tell.send(()).unwrap();
+    });
+    if told.recv_timeout(Duration::from_secs(20)).is_err() {
+        watched.hung.fetch_add(1, Relaxed);
+    }
+}
+
+#[test]
+fn a_callback_may_wait_for_who_uses_the_same_device() {
+    let watched = OnceLock::<Arc<Watched>>::new();
+    let mut context = null_mut();
+    // SAFETY: everything lives here, and `watched` outlives the context.
+    unsafe {
+        let mut options = std::mem::zeroed::<BhrContextOptions>();
+        assert_eq!(bhr_context_options_init(&mut options, size_of_val(&options)), BHR_OK);
+        options.backend = BHR_BACKEND_CPU;
+        options.log_level = BHR_LOG_TRACE;
+        options.log_fn = Some(wait_for_another_thread);
+        options.log_user = (&raw const watched).cast_mut().cast();
+        assert_eq!(bhr_context_create(BHR_ABI_VERSION, &options, &mut context), BHR_OK);
+    }
+    let adapter = adapters(Search::Only(Backend::Vulkan), false).remove(0);
+    let device = Device::open(&adapter).unwrap();
+    let entry = wgpu::BindGroupLayoutEntry {
+        binding: 0,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: wgpu::BufferBindingType::Storage { read_only: false },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &[entry] };
+    let layout = device.scoped("layout", |d| d.create_bind_group_layout(&descriptor)).unwrap();
+    let buffer = device.buffer("values", 64, wgpu::BufferUsages::COPY_DST).unwrap();
+    let (messages, hung) = Default::default();
+    let thread = current().id();
+    let device = watched.get_or_init(|| Arc::new(Watched { device, layout, buffer, thread, messages, hung }));
+    device.use_device();
+    assert!(device.messages.load(Relaxed) > 3, "wgpu said {} things", device.messages.load(Relaxed));
+    assert_eq!(device.hung.load(Relaxed), 0, "after {} messages", device.messages.load(Relaxed));
+    // SAFETY: made above, destroyed once.
+    unsafe { bhr_context_destroy(context) };
 }

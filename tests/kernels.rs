@@ -22,6 +22,11 @@ fn render(renderer: &mut Renderer, format: PixelFormat) -> Vec<u8> {
     pixels
 }
 
+/// How many pipelines a window's frame would find missing.
+fn missing_in_window(renderer: &Renderer, size: [u32; 2]) -> usize {
+    renderer.missing_in_window(size).unwrap().expect("a GPU")
+}
+
 /// How many pipelines were missing when frames began, and how many more while they were bound.
 fn missing(renderer: &Renderer) -> [u64; 2] {
     let waits = renderer.settled_waits().expect("a GPU");
@@ -68,11 +73,36 @@ fn after_prepare_frames_wait_for_no_pipeline() {
     let mut renderer = renderer();
     for (index, change) in CHANGES.iter().enumerate().filter(|(index, _)| [0, 3, 4, 7].contains(index)) {
         change(&mut renderer.scene);
+        assert!(missing_in_window(&renderer, SIZE) > 0, "change {index}");
         renderer.prepare(PixelFormat::Rgba8Srgb, SIZE, false, None, &mut |_| true).unwrap();
+        assert_eq!(missing_in_window(&renderer, SIZE), 0, "change {index}");
         let before = missing(&renderer);
         render(&mut renderer, PixelFormat::Rgba8Srgb);
         assert_eq!(missing(&renderer), before, "change {index}");
     }
+}
+
+/// Small frames trace their rays, large ones look them up: which kernels they run depends on the size that a window's
+/// frame is traced at.
+#[test]
+fn windows_are_prepared_at_the_scale_of_their_quality() {
+    const WINDOW: [u32; 2] = [320, 180];
+    let mut renderer = renderer();
+    renderer.scene.quality.lens_tables = LensTables::Auto;
+    renderer.scene.quality.render_scale = 0.1;
+    renderer.prepare_window(WINDOW, &mut |_| true).unwrap();
+    assert_eq!(missing_in_window(&renderer, WINDOW), 0);
+    renderer.scene.quality.render_scale = 1.0;
+    assert!(missing_in_window(&renderer, WINDOW) > 0, "the scale does not matter, so nothing was tested");
+    // An image is not scaled, a window of its size is.
+    renderer.scene.quality.render_scale = 0.1;
+    renderer.scene.camera.motion = Motion::FreeFall;
+    renderer.prepare(PixelFormat::Rgba8Srgb, WINDOW, false, None, &mut |_| true).unwrap();
+    assert_eq!(missing_in_window(&renderer, WINDOW), 0);
+    // A cube is as large as the window holds it.
+    renderer.scene.camera.projection = Projection::Cube;
+    renderer.prepare_window(WINDOW, &mut |_| true).unwrap();
+    assert_eq!(missing_in_window(&renderer, WINDOW), 0);
 }
 
 #[test]

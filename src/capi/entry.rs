@@ -7,6 +7,7 @@ use super::log;
 use super::pointer::is_null;
 use super::status::{self, BHR_OK, BhrStatus};
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu;
 use parking_lot::MutexGuard;
 use std::cell::{Cell, RefCell};
 use std::ffi::c_char;
@@ -218,7 +219,12 @@ fn silence_panics() {
         let ours = count(&CALLS) > 0 || std::thread::current().name().is_some_and(|name| name.starts_with("bhr"));
         match BEFORE.get() {
             Some(before) if !ours => before(info),
-            _ => *last_panic() = Some(describe(info)),
+            _ => {
+                let text = describe(info);
+                // Such a panic must not unwind.
+                gpu::park(&text);
+                *last_panic() = Some(text);
+            }
         }
     }));
 }
@@ -254,6 +260,45 @@ mod tests {
         assert_eq!(call(|_| panic!("deliberate")), BHR_ERROR_INTERNAL);
         assert!(message().contains("entry.rs") && message().contains("deliberate"), "{}", message());
         assert_eq!(call(|_| Ok(())), BHR_ERROR_INTERNAL);
+    }
+
+    /// What would unwind after a panic of wgpu's, and panic again.
+    struct PanicsWhenDropped;
+
+    impl Drop for PanicsWhenDropped {
+        fn drop(&mut self) {
+            panic!("a second panic");
+        }
+    }
+
+    /// In a process of its own, which leaves the test harness out at its end: that replaces the hook, and would wait.
+    #[test]
+    fn a_panic_on_a_thread_for_gl_unwinds_nothing_and_releases_the_driver_lock() {
+        const ALONE: &str = "BHR_TEST_ALONE";
+        if std::env::var_os(ALONE).is_none() {
+            let name = "capi::entry::tests::a_panic_on_a_thread_for_gl_unwinds_nothing_and_releases_the_driver_lock";
+            let mut alone = std::process::Command::new(std::env::current_exe().unwrap());
+            let ended = alone.args(["--exact", name, "--nocapture"]).env(ALONE, "1").output().unwrap();
+            let said = String::from_utf8_lossy(&ended.stderr);
+            assert!(ended.status.code() == Some(7), "{}: {said}", ended.status);
+            return;
+        }
+        // Installs the hook.
+        guarded(|| Ok(())).unwrap();
+        let thread = gpu::GlThread::start().unwrap();
+        let work = || {
+            let _alone = gpu::driver_lock::lock();
+            let _dropped = PanicsWhenDropped;
+            panic!("deliberate");
+        };
+        let error = thread.run(work).map(|never: ()| never).unwrap_err();
+        assert!(error.message.contains("entry.rs") && error.message.contains("deliberate"), "{error}");
+        drop(gpu::driver_lock::lock());
+        // It is asked in vain, and what it was to do is not dropped here; its owner does not wait for it.
+        let dropped = PanicsWhenDropped;
+        assert_eq!(thread.run(move || drop(dropped)).unwrap_err().kind, ErrorKind::DeviceLost);
+        drop(thread);
+        std::process::exit(7);
     }
 
     #[test]

@@ -32,7 +32,8 @@ pub const BHR_FORMAT_R32F: BhrFormat = 5;
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
 /// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
-/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up.
+/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
+/// 0.2.0.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
@@ -208,13 +209,14 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 /// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
 /// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
 /// level of the first part with channels R, G and B is read and cut to the display window; pixels that the data
-/// window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, a block 256 MiB, and all channels of the
-/// data window 16 GiB; deep data and subsampling are IO. The pixels are the library's: give them back with
-/// bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong
-/// struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was built without EXR;
-/// OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a side, or of more
-/// than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before memory is taken
-/// for it.
+/// window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, and a block, whose channels are all
+/// unpacked together, 64 MiB (256 MiB where the image has as many); all blocks that reach the display window may have
+/// 1 GiB, or four times the bytes of the image if that is more. Deep data and subsampling are IO. The pixels are the
+/// library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
+/// built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
+/// side, or of more than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before
+/// memory is taken for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -6,8 +6,6 @@ use super::image::{self, BHR_IMAGE_TRANSPARENT, BhrImage};
 use super::log::User;
 use super::status::BhrStatus;
 use crate::error::{Error, ErrorKind};
-use crate::image::PixelFormat;
-use crate::image::memory::Layout;
 use std::ffi::c_void;
 
 /// Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
@@ -114,26 +112,25 @@ const WINDOW: [u32; 2] = [1920, 1080];
 /// frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
 ///
 /// target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
-/// RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: 1920 x 1080 and
-/// RGBA8_SRGB (a CUBE needs a target, 6 times as wide as high). On a GPU it renders one frame that is thrown away,
-/// that bhr_frame_stats does not count and that the progress callback may cancel. It waits for a job that is being
-/// rendered. Any thread, not inside callbacks. Errors: as bhr_render_image.
+/// RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: frames in windows
+/// of 1920 x 1080 only, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
+/// BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
+/// must be 6 times as wide as high). On a GPU it renders one frame that is thrown away, that bhr_frame_stats does not
+/// count and that the progress callback may cancel. It waits for a job that is being rendered. Any thread, not inside
+/// callbacks. Errors: as bhr_render_image. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         on_context("bhr_prepare", context, |state| {
-            let (layout, flags, region) = match target.is_null() {
-                true => (Layout::packed(PixelFormat::Rgba8Srgb, WINDOW[0], WINDOW[1]), 0, None),
-                false => {
-                    let (layout, flags) = image::read_layout(target, "target")?;
-                    (layout, flags, state.region)
-                }
-            };
-            let transparent = flags & BHR_IMAGE_TRANSPARENT != 0;
             let mut report = Report::new(state.progress);
             let mut progress = |fraction| report.tell(fraction);
-            state.renderer.prepare(layout.format, [layout.width, layout.height], transparent, region, &mut progress)
+            if target.is_null() {
+                return state.renderer.prepare_window(WINDOW, &mut progress);
+            }
+            let (layout, flags) = image::read_layout(target, "target")?;
+            let (size, transparent) = ([layout.width, layout.height], flags & BHR_IMAGE_TRANSPARENT != 0);
+            state.renderer.prepare(layout.format, size, transparent, state.region, &mut progress)
         })
     }
 }

@@ -7,7 +7,7 @@ use std::ffi::c_char;
 /// nothing within one BHR_ABI_VERSION.
 pub const BHR_VERSION_MAJOR: u32 = 0;
 /// This header's minor version.
-pub const BHR_VERSION_MINOR: u32 = 1;
+pub const BHR_VERSION_MINOR: u32 = 2;
 /// This header's patch version.
 pub const BHR_VERSION_PATCH: u32 = 0;
 /// The value to pass to bhr_context_create: N of libbhr.so.N.
@@ -39,7 +39,7 @@ pub extern "C" fn bhr_abi_version() -> u32 {
     BHR_ABI_VERSION
 }
 
-/// The loaded library's version, such as "0.1.0"; static. Any thread, inside callbacks too.
+/// The loaded library's version, such as "0.2.0"; static. Any thread, inside callbacks too.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_version_string() -> *const c_char {
     concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()

@@ -65,7 +65,7 @@ impl Drop for Handle {
         };
         let Some(thread) = &self.gl_thread else { return end() };
         if let Err(error) = thread.run(end) {
-            log::error!("closing the GL adapter: {error}");
+            log::warn!("a GL adapter that cannot be closed stays behind: {error}");
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Bind groups, kept from frame to frame: the frames of a setup bind the same resources again and again. Knows no kernel.
 
 use super::device::Device;
+use crate::deferred::hold;
 use crate::error::Result;
 use std::num::NonZeroU64;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -88,6 +89,8 @@ impl Device {
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
         let group = self.scoped("binding buffers", |d| d.create_bind_group(&descriptor))?;
         if let Some(resources) = resources.iter().map(Resource::of).collect() {
+            // What goes is told of once the lock is released.
+            let _holding = hold();
             let mut kept = self.bindings.lock();
             if kept.len() >= MOST {
                 kept.clear();

@@ -3,6 +3,7 @@
 
 use super::adapter::{Adapter, required_limits};
 use super::driver_lock;
+use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::Backend;
@@ -38,6 +39,8 @@ pub struct Device {
     /// `None` only while it is being dropped.
     queue: Option<wgpu::Queue>,
     backend: Backend,
+    /// Of GL's.
+    gl_age: Option<DisplayAge>,
     /// Whether a pipeline was made.
     compiled: AtomicBool,
     limits: wgpu::Limits,
@@ -66,6 +69,7 @@ impl Device {
     ///
     /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason, also when the driver panics.
     pub fn open(adapter: &Adapter) -> Result<Self> {
+        let age = DisplayAge::now();
         let raw = adapter.raw()?;
         let offered = raw.limits();
         let limits = wgpu::Limits {
@@ -98,6 +102,7 @@ impl Device {
             raw: ManuallyDrop::new(raw),
             queue: Some(queue),
             backend: adapter.info.backend,
+            gl_age: (adapter.info.backend == Backend::Gl).then_some(age),
             compiled: AtomicBool::new(false),
             limits,
             health,
@@ -160,7 +165,17 @@ impl Device {
     }
 
     fn check_known_loss(&self) -> Result<()> {
+        self.leave_what_is_gone();
         self.health.check()
+    }
+
+    /// Where the EGL display has ended, on the thread for GL, this does not return: nothing may be dropped on the way
+    /// out.
+    fn leave_what_is_gone(&self) {
+        if self.gl_age.is_some_and(DisplayAge::is_over) {
+            self.health.lose(CONTEXT_GONE);
+            park(CONTEXT_GONE);
+        }
     }
 
     /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has
@@ -309,6 +324,7 @@ impl Device {
 
     /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
     fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+        self.leave_what_is_gone();
         driver_lock::guard();
         let _holding = hold();
         catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {

@@ -33,6 +33,14 @@ pub fn lock() -> Alone {
     Alone { _lock: DRIVER.lock(), _holding: holding }
 }
 
+/// Releases it for a thread that will never run again.
+pub fn abandon() {
+    while DRIVER.is_owned_by_current_thread() {
+        // SAFETY: this thread owns it, and none of the guards that count on that is used any more.
+        unsafe { DRIVER.force_unlock() };
+    }
+}
+
 /// Whether this thread holds it: for tests.
 pub fn is_held() -> bool {
     DRIVER.is_owned_by_current_thread()

@@ -21,7 +21,6 @@ use crate::allocate::collected;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::image::PixelFormat;
 use crate::physics::trace::Settings;
 use crate::renderer::{Backend, FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::observer::Lens;
@@ -134,16 +133,29 @@ impl GpuTracer {
         Ok(stats)
     }
 
-    /// Makes all that frames of the scene like this one need, in windows too, and keeps it. Errors: as `Renderer::render`.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
+    /// Makes all that frames of the scene like this one need, and frames like `window` on a screen, and keeps it.
+    /// Errors: as `Renderer::render`.
+    pub fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
         let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
-        if request.format == PixelFormat::Rgba8Srgb && !request.transparent {
-            keys.extend(self.set_up(scene, request, PixelTarget::Screen)?.kernels());
+        if let Some(window) = window {
+            keys.extend(self.set_up(scene, window, PixelTarget::Screen)?.kernels());
         }
         let wanted = self.kernels.begin(&keys);
         self.kernels.finish(wanted)?;
         // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as well.
         self.render(scene, request, &mut |_, _, _| Ok(()), progress).map(|_| ())
+    }
+
+    /// How many pipelines are not there that such a frame would run in a window; for tests. Errors: as
+    /// `Renderer::render`.
+    pub fn missing_on_screen(&self, scene: &Scene, request: &FrameRequest) -> Result<usize> {
+        Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::Screen)?.kernels()).len())
     }
 
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as `Renderer::render`;
@@ -255,16 +267,15 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
-        // On hardware, whose branches cost next to nothing, all but the usual projection and film share kernels, so that a host that goes
-        // through them does not wait for the driver's compiler each time. Software drivers run both sides of every branch.
+        // On hardware, whose branches cost little, all but the usual projection share kernels, and so do all but the usual film and
+        // whatever is seen through it: a host that goes through them waits for the driver's compiler once. A film that is left open
+        // costs 3 % of a frame, a projection less (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
-        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, FilmLook::is_usual(&film));
-        // Where one kernel both looks and develops, what is unusual in either is left open in both.
-        let develops = bloom.is_none() && samples == 1;
-        let own_view = !shares || (usual_view && (usual_film || !develops));
-        let own_film = !shares || (usual_film && (usual_view || !develops));
+        let own_film = !shares || FilmLook::is_usual(&film);
+        let looks_and_develops = bloom.is_none() && samples == 1;
+        let usual_view = scene.camera.projection == Projection::Perspective && (own_film || !looks_and_develops);
         let developed = if own_film { FilmLook::new(&film, target) } else { FilmLook::of_any(target) };
-        let projection = own_view.then_some(scene.camera.projection);
+        let projection = (!shares || usual_view).then_some(scene.camera.projection);
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,

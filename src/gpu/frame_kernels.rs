@@ -67,9 +67,9 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     let tone_map = |tone_map| move |scene: &mut Scene| scene.film.tone_map = tone_map;
     // One of each kind is enough where one kernel serves all: films and projections but the usual ones, views.
     let mut list = vec![changed(&spin), changed(&turbulence), changed(&bloom), changed(&tone_map(ToneMap::Agx))];
+    list.extend([Projection::Fisheye, Projection::Perspective].map(|to| changed(&projection(to))));
     list.extend([Motion::FreeFall, Motion::Static].map(|to| changed(&motion(to))));
     list.extend([View::Redshift, View::Light].map(|to| changed(&view(to))));
-    list.extend([Projection::Fisheye, Projection::Perspective].map(|to| changed(&projection(to))));
     list.push(changed(&|scene| {
         let samples = &mut scene.quality.samples_per_pixel;
         *samples = if *samples == 1 { 4 } else { 1 };

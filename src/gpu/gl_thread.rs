@@ -2,56 +2,155 @@
 //! none current there. On a thread of the host's that takes the host's own context away (EGL), or fails because the
 //! host has one (GLX beside EGL: libglvnd), and then wgpu panics, in destructors too, where the second panic ends the
 //! process. So whatever wgpu's GL is asked for, and whatever it made is dropped, happens here. Knows no scenes.
+//!
+//! On its own thread wgpu panics as well, when another library of the process terminates the EGL display. A panic that
+//! unwinds from there drops what wgpu has made, which panics again. So where the process's panic hook is the library's
+//! own (the C API's), it calls [`park`]: nothing unwinds, and the thread stands still for good.
 
 use super::device::{Loss, panic_text};
-use super::{Adapter, GpuTracer};
+use super::{Adapter, GpuTracer, driver_lock};
 use crate::error::{Error, ErrorKind, Result};
 use crate::renderer::{AdapterInfo, FrameRequest, FrameStats, Progress, TileSink};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Scene};
 use crate::thread_scope;
+use parking_lot::Mutex;
+use std::cell::RefCell;
+use std::mem::transmute;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
-use std::thread::JoinHandle;
+use std::thread::{self, JoinHandle};
+
+thread_local! {
+    /// On a thread for GL that is at work: who waits for it.
+    static CALLER: RefCell<Option<mpsc::Sender<News>>> = const { RefCell::new(None) };
+}
+
+/// How many threads for GL were parked. All contexts of the process are on one EGL display, and have gone with it when
+/// one has. EGL's handles are addresses, so that a context that is opened later may have the handle of one that has
+/// gone, and would be used, or destroyed, in its place: nothing from before is used any more.
+static PARKED: AtomicU64 = AtomicU64::new(0);
+
+/// The time of an EGL display's life at which a context was opened.
+#[derive(Clone, Copy)]
+pub(super) struct DisplayAge(u64);
+
+impl DisplayAge {
+    pub fn now() -> Self {
+        Self(PARKED.load(Ordering::SeqCst))
+    }
+
+    /// Whether the display has ended since, as far as a thread for GL has found.
+    pub fn is_over(self) -> bool {
+        self.0 != Self::now().0
+    }
+}
+
+type Work<'a> = Box<dyn FnOnce() + Send + 'a>;
+
+/// What the caller of a thread for GL hears from it.
+enum News {
+    /// Its work has got so far, and goes on once it is told whether to.
+    Progress(f64),
+    /// Its work is done, and it no longer uses what it was lent.
+    Done,
+    /// It stands still for good, and will never again use what it was lent; why.
+    Parked(String),
+}
+
+/// On a thread for GL that is at work: hands `text` to the caller that waits, and does not return. The thread and all
+/// that it has are lost. On any other thread it does nothing. For panic hooks, which run before anything unwinds, and
+/// for where a GL context turns out to be gone.
+///
+/// While it stands still in a hook, the standard library holds the lock of hooks for reading: other panics are as
+/// ever, but setting another hook would wait for ever. So this is for a hook that is never replaced.
+pub fn park(text: &str) {
+    let caller = CALLER.try_with(|caller| caller.try_borrow_mut().ok()?.take()).ok().flatten();
+    let Some(caller) = caller else { return };
+    PARKED.fetch_add(1, Ordering::SeqCst);
+    driver_lock::abandon();
+    let _ = caller.send(News::Parked(text.to_owned()));
+    loop {
+        thread::park();
+    }
+}
 
 /// A thread for the calls into one GL context. Ends with its last clone.
-pub(super) struct GlThread {
-    /// Of one thread. `None` only while it is being dropped.
-    pool: Option<rayon::ThreadPool>,
+pub struct GlThread {
+    /// Locked over each call. `None` once the thread is parked, and while this is being dropped.
+    line: Mutex<Option<mpsc::Sender<Work<'static>>>>,
+    /// `None` only while it is being dropped.
     handle: Option<JoinHandle<()>>,
 }
 
 impl GlThread {
     /// Errors: OUT_OF_MEMORY when the system gives no thread.
     pub fn start() -> Result<Arc<Self>> {
-        let mut handle = None;
-        let spawn = |thread: rayon::ThreadBuilder| {
-            handle = Some(std::thread::Builder::new().name("bhr-gl".into()).spawn(|| thread.run())?);
-            Ok(())
-        };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).spawn_handler(spawn).build();
-        let pool = pool.map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("no thread for GL: {error}")))?;
-        Ok(Arc::new(Self { pool: Some(pool), handle }))
+        let (line, work) = mpsc::channel::<Work<'static>>();
+        let run = move || work.into_iter().for_each(|work| work());
+        let handle = thread::Builder::new().name("bhr-gl".into()).spawn(run);
+        let handle =
+            handle.map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("no thread for GL: {error}")))?;
+        Ok(Arc::new(Self { line: Mutex::new(Some(line)), handle: Some(handle) }))
     }
 
-    /// Runs `work` on the thread and waits for it. Errors: INTERNAL when it panics.
+    /// Runs `work` on the thread and waits for it. Errors: INTERNAL when it panics; once the thread is parked,
+    /// DEVICE_LOST, and `work` is leaked, as what it has of wgpu's may be dropped nowhere else.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T> {
-        self.run_beside(work, || {})
+        self.run_with_progress(|_| work(), &mut |_| true)
     }
 
-    /// Runs `work` on the thread, `meanwhile` on this one, and waits for both. Errors: INTERNAL when `work` panics.
-    fn run_beside<T: Send>(&self, work: impl FnOnce() -> T + Send, meanwhile: impl FnOnce()) -> Result<T> {
-        let pool = self.pool.as_ref().ok_or_else(|| Error::internal("the thread for GL is ending"))?;
+    /// The same; `progress` runs on this thread.
+    fn run_with_progress<T: Send>(
+        &self,
+        work: impl FnOnce(&mut Progress<'_>) -> T + Send,
+        progress: &mut Progress<'_>,
+    ) -> Result<T> {
+        if self.handle.as_ref().is_some_and(|handle| handle.thread().id() == thread::current().id()) {
+            // From inside a call.
+            return Ok(work(progress));
+        }
+        let mut line = self.line.lock();
+        let Some(sender) = &*line else {
+            std::mem::forget(work);
+            return Err(Error::new(ErrorKind::DeviceLost, "the thread for GL has stopped"));
+        };
         let scope = thread_scope::of_caller();
+        let (tell, news) = mpsc::channel();
+        let (answer, answers) = mpsc::channel();
         let mut done = None;
-        pool.in_place_scope(|thread| {
-            thread.spawn(|_| {
+        let slot = &mut done;
+        let job = move || {
+            CALLER.with(|caller| *caller.borrow_mut() = Some(tell.clone()));
+            {
                 let _scope = scope();
+                let mut ask = |part: f64| tell.send(News::Progress(part)).is_ok() && answers.recv().unwrap_or(false);
                 // Unwind safe: `GlTracer` is not used again after a panic.
-                done = Some(catch_unwind(AssertUnwindSafe(work)));
-            });
-            meanwhile();
-        });
+                *slot = Some(catch_unwind(AssertUnwindSafe(|| work(&mut ask))));
+            }
+            CALLER.with(|caller| caller.borrow_mut().take());
+            // The last thing that it does: the rest has nothing that was lent.
+            let _ = tell.send(News::Done);
+        };
+        let job: Work<'_> = Box::new(job);
+        // SAFETY: only the lifetime changes. What the work was lent outlives its use: from here on this function is
+        // left, also by unwinding out of `progress`, only after `Waiting` has seen that the work is done, that the
+        // thread stands still, or that the work was never taken.
+        let job = unsafe { transmute::<Work<'_>, Work<'static>>(job) };
+        let mut waiting = Waiting { news, answer: Some(answer), parked: None, ended: false };
+        if let Err(unsent) = sender.send(job) {
+            waiting.ended = true;
+            std::mem::forget(unsent);
+            return Err(Error::internal("the thread for GL has ended"));
+        }
+        waiting.wait(progress);
+        let parked = waiting.parked.take();
+        drop(waiting);
+        if let Some(panic) = parked {
+            *line = None;
+            return Err(Error::internal(format!("GL stopped: {panic}")));
+        }
         match done {
             Some(Ok(done)) => Ok(done),
             Some(Err(panic)) => {
@@ -65,17 +164,54 @@ impl GlThread {
     }
 }
 
+/// Until it is dropped, the thread may use what its caller lent it.
+struct Waiting {
+    news: mpsc::Receiver<News>,
+    /// `None` when the caller's progress function has panicked: the work is to stop.
+    answer: Option<mpsc::Sender<bool>>,
+    parked: Option<String>,
+    ended: bool,
+}
+
+impl Waiting {
+    fn wait(&mut self, progress: &mut Progress<'_>) {
+        while !self.ended {
+            match self.news.recv() {
+                Ok(News::Progress(part)) => {
+                    if let Some(answer) = &self.answer {
+                        let _ = answer.send(progress(part));
+                    }
+                }
+                Ok(News::Parked(panic)) => {
+                    self.parked = Some(panic);
+                    self.ended = true;
+                }
+                // Nobody who could say more is left.
+                Ok(News::Done) | Err(mpsc::RecvError) => self.ended = true,
+            }
+        }
+    }
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        self.answer = None;
+        self.wait(&mut |_| false);
+    }
+}
+
 impl Drop for GlThread {
     fn drop(&mut self) {
+        let parked = self.line.get_mut().take().is_none();
+        let Some(handle) = self.handle.take() else { return };
         // It ends when it has nothing left to do.
-        self.pool = None;
-        if let Some(handle) = self.handle.take()
-            && handle.thread().id() != std::thread::current().id()
-        {
+        if !parked && handle.thread().id() != thread::current().id() {
             let _ = handle.join();
         }
     }
 }
+
+pub(super) const CONTEXT_GONE: &str = "its GL context is gone: the EGL display was terminated, or the driver failed";
 
 /// A [`GpuTracer`] on a GL adapter, whose calls run on the adapter's thread. Any thread may call and drop it, whatever
 /// GL context is current there.
@@ -85,16 +221,18 @@ pub struct GlTracer {
     /// `None` only while it is being dropped.
     tracer: Option<GpuTracer>,
     thread: Arc<GlThread>,
+    age: DisplayAge,
 }
 
 impl GlTracer {
     /// Errors: as [`GpuTracer::new`]; NO_ADAPTER when the driver panics.
     pub fn open(adapter: Adapter) -> Result<Self> {
+        let age = DisplayAge::now();
         let info = adapter.info.clone();
         let thread = adapter.gl_thread().ok_or_else(|| Error::internal("an adapter of GL without its thread"))?;
         let opened = thread.run(move || GpuTracer::new(adapter));
         let tracer = opened.map_err(|panic| Error::new(ErrorKind::NoAdapter, panic.message))??;
-        Ok(Self { info, loss: tracer.device.loss(), tracer: Some(tracer), thread })
+        Ok(Self { info, loss: tracer.device.loss(), tracer: Some(tracer), thread, age })
     }
 
     pub fn info(&self) -> &AdapterInfo {
@@ -118,27 +256,45 @@ impl GlTracer {
     }
 
     /// As [`GpuTracer::prepare`]; `progress` runs on this thread.
-    pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest, progress: &mut Progress<'_>) -> Result<()> {
-        self.call_with_progress(progress, |tracer, progress| tracer.prepare(scene, request, progress))
+    pub fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        self.call_with_progress(progress, |tracer, progress| tracer.prepare(scene, request, window, progress))
     }
 
+    fn call<T: Send>(&mut self, work: impl FnOnce(&mut GpuTracer) -> Result<T> + Send) -> Result<T> {
+        self.call_with_progress(&mut |_| true, |tracer, _| work(tracer))
+    }
+
+    /// Errors: those of `work`; DEVICE_LOST when the GL context is gone, or the thread is parked.
     fn call_with_progress<T: Send>(
         &mut self,
         progress: &mut Progress<'_>,
         work: impl FnOnce(&mut GpuTracer, &mut Progress<'_>) -> Result<T> + Send,
     ) -> Result<T> {
-        let (ask, asked) = mpsc::channel();
-        let (answer, answered) = mpsc::channel();
-        let work = move |tracer: &mut GpuTracer| {
-            let mut progress = |fraction: f64| ask.send(fraction).is_ok() && answered.recv().unwrap_or(false);
-            work(tracer, &mut progress)
+        if self.age.is_over() {
+            self.loss.lose(CONTEXT_GONE);
+        }
+        self.loss.check()?;
+        let tracer = self.tracer.as_mut().ok_or_else(|| Error::internal("a tracer that is being dropped"))?;
+        let checked = |progress: &mut Progress<'_>| {
+            tracer.check_gl_context()?;
+            work(tracer, progress)
         };
-        self.call_beside(work, move || {
-            // Ends when the work has ended, which drops the other end.
-            for fraction in asked {
-                let _ = answer.send(progress(fraction));
-            }
-        })
+        let panic = match self.thread.run_with_progress(checked, progress) {
+            Ok(done) => return done,
+            Err(panic) => panic,
+        };
+        // wgpu panics where it cannot make its context current.
+        if let Ok(checked) = self.thread.run(|| tracer.check_gl_context()) {
+            return checked.and(Err(panic));
+        }
+        self.loss.lose(&format!("{CONTEXT_GONE} ({})", panic.message));
+        self.loss.check().and(Err(panic))
     }
 
     /// As [`GpuTracer::trace_rays`].
@@ -155,34 +311,16 @@ impl GlTracer {
     pub fn lose_device(&mut self) -> Result<()> {
         self.call(|tracer| tracer.device.scoped("destroying the device", |raw| raw.destroy()))
     }
-
-    fn call<T: Send>(&mut self, work: impl FnOnce(&mut GpuTracer) -> Result<T> + Send) -> Result<T> {
-        self.call_beside(work, || {})
-    }
-
-    /// Errors: those of `work`; DEVICE_LOST when the GL context is gone.
-    fn call_beside<T: Send>(
-        &mut self,
-        work: impl FnOnce(&mut GpuTracer) -> Result<T> + Send,
-        meanwhile: impl FnOnce(),
-    ) -> Result<T> {
-        self.loss.check()?;
-        let tracer = self.tracer.as_mut().ok_or_else(|| Error::internal("a tracer that is being dropped"))?;
-        let checked = |tracer: &mut GpuTracer| {
-            tracer.check_gl_context()?;
-            work(tracer)
-        };
-        match self.thread.run_beside(|| checked(tracer), meanwhile) {
-            Ok(done) => done,
-            // wgpu panics where it cannot make its context current.
-            Err(panic) => self.thread.run(|| tracer.check_gl_context())?.and(Err(panic)),
-        }
-    }
 }
 
 impl Drop for GlTracer {
     fn drop(&mut self) {
         let Some(tracer) = self.tracer.take() else { return };
+        if self.age.is_over() {
+            log::warn!("a GL device that cannot be closed stays behind: its context is gone");
+            std::mem::forget(tracer);
+            return;
+        }
         let end = move || match tracer.device.answers() {
             true => drop(tracer),
             false => {
@@ -191,7 +329,7 @@ impl Drop for GlTracer {
             }
         };
         if let Err(error) = self.thread.run(end) {
-            log::error!("closing the GL device: {error}");
+            log::warn!("a GL device that cannot be closed stays behind: {error}");
         }
     }
 }
@@ -201,7 +339,7 @@ impl GpuTracer {
     /// nothing of wgpu's may be asked or dropped.
     fn check_gl_context(&self) -> Result<()> {
         if !self.device.answers() {
-            self.device.loss().lose("its GL context is gone: the EGL display was terminated, or the driver failed");
+            self.device.loss().lose(CONTEXT_GONE);
         }
         self.device.loss().check()
     }
@@ -210,33 +348,52 @@ impl GpuTracer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::cell::RefCell;
-    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::panic::resume_unwind;
+    use std::sync::atomic::AtomicBool;
     use std::thread::current;
+    use std::time::Duration;
 
     #[test]
-    fn work_runs_on_one_thread_of_its_own_and_what_goes_beside_it_here() {
+    fn work_runs_on_one_thread_of_its_own_and_progress_here() {
         let thread = GlThread::start().unwrap();
         let name = || current().name().map(str::to_owned);
         assert_eq!(thread.run(name).unwrap().as_deref(), Some("bhr-gl"));
         let (here, there) = (current().id(), thread.run(|| current().id()).unwrap());
-        let mut beside = None;
-        let again = thread.run_beside(|| current().id(), || beside = Some(current().id())).unwrap();
-        assert_eq!((again, beside), (there, Some(here)));
+        let mut heard = Vec::new();
+        let work = |progress: &mut Progress<'_>| (current().id(), progress(0.5), progress(0.75));
+        let mut progress = |part: f64| {
+            heard.push((current().id(), part));
+            part < 0.6
+        };
+        assert_eq!(thread.run_with_progress(work, &mut progress).unwrap(), (there, true, false));
+        assert_eq!(heard, [(here, 0.5), (here, 0.75)]);
         // Work that asks for more of it gets it at once: an adapter may go inside a call.
         assert_eq!(thread.run(|| thread.run(|| current().id())).unwrap().unwrap(), there);
     }
 
+    /// Panics that unwind, as in a process whose panic hook is not the library's. (The hook does not see these.)
     #[test]
-    fn a_panic_is_an_error_and_the_thread_goes_on() {
+    fn a_panic_that_unwinds_is_an_error_and_the_thread_goes_on() {
         let thread = GlThread::start().unwrap();
-        let error = thread.run(|| panic!("deliberate")).unwrap_err();
+        let error = thread.run(|| resume_unwind(Box::new("deliberate"))).map(|never: ()| never).unwrap_err();
         assert_eq!(error.kind, ErrorKind::Internal);
         assert!(error.message.contains("deliberate"), "{error}");
         assert_eq!(thread.run(|| 7).unwrap(), 7);
-        // The other way round nothing is left at work.
-        let unwound = catch_unwind(AssertUnwindSafe(|| thread.run_beside(|| 7, || panic!("deliberate"))));
-        assert!(unwound.is_err());
+    }
+
+    #[test]
+    fn work_has_stopped_when_a_progress_function_that_panics_unwinds() {
+        let thread = GlThread::start().unwrap();
+        let (mut answers, stopped) = (Vec::new(), AtomicBool::new(false));
+        let work = |progress: &mut Progress<'_>| {
+            answers.extend([progress(0.25), progress(0.5)]);
+            thread::sleep(Duration::from_millis(20));
+            stopped.store(true, Ordering::Relaxed);
+        };
+        let mut progress = |_| resume_unwind(Box::new("deliberate"));
+        let unwound = catch_unwind(AssertUnwindSafe(|| thread.run_with_progress(work, &mut progress)));
+        assert!(unwound.is_err() && stopped.load(Ordering::Relaxed));
+        assert_eq!(answers, [false, false]);
         assert_eq!(thread.run(|| 7).unwrap(), 7);
     }
 

@@ -6,6 +6,7 @@ use super::compilers::{Compilers, Wanted};
 use super::kernel_key::{GROUP, KernelKey};
 use super::slots::{Slot, edge_slots};
 use super::{Device, Kernel, Loops, ProvenFinite};
+use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -129,6 +130,8 @@ impl Store {
         }
         state.made.insert(key, Progress::Making);
         drop(state);
+        // Messages wait until those who wait for the pipeline have it.
+        let _holding = hold();
         let settling = Settling { store: self, key, ahead, made: None };
         settling.settle(self.compile(device, key))
     }
@@ -153,6 +156,8 @@ impl Store {
     }
 
     fn layout(&self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
+        // Messages wait until the lock is released.
+        let _holding = hold();
         let mut state = self.lock();
         if let Some(layout) = state.layouts.get(slots) {
             return Ok(layout.clone());
@@ -236,10 +241,15 @@ impl Kernels {
         self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
+    /// Those of `keys` whose pipelines are not there.
+    pub fn missing(&self, keys: &[KernelKey]) -> Vec<KernelKey> {
+        keys.iter().copied().filter(|key| !self.store.has(*key)).collect()
+    }
+
     /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are
     /// missing.
     pub fn begin(&self, keys: &[KernelKey]) -> Option<Wanted> {
-        let missing = keys.iter().copied().filter(|key| !self.store.has(*key)).collect::<Vec<_>>();
+        let missing = self.missing(keys);
         self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
         (!missing.is_empty()).then(|| self.compilers.make_now(&self.store, &self.device, missing))
     }

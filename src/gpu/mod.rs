@@ -44,7 +44,10 @@ pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
 pub use buffer::Buffer;
 pub use device::{Device, Loss};
 pub use frame::{BegunFrame, FrameTarget, Recording};
+#[cfg(test)]
+pub(crate) use gl_thread::GlThread;
 pub use gl_thread::GlTracer;
+pub(crate) use gl_thread::park;
 pub use kernels::KernelWaits;
 pub use pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]

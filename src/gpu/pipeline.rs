@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use super::specialise::Parsed;
+use crate::deferred::hold;
 use crate::error::Result;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -100,6 +101,8 @@ impl Device {
 
     fn parsed(&self, kernel: &Kernel<'_>) -> Result<Arc<Parsed>> {
         let source = kernel.source.join("\n");
+        // Messages wait until the shader's place is free.
+        let _holding = hold();
         let place =
             self.shaders.lock().unwrap_or_else(PoisonError::into_inner).entry(source.clone()).or_default().clone();
         let mut place = place.lock().unwrap_or_else(PoisonError::into_inner);

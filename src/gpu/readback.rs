@@ -3,6 +3,7 @@
 
 use super::buffer::Buffer;
 use super::device::Device;
+use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
@@ -81,6 +82,8 @@ impl Readback {
 
     /// A free buffer that holds `size` bytes. When all are smaller, one goes to make room for a larger one.
     fn take(&self, size: u64) -> Option<Buffer> {
+        // What goes is told of once the lock is released.
+        let _holding = hold();
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         match free.iter().position(|buffer| buffer.size() >= size) {
             Some(found) => Some(free.swap_remove(found)),

@@ -6,6 +6,7 @@
 //! (wgpu-core 30.0.1, `Device::release_gpu_resources`), so that both threads would wait for ever.
 
 use super::device::Device;
+use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::sync::{Mutex, PoisonError};
 
@@ -87,6 +88,8 @@ impl Device {
     }
 
     fn upload(&self, what: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<()> {
+        // Messages wait until the uploads are free.
+        let _holding = hold();
         let mut uploads = self.uploads.0.lock().unwrap_or_else(PoisonError::into_inner);
         let encoder = match uploads.take() {
             Some(encoder) => encoder,

@@ -14,7 +14,7 @@ mod wayland;
 mod x11;
 
 pub use native::{Handles, NativeWindow};
-pub use surface::{Showing, Shown, Surface, Tracing};
+pub use surface::{Showing, Shown, Surface, Tracing, frame_request};
 
 use crate::error::Result;
 

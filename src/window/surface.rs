@@ -209,7 +209,7 @@ impl Inner {
             Way::Uploaded(screen, pixels) => {
                 let size = window.size().unwrap_or(given);
                 screen.check_size(size)?;
-                let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
+                let request = frame_request(showing.scene, size, PixelFormat::Rgba8Srgb);
                 let stats = render_to_memory(showing, &request, pixels)?;
                 let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
                     return Ok(Shown::Skipped);
@@ -227,7 +227,7 @@ impl Inner {
                     None => given,
                 };
                 check_memory_size(size)?;
-                let request = request(showing.scene, size, PixelFormat::Bgra8Srgb);
+                let request = frame_request(showing.scene, size, PixelFormat::Bgra8Srgb);
                 let stats = render_to_memory(showing, &request, pixels)?;
                 let stretched = stretched(&request, pixels, size)?;
                 if let Some(pacer) = pacer {
@@ -273,7 +273,7 @@ fn window_gone() -> Error {
 }
 
 /// The whole frame of a window of `size`, as large as the scene's quality has it traced; a cube has a shape of its own.
-fn request(scene: &Scene, size: [u32; 2], format: PixelFormat) -> FrameRequest {
+pub fn frame_request(scene: &Scene, size: [u32; 2], format: PixelFormat) -> FrameRequest {
     let scaled = size.map(|side| ((f64::from(side) * scene.quality.render_scale).round() as u32).max(1));
     let [width, height] = match scene.camera.projection {
         Projection::Cube => {
@@ -493,7 +493,7 @@ impl Screen {
         image: &wgpu::SurfaceTexture,
         size: [u32; 2],
     ) -> Result<(Arc<Device>, VecDeque<Submitted>, FrameStats)> {
-        let request = request(showing.scene, size, PixelFormat::Rgba8Srgb);
+        let request = frame_request(showing.scene, size, PixelFormat::Rgba8Srgb);
         let device = self.swapchain.device().clone();
         self.texture(&request, false)?;
         let Self { swapchain, texture: Some(texture), .. } = self else {
@@ -563,10 +563,10 @@ mod tests {
         {
             scene.quality.render_scale = scale;
             scene.camera.projection = Projection::Cube;
-            let cube = request(&scene, size, PixelFormat::Rgba8Srgb);
+            let cube = frame_request(&scene, size, PixelFormat::Rgba8Srgb);
             assert!(scene.lens(&cube.region).is_ok(), "{size:?}");
             scene.camera.projection = Projection::Equirect;
-            let other = request(&scene, size, PixelFormat::Rgba8Srgb);
+            let other = frame_request(&scene, size, PixelFormat::Rgba8Srgb);
             let area = |r: &FrameRequest| u64::from(r.width) * u64::from(r.height);
             assert!(area(&cube) <= area(&other).max(6));
             assert!(size != [600, 100] || (cube.width, cube.height) == (600, 100));

@@ -234,6 +234,49 @@ static void history(BhrContext *context) {
 
 /* ---- prepared frames ---- */
 
+static int32_t count_calls(void *user, double fraction) {
+    (void)fraction;
+    ++*(int *)user;
+    return 1;
+}
+
+/* Without a target it is for windows, whose frames have BhrQuality.render_scale: smaller ones have fewer parts. */
+static void prepared_windows(BhrContext *context, BhrBackend backend) {
+    const double scales[] = {1.0, 0.1};
+    int          calls[COUNT_OF(scales)] = {0, 0};
+    BhrQuality   quality, usual;
+    quality.struct_size = usual.struct_size = sizeof quality;
+    CHECK_OK(bhr_get_quality(context, &usual));
+    quality = usual;
+    quality.method = BHR_METHOD_RK4; /* more work, and so more parts */
+    for (size_t i = 0; i < COUNT_OF(scales); i++) {
+        quality.render_scale = scales[i];
+        CHECK_OK(bhr_set_quality(context, &quality));
+        CHECK_OK(bhr_set_progress(context, count_calls, &calls[i]));
+        CHECK_OK(bhr_prepare(context, NULL));
+    }
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+    CHECK_OK(bhr_set_quality(context, &usual));
+    CHECK(backend == BHR_BACKEND_CPU || (calls[1] >= 1 && calls[1] < calls[0]), "%d and %d reports", calls[0],
+          calls[1]);
+}
+
+/* A window shows the six faces as large as they fit; an image has their shape. */
+static void prepared_cubes(BhrContext *context) {
+    BhrCamera camera, usual;
+    camera.struct_size = usual.struct_size = sizeof camera;
+    CHECK_OK(bhr_get_camera(context, &usual));
+    camera = usual;
+    camera.projection = BHR_PROJECTION_CUBE;
+    CHECK_OK(bhr_set_camera(context, &camera));
+    CHECK_OK(bhr_prepare(context, NULL));
+    const BhrImage cube = image_of(BHR_FORMAT_RGBA8_SRGB, 96, 16, NULL, 0);
+    CHECK_OK(bhr_prepare(context, &cube));
+    const BhrImage other = image_of(BHR_FORMAT_RGBA8_SRGB, 96, 17, NULL, 0);
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "6 times", bhr_prepare(context, &other));
+    CHECK_OK(bhr_set_camera(context, &usual));
+}
+
 /* What was prepared is rendered as it would have been, and no frame is counted. */
 static void prepared(BhrContext *context, BhrBackend backend) {
     BhrFrameStats before, after;
@@ -255,6 +298,8 @@ static void prepared(BhrContext *context, BhrBackend backend) {
     free(later), free(unprepared);
 
     CHECK_OK(bhr_prepare(context, NULL));
+    prepared_windows(context, backend);
+    prepared_cubes(context);
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_prepare(NULL, &nowhere));
     BhrImage bad = nowhere;
     bad.width = 0;

@@ -108,13 +108,21 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
         add(&format!("a tile of 32 GiB, {name}.exr"), bytes, &["at most 268435456"]);
         // The sizes are just within the limits; no data follow, and there may be no memory for them.
         let bytes = exr_header([64, 64], [1 << 12, 1 << 13], code, 4, Some([1 << 12, 1 << 13]));
+        add(&format!("a tile of 256 MiB, {name}.exr"), bytes, &["at most 67108864 are unpacked at a time"]);
+        let bytes = exr_header([1 << 12, 1 << 12], [1 << 12, 1 << 13], code, 4, Some([1 << 12, 1 << 13]));
         let words = &["of memory", "missing bytes"];
-        add(&format!("a tile of 256 MiB, {name}.exr"), bytes, words);
+        add(&format!("a tile of 256 MiB of a picture as large, {name}.exr"), bytes, words);
     }
     add("a display window.exr", exr_header([1 << 20, 1 << 20], [16, 16], 3, 4, None), &["at most 4294967296"]);
     add("channels.exr", exr_header([16, 16], [16, 16], 3, 5000, None), &["at most 4096"]);
-    let unused = exr_header([16, 16], [4096, 1024], 0, 4096, None);
-    add("unused channels.exr", unused, &["at most 17179869184"]);
+    // The picture takes 192 MiB; each channel of its blocks 24 MiB.
+    let unused = exr_header([4096, 3072], [4096, 3072], 3, 44, None);
+    add("unused channels.exr", unused, &["1107296256 bytes; at most 1073741824"]);
+    // 1 GiB, of 44 channels: 4 times that may be unpacked, and no data follow.
+    add("used by size.exr", exr_header([8192, 8192], [8192, 8192], 3, 33, None), &["at most 4294967296 are unpacked"]);
+    add("just used by size.exr", exr_header([8192, 8192], [8192, 8192], 3, 32, None), &["missing bytes"]);
+    // What a few scan lines reach is all that is unpacked.
+    add("a window of many channels.exr", exr_header([4096, 16], [4096, 16384], 3, 512, None), &["missing bytes"]);
     for (code, name) in [(8, "dwaa"), (9, "dwab")] {
         add(&format!("{name}.exr"), exr_header([16, 16], [16, 16], code, 4, None), &["compression is not read"]);
     }

@@ -178,6 +178,52 @@ fn a_small_file_takes_little_memory_however_large_its_display_window() {
     child("child_reads_one_pixel_of_a_large_picture", &[]);
 }
 
+/// A part with half channels R, G, B, A, and so many more that are not used.
+#[cfg(feature = "exr")]
+fn part_with_more(
+    size: [usize; 2],
+    more: usize,
+    compression: exr::compression::Compression,
+) -> exr::meta::header::Header {
+    use exr::meta::attribute::{ChannelDescription, ChannelList, SampleType::F16};
+    let mut part = seeds::part("a", size, [F16; 4], compression, None);
+    let more = (0..more).map(|i| ChannelDescription::new(format!("Z{i:02}").as_str(), F16, false));
+    part.channels = ChannelList::new(part.channels.list.into_iter().chain(more).collect());
+    part
+}
+
+/// Of a file with many lines and channels that are not shown only the first lines are needed: the rest may be missing.
+#[cfg(feature = "exr")]
+#[test]
+fn blocks_past_the_display_window_are_not_read() {
+    let mut part = part_with_more([64, 512], 60, exr::compression::Compression::ZIP16);
+    let whole = seeds::exr_file(vec![part.clone()]);
+    part.shared_attributes.display_window = exr::meta::attribute::IntegerBounds::from_dimensions((64, 20));
+    let mut first = seeds::exr_file(vec![part]);
+    first.truncate(first.len() / 2);
+    let folder = Folder::new();
+    let (whole, first) = (folder.load(&whole).unwrap(), folder.load(&first).unwrap());
+    assert_eq!((first.width, first.height), (64, 20));
+    assert_eq!(first.pixels.as_bytes(), &whole.pixels.as_bytes()[..64 * 20 * 16]);
+}
+
+/// A map of the sky with eight channels besides RGBA: with BHR_TESTS_ALL=1 the largest that graphics cards take, which
+/// is 2 GiB when it is read.
+#[cfg(feature = "exr")]
+#[test]
+fn a_large_map_with_unused_channels_is_read() {
+    let all = std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1");
+    let size = if all { [16384, 8192] } else { [2048, 1024] };
+    let file = seeds::exr_file(vec![part_with_more(size, 8, exr::compression::Compression::RLE)]);
+    let begin = Instant::now();
+    let loaded = Folder::new().load(&file).unwrap();
+    println!("{} bytes read in {:?}", file.len(), begin.elapsed());
+    assert_eq!([loaded.width as usize, loaded.height as usize], size);
+    let floats: &[f32] = bytemuck::cast_slice(loaded.pixels.as_bytes());
+    let pixel = |x: usize, y: usize| floats[4 * (y * size[0] + x)];
+    assert_eq!([pixel(1, 0), pixel(size[0] - 1, size[1] - 1)], [1.0 / 64.0, 62.0 / 64.0]);
+}
+
 #[test]
 #[ignore = "run by the tests below, in a process of its own"]
 fn child_reads_faulty_files() {

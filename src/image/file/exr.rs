@@ -1,5 +1,5 @@
-//! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, and one block
-//! at a time is held.
+//! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, one block at a
+//! time is held, and only those are unpacked that reach the picture.
 
 use super::load::{Loaded, Pixels};
 use super::{MAX_SIDE, io_error, pixel_count, probe, zeros};
@@ -11,14 +11,15 @@ use ::exr::block::writer::ChunksWriter;
 use ::exr::block::{self, BlockIndex, UncompressedBlock};
 use ::exr::compression::Compression;
 use ::exr::math::{RoundingMode, Vec2};
+use ::exr::meta::BlockDescription;
 use ::exr::meta::attribute::{
     ChannelDescription, IntegerBounds, LevelMode, LineOrder, SampleType, Text, TileDescription,
 };
 use ::exr::meta::header::{Header, ImageAttributes, LayerAttributes};
-use ::exr::meta::{BlockDescription, compute_block_count};
 use half::f16;
 use std::cell::Cell;
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 
 /// Longest headers of all parts together, bytes.
 const MAX_HEADER_BYTES: u64 = 8 << 20;
@@ -31,9 +32,15 @@ const HEADER_STEP: usize = 64 << 10;
 const MAX_CHANNELS: usize = 4096;
 /// Largest block (tile, or 1 to 256 scan lines) when it is unpacked, bytes.
 const MAX_BLOCK_BYTES: u64 = 256 << 20;
-/// Most samples of the part that is read, bytes, of all channels: a small file may unpack to that many, and
-/// of ZIP 0.16 GiB a second were measured, with assertions, on a busy machine.
-const MAX_SAMPLE_BYTES: u64 = 16 << 30;
+/// Largest block of the part that is read, bytes, or the picture's bytes as they are handed out if they are more (a
+/// file may be one tile).
+const MAX_SMALL_BLOCK_BYTES: u64 = 64 << 20;
+/// Most bytes that are unpacked for a picture, or that many times its bytes as they are handed out if they are more.
+/// All channels of a block are packed together, so that those that are not used are unpacked as well: a file of a
+/// thousandth of their size may hold them, and 0.16 GiB a second of ZIP were measured, with assertions, on a busy
+/// machine. The numbers leave room for 32 float channels at 3840 x 2160, and 16 at any size.
+const MAX_UNPACKED_BYTES: u64 = 1 << 30;
+const MAX_UNPACKED_TIMES: u64 = 4;
 /// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the
 /// way.
 const BLOCKS_AT_A_TIME: u64 = 6;
@@ -52,9 +59,10 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
         let kind = header.compression;
         return Err(Error::unsupported(format!("its {kind} is not read; ZIP, PIZ, PXR24, B44, RLE and none are")));
     }
+    // Blocks of other parts are read, and not unpacked.
     let largest = reader.headers().iter().map(block_bytes).max().unwrap_or(0);
     let mut picture = Picture::new(part, header)?;
-    probe(BLOCKS_AT_A_TIME * largest)?;
+    probe(BLOCKS_AT_A_TIME * block_bytes(header) + largest)?;
 
     let mut chunks = reader.all_chunks(false).map_err(io_error)?;
     while picture.missing > 0 {
@@ -62,11 +70,7 @@ pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
             return Err(io_error(format!("{} of its blocks are missing", picture.missing)));
         };
         let chunk = chunk.map_err(io_error)?;
-        let largest_level = match &chunk.compressed_block {
-            CompressedBlock::Tile(tile) => tile.coordinates.is_largest_resolution_level(),
-            _ => true,
-        };
-        if chunk.layer_index == part && largest_level {
+        if chunk.layer_index == part && picture.needs(&chunks.meta_data().headers[part], &chunk.compressed_block)? {
             let block = UncompressedBlock::decompress_chunk(chunk, chunks.meta_data(), false).map_err(io_error)?;
             picture.put(&block)?;
         }
@@ -170,11 +174,26 @@ struct Picture {
     opaque: bool,
     /// For each channel of the part: its type, and its index in RGBA if it has one.
     channels: Vec<(SampleType, Option<usize>)>,
-    /// Blocks in a row of blocks, and pixels in a block.
-    blocks_in_row: usize,
+    /// Pixels in a block.
     block: Vec2<usize>,
+    /// Columns and rows of blocks that reach the picture.
+    columns: Range<usize>,
+    rows: Range<usize>,
     seen: Vec<u8>,
+    /// How many of them have not come yet.
     missing: usize,
+}
+
+/// Which blocks of `block` pixels, of a data window of `data` pixels, reach the `shown` ones, and how many pixels they
+/// have, along one side.
+fn reaching(shown: Range<i64>, data: usize, block: usize) -> (Range<usize>, usize) {
+    let shown = shown.start.clamp(0, data as i64) as usize..shown.end.clamp(0, data as i64) as usize;
+    if shown.is_empty() {
+        return (0..0, 0);
+    }
+    let blocks = shown.start / block..shown.end.div_ceil(block);
+    let pixels = (blocks.end * block).min(data) - blocks.start * block;
+    (blocks, pixels)
 }
 
 impl Picture {
@@ -183,43 +202,67 @@ impl Picture {
         let display = header.shared_attributes.display_window;
         let Vec2(width, height) = display.size;
         let count = pixel_count(width as u64, height as u64, PixelFormat::Rgba32F)?;
-        // The work is the data window's, most of which may not be displayed, and all channels'.
-        let data = pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
-        let bytes = (data as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
-        if bytes > MAX_SAMPLE_BYTES {
-            let claim = format!("its part {part} has {bytes} bytes of samples");
-            return Err(io_error(format!("{claim}; at most {MAX_SAMPLE_BYTES} are read")));
-        }
+        pixel_count(header.layer_size.0 as u64, header.layer_size.1 as u64, PixelFormat::Rgba32F)?;
         let position = header.own_attributes.layer_position;
+        let offset = [
+            i64::from(position.0) - i64::from(display.position.0),
+            i64::from(position.1) - i64::from(display.position.1),
+        ];
         let of_rgba = ["R", "G", "B", "A"].map(|name| channel(header, name));
         let block = header.max_block_pixel_size();
-        let blocks_in_row = compute_block_count(header.layer_size.0, block.0);
-        let blocks = blocks_in_row * compute_block_count(header.layer_size.1, block.1);
+        let (columns, reached_width) = reaching(-offset[0]..width as i64 - offset[0], header.layer_size.0, block.0);
+        let (rows, reached_height) = reaching(-offset[1]..height as i64 - offset[1], header.layer_size.1, block.1);
+        let picture = count as u64 * PixelFormat::Rgba32F.bytes_per_pixel() as u64;
+        let at_a_time = block_bytes(header);
+        let most = picture.max(MAX_SMALL_BLOCK_BYTES);
+        if at_a_time > most {
+            return Err(io_error(format!(
+                "a block of its part {part} has {at_a_time} bytes; at most {most} are unpacked at a time for {width} x \
+                 {height} pixels"
+            )));
+        }
+        // At most 2^28 pixels of 4096 channels.
+        let unpacked = reached_width as u64 * reached_height as u64 * header.channels.bytes_per_pixel as u64;
+        let most = (MAX_UNPACKED_TIMES * picture).max(MAX_UNPACKED_BYTES);
+        if unpacked > most {
+            return Err(io_error(format!(
+                "the channels of its part {part} have {unpacked} bytes; at most {most} are unpacked for {width} x \
+                 {height} pixels"
+            )));
+        }
+        let blocks = columns.len() * rows.len();
         let channels = header.channels.list.iter().enumerate();
         Ok(Self {
             part,
             size: [width, height],
-            offset: [
-                i64::from(position.0) - i64::from(display.position.0),
-                i64::from(position.1) - i64::from(display.position.1),
-            ],
+            offset,
             pixels: zeros(4 * count)?,
             opaque: of_rgba[3].is_none(),
             channels: channels.map(|(i, c)| (c.sample_type, of_rgba.iter().position(|of| *of == Some(i)))).collect(),
-            blocks_in_row,
             block,
+            columns,
+            rows,
             seen: zeros(blocks)?,
             missing: blocks,
         })
     }
 
-    /// Errors: IO for a block that was put before.
+    /// Whether a block of its part reaches it. Errors: IO for a block that is not in the data window.
+    fn needs(&self, header: &Header, block: &CompressedBlock) -> Result<bool> {
+        let at = header.get_block_data_indices(block).map_err(io_error)?;
+        let Vec2(column, row) = at.tile_index;
+        Ok(at.is_largest_resolution_level() && self.columns.contains(&column) && self.rows.contains(&row))
+    }
+
+    /// Takes a block that it needs. Errors: IO for one that was put before.
     fn put(&mut self, block: &UncompressedBlock) -> Result<()> {
         let BlockIndex { pixel_position: Vec2(left, top), pixel_size: Vec2(width, height), .. } = block.index;
-        let index = top / self.block.1 * self.blocks_in_row + left / self.block.0;
-        match self.seen.get_mut(index) {
+        let (column, row) = (left / self.block.0, top / self.block.1);
+        let index = row.checked_sub(self.rows.start).zip(column.checked_sub(self.columns.start));
+        let index = index.map(|(row, column)| row * self.columns.len() + column);
+        match index.and_then(|index| self.seen.get_mut(index)) {
             Some(seen) if *seen == 0 => *seen = 1,
-            _ => return Err(io_error(format!("its part {} has block {index} twice", self.part))),
+            _ => return Err(io_error(format!("its part {} has block {column}, {row} twice", self.part))),
         }
         self.missing -= 1;
         // Columns of the block that are displayed.

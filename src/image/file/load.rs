@@ -48,8 +48,8 @@ pub struct Loaded {
 /// curve, which is undone). EXR files: the largest level of the first part that has channels R, G and B, cut to the
 /// display window; 0 where the data window does not reach. Errors: IO for a file that is not there, not readable,
 /// broken, of another kind, or past a limit, which is named: 2^20 pixels a side, 4 GiB as it is handed out, and for
-/// EXR 8 MiB of headers, 4096 channels, 256 MiB a block and 16 GiB of samples; UNSUPPORTED for EXR without the cargo
-/// feature, and for its compressions DWA and HTJ2K; OUT_OF_MEMORY.
+/// EXR 8 MiB of headers, 4096 channels, 64 to 256 MiB a block, and 1 GiB to unpack, or four times the picture's bytes;
+/// UNSUPPORTED for EXR without the cargo feature, and for its compressions DWA and HTJ2K; OUT_OF_MEMORY.
 pub fn load(path: &Path) -> Result<Loaded> {
     let read = || on_own_thread(|| decode(open(path)?));
     read().map_err(|error| about("read", path, &error))
