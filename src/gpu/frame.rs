@@ -267,15 +267,16 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
-        // On hardware, whose branches cost little, all but the usual projection share kernels, and so do all but the usual film and
-        // whatever is seen through it: a host that goes through them waits for the driver's compiler once. A film that is left open
-        // costs 3 % of a frame, a projection less (H200). Software drivers run both sides of every branch.
+        // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host that goes
+        // through them does not wait for the driver's compiler each time. Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
-        let own_film = !shares || FilmLook::is_usual(&film);
-        let looks_and_develops = bloom.is_none() && samples == 1;
-        let usual_view = scene.camera.projection == Projection::Perspective && (own_film || !looks_and_develops);
+        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, FilmLook::is_usual(&film));
+        // Where one kernel both looks and develops, what is unusual in either is left open in both.
+        let both = bloom.is_none() && samples == 1;
+        let own_view = !shares || (usual_view && (usual_film || !both));
+        let own_film = !shares || (usual_film && (usual_view || !both));
         let developed = if own_film { FilmLook::new(&film, target) } else { FilmLook::of_any(target) };
-        let projection = (!shares || usual_view).then_some(scene.camera.projection);
+        let projection = own_view.then_some(scene.camera.projection);
         let looks = Looks {
             look: Look {
                 light: scene.view == View::Light,
