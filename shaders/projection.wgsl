@@ -26,22 +26,42 @@ struct CameraView {
     dy: vec3<f32>,
 }
 
-// Whether the frame's projection is `kind`, one of those below.
-fn projects(kind: u32) -> bool {
+fn is_perspective() -> bool {
     if PROJECTION == FROM_FRAME {
-        return deciding(frame.projection) == kind;
+        return deciding(frame.projection) == PERSPECTIVE;
     }
-    return PROJECTION == kind;
+    return PROJECTION == PERSPECTIVE;
+}
+
+fn is_fisheye() -> bool {
+    if PROJECTION == FROM_FRAME {
+        return deciding(frame.projection) == FISHEYE;
+    }
+    return PROJECTION == FISHEYE;
+}
+
+fn is_equirect() -> bool {
+    if PROJECTION == FROM_FRAME {
+        return deciding(frame.projection) == EQUIRECT;
+    }
+    return PROJECTION == EQUIRECT;
+}
+
+fn is_cube() -> bool {
+    if PROJECTION == FROM_FRAME {
+        return deciding(frame.projection) == CUBE;
+    }
+    return PROJECTION == CUBE;
 }
 
 // No early returns here: camera_look is called from loops (Mesa 22.3).
 fn camera_point(x: f32, y: f32) -> FramePoint {
     var p: FramePoint;
-    if projects(FISHEYE) {
+    if is_fisheye() {
         p = fisheye_point(x, y);
-    } else if projects(EQUIRECT) {
+    } else if is_equirect() {
         p = equirect_point(x, y);
-    } else if projects(CUBE) {
+    } else if is_cube() {
         p = cube_point(x, y);
     } else {
         p.at = vec3<f32>(2.0 * x / frame.size.x - 1.0, 1.0 - 2.0 * y / frame.size.y, 1.0);
@@ -66,7 +86,7 @@ fn camera_view(x: f32, y: f32) -> CameraView {
     // Of a perspective frame most components are 0, which no compiler may leave out.
     var dx = frame.right.xyz * p.dx.x;
     var dy = frame.up.xyz * p.dy.y;
-    if !projects(PERSPECTIVE) {
+    if !is_perspective() {
         dx = in_frame(p.dx);
         dy = in_frame(p.dy);
     }
@@ -77,12 +97,12 @@ fn camera_view(x: f32, y: f32) -> CameraView {
 fn has_look(place: vec2<f32>) -> bool {
     let p = place - 0.5 * frame.size.xy;
     let radius = 0.5 * min(frame.size.x, frame.size.y);
-    return !projects(FISHEYE) || dot(p, p) <= radius * radius;
+    return !is_fisheye() || dot(p, p) <= radius * radius;
 }
 
 // Whether no border between two faces of a cube lies between positions of a row.
 fn same_face(x0: f32, x1: f32) -> bool {
-    return !projects(CUBE) || cube_face(x0) == cube_face(x1);
+    return !is_cube() || cube_face(x0) == cube_face(x1);
 }
 
 // right.w is the angle of a pixel along the radius.

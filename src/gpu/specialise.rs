@@ -129,13 +129,13 @@ impl<'a> Pruned<'a> {
     fn block(&self, block: Block) -> Block {
         let mut kept = Block::with_capacity(block.len());
         for (statement, span) in block.span_into_iter() {
-            let statement = self.statement(statement);
-            let leaves = leaves(&statement);
-            if !matches!(&statement, Statement::Block(inner) if inner.is_empty()) {
-                kept.push(statement, span);
+            // What is left of an `if` stands in its place without a block of its own.
+            match self.statement(statement) {
+                Statement::Block(inner) => inner.span_into_iter().for_each(|(inner, span)| kept.push(inner, span)),
+                other => kept.push(other, span),
             }
             // Nothing behind a statement that leaves the block runs.
-            if leaves {
+            if kept.last().is_some_and(leaves) {
                 break;
             }
         }
@@ -221,11 +221,7 @@ impl<'a> Pruned<'a> {
 
 /// Whether nothing that follows the statement in its block runs.
 fn leaves(statement: &Statement) -> bool {
-    match statement {
-        Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue => true,
-        Statement::Block(block) => block.last().is_some_and(leaves),
-        _ => false,
-    }
+    matches!(statement, Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue)
 }
 
 /// Calls `each` for every statement of a block, those within others too.
