@@ -250,11 +250,11 @@ typedef struct BhrAdapterInfo {
  * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
  * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
  * uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
- * (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover, and
- * bhr_context_create BHR_ERROR_NO_ADAPTER if it was at work. It may do so while a call or a job of one context is
- * running, but not while several contexts on this backend have some: EGL may give the handle of a context that has
- * ended to another one. Each time some 10 MiB and a sleeping thread for each context may stay behind until the process
- * ends, as what has lost its display cannot be closed.
+ * (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover; a
+ * bhr_context_create or bhr_context_recover that is running meanwhile returns BHR_ERROR_NO_ADAPTER. It may do so while
+ * a call or a job of one context is running, but not while several contexts on this backend have some: EGL may give
+ * the handle of a context that has ended to another one. Each time, some 10 MiB and a sleeping thread for each context
+ * may stay behind until the process ends, because a context that has lost its display cannot be closed.
  */
 #define BHR_BACKEND_GL 5
 
@@ -757,15 +757,15 @@ BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 /**
  * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
  * down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
- * level of the first part with channels R, G and B is read and cut to the display window; pixels that the data
- * window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, and a block, whose channels are all
- * unpacked together, 64 MiB (256 MiB where the image has as many); all blocks that reach the display window may have
- * 1 GiB, or four times the bytes of the image if that is more. Deep data and subsampling are IO. The pixels are the
- * library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
- * for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
- * built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
- * side, or of more than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before
- * memory is taken for it.
+ * level of the first part with channels R, G and B is read and cut to the display window; pixels that the data window
+ * does not cover are 0. Headers may have 8 MiB, and a part 4096 channels. A block, whose channels are all unpacked
+ * together, may have 64 MiB, or four times the bytes of the image if those are more, but at most 256 MiB; all blocks
+ * that reach the display window may have 1 GiB, or four times the bytes of the image if those are more. Deep data and
+ * subsampling are IO. The pixels are the library's: give them back with bhr_image_release, once. Any thread, inside
+ * callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions
+ * DWA and HTJ2K, or in a library that was built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not
+ * readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels in memory, however small the
+ * file is. What a file claims is checked before memory is taken for it.
  */
 BhrStatus bhr_image_load(const char *path, BhrImage *image);
 

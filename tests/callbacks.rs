@@ -133,7 +133,7 @@ struct Watched {
 }
 
 impl Watched {
-    /// Takes the locks of the device's modules and uploads; wgpu has much to say meanwhile.
+    /// Takes the locks of the device's shaders and uploads; wgpu has much to say meanwhile.
     fn use_device(&self) {
         let kernel = Kernel {
             label: "double",

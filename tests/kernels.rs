@@ -120,8 +120,8 @@ fn what_a_host_changes_next_is_made_in_the_background() {
     }
 }
 
-/// On hardware one kernel serves all films and projections but the usual ones; on software drivers each has its own. Their pixels are
-/// the same.
+/// On hardware one kernel serves all films and projections but the usual ones; on software drivers each has its own.
+/// Their pixels are the same.
 #[test]
 fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
     let mut renderer = renderer();

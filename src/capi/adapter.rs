@@ -25,11 +25,11 @@ pub const BHR_BACKEND_D3D12: BhrBackend = 4;
 /// OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
 /// with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
 /// uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
-/// (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover, and
-/// bhr_context_create BHR_ERROR_NO_ADAPTER if it was at work. It may do so while a call or a job of one context is
-/// running, but not while several contexts on this backend have some: EGL may give the handle of a context that has
-/// ended to another one. Each time some 10 MiB and a sleeping thread for each context may stay behind until the process
-/// ends, as what has lost its display cannot be closed.
+/// (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover; a
+/// bhr_context_create or bhr_context_recover that is running meanwhile returns BHR_ERROR_NO_ADAPTER. It may do so while
+/// a call or a job of one context is running, but not while several contexts on this backend have some: EGL may give
+/// the handle of a context that has ended to another one. Each time, some 10 MiB and a sleeping thread for each context
+/// may stay behind until the process ends, because a context that has lost its display cannot be closed.
 pub const BHR_BACKEND_GL: BhrBackend = 5;
 
 /// BhrAdapterInfo.flags: a GPU with memory of its own.

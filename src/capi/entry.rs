@@ -221,7 +221,7 @@ fn silence_panics() {
             Some(before) if !ours => before(info),
             _ => {
                 let text = describe(info);
-                // Such a panic must not unwind.
+                // On a thread for GL it must not unwind: this does not return there, and does nothing elsewhere.
                 gpu::park(&text);
                 *last_panic() = Some(text);
             }

@@ -208,15 +208,15 @@ pub unsafe extern "C" fn bhr_image_save(image: *const BhrImage, path: *const c_c
 
 /// Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
 /// down. 8-bit files give RGBA8_SRGB, others RGBA32F (16-bit files are made linear). From an EXR file the largest
-/// level of the first part with channels R, G and B is read and cut to the display window; pixels that the data
-/// window does not cover are 0. Headers may have 8 MiB, a part 4096 channels, and a block, whose channels are all
-/// unpacked together, 64 MiB (256 MiB where the image has as many); all blocks that reach the display window may have
-/// 1 GiB, or four times the bytes of the image if that is more. Deep data and subsampling are IO. The pixels are the
-/// library's: give them back with bhr_image_release, once. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
-/// for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions DWA and HTJ2K, or in a library that was
-/// built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not readable, broken, of more than 2^20 pixels a
-/// side, or of more than 4 GiB of pixels in memory, however small the file is. What a file claims is checked before
-/// memory is taken for it.
+/// level of the first part with channels R, G and B is read and cut to the display window; pixels that the data window
+/// does not cover are 0. Headers may have 8 MiB, and a part 4096 channels. A block, whose channels are all unpacked
+/// together, may have 64 MiB, or four times the bytes of the image if those are more, but at most 256 MiB; all blocks
+/// that reach the display window may have 1 GiB, or four times the bytes of the image if those are more. Deep data and
+/// subsampling are IO. The pixels are the library's: give them back with bhr_image_release, once. Any thread, inside
+/// callbacks too. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size; UNSUPPORTED for EXR of the compressions
+/// DWA and HTJ2K, or in a library that was built without EXR; OUT_OF_MEMORY; IO for a file that is not there, not
+/// readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels in memory, however small the
+/// file is. What a file claims is checked before memory is taken for it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_image_load(path: *const c_char, image: *mut BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

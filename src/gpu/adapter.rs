@@ -1,6 +1,6 @@
 //! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
 
-use super::gl_thread::GlThread;
+use super::gl_thread::{DisplayAge, GlThread};
 use super::{driver_lock, loader};
 use crate::error::{Error, Result};
 use crate::renderer::{AdapterInfo, Backend};
@@ -40,7 +40,12 @@ impl Adapter {
 
     /// Where an adapter of GL may be used; `None` for the other interfaces.
     pub(super) fn gl_thread(&self) -> Option<Arc<GlThread>> {
-        self.handle.gl_thread.clone()
+        self.handle.gl.as_ref().map(|(thread, _)| thread.clone())
+    }
+
+    /// How old the EGL display was when an adapter of GL was found; `None` for the other interfaces.
+    pub(super) fn gl_age(&self) -> Option<DisplayAge> {
+        self.handle.gl.as_ref().map(|(_, age)| *age)
     }
 }
 
@@ -51,19 +56,24 @@ struct Handle {
     raw: Option<wgpu::Adapter>,
     /// What makes surfaces for windows; `None` for GL.
     instance: Option<wgpu::Instance>,
-    /// Of GL's.
-    gl_thread: Option<Arc<GlThread>>,
+    /// Of an adapter of GL: where it may be used, and how old the display was when it was found.
+    gl: Option<(Arc<GlThread>, DisplayAge)>,
 }
 
 impl Drop for Handle {
     fn drop(&mut self) {
         let (raw, instance) = (self.raw.take(), self.instance.take());
+        if self.gl.as_ref().is_some_and(|(_, age)| age.is_over()) {
+            // Its context has gone with its display, and its handles may be those of another one.
+            std::mem::forget((raw, instance));
+            return;
+        }
         let end = move || {
             let _alone = driver_lock::lock();
             drop(raw);
             drop(instance);
         };
-        let Some(thread) = &self.gl_thread else { return end() };
+        let Some((thread, _)) = &self.gl else { return end() };
         if let Err(error) = thread.run(end) {
             log::warn!("a GL adapter that cannot be closed stays behind: {error}");
         }
@@ -163,13 +173,14 @@ fn gl() -> Option<Vec<Usable>> {
         return Some(Vec::new());
     }
     let search = || -> Result<Vec<Usable>> {
-        let thread = GlThread::start()?;
+        // wgpu makes the contexts of adapters when it searches for them.
+        let (thread, age) = (GlThread::start()?, DisplayAge::now());
         thread.run(|| {
             // What is not wanted is dropped here.
             let _alone = driver_lock::lock();
             let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
             keep_display(instance);
-            list.into_iter().filter_map(|raw| usable(raw, None, Some(thread.clone()))).collect()
+            list.into_iter().filter_map(|raw| usable(raw, None, Some((thread.clone(), age)))).collect()
         })
     };
     search().inspect_err(|error| log::info!("adapters of GL passed over: {error}")).ok()
@@ -231,7 +242,11 @@ struct Usable {
 type Rank = (u8, bool);
 
 /// `None`, with the reason in the log, when it cannot run the tracer.
-fn usable(raw: wgpu::Adapter, instance: Option<wgpu::Instance>, gl_thread: Option<Arc<GlThread>>) -> Option<Usable> {
+fn usable(
+    raw: wgpu::Adapter,
+    instance: Option<wgpu::Instance>,
+    gl: Option<(Arc<GlThread>, DisplayAge)>,
+) -> Option<Usable> {
     let found = raw.get_info();
     let pass_over = |reason: String| {
         log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
@@ -262,7 +277,7 @@ fn usable(raw: wgpu::Adapter, instance: Option<wgpu::Instance>, gl_thread: Optio
         driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
         name: found.name,
     };
-    let handle = Handle { raw: Some(raw), instance, gl_thread };
+    let handle = Handle { raw: Some(raw), instance, gl };
     Some(Usable { rank: rank(kind, backend), adapter: Adapter { info, handle } })
 }
 

@@ -89,7 +89,7 @@ impl Device {
         let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
         let group = self.scoped("binding buffers", |d| d.create_bind_group(&descriptor))?;
         if let Some(resources) = resources.iter().map(Resource::of).collect() {
-            // What goes is told of once the lock is released.
+            // Messages about groups that go wait until the lock is released.
             let _holding = hold();
             let mut kept = self.bindings.lock();
             if kept.len() >= MOST {

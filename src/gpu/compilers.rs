@@ -13,8 +13,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
-/// Threads that make pipelines in the background at most, and at most for a frame that waits. More in the background make the same
-/// number in the same time, and each, so also the one that is needed first, takes longer (H200: 8 at once take twice as long as one).
+/// Threads that make pipelines in the background at most, and at most for a frame that waits. More in the background
+/// make the same number in the same time, and each, so also the one that is needed first, takes longer (H200: 8 at
+/// once take twice as long as one).
 const MOST_BEHIND: usize = 5;
 const MOST_AT_ONCE: usize = 12;
 
@@ -37,8 +38,8 @@ struct Queue {
     keys: VecDeque<KernelKey>,
     /// Threads that take from the queue. One that finds it empty ends.
     running: usize,
-    /// Frames that wait for pipelines. Meanwhile nothing is begun for frames that may come: it would take the cores, and the locks of
-    /// the driver.
+    /// Frames that wait for pipelines. Meanwhile nothing is begun for frames that may come: it would take the cores,
+    /// and the locks of the driver.
     waiting: usize,
     started: Vec<JoinHandle<()>>,
 }
@@ -56,7 +57,8 @@ impl Shared {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What to make next in the background, once no frame waits; `None`: nothing is left, and the thread that asks has ended.
+    /// What to make next in the background, once no frame waits; `None`: nothing is left, and the thread that asks has
+    /// ended.
     fn next(&self) -> Option<KernelKey> {
         let mut queue = self.lock();
         while queue.waiting > 0 && !queue.keys.is_empty() {
@@ -132,7 +134,8 @@ impl Compilers {
     /// Begins to make `missing` on several threads. What fails is tried again by [`Wanted::finish`].
     pub fn make_now(&self, store: &Arc<Store>, device: &Arc<Device>, missing: Vec<KernelKey>) -> Wanted {
         let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
-        let left = Arc::new(Mutex::new(missing.iter().copied().collect::<VecDeque<_>>()));
+        // Those that take longest, which come last, are begun first.
+        let left = Arc::new(Mutex::new(missing.iter().rev().copied().collect::<VecDeque<_>>()));
         let scope = thread_scope::of_caller();
         let mut queue = self.queue.lock();
         queue.waiting += 1;

@@ -39,7 +39,7 @@ pub struct Device {
     /// `None` only while it is being dropped.
     queue: Option<wgpu::Queue>,
     backend: Backend,
-    /// Of GL's.
+    /// How old the EGL display was when an adapter of GL was found; `None` for other interfaces.
     gl_age: Option<DisplayAge>,
     /// Whether a pipeline was made.
     compiled: AtomicBool,
@@ -69,7 +69,6 @@ impl Device {
     ///
     /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason, also when the driver panics.
     pub fn open(adapter: &Adapter) -> Result<Self> {
-        let age = DisplayAge::now();
         let raw = adapter.raw()?;
         let offered = raw.limits();
         let limits = wgpu::Limits {
@@ -102,7 +101,7 @@ impl Device {
             raw: ManuallyDrop::new(raw),
             queue: Some(queue),
             backend: adapter.info.backend,
-            gl_age: (adapter.info.backend == Backend::Gl).then_some(age),
+            gl_age: adapter.gl_age(),
             compiled: AtomicBool::new(false),
             limits,
             health,

@@ -267,8 +267,10 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
-        // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host that goes
-        // through them does not wait for the driver's compiler each time. Software drivers run both sides of every branch.
+        // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
+        // that goes through them does not wait for the driver's compiler each time. Their frames pay for it: FISHEYE at
+        // spin 0.9 takes 0.86 ms instead of 0.76 (H200, 3840 x 2160), nearly all of it for pixel formats that are left
+        // open. Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
         let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, FilmLook::is_usual(&film));
         // Where one kernel both looks and develops, what is unusual in either is left open in both.

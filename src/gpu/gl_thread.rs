@@ -23,14 +23,16 @@ use std::sync::{Arc, mpsc};
 use std::thread::{self, JoinHandle};
 
 thread_local! {
-    /// On a thread for GL that is at work: who waits for it.
-    static CALLER: RefCell<Option<mpsc::Sender<News>>> = const { RefCell::new(None) };
+    /// On a thread for GL that is at work: who waits for it, and how old the display was when the work began.
+    static CALLER: RefCell<Option<(mpsc::Sender<News>, DisplayAge)>> = const { RefCell::new(None) };
 }
 
-/// How many threads for GL were parked. All contexts of the process are on one EGL display, and have gone with it when
-/// one has. EGL's handles are addresses, so that a context that is opened later may have the handle of one that has
-/// gone, and would be used, or destroyed, in its place: nothing from before is used any more.
-static PARKED: AtomicU64 = AtomicU64::new(0);
+/// How often a thread for GL was parked by what had not parked another one before: the ends of the EGL display, as far
+/// as this library can tell. All contexts of the process are on that display, and have gone with it when one has.
+/// EGL's handles are addresses, so that a context that is opened later may have the handle of one that has gone, and
+/// would be used, or destroyed, in its place: nothing from before is used any more. (Windows' contexts share nothing,
+/// and are not counted.)
+static ENDS: AtomicU64 = AtomicU64::new(0);
 
 /// The time of an EGL display's life at which a context was opened.
 #[derive(Clone, Copy)]
@@ -38,7 +40,14 @@ pub(super) struct DisplayAge(u64);
 
 impl DisplayAge {
     pub fn now() -> Self {
-        Self(PARKED.load(Ordering::SeqCst))
+        Self(ENDS.load(Ordering::SeqCst))
+    }
+
+    /// Notes an end of the display of this age, unless another thread has.
+    fn end(self) {
+        if !cfg!(windows) {
+            let _ = ENDS.compare_exchange(self.0, self.0 + 1, Ordering::SeqCst, Ordering::SeqCst);
+        }
     }
 
     /// Whether the display has ended since, as far as a thread for GL has found.
@@ -67,8 +76,8 @@ enum News {
 /// ever, but setting another hook would wait for ever. So this is for a hook that is never replaced.
 pub fn park(text: &str) {
     let caller = CALLER.try_with(|caller| caller.try_borrow_mut().ok()?.take()).ok().flatten();
-    let Some(caller) = caller else { return };
-    PARKED.fetch_add(1, Ordering::SeqCst);
+    let Some((caller, age)) = caller else { return };
+    age.end();
     driver_lock::abandon();
     let _ = caller.send(News::Parked(text.to_owned()));
     loop {
@@ -112,7 +121,7 @@ impl GlThread {
             return Ok(work(progress));
         }
         let mut line = self.line.lock();
-        let Some(sender) = &*line else {
+        let Some(sender) = line.as_ref() else {
             std::mem::forget(work);
             return Err(Error::new(ErrorKind::DeviceLost, "the thread for GL has stopped"));
         };
@@ -122,7 +131,7 @@ impl GlThread {
         let mut done = None;
         let slot = &mut done;
         let job = move || {
-            CALLER.with(|caller| *caller.borrow_mut() = Some(tell.clone()));
+            CALLER.with(|caller| *caller.borrow_mut() = Some((tell.clone(), DisplayAge::now())));
             {
                 let _scope = scope();
                 let mut ask = |part: f64| tell.send(News::Progress(part)).is_ok() && answers.recv().unwrap_or(false);
@@ -136,19 +145,18 @@ impl GlThread {
         let job: Work<'_> = Box::new(job);
         // SAFETY: only the lifetime changes. What the work was lent outlives its use: from here on this function is
         // left, also by unwinding out of `progress`, only after `Waiting` has seen that the work is done, that the
-        // thread stands still, or that the work was never taken.
+        // thread stands still, or that the work was never taken. Threads that the work starts for itself, and lends
+        // something to in turn, it waits for before it asks wgpu for anything, which is what parks it.
         let job = unsafe { transmute::<Work<'_>, Work<'static>>(job) };
-        let mut waiting = Waiting { news, answer: Some(answer), parked: None, ended: false };
         if let Err(unsent) = sender.send(job) {
-            waiting.ended = true;
             std::mem::forget(unsent);
             return Err(Error::internal("the thread for GL has ended"));
         }
+        let mut waiting = Waiting { line: &mut line, news, answer: Some(answer), parked: None, ended: false };
         waiting.wait(progress);
         let parked = waiting.parked.take();
         drop(waiting);
         if let Some(panic) = parked {
-            *line = None;
             return Err(Error::internal(format!("GL stopped: {panic}")));
         }
         match done {
@@ -165,7 +173,9 @@ impl GlThread {
 }
 
 /// Until it is dropped, the thread may use what its caller lent it.
-struct Waiting {
+struct Waiting<'a> {
+    /// The way to the thread, which is given up when it is parked.
+    line: &'a mut Option<mpsc::Sender<Work<'static>>>,
     news: mpsc::Receiver<News>,
     /// `None` when the caller's progress function has panicked: the work is to stop.
     answer: Option<mpsc::Sender<bool>>,
@@ -173,7 +183,7 @@ struct Waiting {
     ended: bool,
 }
 
-impl Waiting {
+impl Waiting<'_> {
     fn wait(&mut self, progress: &mut Progress<'_>) {
         while !self.ended {
             match self.news.recv() {
@@ -183,6 +193,7 @@ impl Waiting {
                     }
                 }
                 Ok(News::Parked(panic)) => {
+                    *self.line = None;
                     self.parked = Some(panic);
                     self.ended = true;
                 }
@@ -193,7 +204,7 @@ impl Waiting {
     }
 }
 
-impl Drop for Waiting {
+impl Drop for Waiting<'_> {
     fn drop(&mut self) {
         self.answer = None;
         self.wait(&mut |_| false);
@@ -227,8 +238,7 @@ pub struct GlTracer {
 impl GlTracer {
     /// Errors: as [`GpuTracer::new`]; NO_ADAPTER when the driver panics.
     pub fn open(adapter: Adapter) -> Result<Self> {
-        let age = DisplayAge::now();
-        let info = adapter.info.clone();
+        let (info, age) = (adapter.info.clone(), adapter.gl_age().unwrap_or(DisplayAge::now()));
         let thread = adapter.gl_thread().ok_or_else(|| Error::internal("an adapter of GL without its thread"))?;
         let opened = thread.run(move || GpuTracer::new(adapter));
         let tracer = opened.map_err(|panic| Error::new(ErrorKind::NoAdapter, panic.message))??;

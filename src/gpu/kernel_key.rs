@@ -20,7 +20,7 @@ pub struct Variant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
-    /// Of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
+    /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
     pub projection: Option<Projection>,
 }
 
@@ -85,7 +85,7 @@ impl FilmLook {
         Self { format: FROM_UNIFORM, tone_map: FROM_UNIFORM, false_colour: FROM_UNIFORM, target }
     }
 
-    /// Whether `film` is the one that hosts begin with. A kernel for every film would cost its frames 3 % (H200).
+    /// Whether `film` is the one that hosts begin with. A kernel for every film would cost its frames 13 % (H200).
     pub fn is_usual(film: &FilmParams) -> bool {
         (film.format, film.tone_map, film.false_colour) == USUAL_FILM
     }

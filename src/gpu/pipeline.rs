@@ -9,8 +9,8 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// The shaders of a device by their WGSL, so that pipelines which differ in constants share the reading of it. Each has a lock of its
-/// own, so that several are read at a time.
+/// The shaders of a device by their WGSL, so that pipelines which differ in constants share the reading of it. Each
+/// has a lock of its own, so that several are read at a time.
 pub(super) type Shaders = Mutex<HashMap<String, Arc<Mutex<Option<Arc<Parsed>>>>>>;
 
 /// What keeps the loops of a shader finite, which drivers rely on.
@@ -54,8 +54,9 @@ pub struct Kernel<'a> {
 impl Device {
     /// Compiles a kernel; the driver may put its own part off to the first dispatch. Several threads may, whoever uses the device meanwhile.
     ///
-    /// Errors: `Internal` with wgpu's message for source that is not valid, an unknown entry point or constant, or a layout
-    /// that does not fit, or when the device was lost a moment ago (`Device::explain` tells); `OutOfMemory`; `DeviceLost`.
+    /// Errors: `Internal` with naga's message for source that is not valid or an unknown constant, with wgpu's for an
+    /// unknown entry point or a layout that does not fit, or when the device was lost a moment ago (`Device::explain`
+    /// tells); `OutOfMemory`; `DeviceLost`.
     pub fn compute_pipeline(&self, kernel: &Kernel<'_>) -> Result<wgpu::ComputePipeline> {
         let started = Instant::now();
         let specialised = self.parsed(kernel)?.specialised(kernel.label, kernel.entry_point, kernel.constants)?;
@@ -66,7 +67,8 @@ impl Device {
         let source = wgpu::ShaderSource::Naga(Cow::Owned(specialised));
         let module = self.beside(kernel.label, |device| {
             let descriptor = wgpu::ShaderModuleDescriptor { label: Some(kernel.label), source };
-            // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches for them.
+            // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches
+            // for them.
             unsafe { device.create_shader_module_trusted(descriptor, checks) }
         })?;
         let translated = started.elapsed();

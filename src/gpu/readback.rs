@@ -82,7 +82,7 @@ impl Readback {
 
     /// A free buffer that holds `size` bytes. When all are smaller, one goes to make room for a larger one.
     fn take(&self, size: u64) -> Option<Buffer> {
-        // What goes is told of once the lock is released.
+        // Messages about buffers that go wait until the lock is released.
         let _holding = hold();
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         match free.iter().position(|buffer| buffer.size() >= size) {

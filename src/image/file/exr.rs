@@ -32,11 +32,11 @@ const HEADER_STEP: usize = 64 << 10;
 const MAX_CHANNELS: usize = 4096;
 /// Largest block (tile, or 1 to 256 scan lines) when it is unpacked, bytes.
 const MAX_BLOCK_BYTES: u64 = 256 << 20;
-/// Largest block of the part that is read, bytes, or the picture's bytes as they are handed out if they are more (a
-/// file may be one tile).
+/// Largest block of the part that is read, bytes; or `MAX_UNPACKED_TIMES` the picture's bytes as they are handed out,
+/// if those are more, as a file may be one tile.
 const MAX_SMALL_BLOCK_BYTES: u64 = 64 << 20;
-/// Most bytes that are unpacked for a picture, or that many times its bytes as they are handed out if they are more.
-/// All channels of a block are packed together, so that those that are not used are unpacked as well: a file of a
+/// At most `MAX_UNPACKED_BYTES` are unpacked for a picture, or `MAX_UNPACKED_TIMES` its bytes as they are handed out,
+/// if those are more. All channels of a block are packed together, so that those that are not used are unpacked as well: a file of a
 /// thousandth of their size may hold them, and 0.16 GiB a second of ZIP were measured, with assertions, on a busy
 /// machine. The numbers leave room for 32 float channels at 3840 x 2160, and 16 at any size.
 const MAX_UNPACKED_BYTES: u64 = 1 << 30;
@@ -214,7 +214,7 @@ impl Picture {
         let (rows, reached_height) = reaching(-offset[1]..height as i64 - offset[1], header.layer_size.1, block.1);
         let picture = count as u64 * PixelFormat::Rgba32F.bytes_per_pixel() as u64;
         let at_a_time = block_bytes(header);
-        let most = picture.max(MAX_SMALL_BLOCK_BYTES);
+        let most = (MAX_UNPACKED_TIMES * picture).max(MAX_SMALL_BLOCK_BYTES);
         if at_a_time > most {
             return Err(io_error(format!(
                 "a block of its part {part} has {at_a_time} bytes; at most {most} are unpacked at a time for {width} x \
@@ -247,7 +247,8 @@ impl Picture {
         })
     }
 
-    /// Whether a block of its part reaches it. Errors: IO for a block that is not in the data window.
+    /// Whether a block of its part reaches it; not if it lies past the end of the data window. Errors: IO for scan
+    /// lines that begin a block or more above it.
     fn needs(&self, header: &Header, block: &CompressedBlock) -> Result<bool> {
         let at = header.get_block_data_indices(block).map_err(io_error)?;
         let Vec2(column, row) = at.tile_index;
