@@ -1,6 +1,7 @@
-//! How frames get to the host: what presenting costs beyond tracing (into an off-screen image where no display exists), what a submission costs
-//! the calling thread, how many frames a second jobs bring into the host's memory beside what the GPU and the bus could, and how long one
-//! takes. `cargo bench --bench delivery`, or the program by itself. Each line: median, 5 % and 95 % quantiles, count.
+//! How frames get to the host: what presenting costs beyond tracing (into an off-screen image where no display
+//! exists), what a submission costs the calling thread, how many frames a second jobs bring into the host's memory
+//! beside what the GPU and the bus could, and how long one takes. `cargo bench --bench delivery`, or the program by
+//! itself. Each line: median, 5 % and 95 % quantiles, count.
 
 use bhr::gpu::{self, FrameTarget, GpuTimer, GpuTracer, Presenter, Readback, Search, read_time};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};

@@ -1,6 +1,6 @@
-//! How long frames take: named scenes, on the GPU by its own timestamps (software drivers: wall time, their timestamps mean nothing) and on
-//! the CPU tracer by wall time. `cargo bench`, or the program by itself; a word filters the names. Ends with a table: median and the
-//! 5 % and 95 % quantiles of all frames measured.
+//! How long frames take: named scenes, on the GPU by its own timestamps (software drivers: wall time, their timestamps
+//! mean nothing) and on the CPU tracer by wall time. `cargo bench`, or the program by itself; a word filters the
+//! names. Ends with a table: median and the 5 % and 95 % quantiles of all frames measured.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};

@@ -1,11 +1,8 @@
 //! How long a host waits for frames that are the first of their kind: from the context on, through a tour of spins,
-//! effects, views,
-//! projections and formats. `cargo bench --bench tour -- [WxH] [hold ms] [cpu|vulkan|gl] [--verbose]`. For each step
-//! the slowest frame and the
-//! one in the middle, by wall time from the call to the pixels in memory; the host asks for 60 frames a second
-//! meanwhile. To see what
-//! users see once, run it with the driver's cache of shaders off: MESA_SHADER_CACHE_DISABLE=true,
-//! __GL_SHADER_DISK_CACHE=0.
+//! effects, views, projections and formats. `cargo bench --bench tour -- [WxH] [hold ms] [cpu|vulkan|gl] [--verbose]`.
+//! For each step the slowest frame and the one in the middle, by wall time from the call to the pixels in memory; the
+//! host asks for 60 frames a second meanwhile. To see what users see once, run it with the driver's cache of shaders
+//! off: MESA_SHADER_CACHE_DISABLE=true, __GL_SHADER_DISK_CACHE=0.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};

@@ -401,10 +401,11 @@ BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 BhrStatus bhr_context_recover(BhrContext *context);
 
 /**
- * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then
- * frees it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
- * no-op. No callback runs after it has returned. No other thread may begin a call on it any more. From inside a
- * callback it does nothing, as the context is in use: bhr_error_message then says so.
+ * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then frees
+ * it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its
+ * jobs must still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other
+ * thread may begin a call on it any more. From inside a callback it does nothing, as the context is in use:
+ * bhr_error_message then says so.
  */
 void bhr_context_destroy(BhrContext *context);
 
@@ -1095,9 +1096,8 @@ BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 
 /**
  * Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
- * the frame is complete and the answer is ignored. Runs
- * inside a bhr_ call only, on the calling thread. It must not throw, unwind or longjmp; calls on a context from
- * inside it return BHR_ERROR_INVALID_STATE.
+ * the frame is complete and the answer is ignored. Runs inside a bhr_ call only, on the calling thread. It must not
+ * throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
  */
 typedef int32_t (*BhrProgressFn)(void *user, double fraction);
 

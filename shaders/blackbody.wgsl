@@ -12,7 +12,8 @@ const MAX_RATIO: f32 = 5e34;
 const MAX_LN_RATIO: f32 = 80.0;
 const MAX_BEAMING: f32 = 1e9;
 
-// Of the table that begins at entry `first`: rgb / Y, not clamped, and ln(Y / T); MIN_TEMPERATURE <= temperature <= MAX_TEMPERATURE.
+// Of the table that begins at entry `first`: rgb / Y, not clamped, and ln(Y / T); MIN_TEMPERATURE <= temperature <=
+// MAX_TEMPERATURE.
 fn blackbody_lookup(first: u32, temperature: f32) -> vec4<f32> {
     const SCALE = f32(BLACKBODY_SIZE - 1u) * (MIN_TEMPERATURE + COORDINATE_TEMPERATURE);
     let position = SCALE / (temperature + COORDINATE_TEMPERATURE);
@@ -25,7 +26,8 @@ fn blackbody_lookup(first: u32, temperature: f32) -> vec4<f32> {
     return value;
 }
 
-// The rule of colour and beaming: B(g_colour T) g_beaming^4 / g_colour^4, where a luminance of e^log_reference counts as 1.
+// The rule of colour and beaming: B(g_colour T) g_beaming^4 / g_colour^4, where a luminance of e^log_reference counts
+// as 1.
 fn shifted_blackbody(temperature: f32, log_reference: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
     return shifted_light(BLACKBODY_OFFSET, temperature, log_reference, g_colour, g_beaming);
 }

@@ -1,5 +1,5 @@
-// Bloom: a grid of mean light over a finer one, which for the finest grid is the frame itself. Mirrors src/film/bloom.rs, where the
-// formulas, sources and reasons are.
+// Bloom: a grid of mean light over a finer one, which for the finest grid is the frame itself. Mirrors
+// src/film/bloom.rs, where the formulas, sources and reasons are.
 
 struct BloomLevel {
     // Sizes of the finer grid, and of this one.

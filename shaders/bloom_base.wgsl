@@ -1,5 +1,6 @@
-// Kernel: as bloom_gather.wgsl for the finest grid's cells of 2 x 2 pixels, whose shares 1 3 3 1 are those of linear filtering between the
-// pixels of two pairs: 4 samples instead of 16. Beyond the frame's border lies the border's pixel, which so keeps its light.
+// Kernel: as bloom_gather.wgsl for the finest grid's cells of 2 x 2 pixels, whose shares 1 3 3 1 are those of linear
+// filtering between the pixels of two pairs: 4 samples instead of 16. Beyond the frame's border lies the border's
+// pixel, which so keeps its light.
 
 @group(0) @binding(0) var<uniform> level: BloomLevel;
 @group(0) @binding(1) var pixels: texture_2d<f32>;

@@ -2,7 +2,8 @@
 
 // Finer cells along a cell's side, even.
 override STEP: i32 = 2;
-// The finer ones are cells, which give by the spline, and not pixels, which give by their distance from the cells' centres.
+// The finer ones are cells, which give by the spline, and not pixels, which give by their distance from the cells'
+// centres.
 override GRID: bool = true;
 
 @group(0) @binding(0) var<uniform> level: BloomLevel;
@@ -29,7 +30,8 @@ fn coverage(from_end: i32, tail: vec4<f32>) -> f32 {
     return select(select(1.0, tail.y, from_end == 2), last, from_end < 2);
 }
 
-// What a cell takes by tap `tap`, which is finer cell `i`, along one side: what would go to a missing cell stays with the pixel's own.
+// What a cell takes by tap `tap`, which is finer cell `i`, along one side: what would go to a missing cell stays with
+// the pixel's own.
 fn taken(tap: i32, i: i32, cell: i32, cells: u32, fine: u32, tail: vec4<f32>) -> f32 {
     let own = i / STEP == cell;
     let before = select(0.0, kernel(tap + STEP), own && cell == 0);

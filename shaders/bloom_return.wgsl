@@ -1,4 +1,5 @@
-// Kernel: each cell of a grid gets its share of the light that the coarser grids spread, on top of what it spreads itself.
+// Kernel: each cell of a grid gets its share of the light that the coarser grids spread, on top of what it spreads
+// itself.
 
 @group(0) @binding(0) var<uniform> level: BloomLevel;
 @group(0) @binding(1) var finer: texture_2d<f32>;
@@ -17,8 +18,8 @@ fn give_back(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= level.fine) {
         return;
     }
-    // Along each side the coarser cell that this one lies in gives 10 / 16, the next on this one's half 5 / 16, the other 1 / 16. The
-    // first two are one sample, 1/3 of the way from one to the other.
+    // Along each side the coarser cell that this one lies in gives 10 / 16, the next on this one's half 5 / 16, the
+    // other 1 / 16. The first two are one sample, 1/3 of the way from one to the other.
     let half_ = select(vec2<f32>(-1.0), vec2<f32>(1.0), (id.xy & vec2<u32>(1u)) == vec2<u32>(1u));
     let own = vec2<f32>(id.xy / 2u);
     let near = own + half_ / 3.0;

@@ -1,5 +1,5 @@
-// From a look direction to the start of its ray: aberration and the local frame. Mirrors src/physics/observer.rs; knows no
-// integrator. Reads the uniform `frame`, declared where the bindings are.
+// From a look direction to the start of its ray: aberration and the local frame. Mirrors src/physics/observer.rs;
+// knows no integrator. Reads the uniform `frame`, declared where the bindings are.
 
 struct RayBegin {
     c: Constants,
@@ -10,8 +10,8 @@ struct RayBegin {
     light: bool,
 }
 
-// The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and nu(camera) /
-// nu(observer of the local frame).
+// The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and
+// nu(camera) / nu(observer of the local frame).
 struct LocalLook {
     // In the camera's own frame, and in the local one.
     look: vec3<f32>,
@@ -34,7 +34,8 @@ fn local_look(look: vec3<f32>) -> LocalLook {
     return LocalLook(look, normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
 }
 
-// Change of `seen.n` when the look direction in the camera's own frame changes by `change`; at rest with what that holds along it.
+// Change of `seen.n` when the look direction in the camera's own frame changes by `change`; at rest with what that
+// holds along it.
 fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
     if !MOVING {
         return change;

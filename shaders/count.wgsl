@@ -1,5 +1,5 @@
-// Kernel: the steps of all rays of a traced rectangle, summed. In a pass of its own: a barrier or an atomic for every pixel
-// would cost the tracing kernel more than this does.
+// Kernel: the steps of all rays of a traced rectangle, summed. In a pass of its own: a barrier or an atomic for every
+// pixel would cost the tracing kernel more than this does.
 
 @group(0) @binding(0) var<uniform> pass_: Pass;
 @group(0) @binding(1) var record_meta: texture_2d<u32>;

@@ -1,5 +1,6 @@
-// Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs (at PROFILE_OFFSET of
-// StarIndex::wgsl_constants; of each entry its value and the step to the next). Reads `frame` and light_table(i), defined where the bindings are.
+// Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs (at
+// PROFILE_OFFSET of StarIndex::wgsl_constants; of each entry its value and the step to the next). Reads `frame` and
+// light_table(i), defined where the bindings are.
 
 // False: an effect that colours light or changes its brightness is switched off.
 override ALL_EFFECTS: bool = true;
@@ -22,7 +23,8 @@ fn visible_shift(g: f32, gravity: f32) -> Shift {
     return Shift(colour, select(1.0, g, (frame.effects & EFFECT_BEAMING) != 0u));
 }
 
-// nu(static observer or ZAMO at the eye), for E and L scaled to nu_local = 1; in the rain frame inside the horizon, its own.
+// nu(static observer or ZAMO at the eye), for E and L scaled to nu_local = 1; in the rain frame inside the horizon,
+// its own.
 fn nu_static_eye(energy: f32) -> f32 {
     let static_lapse = 1.0 - 2.0 * frame.place.x;
     if frame.rain == 0u || static_lapse <= 0.0 {

@@ -1,7 +1,9 @@
-// The list of a tile's pixels that edges run through: written by the kernels that shade pixels, read by refine.wgsl. Knows no light.
+// The list of a tile's pixels that edges run through: written by the kernels that shade pixels, read by refine.wgsl.
+// Knows no light.
 
 struct Edges {
-    // Of each sample of the submission: of pixels with EDGE_DISK, which fill `pixels` from its begin, and with EDGE_CURVE, from its end.
+    // Of each sample of the submission: of pixels with EDGE_DISK, which fill `pixels` from its begin, and with
+    // EDGE_CURVE, from its end.
     counts: array<atomic<u32>, 32>,
     // x in the low half, y in the high half.
     pixels: array<u32>,

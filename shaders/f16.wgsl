@@ -1,5 +1,5 @@
-// Numbers rounded to what f16 tells apart, to even: storing them in a texture of f16 changes nothing, whatever way the driver rounds. So
-// sums of light keep what they are on average.
+// Numbers rounded to what f16 tells apart, to even: storing them in a texture of f16 changes nothing, whatever way the
+// driver rounds. So sums of light keep what they are on average.
 
 // Of 0 <= v <= 65504.
 fn rounded_to_f16(v: vec4<f32>) -> vec4<f32> {

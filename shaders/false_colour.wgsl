@@ -1,5 +1,5 @@
-// False colour for views other than light. Mirrors src/film/false_colour.rs, where the formulas, sources and reasons are. Reads the
-// uniform `film` of packed.wgsl or screen.wgsl, and film.wgsl's functions.
+// False colour for views other than light. Mirrors src/film/false_colour.rs, where the formulas, sources and reasons
+// are. Reads the uniform `film` of packed.wgsl or screen.wgsl, and film.wgsl's functions.
 
 // What a pipeline is made for: the number of View, 0 shows light; or FROM_FILM (film.wgsl).
 override FALSE_COLOUR: u32 = 0u;

@@ -1,8 +1,8 @@
-// Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of packed.wgsl
-// or screen.wgsl.
+// Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of
+// packed.wgsl or screen.wgsl.
 
-// What a pipeline is made for: the numbers of ToneMap and PixelFormat, or FROM_FILM where it serves all and the uniform says which. (The
-// view: false_colour.wgsl.)
+// What a pipeline is made for: the numbers of ToneMap and PixelFormat, or FROM_FILM where it serves all and the
+// uniform says which. (The view: false_colour.wgsl.)
 override TONE_MAP: u32 = 1u;
 override FORMAT: u32 = 1u;
 
@@ -70,8 +70,8 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         return vec4<u32>(vec3<u32>(false_colour(radiance.x) * 255.0 + 0.5), 255u);
     }
     let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
-    // Most of the sky is black, and black stays black, whatever the dither. (A `return` here, called from a loop, crashes the shader
-    // compiler of Mesa 22.3.)
+    // Most of the sky is black, and black stays black, whatever the dither. (A `return` here, called from a loop,
+    // crashes the shader compiler of Mesa 22.3.)
     var codes = vec3<u32>(0u);
     if chosen_tone_map() == TONE_MAP_AGX || any(scene != vec3<f32>(0.0)) {
         codes = vec3<u32>(srgb_encode(tone_map(scene)) * 255.0 + dither(x, y));

@@ -2,8 +2,8 @@
 
 // The scene in the hole's units; the same for all tiles and samples of a frame.
 struct Frame {
-    // Units of a FramePoint (projection.wgsl), to the right, up, forward; components in the observer's frame. w of the first: angle of a
-    // fisheye's pixel.
+    // Units of a FramePoint (projection.wgsl), to the right, up, forward; components in the observer's frame. w of the
+    // first: angle of a fisheye's pixel.
     right: vec4<f32>,
     up: vec4<f32>,
     forward: vec4<f32>,
@@ -19,8 +19,8 @@ struct Frame {
     zamo: vec4<f32>,
     // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,
-    // Columns that take chart directions to sky axes; w of the first: brightness of the stars, of the second: of the maps, of the third:
-    // least_patch of stars.rs.
+    // Columns that take chart directions to sky axes; w of the first: brightness of the stars, of the second: of the
+    // maps, of the third: least_patch of stars.rs.
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,

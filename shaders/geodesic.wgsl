@@ -1,5 +1,5 @@
-// Light rays traced backward from the eye, in Mino time: the equations of motion. Mirrors src/physics/geodesic.rs, where the
-// formulas and their sources stand. Knows no integrator and no observer.
+// Light rays traced backward from the eye, in Mino time: the equations of motion. Mirrors src/physics/geodesic.rs,
+// where the formulas and their sources stand. Knows no integrator and no observer.
 
 // What a pipeline is made for; the host compiles one for each combination it needs.
 override SPINNING: bool = true;
@@ -93,8 +93,8 @@ fn coordinate_delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
     return (c.b * u - c.a2q * u * u + 2.0 * by_parts) / c.energy + frame + horizon;
 }
 
-// E = 1. The nodes of a step have no u'; but rays that escape from the photon sphere or deeper, the only ones asked for, all move
-// outwards: u' = -sqrt(1 - K u^2 D).
+// E = 1. The nodes of a step have no u'; but rays that escape from the photon sphere or deeper, the only ones asked
+// for, all move outwards: u' = -sqrt(1 - K u^2 D).
 fn rain_delay_rate(c: Constants, u: f32) -> f32 {
     let l = log(max(u, 1e-30));
     let du = -sqrt(max(1.0 - c.k * u * u * (1.0 - 2.0 * u), 0.0));

@@ -1,5 +1,5 @@
-// The light that develop.wgsl and develop_rows.wgsl take in frames with bloom: what is left in a pixel of its own, and its share of what
-// spreads over the finest grid, which falls linearly from the cells' centres.
+// The light that develop.wgsl and develop_rows.wgsl take in frames with bloom: what is left in a pixel of its own, and
+// its share of what spreads over the finest grid, which falls linearly from the cells' centres.
 
 // Pixels along a cell's side, even.
 override STEP: u32 = 2u;

@@ -182,7 +182,8 @@ fn quintic_of_n_z(c: Constants, a: State, b: State, h: f32) -> Quintic {
     return quintic(a.n.z, a.dn.z * h, n_acceleration(c, a.n).z * hh, b.n.z, b.dn.z * h, n_acceleration(c, b.n).z * hh);
 }
 
-// The fraction in [0, 1] where the value is 0, for end values of opposite sign (or 0): Newton's method in a shrinking bracket.
+// The fraction in [0, 1] where the value is 0, for end values of opposite sign (or 0): Newton's method in a shrinking
+// bracket.
 fn quintic_root(q: Quintic) -> f32 {
     let end = q.low.x + q.low.y + q.low.z + q.high.x + q.high.y + q.high.z;
     let rising = end > q.low.x;

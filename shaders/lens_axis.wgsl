@@ -1,5 +1,5 @@
-// What the lens tables of both kinds share: the logarithmic axis of distance from the critical curve, and cubic interpolation. Mirrors
-// src/physics/lens/coordinate.rs.
+// What the lens tables of both kinds share: the logarithmic axis of distance from the critical curve, and cubic
+// interpolation. Mirrors src/physics/lens/coordinate.rs.
 
 // A place on an axis: the node before it, and how far it is to the next, 0 .. 1.
 struct LensPlace {
@@ -22,8 +22,8 @@ fn exp2_share(x: f32) -> f32 {
     return 1.4142135623730951 * series;
 }
 
-// Of t_hat >= 2^-octaves on an axis of `per_octave` nodes that begins there; `last`: the last node that an interpolation may begin
-// at. Exponent and mantissa apart: their sum would cost digits.
+// Of t_hat >= 2^-octaves on an axis of `per_octave` nodes that begins there; `last`: the last node that an
+// interpolation may begin at. Exponent and mantissa apart: their sum would cost digits.
 fn lens_place(t_hat: f32, octaves: f32, per_octave: f32, last: u32) -> LensPlace {
     let bits = bitcast<u32>(max(t_hat, exp2(-octaves)));
     let octave = (f32(bits >> 23u) - 127.0 + octaves) * per_octave;

@@ -1,9 +1,10 @@
-// The lens of an eye outside the photon region of a spinning hole, as tables over the look direction in polar coordinates (psi, chi)
-// about the centre of the critical curve psi = R(chi). Shared by the kernels that build the tables and those that read them; mirrors
-// src/physics/lens/kerr.rs, where the reasons are.
+// The lens of an eye outside the photon region of a spinning hole, as tables over the look direction in polar
+// coordinates (psi, chi) about the centre of the critical curve psi = R(chi). Shared by the kernels that build the
+// tables and those that read them; mirrors src/physics/lens/kerr.rs, where the reasons are.
 //
-// Columns: w = (chi + v) / 2, tan v = tan chi / epsilon, KERR_COLUMNS around. Rows: log2 of t_hat = |tan((psi - R) / 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row
-// KERR_ROWS_BELOW standing for 2^-KERR_OCTAVES; those of the inner branch (captured) follow those of the outer (escaping).
+// Columns: w = (chi + v) / 2, tan v = tan chi / epsilon, KERR_COLUMNS around. Rows: log2 of t_hat = |tan((psi - R) /
+// 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row KERR_ROWS_BELOW standing for 2^-KERR_OCTAVES; those of the inner
+// branch (captured) follow those of the outer (escaping).
 
 struct KerrLens {
     // The centre, and the directions of chi = 90 degrees and 0; local components. w of the first: epsilon.
@@ -30,8 +31,8 @@ const KERR_NO_CROSSING: f32 = 1e3;
 // Bit of a cell's flags: its rays are to be integrated. Bits 0 .. 15: a crossing of that order may hit the disk.
 const KERR_DIRECT: u32 = 0x80000000u;
 
-// Nodes hold where the light of a crossing left, and when: a layer for each order with u, the unit vector of the azimuth and the
-// regular delay; else a layer for each four orders with their u.
+// Nodes hold where the light of a crossing left, and when: a layer for each order with u, the unit vector of the
+// azimuth and the regular delay; else a layer for each four orders with their u.
 override PATTERN: bool = false;
 
 // First row of the branch among all rows.

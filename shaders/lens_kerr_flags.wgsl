@@ -1,5 +1,5 @@
-// Kernel: what may happen in each cell of the tables of lens_kerr.wgsl, and whether it may be interpolated; one thread a cell. Mirrors
-// `Patch` of src/physics/lens/kerr.rs.
+// Kernel: what may happen in each cell of the tables of lens_kerr.wgsl, and whether it may be interpolated; one thread
+// a cell. Mirrors `Patch` of src/physics/lens/kerr.rs.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lens: KerrLens;
@@ -8,8 +8,8 @@
 @group(0) @binding(4) var crossings: texture_2d_array<f32>;
 @group(0) @binding(5) var flags_out: texture_storage_2d<r32uint, write>;
 
-// Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings; and of azimuths, rad,
-// and delays, relative to the orbital time.
+// Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings; and of
+// azimuths, rad, and delays, relative to the orbital time.
 const KERR_TOLERANCE: f32 = 1e-6;
 const KERR_RADIUS_TOLERANCE: f32 = 2e-6;
 const KERR_PATTERN_TOLERANCE: f32 = 2e-5;
@@ -97,7 +97,8 @@ fn patch_of(layer: u32) -> Patch {
     return p;
 }
 
-// Of lengths along x and chi: change per rad of look direction, the smaller one over the cell of the greater one of both directions.
+// Of lengths along x and chi: change per rad of look direction, the smaller one over the cell of the greater one of
+// both directions.
 fn stretch_of(rows: vec2<f32>, columns: vec2<f32>) -> f32 {
     return max(min(rows.x, rows.y) / row_angle, min(columns.x, columns.y) / max(column_angle, 1e-12));
 }

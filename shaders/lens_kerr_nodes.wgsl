@@ -1,5 +1,5 @@
-// Kernel: the nodes of the tables of lens_kerr.wgsl, one thread each: traces a ray to infinity and a little beyond, so that crossings
-// continue smoothly past it.
+// Kernel: the nodes of the tables of lens_kerr.wgsl, one thread each: traces a ray to infinity and a little beyond, so
+// that crossings continue smoothly past it.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lens: KerrLens;

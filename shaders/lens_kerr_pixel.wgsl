@@ -1,4 +1,5 @@
-// Ray records with spin, as the tables of lens_kerr.wgsl have them; rays that they do not hold are left to lens_kerr_rest.wgsl.
+// Ray records with spin, as the tables of lens_kerr.wgsl have them; rays that they do not hold are left to
+// lens_kerr_rest.wgsl.
 
 fn ray_record(id: vec2<u32>) -> Record {
     return look_up(id);

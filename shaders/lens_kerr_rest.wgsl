@@ -1,8 +1,8 @@
-// Ray records with spin of pixels that the tables of lens_kerr.wgsl do not hold: integrated. The sky's footprint is the tables'
-// all the same; those of crossings come from the next pixels' rays.
+// Ray records with spin of pixels that the tables of lens_kerr.wgsl do not hold: integrated. The sky's footprint is
+// the tables' all the same; those of crossings come from the next pixels' rays.
 
-// u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right (to the left where a face ends), of
-// the next below. u is 0 where there is none.
+// u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right (to the left
+// where a face ends), of the next below. u is 0 where there is none.
 const REST_ORDERS: u32 = 16u;
 var<private> rest_crossings: array<vec3<f32>, 48>;
 var<private> rest_ray: u32;

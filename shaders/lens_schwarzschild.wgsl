@@ -1,6 +1,6 @@
-// The lens of an eye without spin, as tables: everything about a ray depends on psi, the angle between look direction and inward.
-// Shared by the kernels that build the tables and those that read them; mirrors src/physics/lens/schwarzschild.rs, where the
-// formulas are.
+// The lens of an eye without spin, as tables: everything about a ray depends on psi, the angle between look direction
+// and inward. Shared by the kernels that build the tables and those that read them; mirrors
+// src/physics/lens/schwarzschild.rs, where the formulas are.
 //
 // Radial axis: t = tan((psi - psi_c) / 2), psi_c the critical angle; t_hat = |t| / w; node i stands for
 // t_hat = 2^(i / LENS_PER_OCTAVE - LENS_OCTAVES). Branch 0: t > 0, escaping. Branch 1: t < 0, captured.

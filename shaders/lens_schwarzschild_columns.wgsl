@@ -1,4 +1,5 @@
-// Kernel: u, and the delay's integral, along the ray of each node; one thread a node. The curves are in lens_schwarzschild_curve.wgsl.
+// Kernel: u, and the delay's integral, along the ray of each node; one thread a node. The curves are in
+// lens_schwarzschild_curve.wgsl.
 
 // What lens_schwarzschild_ends.wgsl found.
 @group(0) @binding(2) var ends: texture_2d<f32>;

@@ -1,5 +1,5 @@
-// What the kernels that build the tables of lens_schwarzschild.wgsl share: the ray of a node, followed in sigma = S tau, in which all
-// rays take steps of like size; phi = kappa sigma.
+// What the kernels that build the tables of lens_schwarzschild.wgsl share: the ray of a node, followed in sigma = S
+// tau, in which all rays take steps of like size; phi = kappa sigma.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lens: SchwarzschildLens;

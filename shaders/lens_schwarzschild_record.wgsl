@@ -1,5 +1,5 @@
-// Ray records without spin, looked up in the tables of lens_schwarzschild.wgsl. Mirrors src/physics/lens/schwarzschild.rs and
-// src/cpu/lens.rs.
+// Ray records without spin, looked up in the tables of lens_schwarzschild.wgsl. Mirrors
+// src/physics/lens/schwarzschild.rs and src/cpu/lens.rs.
 
 @group(1) @binding(0) var<uniform> lens: SchwarzschildLens;
 @group(1) @binding(1) var lens_swept: texture_2d<f32>;
@@ -16,7 +16,8 @@ struct Looked {
     swept: f32,
     first: f32,
     order: u32,
-    // d(swept) / d(place), and of the change to the next pixel right and down: d(place), and of the ray's plane about e_r.
+    // d(swept) / d(place), and of the change to the next pixel right and down: d(place), and of the ray's plane about
+    // e_r.
     swept_slope: f32,
     change: vec2<f32>,
     turn: vec2<f32>,
@@ -92,7 +93,8 @@ fn ray_record(id: vec2<u32>) -> Record {
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
         record.sky = e_r * turn.y + looked.along * turn.x;
-        // By psi in the ray's plane, and sin(swept) / sin(psi) across it; outward, where both sines vanish, their slopes' ratio.
+        // By psi in the ray's plane, and sin(swept) / sin(psi) across it; outward, where both sines vanish, their
+        // slopes' ratio.
         let swept_psi = swept_slope * slope;
         let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
         record.footprint = Footprint(looked.along * turn.y - e_r * turn.x, looked.across,
@@ -101,12 +103,14 @@ fn ray_record(id: vec2<u32>) -> Record {
     return record;
 }
 
-// E of the look direction n, at nu_local = 1: the lapse, or 1 - sqrt(2 u) cos psi in the rain frame; <= 0: no light comes from there.
+// E of the look direction n, at nu_local = 1: the lapse, or 1 - sqrt(2 u) cos psi in the rain frame; <= 0: no light
+// comes from there.
 fn local_energy(n: vec3<f32>) -> f32 {
     return select(frame.place.w, 1.0 + frame.place.w * n.x, frame.rain != 0u);
 }
 
-// phi of the first zero of N_z = cos(theta) cos(phi) - sin(theta) n_theta sin(phi), in (0, pi]; never for a ray in the plane.
+// phi of the first zero of N_z = cos(theta) cos(phi) - sin(theta) n_theta sin(phi), in (0, pi]; never for a ray in the
+// plane.
 fn first_crossing_angle(n_theta: f32) -> f32 {
     let sine = frame.place.y;
     let cosine = frame.place.z;
@@ -124,8 +128,8 @@ fn next_crossing() -> Crossing {
         return crossing;
     }
     var phi = looked.first + PI * f32(looked.order);
-    // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found must be kept
-    // apart, too: lanes that have left go on writing.)
+    // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found
+    // must be kept apart, too: lanes that have left go on writing.)
     loop {
         let at = column_at(lens_u, phi / max(looked.swept, 1e-6));
         let u = at.x;

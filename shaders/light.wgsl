@@ -1,4 +1,5 @@
-// The exposed light of a frame with bloom: what shading, or the sum of samples, is given to before it spreads. Bindings as in packed.wgsl.
+// The exposed light of a frame with bloom: what shading, or the sum of samples, is given to before it spreads.
+// Bindings as in packed.wgsl.
 
 @group(2) @binding(0) var<uniform> film: FilmParams;
 @group(2) @binding(1) var exposed_light: texture_storage_2d<rgba16float, write>;

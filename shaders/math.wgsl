@@ -1,5 +1,5 @@
-// Elementary functions whose error the lens can bear: drivers' sin, cos and atan2 may be as loose as 5e-4 (Vulkan's precision
-// table). Used by every other file; knows nothing of them.
+// Elementary functions whose error the lens can bear: drivers' sin, cos and atan2 may be as loose as 5e-4 (Vulkan's
+// precision table). Used by every other file; knows nothing of them.
 
 const PI: f32 = 3.14159265358979;
 const TAU: f32 = 6.28318530717959;
@@ -11,8 +11,8 @@ fn sincos(x: f32) -> vec2<f32> {
     return sincos_quarters((x - k * 1.5703125) - k * 4.83826794897e-4, k);
 }
 
-// (sin, cos) of 2 pi part / whole, to 2e-7: quarters of the whole are taken off exactly where whole and part are pixels, f32 turns
-// would round.
+// (sin, cos) of 2 pi part / whole, to 2e-7: quarters of the whole are taken off exactly where whole and part are
+// pixels, f32 turns would round.
 fn sincos_turn(part: f32, whole: f32) -> vec2<f32> {
     let k = round(4.0 * part / whole);
     return sincos_quarters((part - k * (0.25 * whole)) * (TAU / whole), k);
@@ -29,7 +29,8 @@ fn sincos_quarters(y: f32, k: f32) -> vec2<f32> {
     return swapped * sign;
 }
 
-// atan2(y, x) in (-pi, pi] to 3e-7: atan on [0, tan(pi/8)] by the polynomial Cephes uses, the rest by symmetry. 0 at (0, 0).
+// atan2(y, x) in (-pi, pi] to 3e-7: atan on [0, tan(pi/8)] by the polynomial Cephes uses, the rest by symmetry. 0 at
+// (0, 0).
 fn arctan2(y: f32, x: f32) -> f32 {
     let ax = abs(x);
     let ay = abs(y);

@@ -1,5 +1,5 @@
-// Weights of Nystrom's method of order 5 (Nystrom 1925; Hairer, Norsett & Wanner, Solving ODEs I, II.14): of y at its first three
-// nodes 0, 1/5, 2/3 (the fourth's, 1, is 0), and of y' at all four.
+// Weights of Nystrom's method of order 5 (Nystrom 1925; Hairer, Norsett & Wanner, Solving ODEs I, II.14): of y at its
+// first three nodes 0, 1/5, 2/3 (the fourth's, 1, is 0), and of y' at all four.
 
 const B1: f32 = 1.0 / 24.0;
 const B2: f32 = 25.0 / 84.0;

@@ -1,5 +1,5 @@
-// The packed pixels of a tile, rows without gaps: what a frame's last kernel writes for the host. (Uniforms of group 2 come after those
-// of a lens: the other way round Mesa 22.3's lavapipe crashes.)
+// The packed pixels of a tile, rows without gaps: what a frame's last kernel writes for the host. (Uniforms of group 2
+// come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
 
 @group(2) @binding(0) var<uniform> film: FilmParams;
 @group(2) @binding(1) var<storage, read_write> pixels: array<u32>;

@@ -1,6 +1,6 @@
-// The packed pixels of a tile, as packed.wgsl has them, for kernels whose `pixels` lie in the host's memory: the bus carries whole lines
-// of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row (H200: 49 against 24.5 GB/s). So a workgroup
-// gathers the words of its 32 x 4 pixels, and then writes them row by row.
+// The packed pixels of a tile, as packed.wgsl has them, for kernels whose `pixels` lie in the host's memory: the bus
+// carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row (H200:
+// 49 against 24.5 GB/s). So a workgroup gathers the words of its 32 x 4 pixels, and then writes them row by row.
 
 @group(2) @binding(0) var<uniform> film: FilmParams;
 @group(2) @binding(1) var<storage, read_write> pixels: array<u32>;
@@ -33,8 +33,8 @@ fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     keep_words(develop(radiance, place.x, place.y));
 }
 
-// Once all threads have put their pixels: thread `i` writes its share of those of the workgroup at `corner`. Words of pixels that another
-// kernel will put are whatever `keep_words` had last.
+// Once all threads have put their pixels: thread `i` writes its share of those of the workgroup at `corner`. Words of
+// pixels that another kernel will put are whatever `keep_words` had last.
 fn write_rows(corner: vec2<u32>, i: u32) {
     for (var k = 0u; k < pixel_words(); k += 1u) {
         let word = i + ROWS_PIXELS * k;

@@ -1,4 +1,5 @@
-// One sample of one tile: the uniform `pass_`, declared where the bindings are. The traced rectangle is the tile and one pixel around it, for the derivatives.
+// One sample of one tile: the uniform `pass_`, declared where the bindings are. The traced rectangle is the tile and
+// one pixel around it, for the derivatives.
 struct Pass {
     // Of the traced rectangle's top-left pixel in the full frame.
     origin: vec2<i32>,

@@ -1,4 +1,5 @@
-// Kernel: traces the pixels of a tile's rectangle into record textures. What shading will do with them it does not know.
+// Kernel: traces the pixels of a tile's rectangle into record textures. What shading will do with them it does not
+// know.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;

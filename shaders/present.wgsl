@@ -1,4 +1,5 @@
-// Shaders: one triangle that covers a window's image, and the codes of `screen` in it. The only stage of a frame that is not compute.
+// Shaders: one triangle that covers a window's image, and the codes of `screen` in it. The only stage of a frame that
+// is not compute.
 
 // The image has another size than the texture.
 override STRETCHED: bool = false;

@@ -1,5 +1,6 @@
-// How the camera's projection takes positions of the full frame, in pixels, to look directions. Mirrors src/scene/projection.rs, where
-// the formulas and conventions are. Reads the uniform `frame`, declared where the bindings are.
+// How the camera's projection takes positions of the full frame, in pixels, to look directions. Mirrors
+// src/scene/projection.rs, where the formulas and conventions are. Reads the uniform `frame`, declared where the
+// bindings are.
 
 // BHR_PROJECTION_* that the kernel is for, or FROM_FRAME where it serves all and the uniform says which.
 override PROJECTION: u32 = 0u;
@@ -10,16 +11,16 @@ const FISHEYE: u32 = 1u;
 const EQUIRECT: u32 = 2u;
 const CUBE: u32 = 3u;
 
-// A point (right, up, forward; PERSPECTIVE: the first two in halves of the image plane's sides) in the direction seen, and its changes
-// to the next pixel right and down.
+// A point (right, up, forward; PERSPECTIVE: the first two in halves of the image plane's sides) in the direction seen,
+// and its changes to the next pixel right and down.
 struct FramePoint {
     at: vec3<f32>,
     dx: vec3<f32>,
     dy: vec3<f32>,
 }
 
-// A look direction, components in the camera's own frame, and its changes to the next pixel right and down but for what they hold
-// along it.
+// A look direction, components in the camera's own frame, and its changes to the next pixel right and down but for
+// what they hold along it.
 struct CameraView {
     look: vec3<f32>,
     dx: vec3<f32>,

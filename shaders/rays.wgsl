@@ -1,5 +1,5 @@
-// Kernel: rays whose start the host computed in f64 (`Scene::start`), one a thread, for bhr_trace_rays. Redshifts, azimuths and
-// units are the host's work: what comes back is where the ray crossed and ended.
+// Kernel: rays whose start the host computed in f64 (`Scene::start`), one a thread, for bhr_trace_rays. Redshifts,
+// azimuths and units are the host's work: what comes back is where the ray crossed and ended.
 
 struct RayStart {
     // energy, L, nu_local, u'
@@ -12,7 +12,8 @@ struct RayStart {
     dn: vec4<f32>,
 }
 
-// Four words of N and drag (at infinity or at a crossing), then: fate, steps, crossing count, tau; or u, delay, order, 0.
+// Four words of N and drag (at infinity or at a crossing), then: fate, steps, crossing count, tau; or u, delay, order,
+// 0.
 struct RayEnd {
     n: vec4<f32>,
     rest: vec4<u32>,

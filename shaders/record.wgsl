@@ -1,5 +1,5 @@
-// The ray record of a pixel: the one interface between lensing and shading. src/scene/record.rs has the same fields. However it was
-// made, whoever makes records (traced.wgsl, lens_*.wgsl) defines
+// The ray record of a pixel: the one interface between lensing and shading. src/scene/record.rs has the same fields.
+// However it was made, whoever makes records (traced.wgsl, lens_*.wgsl) defines
 //
 //     fn ray_record(id: vec2<u32>) -> Record      of the tile's pixel `id`
 //     fn next_crossing() -> Crossing              of that record, front to back, within the disk's radii
@@ -35,8 +35,8 @@ struct Record {
     footprint: Footprint,
 }
 
-// Changes of a unit vector to the next pixel right and down, in two unit vectors at right angles to it and to each other; 1e30
-// where nothing is known.
+// Changes of a unit vector to the next pixel right and down, in two unit vectors at right angles to it and to each
+// other; 1e30 where nothing is known.
 struct Footprint {
     p: vec3<f32>,
     q: vec3<f32>,
@@ -84,8 +84,8 @@ const EDGE_REACH: f32 = 0.75;
 // Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
 const STEEP_CHANGE: f32 = 0.1;
 
-// Whether an edge of the disk runs through the pixel whose crossing lies at u, or u changes steeply there; `change`: of u to the next
-// pixel right and down.
+// Whether an edge of the disk runs through the pixel whose crossing lies at u, or u changes steeply there; `change`:
+// of u to the next pixel right and down.
 fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;
@@ -94,8 +94,8 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }
 
-// What d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large by beyond 90 degrees from the curve, whose
-// antipode is not near it.
+// What d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large by beyond 90 degrees from
+// the curve, whose antipode is not near it.
 fn beyond_right_angle(t: f32) -> f32 {
     let most = max(abs(t), 1.0);
     return 0.5 * (most + 1.0 / most);

@@ -2,8 +2,8 @@
 // the pixel's light.
 // Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
-// Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 32 where the critical curve runs, as
-// what lies beside it is too thin for that.
+// Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 32 where the
+// critical curve runs, as what lies beside it is too thin for that.
 var<private> samples: u32;
 
 const LANES: u32 = 64u;
@@ -36,7 +36,8 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     }
 }
 
-// The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and puts nothing.
+// The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and puts
+// nothing.
 fn refine_sample(entry: u32, count: u32) {
     let id = listed_pixel(list_kind(), min(entry, count - 1u));
     if whole_plane {
@@ -147,7 +148,8 @@ fn seen_crossing() -> Crossing {
     return crossing;
 }
 
-// Share of this sample's cell, of 2 x 2, in which the crossing of `order` lies on the disk, u changing evenly over the cell.
+// Share of this sample's cell, of 2 x 2, in which the crossing of `order` lies on the disk, u changing evenly over the
+// cell.
 fn covered_share(u: f32, order: u32) -> f32 {
     let left = lane_u[(lane & ~1u) * LANE_ORDERS + order];
     let right = lane_u[(lane | 1u) * LANE_ORDERS + order];
@@ -159,7 +161,8 @@ fn covered_share(u: f32, order: u32) -> f32 {
     return select(within, clamp(share, 0.0, 1.0), min(min(left, right), min(above, below)) > 0.0);
 }
 
-// Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two sides.
+// Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two
+// sides.
 fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     let most = max(max(abs(slope.x), abs(slope.y)), 1e-20);
     let least = min(abs(slope.x), abs(slope.y));
@@ -169,8 +172,8 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
 }
 
-// Between the samples of a pixel: what u may change, of the disk's own range of it; and of the direct image, relative to u, as there the
-// light itself may not change evenly.
+// Between the samples of a pixel: what u may change, of the disk's own range of it; and of the direct image, relative
+// to u, as there the light itself may not change evenly.
 const EVEN_CHANGE: f32 = 0.5;
 const DIRECT_CHANGE: f32 = 0.25;
 

@@ -1,5 +1,5 @@
-// A ray that is integrated for one sample of a pixel, and its crossings of the whole plane. Used by samples_traced.wgsl and
-// samples_kerr.wgsl; knows no tables and no textures.
+// A ray that is integrated for one sample of a pixel, and its crossings of the whole plane. Used by
+// samples_traced.wgsl and samples_kerr.wgsl; knows no tables and no textures.
 
 // u, azimuth and delay by order; u is 0 where there is none.
 const KEPT_ORDERS: u32 = 16u;

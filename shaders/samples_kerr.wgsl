@@ -1,5 +1,5 @@
-// Ray records of samples with spin: as the tables of lens_kerr.wgsl have them, else integrated. The sky's footprint is the tables'
-// in either case; those of integrated crossings, too, or there are none.
+// Ray records of samples with spin: as the tables of lens_kerr.wgsl have them, else integrated. The sky's footprint is
+// the tables' in either case; those of integrated crossings, too, or there are none.
 
 // Relative difference of u of crossings up to which the footprint of one serves for the other (src/cpu/lens.rs).
 const LIKE: f32 = 1e-2;

@@ -1,4 +1,5 @@
-// Linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. How the record was made it does not know.
+// Linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. How the record was made it does not
+// know.
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
@@ -9,7 +10,8 @@
 @group(0) @binding(4) var milky_way: texture_2d<f32>;
 @group(0) @binding(5) var sky_map: texture_2d<f32>;
 
-// What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every `if`.
+// What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every
+// `if`.
 override SHOWS_LIGHT: bool = true;
 override SHOWS_STARS: bool = true;
 override SHOWS_MILKY_WAY: bool = true;

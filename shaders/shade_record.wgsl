@@ -1,4 +1,5 @@
-// Shades a pixel's record, and lists the pixel if edges run through it. Knows not what becomes of light: who uses this file defines
+// Shades a pixel's record, and lists the pixel if edges run through it. Knows not what becomes of light: who uses this
+// file defines
 //
 //     fn take_light(id: vec2<u32>, light: vec4<f32>)      of the tile's pixel `id`; a second time in place of the first
 

@@ -1,5 +1,5 @@
-// The coordinate grid laid over the sky: mirrors src/sky/grid.rs, where the reasons are. Uses math.wgsl and record.wgsl, and to_sky(d), defined
-// where the bindings are.
+// The coordinate grid laid over the sky: mirrors src/sky/grid.rs, where the reasons are. Uses math.wgsl and
+// record.wgsl, and to_sky(d), defined where the bindings are.
 
 const GRID_SPACING: f32 = PI / 12.0;
 const GRID_CAP_SPACING: f32 = PI / 2.0;

@@ -1,5 +1,6 @@
-// The light of sky maps in a pixel: mirrors src/sky/filter.rs, where the reasons are, on the texels of src/sky/map.rs, read one by one:
-// the weights of samplers have 8 bits. Uses math.wgsl, record.wgsl and blackbody.wgsl, and to_sky(d), defined where the bindings are.
+// The light of sky maps in a pixel: mirrors src/sky/filter.rs, where the reasons are, on the texels of src/sky/map.rs,
+// read one by one: the weights of samplers have 8 bits. Uses math.wgsl, record.wgsl and blackbody.wgsl, and to_sky(d),
+// defined where the bindings are.
 
 const MAX_SPREAD: f32 = 6.0;
 const WHOLE_SKY: f32 = 100.0;
@@ -41,8 +42,8 @@ fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, taps: Taps) ->
     let level = clamp(taps.level - log2(texel_angle), 0.0, f32(last));
     let finer = min(u32(level), last);
     let share = level - f32(finer);
-    // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that lavapipe, which runs
-    // whatever an `if` leaves out, does not read it for nothing.
+    // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that
+    // lavapipe, which runs whatever an `if` leaves out, does not read it for nothing.
     let double = select(0u, 1u, share > 0.0);
     let reach = 0.5 * taps.spread + 0.5;
     let most = ceil(reach) - 1.0;

@@ -1,6 +1,6 @@
-// The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule), where the reasons are.
-// Reads light_table(i), star_cell(i), to_sky(d) and least_patch(), defined where the bindings are; the constants in capitals that are not here come from
-// StarIndex::wgsl_constants.
+// The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule),
+// where the reasons are. Reads light_table(i), star_cell(i), to_sky(d) and least_patch(), defined where the bindings
+// are; the constants in capitals that are not here come from StarIndex::wgsl_constants.
 
 const STAR_TINY_AREA: f32 = 1e-30;
 const MAX_STAR_LIGHT: f32 = 1e9;
@@ -13,7 +13,8 @@ fn star_margin(level: u32) -> f32 {
     return STAR_MARGIN / f32(star_side(level));
 }
 
-// The level by the exponent of radius / margin(0), rounded up; STAR_LEVELS, none, beyond the coarsest one and for NaN and infinity.
+// The level by the exponent of radius / margin(0), rounded up; STAR_LEVELS, none, beyond the coarsest one and for NaN
+// and infinity.
 fn star_level_for(radius: f32) -> u32 {
     let bits = bitcast<u32>(radius / star_margin(0u)) & 0x7fffffffu;
     return min(max((bits + 0x7fffffu) >> 23u, 127u) - 127u, STAR_LEVELS);
@@ -59,7 +60,8 @@ fn mean_sky_density(crowding: f32, direction: vec3<f32>) -> f32 {
     return 1.0 + crowding * (2.0 / (height * height) - 1.0);
 }
 
-// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1: of the chart direction `seen` and its footprint.
+// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1: of the chart direction `seen` and its
+// footprint.
 fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f32) -> vec3<f32> {
     let d = to_sky(seen);
     let dx = footprint.dx;
@@ -89,8 +91,9 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
     let area = abs(dx.x * dy.y - dx.y * dy.x);
     let density = mean_sky_density(mean.w, d);
     let magnification = 1.0 / max(max(area, least_patch() * stretch2), STAR_TINY_AREA);
-    // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe runs whatever
-    // stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break; }` finds no star there, Mesa 22.3.)
+    // The inner loop only looks; a star that is hit, and after the stars each mean sky, is shaded outside it: lavapipe
+    // runs whatever stands in a loop in every turn, and every loop once. (An inner loop that ends in `if .. { break;
+    // }` finds no star there, Mesa 22.3.)
     loop {
         var star = vec4<f32>(0.0);
         var p = vec2<f32>(0.0);

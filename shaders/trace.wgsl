@@ -1,7 +1,7 @@
 // One light ray from the eye to its fate. Mirrors src/physics/trace.rs; knows no observer, no pixel and no buffer.
 //
-// The inner loop only steps; what happens in a step is looked into outside it: GPUs (and lavapipe, which runs both sides of an
-// `if`) would pay for root finding in every step. A kernel that uses this file defines
+// The inner loop only steps; what happens in a step is looked into outside it: GPUs (and lavapipe, which runs both
+// sides of an `if`) would pay for root finding in every step. A kernel that uses this file defines
 //
 //     fn on_crossing(c: Constants, crossing: PlaneCrossing)
 //

@@ -42,8 +42,8 @@ fn more_crossings() -> bool {
     return traced_orders != 0u;
 }
 
-// A pixel whose neighbour's ray meets other things, or the same inside the disk's edge and not outside: one that misses a thin ring
-// on one side of it and one that does on the other differ, too.
+// A pixel whose neighbour's ray meets other things, or the same inside the disk's edge and not outside: one that
+// misses a thin ring on one side of it and one that does on the other differ, too.
 fn edges_of_pixel(through: f32) -> u32 {
     let here = textureLoad(record_meta, traced_pixel, 0).x;
     let across = vec2<u32>(1u, 0u);

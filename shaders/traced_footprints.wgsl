@@ -1,5 +1,5 @@
-// Footprints of traced pixels, from their neighbours' records, which pixels.wgsl wrote. The layout of the textures is in
-// traced_layout.wgsl.
+// Footprints of traced pixels, from their neighbours' records, which pixels.wgsl wrote. The layout of the textures is
+// in traced_layout.wgsl.
 
 @group(1) @binding(0) var record_sky: texture_2d<f32>;
 @group(1) @binding(1) var record_meta: texture_2d<u32>;
@@ -32,8 +32,8 @@ fn sky_footprint(here: vec3<f32>, sky: vec3<f32>) -> Footprint {
     return footprint;
 }
 
-// d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; w is 0 where neither
-// did, which only the mean sky can stand for.
+// d(sky direction) / d(pixel) along the neighbours at -+ step: central where both escaped, else one-sided; w is 0
+// where neither did, which only the mean sky can stand for.
 fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
     let before = textureLoad(record_sky, traced_pixel - step, 0);
     let after = textureLoad(record_sky, traced_pixel + step, 0);

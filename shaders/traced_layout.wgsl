@@ -1,13 +1,13 @@
-// How pixels.wgsl leaves what it traced for traced.wgsl. Textures of the traced rectangle's size, because neighbours are read together
-// and software drivers reach into buffers lane by lane:
+// How pixels.wgsl leaves what it traced for traced.wgsl. Textures of the traced rectangle's size, because neighbours
+// are read together and software drivers reach into buffers lane by lane:
 //
 //     record_sky    xyz: sky direction, chart; w: sky_redshift, 0 unless the ray escaped.
 //     record_meta   TracedMeta.
 //     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth (with AZIMUTH, else 0), delay (with
 //                   DELAY, else 0).
 
-// x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge; bit 16 + k: it is the disk's. y: steps. z, w: E and L; in the METRIC view z is
-// plane_u.
+// x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge; bit 16 + k:
+// it is the disk's. y: steps. z, w: E and L; in the METRIC view z is plane_u.
 struct TracedMeta {
     fate: u32,
     inside: u32,

@@ -1,4 +1,5 @@
-// Structure of the disk: mirrors src/scene/turbulence.rs, where the reasons are. Reads `frame`; knows no colours and no records.
+// Structure of the disk: mirrors src/scene/turbulence.rs, where the reasons are. Reads `frame`; knows no colours and
+// no records.
 
 const LIFETIME: f32 = 120.0;
 const CELLS_AROUND: u32 = 5u;

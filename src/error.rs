@@ -1,5 +1,5 @@
-//! The one error type of the crate. Everything fallible returns it; `capi::status` maps it to a `BhrStatus` and a message.
-//! Knows nothing of C, of the GPU, or of the scene.
+//! The one error type of the crate. Everything fallible returns it; `capi::status` maps it to a `BhrStatus` and a
+//! message. Knows nothing of C, of the GPU, or of the scene.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Frames in the background: orders, each with its own copy of the scene, and what their host knows of them. Who makes them: worker.rs.
-//! Knows no callbacks and nothing of C.
+//! Frames in the background: orders, each with its own copy of the scene, and what their host knows of them. Who makes
+//! them: worker.rs. Knows no callbacks and nothing of C.
 
 mod worker;
 
@@ -58,8 +58,8 @@ impl Job {
         lock(&self.shared.outcome).clone()
     }
 
-    /// Waits for its end, at most `timeout` (`None`: for ever), and calls `progress`, which cancels it by returning false, on this
-    /// thread whenever more is done. What it ended with; `None` while it runs.
+    /// Waits for its end, at most `timeout` (`None`: for ever), and calls `progress`, which cancels it by returning
+    /// false, on this thread whenever more is done. What it ended with; `None` while it runs.
     pub fn wait(&self, timeout: Option<Duration>, progress: &mut Progress<'_>) -> Option<Result<FrameStats>> {
         let deadline = timeout.and_then(|timeout| Instant::now().checked_add(timeout));
         let mut told = f64::NAN;
@@ -104,7 +104,8 @@ impl Shared {
     }
 }
 
-/// A frame to be made, and the job that hears of it. Its target is written until the job has its outcome, and never after.
+/// A frame to be made, and the job that hears of it. Its target is written until the job has its outcome, and never
+/// after.
 pub struct Order {
     pub scene: Scene,
     pub request: FrameRequest,

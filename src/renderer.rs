@@ -1,5 +1,6 @@
-//! A renderer: one scene, one tracer, and the frames they make: into memory, in the background, into windows. The safe Rust face of
-//! the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles to the target, and nothing of C.
+//! A renderer: one scene, one tracer, and the frames they make: into memory, in the background, into windows. The safe
+//! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
+//! to the target, and nothing of C.
 
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
@@ -326,8 +327,8 @@ impl Renderer {
         }
     }
 
-    /// Opens the device anew after it was lost, on the adapter it was on if that is still there; the scene stays. Jobs that were
-    /// ordered before fail, surfaces are lost.
+    /// Opens the device anew after it was lost, on the adapter it was on if that is still there; the scene stays. Jobs
+    /// that were ordered before fail, surfaces are lost.
     pub fn recover(&mut self) -> Result<()> {
         gpu::forget_drivers();
         let tracer = self.reopen()?;
@@ -380,8 +381,8 @@ impl Renderer {
         destroyed.or_else(|error| if error.kind == ErrorKind::DeviceLost { Ok(()) } else { Err(error) })
     }
 
-    /// How often frames found pipelines missing, once those that are made in the background are there; for tests. `None` on the CPU
-    /// and on GL, where none are.
+    /// How often frames found pipelines missing, once those that are made in the background are there; for tests.
+    /// `None` on the CPU and on GL, where none are.
     #[doc(hidden)]
     pub fn settled_waits(&self) -> Option<gpu::KernelWaits> {
         match &*self.tracer.lock() {
@@ -411,8 +412,8 @@ impl Renderer {
         Ok(surface)
     }
 
-    /// Renders the scene into the surface's window. Errors: as `render`; INVALID_ARGUMENT for another renderer's surface; SURFACE_LOST;
-    /// DEVICE_LOST.
+    /// Renders the scene into the surface's window. Errors: as `render`; INVALID_ARGUMENT for another renderer's
+    /// surface; SURFACE_LOST; DEVICE_LOST.
     pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<Shown> {
         self.check_device()?;
         self.scene.observer()?;
@@ -431,8 +432,8 @@ impl Renderer {
         *self.stats.0.lock()
     }
 
-    /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a format that
-    /// does not go with the view.
+    /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a
+    /// format that does not go with the view.
     fn request(
         &self,
         format: PixelFormat,
@@ -462,7 +463,8 @@ impl Renderer {
         Ok(FrameRequest { width, height, region, format, transparent })
     }
 
-    /// A GPU's frames come out of its staging memory faster than one thread writes them; the CPU tracer's are what its threads wait for.
+    /// A GPU's frames come out of its staging memory faster than one thread writes them; the CPU tracer's are what its
+    /// threads wait for.
     fn help_to_write(&self, target: &mut ImageMut<'_>) {
         if !matches!(self.runs_on, RunsOn::Cpu) {
             target.write_with(self.copiers.clone());
@@ -472,8 +474,8 @@ impl Renderer {
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
-    /// INVALID_STATE where the camera's motion cannot be, for a cube of another shape, or for bloom with a region; CANCELLED when `progress` returns false (tiles not yet begun are
-    /// untouched); whatever the device reports.
+    /// INVALID_STATE where the camera's motion cannot be, for a cube of another shape, or for bloom with a region;
+    /// CANCELLED when `progress` returns false (tiles not yet begun are untouched); whatever the device reports.
     pub fn render(
         &mut self,
         target: &mut ImageMut<'_>,
@@ -537,11 +539,11 @@ impl Renderer {
         }
     }
 
-    /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target` is
-    /// written until the job has its outcome.
+    /// Orders a frame of the scene as it is now, to be rendered in the background, after the jobs before it. `target`
+    /// is written until the job has its outcome.
     ///
-    /// Errors: INVALID_ARGUMENT and INVALID_STATE as `render`; INVALID_STATE when too many jobs are unfinished; OUT_OF_MEMORY without
-    /// a thread; DEVICE_LOST.
+    /// Errors: INVALID_ARGUMENT and INVALID_STATE as `render`; INVALID_STATE when too many jobs are unfinished;
+    /// OUT_OF_MEMORY without a thread; DEVICE_LOST.
     pub fn render_in_background(
         &mut self,
         mut target: ImageMut<'static>,
@@ -559,8 +561,8 @@ impl Renderer {
         worker.order(Order::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
     }
 
-    /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for tests. On the GPU
-    /// the first four crossings of each.
+    /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for
+    /// tests. On the GPU the first four crossings of each.
     #[doc(hidden)]
     pub fn ray_records(&mut self, width: u32, height: u32) -> Result<Vec<Record>> {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
@@ -582,9 +584,9 @@ impl Renderer {
         }
     }
 
-    /// The curve a ray follows: x, y, z, t (scene axes and lengths; t <= 0, backward) per point, at most `capacity` (>= 2)
-    /// points, the last one its end. Always traced in f64 on the CPU.
-    /// Errors: INVALID_ARGUMENT for a ray that is not valid.
+    /// The curve a ray follows: x, y, z, t (scene axes and lengths; t <= 0, backward) per point, at most `capacity`
+    /// (>= 2) points, the last one its end. Always traced in f64 on the CPU. Errors: INVALID_ARGUMENT for a ray that
+    /// is not valid.
     pub fn trace_path(&self, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
         crate::cpu::trace_path(&self.scene, ray, capacity)
     }

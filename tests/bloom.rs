@@ -1,5 +1,5 @@
-//! Bloom in pictures, on both tracers: no light lost, no tile seen, nothing changed where none was asked for. Its shape is tested in
-//! src/film/bloom.rs. The GPU is whatever adapter comes first; without one the tests fail.
+//! Bloom in pictures, on both tracers: no light lost, no tile seen, nothing changed where none was asked for. Its
+//! shape is tested in src/film/bloom.rs. The GPU is whatever adapter comes first; without one the tests fail.
 
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
@@ -148,7 +148,8 @@ fn a_region_has_no_bloom() {
     }
 }
 
-/// Of pictures so dark that 8-bit codes are linear in light (below 0.0031), and codes right on average, thanks to the dither.
+/// Of pictures so dark that 8-bit codes are linear in light (below 0.0031), and codes right on average, thanks to the
+/// dither.
 #[test]
 fn no_light_is_lost_on_its_way_to_pixels() {
     let size = [640, 360];

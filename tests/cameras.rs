@@ -1,5 +1,6 @@
-//! Projections: the faces of the cube against perspective views, fisheye and equirectangular frames against perspective ones that look
-//! the same way, the GPU's pictures against the CPU's, tiles against the whole, and what lies outside a fisheye's circle.
+//! Projections: the faces of the cube against perspective views, fisheye and equirectangular frames against
+//! perspective ones that look the same way, the GPU's pictures against the CPU's, tiles against the whole, and what
+//! lies outside a fisheye's circle.
 
 #[allow(dead_code, reason = "shared with tests that need more of it")]
 mod frames;
@@ -16,7 +17,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const WAYS: [(f64, LensTables); 4] =
     [(0.0, LensTables::Always), (0.0, LensTables::Never), (0.9, LensTables::Always), (0.9, LensTables::Never)];
 
-/// One of them with spin, one without: of what they have little part in. (A kernel takes lavapipe half a second to compile.)
+/// One of them with spin, one without: of what they have little part in. (A kernel takes lavapipe half a second to
+/// compile.)
 const TWO_WAYS: [(f64, LensTables); 2] = [WAYS[1], WAYS[2]];
 
 /// A camera that has the hole beside, not before it, its axes no axes of the scene.
@@ -88,8 +90,8 @@ fn faces_of_the_cube_are_perspective_views() {
                     let alone = floats(&picture(&mut renderer, format, [SIDE, SIDE], None, false));
                     let found = face(&cube, i, side, words);
                     for (pixel, (a, b)) in found.chunks_exact(words).zip(alone.chunks_exact(words)).enumerate() {
-                        // Derivatives of traced pixels, of which Kerr tables leave some, are one-sided at the border of a face, and
-                        // light of the sky goes by them.
+                        // Derivatives of traced pixels, of which Kerr tables leave some, are one-sided at the border
+                        // of a face, and light of the sky goes by them.
                         let border = [0, side - 1].contains(&(pixel % side));
                         if view == View::Light && way != (0.0, LensTables::Always) && border {
                             continue;
@@ -190,8 +192,8 @@ fn tiles_of_every_projection_join() {
     }
 }
 
-/// Whole small frames of a smooth disk; and with turbulence, by samples, a part of a large frame with the shadow's edge, because tables of
-/// spinning holes are for frames that large.
+/// Whole small frames of a smooth disk; and with turbulence, by samples, a part of a large frame with the shadow's
+/// edge, because tables of spinning holes are for frames that large.
 #[test]
 fn gpu_and_cpu_pictures_of_every_projection_agree() {
     let mut renderers = both();
@@ -218,8 +220,8 @@ fn gpu_and_cpu_pictures_of_every_projection_agree() {
                 let differ = differing(&cpu, &gpu);
                 let pixels = (size[0] * size[1]) as usize;
                 println!("{projection:?}, {way:?}, {region:?}: {differ} of {pixels} pixels differ");
-                // The part is full of the shadow's edge, where the turbulence of integrated samples is filtered otherwise; of the whole frame
-                // it is a hundredth.
+                // The part is full of the shadow's edge, where the turbulence of integrated samples is filtered
+                // otherwise; of the whole frame it is a hundredth.
                 let limit = if region.is_some() { 3 } else { 1 };
                 assert!(differ * 1000 <= limit * pixels, "{projection:?}, {way:?}, {region:?}: {differ} differ");
                 assert!(cpu.chunks_exact(4).filter(|p| p[0] > 8).count() > 20, "{projection:?} is dark");
@@ -228,7 +230,8 @@ fn gpu_and_cpu_pictures_of_every_projection_agree() {
     }
 }
 
-/// Largest difference of the directions in which both tracers see the sky of a hole too far to bend light: of their looks.
+/// Largest difference of the directions in which both tracers see the sky of a hole too far to bend light: of their
+/// looks.
 #[test]
 fn looks_in_single_precision() {
     let mut renderers = both();
@@ -325,8 +328,8 @@ fn basis(v: DVec3) -> DMat3 {
     DMat3::from_cols(v, across, v.cross(across))
 }
 
-/// Sirius, with no other bright star near, is brought to places on and beside the borders of faces: what each face draws of it sums up
-/// to what one face draws of it in its middle.
+/// Sirius, with no other bright star near, is brought to places on and beside the borders of faces: what each face
+/// draws of it sums up to what one face draws of it in its middle.
 #[test]
 fn stars_keep_their_light_across_the_borders_of_faces() {
     const SIDE: u32 = 128;

@@ -1,4 +1,5 @@
-//! Random scenes at the ends of every range: no NaN where a number is promised, no endless loop, no lost device, on both tracers.
+//! Random scenes at the ends of every range: no NaN where a number is promised, no endless loop, no lost device, on
+//! both tracers.
 
 mod random;
 
@@ -128,8 +129,8 @@ fn frames_at_the_extremes() {
     }
 }
 
-/// BHR_EXTREME_SCENES frames of 101 x 99 rays (cubes: fewer), most of them looked up: the middle one is exactly radial where the camera looks at the hole or
-/// away from it.
+/// BHR_EXTREME_SCENES frames of 101 x 99 rays (cubes: fewer), most of them looked up: the middle one is exactly radial
+/// where the camera looks at the hole or away from it.
 #[test]
 fn table_frames_at_the_extremes() {
     let mut random = Random(13);

@@ -77,7 +77,7 @@ fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     let mut renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
     set(&mut renderer.scene);
-    // What is made ahead is no frame's.
+    // Pipelines that are made ahead belong to no frame.
     renderer.settled_waits();
     let format = match renderer.scene.view {
         View::Light => PixelFormat::Rgba8Srgb,
@@ -85,7 +85,8 @@ fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     };
     let mut pixels = vec![0; (size[0] * size[1]) as usize * format.bytes_per_pixel()];
     let mut frame = |i: u32| {
-        // Lavapipe stops to compile anew after a frame where zeros in uniforms make the kernel smaller: not a look straight at the hole.
+        // Lavapipe stops to compile anew after a frame where zeros in uniforms make the kernel smaller: not a look
+        // straight at the hole.
         let camera = &mut renderer.scene.camera;
         (camera.position.x, camera.forward.x) = (0.01 * f64::from(i + 1), 1.0);
         let mut image = ImageMut::new(Layout::packed(format, size[0], size[1]), &mut pixels).unwrap();

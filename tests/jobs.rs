@@ -1,5 +1,5 @@
-//! Frames in the background: they equal frames that were waited for, end in their order, and end however they are left. On whatever
-//! adapter comes first (lavapipe counts), and on the CPU tracer.
+//! Frames in the background: they equal frames that were waited for, end in their order, and end however they are
+//! left. On whatever adapter comes first (lavapipe counts), and on the CPU tracer.
 
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};

@@ -1,6 +1,5 @@
-//! Pipelines are there before a frame needs them: frames list all that they run, `prepare` leaves nothing to wait
-//! for, and what is a
-//! host's likely next change is made in the background.
+//! Pipelines are there before a frame needs them: frames list all that they run, `prepare` leaves nothing to wait for,
+//! and what is a host's likely next change is made in the background.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};

@@ -1,6 +1,7 @@
-//! The lens tables against integration: records of random eyes, their footprints, and scan lines without a seam, on both tracers.
-//! Truth is `physics::trace` in f64 with small steps; it knows nothing of tables. Where a tracer integrates every ray itself, it is
-//! held to the same bars. The GPU is whatever adapter comes first; without one the tests fail.
+//! The lens tables against integration: records of random eyes, their footprints, and scan lines without a seam, on
+//! both tracers. Truth is `physics::trace` in f64 with small steps; it knows nothing of tables. Where a tracer
+//! integrates every ray itself, it is held to the same bars. The GPU is whatever adapter comes first; without one the
+//! tests fail.
 
 mod random;
 
@@ -138,7 +139,8 @@ impl<'a> Truth<'a> {
         })
     }
 
-    /// How strongly what `here` sees changes with the look direction: differences over an angle so small that they are linear.
+    /// How strongly what `here` sees changes with the look direction: differences over an angle so small that they are
+    /// linear.
     fn conditioning(&self, look: DVec3, here: &Sight) -> Conditioning {
         let (right, up) = around(look);
         for h in [1e-6, 1e-7, 1e-8, 1e-9, 1e-10] {
@@ -235,7 +237,8 @@ impl Errors {
     }
 }
 
-/// A random eye: r to 1000 M, one in three falling (to the horizon, and inside it without spin), one in three without spin.
+/// A random eye: r to 1000 M, one in three falling (to the horizon, and inside it without spin), one in three without
+/// spin.
 fn random_eye(random: &mut Random, index: usize) -> Scene {
     let mut scene = Scene::default();
     let any_spin = random.range(-0.998, 0.998);
@@ -290,7 +293,8 @@ fn turn(scene: &mut Scene, forward: DVec3, random: &mut Random, fov_y: f64) {
     scene.camera = Camera { position, motion, velocity, ..looking(forward, random, fov_y) };
 }
 
-/// A random direction (chart) on the shadow's edge as the scene's camera sees it; `None` where looking at the hole captures no ray.
+/// A random direction (chart) on the shadow's edge as the scene's camera sees it; `None` where looking at the hole
+/// captures no ray.
 fn shadow_edge(scene: &Scene, random: &mut Random) -> Option<DVec3> {
     let truth = Truth::new(scene, 1, 1);
     let observer = truth.lens.observer;
@@ -307,8 +311,8 @@ fn shadow_edge(scene: &Scene, random: &mut Random) -> Option<DVec3> {
     Some(observer.frame.vector(light))
 }
 
-/// Points the camera: in half of the frames at the shadow's edge, closely; else at the hole and its surroundings, or anywhere, with fields of
-/// 1 to 170 degrees.
+/// Points the camera: in half of the frames at the shadow's edge, closely; else at the hole and its surroundings, or
+/// anywhere, with fields of 1 to 170 degrees.
 fn aim(scene: &mut Scene, random: &mut Random) {
     let edge = shadow_edge(scene, random);
     let (wide, narrow) = (random.range(1.0, 170.0).to_radians(), random.log_range(1e-4, 0.1));
@@ -377,8 +381,9 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Whether rounding alone may decide what becomes of the ray: |b / b_c - 1| < 1e-6 (1e-5 where it is integrated at the step of
-    /// pixels), or, in f32, a look direction less than three roundings from the edge; with spin 2e-6 of the look direction.
+    /// Whether rounding alone may decide what becomes of the ray: |b / b_c - 1| < 1e-6 (1e-5 where it is integrated at
+    /// the step of pixels), or, in f32, a look direction less than three roundings from the edge; with spin 2e-6 of
+    /// the look direction.
     fn at_critical(&self, look: DVec3, here: &Sight, record: &Record) -> bool {
         if here.from_critical < if record.steps > 0 { 1e-5 } else { 1e-6 } {
             return true;
@@ -488,8 +493,9 @@ fn records_agree_with_integration() {
     fail_if_any(failures);
 }
 
-/// Changes to the next pixel against true differences over 1e-3 pixel. Tables know the derivative; a tracer that integrates takes the
-/// difference to its neighbours: it is held to fine pixels, of less than 1 / 150 of the shadow's angle, away from edges.
+/// Changes to the next pixel against true differences over 1e-3 pixel. Tables know the derivative; a tracer that
+/// integrates takes the difference to its neighbours: it is held to fine pixels, of less than 1 / 150 of the shadow's
+/// angle, away from edges.
 #[test]
 fn footprints_agree_with_differences() {
     let (width, height) = (24, 16);
@@ -645,7 +651,8 @@ fn steps(wrong: &Wrong) -> Vec<(f64, usize)> {
     along(wrong, 2 * WINDOW, |run| mean(&run[WINDOW..]) - mean(&run[..WINDOW]))
 }
 
-/// The checkers themselves: rounding alone passes, and 0.005 pixel more from some sample on, or 0.01 pixel in one, does not.
+/// The checkers themselves: rounding alone passes, and 0.005 pixel more from some sample on, or 0.01 pixel in one,
+/// does not.
 #[test]
 fn a_step_would_be_seen() {
     let mut random = Random(31);
@@ -663,8 +670,8 @@ fn a_step_would_be_seen() {
     }
 }
 
-/// Directions (chart) in whose middle scan lines lie, and the lines' widths, rad: four that go round the sky through the hole's direction,
-/// two across the shadow's edge, one anywhere.
+/// Directions (chart) in whose middle scan lines lie, and the lines' widths, rad: four that go round the sky through
+/// the hole's direction, two across the shadow's edge, one anywhere.
 fn scan_lines(scene: &Scene, random: &mut Random) -> Vec<(DVec3, DVec3, f64)> {
     let observer = scene.observer().unwrap();
     let inward = Observer::moving(observer.frame, -observer.beta).look(DVec3::NEG_X).0;
@@ -750,8 +757,8 @@ fn no_seam() {
     fail_if_any(failures);
 }
 
-/// Axes that go with the true sky direction along a scan line: the way it moves, across, and outward. In them an error that changes
-/// slowly is one, however fast the sky turns beside the critical curve.
+/// Axes that go with the true sky direction along a scan line: the way it moves, across, and outward. In them an error
+/// that changes slowly is one, however fast the sky turns beside the critical curve.
 fn sky_path(rays: &[TrueRay], i: usize) -> Option<DMat3> {
     let [before, here, after] =
         [i.wrapping_sub(1), i, i + 1].map(|k| rays.get(k).filter(|r| r.1.fate == Fate::Escaped));

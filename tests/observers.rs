@@ -1,5 +1,5 @@
-//! What falling and fast observers see, against integrals and formulas that share nothing with the tracers: the sky from inside the
-//! horizon, the shadow's size, aberration and Doppler shift at 0.999 c.
+//! What falling and fast observers see, against integrals and formulas that share nothing with the tracers: the sky
+//! from inside the horizon, the shadow's size, aberration and Doppler shift at 0.999 c.
 
 #[allow(dead_code, reason = "shared with tests that need more of it")]
 mod frames;
@@ -42,13 +42,14 @@ fn hits(renderer: &mut Renderer, rays: &[Ray]) -> Vec<Hit> {
     hits
 }
 
-/// E of light that the falling observer at `r` sees from `n`, its frequency there being 1: 1 + sqrt(2 / r) n_r (rain coordinates).
+/// E of light that the falling observer at `r` sees from `n`, its frequency there being 1: 1 + sqrt(2 / r) n_r (rain
+/// coordinates).
 fn energy(r: f64, n_r: f64) -> f64 {
     1.0 + (2.0 / r).sqrt() * n_r
 }
 
-/// The orbit's angle from infinity to 1 / r for impact parameter b: integral of b du / sqrt(1 - b^2 u^2 (1 - 2 u)) from 0 (Darwin 1959),
-/// by Simpson's rule in t, u = sinh(t) / 3.
+/// The orbit's angle from infinity to 1 / r for impact parameter b: integral of b du / sqrt(1 - b^2 u^2 (1 - 2 u))
+/// from 0 (Darwin 1959), by Simpson's rule in t, u = sinh(t) / 3.
 fn swept(r: f64, b: f64) -> f64 {
     const INTERVALS: usize = 4000;
     let step = (3.0 / r).asinh() / INTERVALS as f64;
@@ -246,8 +247,8 @@ fn the_shadow_of_a_fall_has_the_closed_forms_size() {
     }
 }
 
-/// Aberration and Doppler shift from the angles to the velocity (Einstein 1905): cos' = (cos + beta) / (1 + beta cos) of what the
-/// observer at rest sees at cos, and nu' / nu = gamma (1 + beta cos).
+/// Aberration and Doppler shift from the angles to the velocity (Einstein 1905): cos' = (cos + beta) / (1 + beta cos)
+/// of what the observer at rest sees at cos, and nu' / nu = gamma (1 + beta cos).
 #[test]
 fn a_fast_camera_sees_what_one_at_rest_does_aberrated() {
     let size = [48, 24];

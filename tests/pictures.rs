@@ -1,5 +1,5 @@
-//! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against theory.
-//! The GPU is whatever adapter comes first; without one the tests fail.
+//! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against
+//! theory. The GPU is whatever adapter comes first; without one the tests fail.
 
 mod frames;
 
@@ -147,7 +147,8 @@ fn gpu_and_cpu_pictures_agree() {
     }
 }
 
-/// OpenGL ES and OpenGL translate the shaders by themselves, through other paths of wgpu: Mesa's software GL stands for them.
+/// OpenGL ES and OpenGL translate the shaders by themselves, through other paths of wgpu: Mesa's software GL stands
+/// for them.
 #[test]
 fn gl_and_cpu_pictures_agree() {
     let size = [96, 54];
@@ -211,8 +212,8 @@ fn tiles_and_repetitions_give_the_same_bytes() {
     }
 }
 
-/// Frames whose rays are looked up: their bytes are the same with tables made afresh, used again, and filled for other eyes in
-/// between; tile by tile; and in every frame of an eye that moves there and back.
+/// Frames whose rays are looked up: their bytes are the same with tables made afresh, used again, and filled for other
+/// eyes in between; tile by tile; and in every frame of an eye that moves there and back.
 #[test]
 fn tables_give_the_same_bytes() {
     let format = PixelFormat::Rgba8Srgb;
@@ -293,8 +294,8 @@ fn pixels_put_by_rows_are_the_same_bytes() {
     assert!(deferred > 0, "no pixel was put singly");
 }
 
-/// A frame cut into tiles equals one that is not: at 308 bytes for a traced pixel with all its crossings, one tile holds less than 0.7 of
-/// the 0.77 million pixels.
+/// A frame cut into tiles equals one that is not: at 308 bytes for a traced pixel with all its crossings, one tile
+/// holds less than 0.7 of the 0.77 million pixels.
 #[test]
 fn large_frames_equal_their_parts() {
     let mut renderer = gpu();
@@ -319,8 +320,8 @@ fn silhouette(renderer: &mut Renderer, size: [u32; 2]) -> Vec<bool> {
     pixels.chunks_exact(4).map(|p| p[3] >= 128).collect()
 }
 
-/// Every pixel whose centre lies more than half a pixel inside Synge's (aberrated) circle is dark, every one more than half a
-/// pixel outside is not.
+/// Every pixel whose centre lies more than half a pixel inside Synge's (aberrated) circle is dark, every one more than
+/// half a pixel outside is not.
 #[test]
 fn spin_zero_shadow_is_synges_circle() {
     let size = [200, 200];

@@ -1,6 +1,6 @@
-//! A GPU device that is really destroyed under a running context: every call that needs it says so until the context is recovered,
-//! and the scene comes back. Through the C API. Needs a Vulkan and a GL adapter (Mesa's software drivers will do); the
-//! tests with a window need an X server too and are run by tests/windows/run.
+//! A GPU device that is really destroyed under a running context: every call that needs it says so until the context
+//! is recovered, and the scene comes back. Through the C API. Needs a Vulkan and a GL adapter (Mesa's software drivers
+//! will do); the tests with a window need an X server too and are run by tests/windows/run.
 #![cfg(target_os = "linux")]
 
 use bhr::capi::adapter::*;
@@ -25,7 +25,8 @@ use x11rb::xcb_ffi::XCBConnection;
 const SIZE: [u16; 2] = [160, 90];
 const BYTES: usize = SIZE[0] as usize * SIZE[1] as usize * 4;
 
-/// A context on a GPU, with a scene of its own. The calls on it are safe: it lives as long as this does, and all else is of the test's.
+/// A context on a GPU, with a scene of its own. The calls on it are safe: it lives as long as this does, and all else
+/// is of the test's.
 struct Context(*mut BhrContext);
 
 impl Context {

@@ -1,5 +1,5 @@
-//! Edges and thin rings: each pixel against the mean of many rays through it, rings without gaps, and steady while the camera turns by
-//! parts of a pixel. On both tracers; the GPU is whatever adapter comes first.
+//! Edges and thin rings: each pixel against the mean of many rays through it, rings without gaps, and steady while the
+//! camera turns by parts of a pixel. On both tracers; the GPU is whatever adapter comes first.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
@@ -168,7 +168,8 @@ fn rings_are_steady_while_the_camera_turns() {
     }
 }
 
-/// Share of the pixels at edges whose light is not within 2 % of the greatest of what a finer frame has there, and the worst.
+/// Share of the pixels at edges whose light is not within 2 % of the greatest of what a finer frame has there, and the
+/// worst.
 fn edge_errors(seen: &Window, truth: &Window) -> (usize, f64, f64) {
     let full = truth.light.iter().copied().fold(0.0, f64::max);
     let (mut edges, mut off, mut worst) = (0, 0, 0.0_f64);

@@ -1,5 +1,5 @@
-//! The sky in pictures: the Milky Way, the host's map and the grid on both tracers, what the lens does to them, and where they are.
-//! The GPU is whatever adapter comes first; without one the tests fail.
+//! The sky in pictures: the Milky Way, the host's map and the grid on both tracers, what the lens does to them, and
+//! where they are. The GPU is whatever adapter comes first; without one the tests fail.
 
 use bhr::image::{ImageMut, ImageRef, Layout, PixelFormat};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
@@ -148,7 +148,8 @@ fn lensed_radiance_is_that_of_the_map() {
     }
 }
 
-/// A spot of the map is where the documented formula and the orientation put it, as large as it is, and right of what has more right ascension.
+/// A spot of the map is where the documented formula and the orientation put it, as large as it is, and right of what
+/// has more right ascension.
 #[test]
 fn the_orientation_turns_the_map_as_documented() {
     // One bright texel in a dark map, at right ascension 90 and declination 30.

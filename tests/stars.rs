@@ -1,5 +1,6 @@
-//! Stars in whole frames, CPU and GPU: their light against the lens equation, image by image; its steadiness while the camera turns; their places;
-//! tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the tests fail.
+//! Stars in whole frames, CPU and GPU: their light against the lens equation, image by image; its steadiness while the
+//! camera turns; their places; tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the
+//! tests fail.
 
 mod frames;
 mod random;
@@ -117,9 +118,9 @@ fn centre(i: usize, size: [u32; 2]) -> DVec2 {
 
 // ---- the lens equation of a hole without spin ----
 
-/// Azimuth that light from infinity runs through about the hole to the eye at r, coming in past the hole at its least distance 1/u_p:
-/// phi = int du / sqrt(1/b^2 - u^2 + 2 u^3), 1/b^2 = u_p^2 - 2 u_p^3 (Darwin 1959), from 0 to u_p and from 1/r to u_p; with u = u_p (1 - s^2)
-/// the square root's zero is divided out. By Simpson's rule.
+/// Azimuth that light from infinity runs through about the hole to the eye at r, coming in past the hole at its least
+/// distance 1/u_p: phi = int du / sqrt(1/b^2 - u^2 + 2 u^3), 1/b^2 = u_p^2 - 2 u_p^3 (Darwin 1959), from 0 to u_p and
+/// from 1/r to u_p; with u = u_p (1 - s^2) the square root's zero is divided out. By Simpson's rule.
 fn swept(u_p: f64, r: f64) -> f64 {
     let leg = |from: f64| {
         let end = (1.0 - from / u_p).max(0.0).sqrt();
@@ -155,8 +156,8 @@ struct Image {
     magnification: f64,
 }
 
-/// Image 0 is the primary one, 1 the secondary one on the other side of the hole; from 2 on light goes about the hole once and more.
-/// Magnification: (sin psi / sin beta) |d psi / d beta|, the quotient of solid angles.
+/// Image 0 is the primary one, 1 the secondary one on the other side of the hole; from 2 on light goes about the hole
+/// once and more. Magnification: (sin psi / sin beta) |d psi / d beta|, the quotient of solid angles.
 fn image(order: u32, beta: f64, r: f64) -> Image {
     let opposite = order % 2 == 1;
     let phi = |beta: f64| match opposite {
@@ -246,7 +247,8 @@ fn given(stars: &[Lensed]) -> Option<Arc<StarIndex>> {
     Some(Arc::new(StarIndex::new(stars.iter().map(|lensed| lensed.star)).unwrap()))
 }
 
-/// Stars at several distances from the line through the hole, those near it in the Einstein ring; turned about it so that their images stay apart.
+/// Stars at several distances from the line through the hole, those near it in the Einstein ring; turned about it so
+/// that their images stay apart.
 fn isolated_stars() -> Vec<Lensed> {
     let betas = [0.015, 0.02, 0.03, 0.05, 0.07, 0.1, 0.14, 0.18, 0.22, 0.26, 0.3, 0.34, 0.38];
     betas.iter().zip(0..).map(|(&beta, i)| Lensed::new(beta, 0.4 + 2.399_963 * f64::from(i), 0.2, 2)).collect()
@@ -309,7 +311,8 @@ fn higher_images_have_the_flux_that_the_lens_equation_gives() {
     }
 }
 
-/// All images of a kind together: primary ones are outside the Einstein ring, secondary ones (with what is left to higher orders) inside.
+/// All images of a kind together: primary ones are outside the Einstein ring, secondary ones (with what is left to
+/// higher orders) inside.
 #[test]
 fn a_field_has_the_flux_that_the_lens_equation_gives() {
     let size = [900, 900];
@@ -392,8 +395,9 @@ fn each_star_is_steady_while_the_camera_turns() {
     }
 }
 
-/// Windows with soft edges that stay in their places of the sky, in the catalogue's and in a procedural sky: at the edge of the shadow, where the lens
-/// squeezes the sky and stars fade into their mean light; at the Einstein ring; far from the hole.
+/// Windows with soft edges that stay in their places of the sky, in the catalogue's and in a procedural sky: at the
+/// edge of the shadow, where the lens squeezes the sky and stars fade into their mean light; at the Einstein ring; far
+/// from the hole.
 #[test]
 fn nothing_sparkles_while_the_camera_turns() {
     let size = [640, 360];
@@ -516,7 +520,8 @@ fn procedural_pictures_agree() {
     }
 }
 
-/// Over the whole sky, at every size of pixels: stars, and stars that have faded into their mean. And they crowd towards the Milky Way.
+/// Over the whole sky, at every size of pixels: stars, and stars that have faded into their mean. And they crowd
+/// towards the Milky Way.
 #[test]
 fn procedural_light_is_that_of_all_its_stars() {
     let mut renderer = cpu();

@@ -1,5 +1,5 @@
-//! Several samples a pixel, on the disk's outer edge, on both tracers: they converge, the edge is as sharp as the filter, and fine
-//! structure does not alias. How samples are placed is tested in src/scene/frame.rs.
+//! Several samples a pixel, on the disk's outer edge, on both tracers: they converge, the edge is as sharp as the
+//! filter, and fine structure does not alias. How samples are placed is tested in src/scene/frame.rs.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};

@@ -231,10 +231,11 @@ pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
     unsafe { on_context("lose_device", context, |state| state.renderer.lose_device()) }
 }
 
-/// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then
-/// frees it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its jobs must still be destroyed, before or after. NULL is a
-/// no-op. No callback runs after it has returned. No other thread may begin a call on it any more. From inside a
-/// callback it does nothing, as the context is in use: bhr_error_message then says so.
+/// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then frees
+/// it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its
+/// jobs must still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other
+/// thread may begin a call on it any more. From inside a callback it does nothing, as the context is in use:
+/// bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";

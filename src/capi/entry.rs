@@ -262,7 +262,7 @@ mod tests {
         assert_eq!(call(|_| Ok(())), BHR_ERROR_INTERNAL);
     }
 
-    /// What would unwind after a panic of wgpu's, and panic again.
+    /// Stands for an object of wgpu's that panics again when a panic unwinds through it.
     struct PanicsWhenDropped;
 
     impl Drop for PanicsWhenDropped {

@@ -9,9 +9,8 @@ use crate::error::{Error, ErrorKind};
 use std::ffi::c_void;
 
 /// Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
-/// the frame is complete and the answer is ignored. Runs
-/// inside a bhr_ call only, on the calling thread. It must not throw, unwind or longjmp; calls on a context from
-/// inside it return BHR_ERROR_INVALID_STATE.
+/// the frame is complete and the answer is ignored. Runs inside a bhr_ call only, on the calling thread. It must not
+/// throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
 pub type BhrProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// The host's progress callback with its argument.

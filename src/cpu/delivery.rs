@@ -1,5 +1,5 @@
-//! How the tiles of a frame go to the sink: each as soon as it has its light, or, with bloom, once all have theirs, as every pixel
-//! gets a little of every other's. Knows neither how light is made nor host memory.
+//! How the tiles of a frame go to the sink: each as soon as it has its light, or, with bloom, once all have theirs, as
+//! every pixel gets a little of every other's. Knows neither how light is made nor host memory.
 
 use super::frame::Frame;
 use crate::allocate::{collected, filled, with_room};
@@ -50,7 +50,8 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         Ok(())
     }
 
-    /// With bloom. `keep`: whether light is kept; `None`: as its size allows. Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
+    /// With bloom. `keep`: whether light is kept; `None`: as its size allows. Errors: those of the sink; CANCELLED;
+    /// OUT_OF_MEMORY.
     pub fn with_glare(&mut self, tiles: &[Tile], bloom: &Bloom, keep: Option<bool>) -> Result<()> {
         let [width, height] = bloom.frame.map(|side| side as usize);
         let keep = keep.unwrap_or((width * height) as u64 * LIGHT_BYTES <= LIGHT_MEMORY);

@@ -1,5 +1,5 @@
-//! A frame on the CPU: tile by tile, sample by sample; rows of a tile in parallel. Knows no host memory: finished tiles go to
-//! the sink.
+//! A frame on the CPU: tile by tile, sample by sample; rows of a tile in parallel. Knows no host memory: finished
+//! tiles go to the sink.
 
 use super::CpuTracer;
 use super::delivery::Delivery;
@@ -20,8 +20,8 @@ use crate::sky::StarIndex;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for prompt
-/// progress, large enough to keep every core busy.
+/// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for
+/// prompt progress, large enough to keep every core busy.
 const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
@@ -68,7 +68,8 @@ impl CpuTracer {
 }
 
 impl CpuTracer {
-    /// Makes all that frames of the scene like this one need, its sky and its lens, and keeps it. Errors: as `Renderer::render`.
+    /// Makes all that frames of the scene like this one need, its sky and its lens, and keeps it. Errors: as
+    /// `Renderer::render`.
     pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();
@@ -160,8 +161,8 @@ impl<'a> Frame<'a> {
         })
     }
 
-    /// Calls `take` with the record of each pixel of `tile` (the first one's ray passing through `origin` of the full frame), its
-    /// place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
+    /// Calls `take` with the record of each pixel of `tile` (the first one's ray passing through `origin` of the full
+    /// frame), its place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
     fn with_records<T: Send>(
         &self,
         tile: Tile,

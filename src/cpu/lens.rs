@@ -1,6 +1,6 @@
-//! Ray records of pixels, looked up in tables of the eye's lens (`physics::lens`), and the tables themselves, built in parallel
-//! and kept while what they depend on stays. Records and their footprints are as `record` makes them by tracing. Mirrored by
-//! `shaders/lens_schwarzschild_record.wgsl`. Knows no shading.
+//! Ray records of pixels, looked up in tables of the eye's lens (`physics::lens`), and the tables themselves, built in
+//! parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them by
+//! tracing. Mirrored by `shaders/lens_schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
 use crate::allocate::{filled, with_room};
@@ -23,7 +23,8 @@ use std::ops::Range;
 /// Relative difference of u of crossings up to which the footprint of one serves for the other.
 const LIKE: f64 = 1e-2;
 
-/// All but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast as so many rays are traced.
+/// All but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast as so many rays are
+/// traced.
 const KERR_RESOLUTION: kerr::Resolution = kerr::Resolution { chi_nodes: 256, nodes_per_octave: [16; 2] };
 
 /// The tables of the last frame that looked rays up in some.
@@ -51,8 +52,8 @@ pub enum Tables<'a> {
 }
 
 impl LensCache {
-    /// The tables for `lensing` by the eye at `frame`, built on the current pool unless they are those of before. `None`: rays are to
-    /// be traced. Errors: OUT_OF_MEMORY.
+    /// The tables for `lensing` by the eye at `frame`, built on the current pool unless they are those of before.
+    /// `None`: rays are to be traced. Errors: OUT_OF_MEMORY.
     pub fn tables(&mut self, scene: &Scene, frame: &LocalFrame, lensing: Lensing) -> Result<Option<Tables<'_>>> {
         Ok(match lensing {
             Lensing::Traced => None,
@@ -143,7 +144,8 @@ pub struct LookedUp<'a> {
     pattern: bool,
 }
 
-/// A pixel's look direction in the local frame, its changes to the next pixel right and down, and nu(camera) / nu(local frame).
+/// A pixel's look direction in the local frame, its changes to the next pixel right and down, and nu(camera) /
+/// nu(local frame).
 struct Seen {
     n: DVec3,
     changes: [DVec3; 2],

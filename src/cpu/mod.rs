@@ -1,5 +1,5 @@
-//! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the GPU tracer
-//! is held against. Calls `physics`; knows no pixel memory and nothing of C.
+//! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the
+//! GPU tracer is held against. Calls `physics`; knows no pixel memory and nothing of C.
 
 mod delivery;
 mod frame;
@@ -44,8 +44,8 @@ pub fn adapter_info() -> AdapterInfo {
 }
 
 impl CpuTracer {
-    /// `threads` 0: one per core this process may use. Errors: INVALID_ARGUMENT for too many, OUT_OF_MEMORY when the system
-    /// gives no threads.
+    /// `threads` 0: one per core this process may use. Errors: INVALID_ARGUMENT for too many, OUT_OF_MEMORY when the
+    /// system gives no threads.
     pub fn new(threads: u32) -> Result<Self> {
         if threads > MAX_THREADS {
             return Err(Error::argument(format!("cpu_threads is {threads}; the limit is {MAX_THREADS}")));

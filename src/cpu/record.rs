@@ -32,7 +32,8 @@ impl<'a> Recorder<'a> {
         Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
     }
 
-    /// Which gives crossings of the whole plane, unless there is no disk, and goes on behind those that would hide the rest.
+    /// Which gives crossings of the whole plane, unless there is no disk, and goes on behind those that would hide the
+    /// rest.
     pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
         let mut recorder = Self::new(scene, lens);
         recorder.settings.opaque_u = None;
@@ -107,8 +108,8 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// Neighbours' rays that meet other things, or the same inside the disk's edge and not outside: two that miss a thin ring, each on
-/// its side, differ, too.
+/// Neighbours' rays that meet other things, or the same inside the disk's edge and not outside: two that miss a thin
+/// ring, each on its side, differ, too.
 fn edge_between(here: &Record, there: &Record) -> Edge {
     let orders = |record: &Record| record.crossings.iter().fold(0u32, |bits, c| bits | 1 << (c.order & 31));
     if here.fate != there.fate && here.fate != Fate::Hidden && there.fate != Fate::Hidden {

@@ -1,5 +1,5 @@
-//! The second look at a pixel that edges run through: more rays, on edges of the disk its cover of each one's cell, and their mean light.
-//! Mirrored by shaders/refine.wgsl; `scene::refine` has the rules. Knows no film.
+//! The second look at a pixel that edges run through: more rays, on edges of the disk its cover of each one's cell,
+//! and their mean light. Mirrored by shaders/refine.wgsl; `scene::refine` has the rules. Knows no film.
 
 use super::frame::Source;
 use super::shade::Shader;
@@ -29,8 +29,8 @@ impl<'a> Refiner<'a> {
         Self { plane, disk_u: scene.disk_u(), opaque, lens, shadow: shadow_centre(&lens.observer.frame) }
     }
 
-    /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`: nothing runs
-    /// through it.
+    /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`:
+    /// nothing runs through it.
     pub fn light(&self, shader: &Shader<'_>, source: &Source<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
         let smooth = match here.edge {
             Edge::None => return None,
@@ -100,7 +100,8 @@ fn place_about(at: [f64; 2], place: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| at[i] + place[i] - 0.5)
 }
 
-/// The record of the sample at a place. A traced one's footprints are those of the pixel's own record `here`, where that has any.
+/// The record of the sample at a place. A traced one's footprints are those of the pixel's own record `here`, where
+/// that has any.
 fn sample(source: &Source<'_>, here: &Record, [x, y]: [f64; 2]) -> Record {
     match source {
         Source::LookedUp(lookup) => {

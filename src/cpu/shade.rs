@@ -1,5 +1,5 @@
-//! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and `shaders/disk.wgsl`. How the records were
-//! made it does not know.
+//! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and
+//! `shaders/disk.wgsl`. How the records were made it does not know.
 
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
@@ -130,7 +130,8 @@ impl<'a> Shader<'a> {
     fn sky_light(&self, here: &Record) -> [f64; 3] {
         let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
-        // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings them back too.
+        // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings
+        // them back too.
         let tangent = |change: DVec3| change - d * d.dot(change);
         let [dx, dy] = here.footprint.map(|change| match change == UNKNOWN_DIRECTION {
             true => change,

@@ -1,21 +1,24 @@
-//! Bloom: the glare that scattered light makes around what is bright. Which share of a frame's light goes how far, the grids that spread
-//! it, and the CPU's way of doing so; `shaders/bloom*.wgsl` and `src/gpu/bloom.rs` do the same with these numbers. Works on exposed
-//! light ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how it was made, or of pixels of 8 bits.
+//! Bloom: the glare that scattered light makes around what is bright. Which share of a frame's light goes how far, the
+//! grids that spread it, and the CPU's way of doing so; `shaders/bloom*.wgsl` and `src/gpu/bloom.rs` do the same with
+//! these numbers. Works on exposed light ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows
+//! nothing of how it was made, or of pixels of 8 bits.
 //!
-//! What it shows: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1,
-//! K(r) ~ (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height.
-//! These are the wings of light scattered in the eye: 10 / theta^3 + 10 / theta^2 in degrees (G. Spencer, P. Shirley, K. Zimmerman,
-//! D. Greenberg, SIGGRAPH 1995, their photopic f1 and f2, 0.478 * 20.91 and 0.138 * 72.37; likewise J. J. Vos, CIE 135/1, 1999), for a
-//! frame seen from two heights away, which makes 1 degree H / 28. Photographs' aureoles fall the same way (I. King 1971). Their
-//! core, 0.02 degrees, would be smaller than a pixel: blur, not glare; r0 is what shows.
+//! What it shows: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
+//! (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height. These are the
+//! wings of light scattered in the eye: 10 / theta^3 + 10 / theta^2 in degrees (G. Spencer, P. Shirley, K. Zimmerman,
+//! D. Greenberg, SIGGRAPH 1995, their photopic f1 and f2, 0.478 * 20.91 and 0.138 * 72.37; likewise J. J. Vos, CIE
+//! 135/1, 1999), for a frame seen from two heights away, which makes 1 degree H / 28. Photographs' aureoles fall the
+//! same way (I. King 1971). Their core, 0.02 degrees, would be smaller than a pixel: blur, not glare; r0 is what
+//! shows.
 //!
-//! How: each term is a sum of Gaussians, exactly:
-//! (1 + r^2/r0^2)^-b = 1/Gamma(b) Int t^(b-1) e^-t exp(-t r^2/r0^2) dt, t = r0^2 / (2 sigma^2), which the levels of a pyramid take
-//! octave by octave. From grid to coarser grid light is shared out by B-splines and comes back by the transposed sharing, divided by
-//! what each cell covers: T^t diag(1/T1) T. Every column of T sums to 1 (a share that would fall outside the frame goes to the cell that
-//! its pixel lies in), so that the whole is symmetric, keeps a uniform frame uniform, and keeps the sum of any light, wherever it lies.
-//! The levels, smooth as they are, do not show: wherever the light lies, K is within 10 % of its formula and within 5 % isotropic from
-//! five of the finest cells on (10 pixels, in frames of at most 2^21 cells of 2 x 2), and within 20 % nearer.
+//! How: each term is a sum of Gaussians, exactly: (1 + r^2/r0^2)^-b = 1/Gamma(b) Int t^(b-1) e^-t exp(-t r^2/r0^2) dt,
+//! t = r0^2 / (2 sigma^2), which the levels of a pyramid take octave by octave. From grid to coarser grid light is
+//! shared out by B-splines and comes back by the transposed sharing, divided by what each cell covers: T^t diag(1/T1)
+//! T. Every column of T sums to 1 (a share that would fall outside the frame goes to the cell that its pixel lies in),
+//! so that the whole is symmetric, keeps a uniform frame uniform, and keeps the sum of any light, wherever it lies.
+//! The levels, smooth as they are, do not show: wherever the light lies, K is within 10 % of its formula and within 5
+//! % isotropic from five of the finest cells on (10 pixels, in frames of at most 2^21 cells of 2 x 2), and within 20 %
+//! nearer.
 
 use crate::allocate::{collected, filled, with_room};
 use crate::error::Result;
@@ -131,8 +134,8 @@ fn tent(factor: u32) -> Result<Vec<f64>> {
     collected((0..2 * factor).map(|tap| (f64::from(tap) + 0.5).min(2.0 * f - f64::from(tap) - 0.5) / f), GRIDS)
 }
 
-/// Standard deviation of level `index`'s spread, there and back, in pixels: the variance of the tent is (2 f^2 + 1) / 12, that of the
-/// spline 5/12 of its cells, each level's four times that of the one before.
+/// Standard deviation of level `index`'s spread, there and back, in pixels: the variance of the tent is (2 f^2 + 1) /
+/// 12, that of the spline 5/12 of its cells, each level's four times that of the one before.
 fn sigma(factor: u32, index: usize) -> f64 {
     let f2 = f64::from(factor).powi(2);
     (2.0 * ((2.0 * f2 + 1.0) / 12.0 + f2 * 5.0 / 12.0 * (4.0_f64.powi(index as i32) - 1.0))).sqrt()
@@ -141,12 +144,14 @@ fn sigma(factor: u32, index: usize) -> f64 {
 /// Of the light that K spreads, the density at Gaussians of `sigma` (in frame heights) by ln sigma, not normalised.
 fn density(sigma: f64) -> f64 {
     let t = 0.5 * (CORE / sigma).powi(2);
-    // Gamma(3/2) = sqrt(pi) / 2, Gamma(1) = 1; a Gaussian of r0^2 / t has the integral pi r0^2 / t, and dt = 2 t d(ln sigma).
+    // Gamma(3/2) = sqrt(pi) / 2, Gamma(1) = 1; a Gaussian of r0^2 / t has the integral pi r0^2 / t, and dt = 2 t d(ln
+    // sigma).
     let near = t.sqrt() / (0.5 * std::f64::consts::PI.sqrt() * CORE);
     (near + 1.0 / DEGREE) * (-t - (sigma / CUT).powi(2)).exp()
 }
 
-/// Weights of Gaussians of these `sigmas` (in frame heights), and of all that are narrower than the first one's octave; sum 1.
+/// Weights of Gaussians of these `sigmas` (in frame heights), and of all that are narrower than the first one's
+/// octave; sum 1.
 fn weights(sigmas: &[f64]) -> (Vec<f64>, f64) {
     let logs = sigmas.iter().map(|sigma| sigma.ln()).collect::<Vec<_>>();
     let octave = std::f64::consts::LN_2;
@@ -353,7 +358,8 @@ impl Bloom {
     }
 }
 
-/// Of the coarser cells about cell `i`, which get its light, those that give it back; a missing one's share is its own cell's.
+/// Of the coarser cells about cell `i`, which get its light, those that give it back; a missing one's share is its own
+/// cell's.
 fn returned(i: usize, coarser: u32) -> ([usize; 3], [f32; 3]) {
     let own = i / 2;
     let cells = [own.saturating_sub(1), own, (own + 1).min(coarser as usize - 1)];
@@ -386,7 +392,8 @@ impl Glare<'_> {
     }
 }
 
-/// The two cells between whose centres pixel `i` lies, and what of their light it gets; at the border both are the same.
+/// The two cells between whose centres pixel `i` lies, and what of their light it gets; at the border both are the
+/// same.
 fn between_cells(i: u32, factor: u32, cells: u32) -> ([usize; 2], [f32; 2]) {
     let (own, place) = (i / factor, i % factor);
     let before = place < factor / 2;
@@ -510,7 +517,8 @@ mod tests {
         }
     }
 
-    /// The glare of a lone light has no edges: along a row its second differences change their sign where a smooth bump's do.
+    /// The glare of a lone light has no edges: along a row its second differences change their sign where a smooth
+    /// bump's do.
     #[test]
     fn no_blocks_show() {
         let bloom = Bloom::of(1.0, [512, 512]).expect("grids");
@@ -564,7 +572,8 @@ mod tests {
         }
     }
 
-    /// A coarser finest grid, as frames of more than 2^21 cells have: the same glare, but for what is smaller than its cells.
+    /// A coarser finest grid, as frames of more than 2^21 cells have: the same glare, but for what is smaller than its
+    /// cells.
     #[test]
     fn the_finest_grid_is_bounded_and_glare_hardly_depends_on_it() {
         for frame in [[3840, 2160], [7680, 4320], [16384, 16384], [1 << 14, 1], [1 << 20, 1], [7, 1 << 20]] {

@@ -1,6 +1,6 @@
-//! False colour for views other than light: a value to 8-bit sRGB. In f32, as `shaders/false_colour.wgsl`, which has the same functions.
-//! The maps are curves of constant speed in CIELAB (CIE 1976), so that equal steps of the scaled value are equal steps of
-//! colour, and lightness is linear in it (Kovesi 2015: what makes fine structure legible).
+//! False colour for views other than light: a value to 8-bit sRGB. In f32, as `shaders/false_colour.wgsl`, which has
+//! the same functions. The maps are curves of constant speed in CIELAB (CIE 1976), so that equal steps of the scaled
+//! value are equal steps of colour, and lightness is linear in it (Kovesi 2015: what makes fine structure legible).
 
 use super::srgb_encode;
 use crate::scene::View;
@@ -51,14 +51,15 @@ pub fn false_colour(view: View, (low, scale): (f32, f32), value: f32) -> [f32; 3
     lab_encoded(if view == View::Redshift { diverging(share) } else { sequential(share) })
 }
 
-/// CIELAB from dark blue over purple, red and orange to light yellow: a helix about an axis beside the grey one (after Green 2011, whose
-/// cubehelix lies in RGB), as long as the gamut of sRGB allows.
+/// CIELAB from dark blue over purple, red and orange to light yellow: a helix about an axis beside the grey one (after
+/// Green 2011, whose cubehelix lies in RGB), as long as the gamut of sRGB allows.
 fn sequential(share: f32) -> [f32; 3] {
     let turn = 4.76 + 3.78 * share;
     [15.0 + 76.0 * share, 11.0 + 56.0 * turn.cos(), 21.0 + 56.0 * turn.sin()]
 }
 
-/// CIELAB from red over a light grey, at 1/2, to blue: straight, of constant hue, equally steep on both sides (Moreland 2009).
+/// CIELAB from red over a light grey, at 1/2, to blue: straight, of constant hue, equally steep on both sides
+/// (Moreland 2009).
 fn diverging(share: f32) -> [f32; 3] {
     let arm = 2.0 * share - 1.0;
     // Chroma 62 at the ends, at the hues 290 and 33 degrees.
@@ -74,7 +75,8 @@ fn lab_encoded([lightness, a, b]: [f32; 3]) -> [f32; 3] {
         let linear = (t - 16.0 / 116.0) * (108.0 / 841.0);
         if t > 6.0 / 29.0 { t * t * t } else { linear }
     });
-    // XYZ over the white's to linear Rec. 709: `physics::blackbody`'s matrix, its columns times the white; rows sum to 1.
+    // XYZ over the white's to linear Rec. 709: `physics::blackbody`'s matrix, its columns times the white; rows sum to
+    // 1.
     [
         3.080_399 * x - 1.537_383_2 * y - 0.543_015_9 * z,
         -0.921_223_4 * x + 1.875_967_5 * y + 0.045_255_9 * z,
@@ -128,7 +130,8 @@ mod tests {
         (0..=count).map(|i| lab(shown(view, value_at(view, i as f32 / count as f32)))).collect()
     }
 
-    /// Lightness rises (of REDSHIFT: to the middle, and falls from there), by equal steps, and so does colour; in 8 bits too.
+    /// Lightness rises (of REDSHIFT: to the middle, and falls from there), by equal steps, and so does colour; in 8
+    /// bits too.
     #[test]
     fn steps_are_uniform() {
         for view in VIEWS {

@@ -1,6 +1,7 @@
-//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve and dithering; float
-//! formats get the radiance as it is. Views other than light get false colour, or their value. In f32, so that
-//! `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how light was made.
+//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve and
+//! dithering; float formats get the radiance as it is. Views other than light get false colour, or their value. In
+//! f32, so that `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how
+//! light was made.
 
 pub mod bloom;
 mod false_colour;
@@ -53,8 +54,8 @@ impl FilmParams {
         Self { exposure: 1.0, ..self }
     }
 
-    /// Light as bloom spreads it: exposed, and limited as it will be when it is developed, so that no pixel spreads more than
-    /// the brightest that films tell apart, nor NaN. Alpha within [0, 1].
+    /// Light as bloom spreads it: exposed, and limited as it will be when it is developed, so that no pixel spreads
+    /// more than the brightest that films tell apart, nor NaN. Alpha within [0, 1].
     #[inline(always)]
     pub fn exposed_light(&self, radiance: [f64; 4]) -> [f32; 4] {
         let [r, g, b, a] = radiance.map(|v| v as f32);
@@ -104,8 +105,9 @@ pub fn develop(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> Packe
     bytes[..length].iter().copied().collect()
 }
 
-/// Pixels of the frame, side by side, into their bytes. `radiance`: linear Rec. 709, premultiplied, and alpha; for a view, its value
-/// first. (`x`, `y`): the first pixel's place in the whole frame, which the dither goes by, so that tiles join without a seam.
+/// Pixels of the frame, side by side, into their bytes. `radiance`: linear Rec. 709, premultiplied, and alpha; for a
+/// view, its value first. (`x`, `y`): the first pixel's place in the whole frame, which the dither goes by, so that
+/// tiles join without a seam.
 pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, out: &mut [u8]) {
     match (params.format, params.false_colour != 0, params.tone_map_kind()) {
         (3, ..) => write_row(radiance, x, out, |v, _| develop_rgba16f(params, v)),
@@ -132,10 +134,10 @@ fn write_row<const WORDS: usize>(
     }
 }
 
-/// A pixel of light in 8 bits. Premultiplied light is developed as it is: over black, a transparent picture looks
-/// like the opaque one. Codes are what the sum of value and dither, in [0, 1), is rounded down to: right on average, and
-/// black and white stay exact. Alpha is rounded without dither. No branches and all in one piece, so that the compiler can develop
-/// several pixels at once.
+/// A pixel of light in 8 bits. Premultiplied light is developed as it is: over black, a transparent picture looks like
+/// the opaque one. Codes are what the sum of value and dither, in [0, 1), is rounded down to: right on average, and
+/// black and white stay exact. Alpha is rounded without dither. No branches and all in one piece, so that the compiler
+/// can develop several pixels at once.
 #[inline(always)]
 fn develop_8bit(
     params: &FilmParams,
@@ -209,9 +211,9 @@ pub fn srgb_encode(linear: f32) -> f32 {
 const SRGB_POWER: [f32; 8] =
     [1.7583335, -0.5861359, -0.064457804, -0.028352347, 0.021440784, -0.08328923, 0.0934509, -0.05286597];
 
-/// Interleaved gradient noise (J. Jimenez, SIGGRAPH 2014): fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), here in
-/// fixed point with 32 bits of fraction, so that it is the same number on every machine: 52.9829189 = 53 - 1119.4 / 2^16. In [0, 1),
-/// multiples of 2^-16, so that 255 plus it is exact.
+/// Interleaved gradient noise (J. Jimenez, SIGGRAPH 2014): fract(52.9829189 fract(0.06711056 x + 0.00583715 y)), here
+/// in fixed point with 32 bits of fraction, so that it is the same number on every machine: 52.9829189 = 53 - 1119.4 /
+/// 2^16. In [0, 1), multiples of 2^-16, so that 255 plus it is exact.
 #[inline(always)]
 pub fn dither(x: u32, y: u32) -> f32 {
     let ramp = x.wrapping_mul(288_237_660).wrapping_add(y.wrapping_mul(25_070_369));
@@ -277,8 +279,8 @@ mod tests {
         }
     }
 
-    /// A gradient so slow that without dithering its steps would be bands of 64 columns: the mean of any 8 x 8 pixels follows it, and no
-    /// row has a step's code for long.
+    /// A gradient so slow that without dithering its steps would be bands of 64 columns: the mean of any 8 x 8 pixels
+    /// follows it, and no row has a step's code for long.
     #[test]
     fn slow_gradients_show_no_bands() {
         let params = params(ToneMap::None, PixelFormat::Rgba8Srgb);

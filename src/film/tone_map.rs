@@ -11,8 +11,8 @@ pub fn clip(rgb: [f32; 3]) -> [f32; 3] {
     rgb.map(|v| v.clamp(0.0, 1.0))
 }
 
-/// A 3 x 3 matrix whose rows sum to 1, so that grey stays grey to the last bit: given by what each component takes from the
-/// other two, in their order.
+/// A 3 x 3 matrix whose rows sum to 1, so that grey stays grey to the last bit: given by what each component takes
+/// from the other two, in their order.
 type Balanced = [[f32; 2]; 3];
 
 #[inline(always)]
@@ -28,8 +28,9 @@ fn balanced(m: Balanced, [r, g, b]: [f32; 3]) -> [f32; 3] {
 const ACES_IN: Balanced = [[0.35458, 0.04823], [0.076, 0.01566], [0.0284, 0.13383]];
 const ACES_OUT: Balanced = [[-0.53108, -0.07367], [-0.10208, -0.00605], [-0.00327, -0.07276]];
 
-/// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab, and kept by many engines): a rational curve
-/// between two matrices. Unlike a curve per channel alone it lets bright saturated light go to white.
+/// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab, and kept by many
+/// engines): a rational curve between two matrices. Unlike a curve per channel alone it lets bright saturated light go
+/// to white.
 #[inline(always)]
 pub fn aces(rgb: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
@@ -49,10 +50,10 @@ const AGX_PIVOT: f32 = 0.606_060_6;
 const AGX_TOE: f32 = 0.5122774;
 const AGX_SHOULDER: f32 = 0.5414642;
 
-/// AgX, base look (T. Sobotka, AgX-S2O3, 2022): inset, log2, a sigmoid, outset; the result is for a display of gamma 2.2.
-/// The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the pivot, p = 3
-/// below it and 3.25 above; s, negative below, makes it end in 0 and 1:
-/// s = ((2 w)^-p ((4 w)^p - 1))^(-1/p), w = the pivot's distance to that end.
+/// AgX, base look (T. Sobotka, AgX-S2O3, 2022): inset, log2, a sigmoid, outset; the result is for a display of gamma
+/// 2.2. The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the
+/// pivot, p = 3 below it and 3.25 above; s, negative below, makes it end in 0 and 1: s = ((2 w)^-p ((4 w)^p -
+/// 1))^(-1/p), w = the pivot's distance to that end.
 pub fn agx(rgb: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| agx_sigmoid(((v.max(1e-10).log2() - AGX_LOW) / AGX_SPAN).clamp(0.0, 1.0));
     balanced(AGX_OUT, balanced(AGX_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0).powf(2.2))
@@ -109,8 +110,8 @@ mod tests {
         }
     }
 
-    /// Middle grey: Hill's fit by hand, 0.18 (0.18 + 0.0245786) - 9.0537e-5 over 0.18 (0.18 0.983729 + 0.432951) + 0.238081;
-    /// AgX: one half on a display of gamma 2.2.
+    /// Middle grey: Hill's fit by hand, 0.18 (0.18 + 0.0245786) - 9.0537e-5 over 0.18 (0.18 0.983729 + 0.432951) +
+    /// 0.238081; AgX: one half on a display of gamma 2.2.
     #[test]
     fn middle_grey_is_where_the_sources_put_it() {
         assert!((tone_map(ToneMap::Aces, [0.18; 3])[0] - 0.105_591_2).abs() < 1e-5);
@@ -131,7 +132,8 @@ mod tests {
         }
     }
 
-    /// Stephen Hill's own numbers (BakingLab, ACES.hlsl), in f64: whole matrices, whose rows he rounded to a sum within 1e-5 of 1.
+    /// Stephen Hill's own numbers (BakingLab, ACES.hlsl), in f64: whole matrices, whose rows he rounded to a sum
+    /// within 1e-5 of 1.
     #[test]
     fn aces_is_hill_s_fit() {
         let input = [[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]];
@@ -148,8 +150,8 @@ mod tests {
         }
     }
 
-    /// AgX's base curve against Benjamin Wrensch's polynomial for it (Minimal AgX, 2023), fitted to Sobotka's table with an error of 0.0019
-    /// (root mean square): we are within 0.003 of it.
+    /// AgX's base curve against Benjamin Wrensch's polynomial for it (Minimal AgX, 2023), fitted to Sobotka's table
+    /// with an error of 0.0019 (root mean square): we are within 0.003 of it.
     #[test]
     fn agx_is_sobotka_s_curve() {
         let polynomial = [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5];

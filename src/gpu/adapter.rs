@@ -49,14 +49,14 @@ impl Adapter {
     }
 }
 
-/// An adapter, which is dropped where it may touch GL contexts, and while no other thread starts or ends a driver: it may be the
-/// last to hold its instance.
+/// An adapter, which is dropped where it may touch GL contexts, and while no other thread starts or ends a driver: it
+/// may be the last to hold its instance.
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
     /// What makes surfaces for windows; `None` for GL.
     instance: Option<wgpu::Instance>,
-    /// Of an adapter of GL: where it may be used, and how old the display was when it was found.
+    /// Adapters of GL have a thread on which alone they may be used, and the display's age when they were found.
     gl: Option<(Arc<GlThread>, DisplayAge)>,
 }
 
@@ -120,9 +120,9 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
     Ok(())
 }
 
-/// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not seen
-/// through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search costs Mesa half a
-/// megabyte that it never frees.
+/// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not
+/// seen through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search
+/// costs Mesa half a megabyte that it never frees.
 pub fn forget_drivers() {
     let forgotten = std::mem::take(&mut *found());
     let _alone = driver_lock::lock();
@@ -166,8 +166,8 @@ fn native(validation: bool) -> Found {
     })
 }
 
-/// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use at
-/// once. None without the feature `gl`; `None` when the search itself failed.
+/// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use
+/// at once. None without the feature `gl`; `None` when the search itself failed.
 fn gl() -> Option<Vec<Usable>> {
     if !cfg!(feature = "gl") {
         return Some(Vec::new());
@@ -211,8 +211,8 @@ fn keep_display(instance: Option<wgpu::Instance>) {
 
 /// A driver that panics has no adapters.
 fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
-    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none; without DEBUG, whose
-    // shaders say that they were WGSL, which older layers take for an error.
+    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none;
+    // without DEBUG, whose shaders say that they were WGSL, which older layers take for an error.
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     let descriptor =
         wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };

@@ -1,4 +1,5 @@
-//! Bind groups, kept from frame to frame: the frames of a setup bind the same resources again and again. Knows no kernel.
+//! Bind groups, kept from frame to frame: the frames of a setup bind the same resources again and again. Knows no
+//! kernel.
 
 use super::device::Device;
 use crate::deferred::hold;
@@ -9,8 +10,9 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Groups kept at most: some 10 for each setup that takes turns.
 const MOST: usize = 64;
 
-/// A device's bind groups. As groups keep alive what they bind, all are let go whenever a buffer or a texture is made, which steady
-/// frames do not do: what a new one takes the place of must be gone before, since both together need not fit.
+/// A device's bind groups. As groups keep alive what they bind, all are let go whenever a buffer or a texture is made,
+/// which steady frames do not do: what a new one takes the place of must be gone before, since both together need not
+/// fit.
 #[derive(Default)]
 pub(super) struct Bindings(Mutex<Vec<Kept>>);
 
@@ -71,8 +73,8 @@ impl Bindings {
 }
 
 impl Device {
-    /// A group of `layout` with `resources` in the order of its bindings: the one made before, if it is still kept. Errors: as
-    /// [`Device::scoped`].
+    /// A group of `layout` with `resources` in the order of its bindings: the one made before, if it is still kept.
+    /// Errors: as [`Device::scoped`].
     pub(super) fn bind(
         &self,
         layout: &wgpu::BindGroupLayout,

@@ -1,5 +1,5 @@
-//! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that spread it. What goes
-//! where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
+//! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that
+//! spread it. What goes where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
 use super::frame_buffers::Written;
 use super::kernel_key::KernelKey;
@@ -82,7 +82,8 @@ impl Made {
         })
     }
 
-    /// Textures of exactly these sizes: how samplers round depends on them, and bytes must not depend on earlier frames.
+    /// Textures of exactly these sizes: how samplers round depends on them, and bytes must not depend on earlier
+    /// frames.
     fn serves(&self, bloom: &Bloom, light: [u32; 2]) -> bool {
         let sizes = self.gathered.iter().map(Texture::size);
         self.light.size() == light && sizes.eq(bloom.levels.iter().map(|level| level.size))

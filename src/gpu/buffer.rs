@@ -8,7 +8,8 @@ use std::ops::Deref;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A [`wgpu::Buffer`] that [`Device::bytes`] counts until it is dropped. (Bind groups that hold it keep its memory longer.)
+/// A [`wgpu::Buffer`] that [`Device::bytes`] counts until it is dropped. (Bind groups that hold it keep its memory
+/// longer.)
 pub struct Buffer {
     raw: wgpu::Buffer,
     total: Arc<AtomicU64>,
@@ -17,8 +18,8 @@ pub struct Buffer {
 impl Device {
     /// A buffer of `size` bytes, rounded up to a multiple of 4, filled with zeros.
     ///
-    /// Errors: `Unsupported` when `usage` does not allow the size on this adapter, the message naming both; `Internal` for
-    /// size 0; `OutOfMemory`; `DeviceLost`.
+    /// Errors: `Unsupported` when `usage` does not allow the size on this adapter, the message naming both; `Internal`
+    /// for size 0; `OutOfMemory`; `DeviceLost`.
     pub fn buffer(&self, label: &str, size: u64, usage: wgpu::BufferUsages) -> Result<Buffer> {
         self.check_size(label, size, usage)?;
         self.bindings.clear();

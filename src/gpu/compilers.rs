@@ -1,6 +1,5 @@
 //! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames
-//! that may
-//! come. They end with their owner. Knows no scene.
+//! that may come. They end with their owner. Knows no scene.
 
 use super::Device;
 use super::kernel_key::KernelKey;
@@ -57,8 +56,8 @@ impl Shared {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What to make next in the background, once no frame waits; `None`: nothing is left, and the thread that asks has
-    /// ended.
+    /// Waits until no frame waits, and takes the next kernel to make in the background; `None` when nothing is left,
+    /// and then the thread that asks counts as ended.
     fn next(&self) -> Option<KernelKey> {
         let mut queue = self.lock();
         while queue.waiting > 0 && !queue.keys.is_empty() {
@@ -218,9 +217,9 @@ fn make_behind(shared: &Shared, store: &Store, device: &Device) {
     }
 }
 
-/// On Linux a thread has a priority of its own, which it may lower; elsewhere their small number has to do. Lowered
-/// to a third of the
-/// usual share and no further, as a frame may come to wait for the pipeline that such a thread is making.
+/// On Linux a thread has a priority of its own, which it may lower; elsewhere their small number has to do. Lowered to
+/// a third of the usual share and no further, as a frame may come to wait for the pipeline that such a thread is
+/// making.
 fn lower_priority() {
     #[cfg(target_os = "linux")]
     {

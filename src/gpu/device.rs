@@ -1,5 +1,6 @@
-//! One wgpu device: opened with the least it needs, and with every way it can fail turned into an [`Error`]. All calls into
-//! wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of scenes.
+//! One wgpu device: opened with the least it needs, and with every way it can fail turned into an [`Error`]. All calls
+//! into wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of
+//! scenes.
 
 use super::adapter::{Adapter, required_limits};
 use super::driver_lock;
@@ -202,8 +203,8 @@ impl Device {
         })
     }
 
-    /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins the
-    /// message.
+    /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins
+    /// the message.
     ///
     /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
     pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
@@ -214,8 +215,8 @@ impl Device {
         }
     }
 
-    /// [`Self::scoped`] for threads beside the one that uses the device: leaves the errors that come outside every call to that one,
-    /// and does not ask the device anew whether it is lost.
+    /// [`Self::scoped`] for threads beside the one that uses the device: leaves the errors that come outside every
+    /// call to that one, and does not ask the device anew whether it is lost.
     pub(super) fn beside<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check_known_loss()?;
         match self.watched(work) {
@@ -237,8 +238,8 @@ impl Device {
         (done, errors.into_iter().rev().flatten().next())
     }
 
-    /// [`Self::scoped`] for calls about windows, some of which panic. What goes wrong in them is `SurfaceLost`, if the device is not gone: not
-    /// the device's fault, but the window's.
+    /// [`Self::scoped`] for calls about windows, some of which panic. What goes wrong in them is `SurfaceLost`, if the
+    /// device is not gone: not the device's fault, but the window's.
     pub(super) fn guarded<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         let done = self.scoped(what, |device| catch_unwind(AssertUnwindSafe(|| work(device))));
         let message = match done {
@@ -287,7 +288,8 @@ impl Device {
         }
     }
 
-    /// After a submission was dropped silently, which wgpu does only when its device is gone. Errors: `DeviceLost` if the driver panics.
+    /// After a submission was dropped silently, which wgpu does only when its device is gone. Errors: `DeviceLost` if
+    /// the driver panics.
     fn learn_loss(&self) -> Result<()> {
         // Calls the callback that tells why.
         let _ = self.poll(wgpu::PollType::Poll)?;

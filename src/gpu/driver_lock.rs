@@ -4,10 +4,9 @@
 //! 580.159.04 in 1 of 8 runs of four threads), and ending them (gfx-rs/wgpu #8365). Knows no wgpu.
 //!
 //! A thread that ends runs the driver's thread-exit handlers, which take locks of the driver's; vkDestroyDevice takes
-//! them too and waits
-//! for the driver's own threads, which end the same way. On the H200 that hung one of eight to thirteen runs of
-//! tests/gpu_device for ever
-//! (backtrace: vkDestroyDevice in pthread_join, two ending threads in handlers of libEGL_nvidia and libnvidia-eglcore).
+//! them too and waits for the driver's own threads, which end the same way. On the H200 that hung one of eight to
+//! thirteen runs of tests/gpu_device for ever (backtrace: vkDestroyDevice in pthread_join, two ending threads in
+//! handlers of libEGL_nvidia and libnvidia-eglcore).
 //!
 //! So the lock is held while an instance is made or dropped, adapters are listed, a device is opened, until it has its
 //! first pipeline, and while the device is dropped; on Linux also while a thread that has used a driver runs the
@@ -58,10 +57,9 @@ mod thread_end {
     use std::sync::OnceLock;
 
     /// A key of the system's for values of threads, whose handler runs at a thread's end. The keys' handlers run in
-    /// the order in
-    /// which the keys were made, so it is made before a driver is loaded; and once more in a second round if the
-    /// handler sets the
-    /// value again. So the lock is held from its first turn, before the driver's handlers, to its second, after them.
+    /// the order in which the keys were made, so it is made before a driver is loaded; and once more in a second round
+    /// if the handler sets the value again. So the lock is held from its first turn, before the driver's handlers, to
+    /// its second, after them.
     static KEY: OnceLock<Option<libc::pthread_key_t>> = OnceLock::new();
 
     const USES_DRIVER: usize = 1;

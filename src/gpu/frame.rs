@@ -1,6 +1,7 @@
-//! A frame on the GPU: tile by tile, sample by sample, records -> shade (-> bloom) -> develop -> readback, or a window's texture. A frame is
-//! prepared ([`GpuTracer::begin`]), submitted step by step, and each step read when it has run, so that readback overlaps the work
-//! of the next steps and frames. Knows no host memory: finished tiles go to the sink.
+//! A frame on the GPU: tile by tile, sample by sample, records -> shade (-> bloom) -> develop -> readback, or a
+//! window's texture. A frame is prepared ([`GpuTracer::begin`]), submitted step by step, and each step read when it
+//! has run, so that readback overlaps the work of the next steps and frames. Knows no host memory: finished tiles go
+//! to the sink.
 
 use super::bloom::LIGHT_BYTES;
 use super::export::{EXPORT_BYTES, imported};
@@ -29,8 +30,8 @@ use crate::scene::{KerrWorth, Lensing, Projection, Region, Scene, View};
 use glam::DVec3;
 use std::collections::VecDeque;
 
-/// Largest side of a tile with the border that is traced, pixels. The list of edges of a tile this large is all but the 128 MiB that each
-/// device can bind.
+/// Largest side of a tile with the border that is traced, pixels. The list of edges of a tile this large is all but
+/// the 128 MiB that each device can bind.
 const MAX_TILE_SIDE: u32 = 4096;
 /// Bytes of a pixel's radiance.
 const RADIANCE_BYTES: u64 = 16;
@@ -148,7 +149,8 @@ impl GpuTracer {
         }
         let wanted = self.kernels.begin(&keys);
         self.kernels.finish(wanted)?;
-        // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as well.
+        // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as
+        // well.
         self.render(scene, request, &mut |_, _, _| Ok(()), progress).map(|_| ())
     }
 
@@ -158,8 +160,8 @@ impl GpuTracer {
         Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::Screen)?.kernels()).len())
     }
 
-    /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as `Renderer::render`;
-    /// the tables of lenses are then forgotten.
+    /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as
+    /// `Renderer::render`; the tables of lenses are then forgotten.
     pub fn begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
         let begun = self.try_begin(scene, request, target);
         if begun.is_err() {
@@ -179,8 +181,8 @@ impl GpuTracer {
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
-        // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them in a view
-        // of nothing but the shadow's edge.
+        // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
+        // in a view of nothing but the shadow's edge.
         let ray_steps = match setup.making.source {
             Source::Traced => scene.expected_steps(),
             Source::Schwarzschild { .. } => 2,
@@ -229,7 +231,8 @@ impl GpuTracer {
         })
     }
 
-    /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are then forgotten.
+    /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are
+    /// then forgotten.
     pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
         self.submit_and(frame, &mut |_| Ok(()))
     }
@@ -253,8 +256,9 @@ impl GpuTracer {
         if self.maps_pixels(scene) { PixelTarget::Rows } else { PixelTarget::Packed }
     }
 
-    /// Whether kernels put pixels into the host's memory themselves, which hides the copy behind the tracing (a device of wgpu's runs one
-    /// thing after another). Other interfaces than Vulkan may keep such memory out of kernels' reach, or reach it slowly.
+    /// Whether kernels put pixels into the host's memory themselves, which hides the copy behind the tracing (a device
+    /// of wgpu's runs one thing after another). Other interfaces than Vulkan may keep such memory out of kernels'
+    /// reach, or reach it slowly.
     fn maps_pixels(&self, scene: &Scene) -> bool {
         let info = &self.adapter.info;
         let pays = info.backend == Backend::Vulkan && !info.software;

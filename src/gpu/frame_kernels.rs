@@ -1,6 +1,5 @@
 //! The list of kernels that a frame runs, known before any is bound, so that all are made at once; and the list of
-//! those that
-//! the host's next frames may need. tests/kernels.rs holds the list against what frames ask for.
+//! those that the host's next frames may need. tests/kernels.rs holds the list against what frames ask for.
 
 use super::GpuTracer;
 use super::frame::Setup;
@@ -120,8 +119,7 @@ impl GpuTracer {
     }
 
     /// Kernels of the frames that may follow a frame of `scene`, which takes `needed`, to be made in the background.
-    /// Only for the
-    /// first frame of its kind.
+    /// Only for the first frame of its kind.
     pub(super) fn anticipate(
         &mut self,
         scene: &Scene,

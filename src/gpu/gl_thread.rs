@@ -58,7 +58,7 @@ impl DisplayAge {
 
 type Work<'a> = Box<dyn FnOnce() + Send + 'a>;
 
-/// What the caller of a thread for GL hears from it.
+/// A message from a thread for GL to its caller.
 enum News {
     /// Its work has got so far, and goes on once it is told whether to.
     Progress(f64),

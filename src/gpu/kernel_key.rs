@@ -1,6 +1,5 @@
-//! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings.
-//! Knows neither
-//! devices nor pipelines; two equal keys are the same kernel.
+//! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings. Knows
+//! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
     LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, SCREEN, Slot, TRACED, edge_slots, shade_slots, sum_slots,

@@ -1,6 +1,5 @@
-//! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time.
-//! Knows what each
-//! kernel binds ([`KernelKey`]), not what with.
+//! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time. Knows
+//! what each kernel binds ([`KernelKey`]), not what with.
 
 use super::compilers::{Compilers, Wanted};
 use super::kernel_key::{GROUP, KernelKey};
@@ -66,8 +65,7 @@ pub(super) struct Store {
 struct State {
     made: HashMap<KernelKey, Progress>,
     /// Those of `made` that are there: first those that no frame has asked for yet, the one made last being the last
-    /// of them; then the
-    /// others, the one used last being the last.
+    /// of them; then the others, the one used last being the last.
     used: Vec<KernelKey>,
     /// How many no frame has asked for yet.
     ahead: usize,
@@ -269,8 +267,7 @@ impl Kernels {
     }
 
     /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an
-    /// earlier
-    /// call asked for and that were not begun. Without effect where a device may be used from one thread only.
+    /// earlier call asked for and that were not begun. Without effect where a device may be used from one thread only.
     pub fn anticipate(&self, mut keys: Vec<KernelKey>) {
         let asked_for = {
             let state = self.store.lock();
@@ -288,16 +285,13 @@ impl Kernels {
 }
 
 /// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in
-/// every turn before
-/// it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner one has taken a
-/// step;
-/// loops counted over constants (of a pipeline or of all), over the samples of a pixel (32 at most), over the words
-/// of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host keeps `max_crossings`
-/// and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
+/// every turn before it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner
+/// one has taken a step; loops counted over constants (of a pipeline or of all), over the samples of a pixel (32 at
+/// most), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host
+/// keeps `max_crossings` and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
 /// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the
-/// bits of a word, which loses a bit in every turn; and the two of `star_light`, of
-/// which every turn uses up a star of the cell's list, at most 255, or a mean sky, of which there are two, or ends
-/// the loop.
+/// bits of a word, which loses a bit in every turn; and the two of `star_light`, of which every turn uses up a star of
+/// the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
 impl Compiled {

@@ -1,5 +1,6 @@
-//! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk has changed, read
-//! by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels, no scene.
+//! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk
+//! has changed, read by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
+//! no scene.
 
 use super::kernel_key::KernelKey;
 use super::kernels::{self, Kernels, Stage};
@@ -124,8 +125,8 @@ impl KerrTables {
         self.deferred.as_ref()
     }
 
-    /// Brings the tables up to the eye and the disk; the stages to run before they are read, `None` if they are as needed
-    /// already. `frame_uniform` holds the eye. Errors: INTERNAL for an eye that has no tables.
+    /// Brings the tables up to the eye and the disk; the stages to run before they are read, `None` if they are as
+    /// needed already. `frame_uniform` holds the eye. Errors: INTERNAL for an eye that has no tables.
     pub fn update(
         &mut self,
         device: &Device,

@@ -1,5 +1,5 @@
-//! The GPU tracer: wgpu compute, f32. Owns the device, the pipelines and the readback. Mirrors the CPU tracer in what a frame
-//! shows; knows no host memory (tiles go to a sink) and nothing of C.
+//! The GPU tracer: wgpu compute, f32. Owns the device, the pipelines and the readback. Mirrors the CPU tracer in what
+//! a frame shows; knows no host memory (tiles go to a sink) and nothing of C.
 
 mod adapter;
 mod bindings;
@@ -90,14 +90,15 @@ pub struct GpuTracer {
 }
 
 impl GpuTracer {
-    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are being made from now
-    /// on, its sky follows with it. Errors: as `Device::open`.
+    /// Opens a device, on GL for threads without a GL context ([`Device::open`]). The first frame's pipelines are
+    /// being made from now on, its sky follows with it. Errors: as `Device::open`.
     pub fn new(adapter: Adapter) -> Result<Self> {
         let device = Arc::new(Device::open(&adapter)?);
         // All of a GL device shares one context, which two threads cannot use at once.
         let kernels = Kernels::new(device.clone(), adapter.info.backend != Backend::Gl, adapter.info.software);
-        // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a device's first
-        // pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by side.
+        // Some GL drivers promise compute shaders and then translate none (seen on the H200): better known now. And a
+        // device's first pipeline is made alone (`driver_lock`): the smallest, so that the large ones are made side by
+        // side.
         kernels.get(KernelKey::Count).map_err(|error| Error::new(ErrorKind::NoAdapter, error.message))?;
         let mut tracer = Self {
             adapter: Arc::new(adapter),
@@ -112,7 +113,8 @@ impl GpuTracer {
         Ok(tracer)
     }
 
-    /// For tests: waits until the pipelines that are made in the background are there, and tells how often frames found some missing.
+    /// For tests: waits until the pipelines that are made in the background are there, and tells how often frames
+    /// found some missing.
     pub fn settled_waits(&self) -> KernelWaits {
         self.kernels.settle();
         self.kernels.waits()

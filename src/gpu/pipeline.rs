@@ -52,7 +52,8 @@ pub struct Kernel<'a> {
 }
 
 impl Device {
-    /// Compiles a kernel; the driver may put its own part off to the first dispatch. Several threads may, whoever uses the device meanwhile.
+    /// Compiles a kernel; the driver may put its own part off to the first dispatch. Several threads may, whoever uses
+    /// the device meanwhile.
     ///
     /// Errors: `Internal` with naga's message for source that is not valid or an unknown constant, with wgpu's for an
     /// unknown entry point or a layout that does not fit, or when the device was lost a moment ago (`Device::explain`

@@ -1,5 +1,5 @@
-//! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced in f32; but for
-//! eyes so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
+//! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
+//! in f32; but for eyes so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
 
 use super::kernel_key::KernelKey;
 use super::{Buffer, GpuTracer, Readback, ray_settings, variant};
@@ -17,7 +17,8 @@ use wgpu::BufferUsages as Usage;
 
 /// Rays of one submission.
 const CHUNK: usize = 1 << 14;
-/// Distance of an eye from the horizon, relative to its radius, below which u in f32 is off by more than 1e-3 of that distance.
+/// Distance of an eye from the horizon, relative to its radius, below which u in f32 is off by more than 1e-3 of that
+/// distance.
 const TOO_NEAR: f64 = 1e-4;
 /// `RayEnd`s of a ray: its end and its crossings.
 const ENDS: usize = 1 + MAX_CROSSINGS;

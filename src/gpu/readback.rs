@@ -1,5 +1,5 @@
-//! Brings bytes from the device to the host through staging buffers that are used again and again, so that one piece is copied out
-//! while the next are being made. Knows nothing of pixels.
+//! Brings bytes from the device to the host through staging buffers that are used again and again, so that one piece
+//! is copied out while the next are being made. Knows nothing of pixels.
 
 use super::buffer::Buffer;
 use super::device::Device;
@@ -9,7 +9,8 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::Duration;
 
-/// How long the callback of a buffer whose copy is done may take: another thread has been chosen to call it, which need not be running.
+/// How long the callback of a buffer whose copy is done may take: another thread has been chosen to call it, which
+/// need not be running.
 const CALLBACK_AFTER: Duration = Duration::from_secs(30);
 
 /// Staging buffers kept for the next pieces: as many as there are pieces under way at most times.
@@ -122,7 +123,8 @@ impl Drop for Staging {
 }
 
 impl Copied {
-    /// Asks for the piece, after its submission, so that waiting for that is all that is left to do. Errors: as [`Device::scoped`].
+    /// Asks for the piece, after its submission, so that waiting for that is all that is left to do. Errors: as
+    /// [`Device::scoped`].
     pub fn request(&mut self, device: &Device) -> Result<()> {
         let (sender, outcome) = mpsc::sync_channel(1);
         let buffer = self.staging.buffer()?;

@@ -1,5 +1,5 @@
-//! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens. Gives shading
-//! its group 1 and knows nothing else of it.
+//! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens.
+//! Gives shading its group 1 and knows nothing else of it.
 
 use super::kernel_key::{KernelKey, Source, Variant};
 use super::kernels::{Kernels, Stage};
@@ -103,7 +103,8 @@ impl RecordMakers {
         }
     }
 
-    /// Before a submission. What will hold the steps of its rays, `step_sum` or a buffer that begins with them; `None`: they take none.
+    /// Before a submission. What will hold the steps of its rays, `step_sum` or a buffer that begins with them;
+    /// `None`: they take none.
     pub fn reset<'a>(
         &'a self,
         source: Source,

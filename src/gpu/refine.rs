@@ -1,5 +1,5 @@
-//! The second look at pixels that edges run through: their list on the device, and the kernels that go over it (edges.wgsl,
-//! refine.wgsl). Knows kernels and their groups, no records and no light.
+//! The second look at pixels that edges run through: their list on the device, and the kernels that go over it
+//! (edges.wgsl, refine.wgsl). Knows kernels and their groups, no records and no light.
 
 use super::kernel_key::{FilmLook, KernelKey, Look, Refined, Source, Variant};
 use super::kernels::{Kernels, Stage};
@@ -22,7 +22,8 @@ pub struct EdgeList {
 }
 
 impl EdgeList {
-    /// Bytes of a tile's pixel on the device. A pixel may be listed twice: at first as an edge of the disk and then as the critical curve's.
+    /// Bytes of a tile's pixel on the device. A pixel may be listed twice: at first as an edge of the disk and then as
+    /// the critical curve's.
     pub const BYTES_PER_PIXEL: u64 = 2 * 4;
 
     /// Makes room for the pixels of a tile.
@@ -69,8 +70,9 @@ impl Refining {
         Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
     }
 
-    /// After the pixels of a tile have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of the `PassUniform`s with `EDGE_SAMPLES` and with
-    /// `CURVE_SAMPLES`: some of the disk's edges turn out to need the critical curve's samples.
+    /// After the pixels of a tile have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of
+    /// the `PassUniform`s with `EDGE_SAMPLES` and with `CURVE_SAMPLES`: some of the disk's edges turn out to need the
+    /// critical curve's samples.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2]) {
         for offset in offsets {
             self.stage.run(pass, Some(offset), [self.groups, 1]);

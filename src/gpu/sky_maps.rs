@@ -1,4 +1,5 @@
-//! The sky maps of a scene as textures: the Milky Way's, made when it is first shown, and the host's, made anew when it is another.
+//! The sky maps of a scene as textures: the Milky Way's, made when it is first shown, and the host's, made anew when
+//! it is another.
 
 use super::slots::SKY_MAP;
 use super::{Device, Texture};
@@ -68,9 +69,9 @@ impl SkyMaps {
     }
 }
 
-/// All levels in one texture: the finest on top, below it the others side by side (`level_place` of sky_map.wgsl). A texture's own
-/// levels would do, but lavapipe (Mesa 22.3) takes the size of one for the size of another where pixels of a workgroup read
-/// different ones. Levels that do not fit into a texture are left out.
+/// All levels in one texture: the finest on top, below it the others side by side (`level_place` of sky_map.wgsl). A
+/// texture's own levels would do, but lavapipe (Mesa 22.3) takes the size of one for the size of another where pixels
+/// of a workgroup read different ones. Levels that do not fit into a texture are left out.
 fn upload(device: &Device, map: &SkyMap) -> Result<MapTexture> {
     let limit = device.limits().max_texture_dimension_2d;
     let fitting = |level: &&Level| level.size[0] <= limit && texture_height(level.size) <= limit;

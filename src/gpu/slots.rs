@@ -1,4 +1,5 @@
-//! What kernels bind: kinds of bindings, the formats of textures as the shaders declare them, and groups that kernels share.
+//! What kernels bind: kinds of bindings, the formats of textures as the shaders declare them, and groups that kernels
+//! share.
 
 use super::kernel_key::Source;
 

@@ -26,7 +26,7 @@ impl Parsed {
     pub fn new(label: &str, source: &str) -> Result<Self> {
         let module = wgsl::parse_str(source)
             .map_err(|error| Error::internal(format!("{label}: {}", error.emit_to_string(source))))?;
-        // What this device lacks wgpu will find.
+        // wgpu will find whether this device lacks a capability.
         let info = Validator::new(ValidationFlags::all(), Capabilities::all())
             .validate(&module)
             .map_err(|error| Error::internal(format!("{label}: {}", error.emit_to_string(source))))?;
@@ -130,7 +130,7 @@ impl<'a> Pruned<'a> {
     fn block(&self, block: Block) -> Block {
         let mut kept = Block::with_capacity(block.len());
         for (statement, span) in block.span_into_iter() {
-            // What is left of an `if` stands in its place without a block of its own.
+            // The branch that is left of an `if` stands in its place, without a block of its own.
             match self.statement(statement) {
                 Statement::Block(inner) => inner.span_into_iter().for_each(|(inner, span)| kept.push(inner, span)),
                 other => kept.push(other, span),

@@ -1,5 +1,5 @@
-//! The kernels of a frame with what they bind, from records to pixels, and the order in which a tile goes through them. Knows no
-//! submissions.
+//! The kernels of a frame with what they bind, from records to pixels, and the order in which a tile goes through
+//! them. Knows no submissions.
 
 use super::Device;
 use super::bloom::BloomStages;
@@ -15,8 +15,8 @@ use super::tables::Tables;
 use crate::error::{Error, Result};
 use std::slice;
 
-/// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where each costs its
-/// share of a loop's body however little there is to do, few.
+/// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where
+/// each costs its share of a loop's body however little there is to do, few.
 const REST_GROUPS: u32 = 512;
 const REST_GROUPS_SOFTWARE: u32 = 16;
 
@@ -191,7 +191,8 @@ impl Shades {
 }
 
 impl Stages {
-    /// Shades samples of a tile; the last one is followed by the sum's development, or, with bloom, by giving it to the light.
+    /// Shades samples of a tile; the last one is followed by the sum's development, or, with bloom, by giving it to
+    /// the light.
     pub fn shade(
         &self,
         pass: &mut wgpu::ComputePass<'_>,

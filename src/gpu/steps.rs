@@ -1,5 +1,5 @@
-//! In which steps a frame is made, each a submission: tiles and samples of them; and with bloom, what comes between shading and
-//! development. Knows numbers only.
+//! In which steps a frame is made, each a submission: tiles and samples of them; and with bloom, what comes between
+//! shading and development. Knows numbers only.
 
 use super::tiles::Plan;
 use crate::film::bloom::Bloom;

@@ -158,7 +158,8 @@ impl Submitted {
         device.is_done(&self.submission)
     }
 
-    /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as [`Device::wait`].
+    /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as
+    /// [`Device::wait`].
     pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
         let arrived = self.copied.wait(device, &self.submission)?;
         let started = Instant::now();

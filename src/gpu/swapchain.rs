@@ -1,5 +1,6 @@
-//! A window's images, from wgpu: which device can present to which window, their format, and taking and presenting one. Everything that
-//! wgpu can say or do about them becomes an [`Acquired`] or an [`Error`]. Knows nothing of scenes.
+//! A window's images, from wgpu: which device can present to which window, their format, and taking and presenting
+//! one. Everything that wgpu can say or do about them becomes an [`Acquired`] or an [`Error`]. Knows nothing of
+//! scenes.
 
 use super::adapter::Adapter;
 use super::device::Device;
@@ -55,8 +56,8 @@ fn surface_of(adapter: &Adapter, window: &Window) -> Result<wgpu::Surface<'stati
         Handles::MetalLayer(_) => return Err(refused(&"it is a layer of Metal's")),
     };
     let instance = adapter.instance().ok_or_else(|| refused(&"OpenGL is used for tracing only"))?;
-    // SAFETY: the window was found there when it was opened; `Window` keeps bhr's own X11 connection, and the host its window, until after
-    // the surface, by the header.
+    // SAFETY: the window was found there when it was opened; `Window` keeps bhr's own X11 connection, and the host its
+    // window, until after the surface, by the header.
     let made = catch_unwind(AssertUnwindSafe(|| unsafe { instance.create_surface_unsafe(target) }));
     let surface = made.map_err(|_| refused(&"the driver failed"))?.map_err(|error| refused(&error))?;
     if adapter.raw()?.is_surface_supported(&surface) && !surface.get_capabilities(adapter.raw()?).formats.is_empty() {
@@ -128,8 +129,8 @@ impl Swapchain {
         self.configured = None;
     }
 
-    /// Makes images of `size`, each side at least 1; an absent mode falls back to VSYNC. Waits for the device's work, and no other thread may
-    /// submit any meanwhile. Errors: as [`Device::scoped`].
+    /// Makes images of `size`, each side at least 1; an absent mode falls back to VSYNC. Waits for the device's work,
+    /// and no other thread may submit any meanwhile. Errors: as [`Device::scoped`].
     pub fn configure(&mut self, size: [u32; 2], mode: PresentMode) -> Result<()> {
         self.configured = None;
         let configuration = wgpu::SurfaceConfiguration {

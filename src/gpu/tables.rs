@@ -1,5 +1,6 @@
-//! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other stars), and the disk's temperature
-//! profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH entries a row (shade.wgsl says why).
+//! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
+//! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
+//! entries a row (shade.wgsl says why).
 
 use super::sky_maps::SkyMaps;
 use super::{Device, Texture};
@@ -65,7 +66,8 @@ impl Tables {
         Ok(Self { stars, light, star_cells, sky_maps, profile_spin: None })
     }
 
-    /// Brings the tables up to the scene's stars, maps and disk. Errors: UNSUPPORTED where the device's textures are too small; OUT_OF_MEMORY.
+    /// Brings the tables up to the scene's stars, maps and disk. Errors: UNSUPPORTED where the device's textures are
+    /// too small; OUT_OF_MEMORY.
     pub fn prepare<'a>(tables: &'a mut Option<Self>, device: &Device, scene: &Scene) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
         let made = match tables.take() {

@@ -15,7 +15,8 @@ pub struct Texture {
 }
 
 impl Device {
-    /// A texture, of `layers` layers if `dimension` is an array, that kernels write and read. Errors: as [`Device::scoped`].
+    /// A texture, of `layers` layers if `dimension` is an array, that kernels write and read. Errors: as
+    /// [`Device::scoped`].
     pub fn texture(
         &self,
         label: &str,
@@ -28,7 +29,8 @@ impl Device {
         self.any_texture(label, format, dimension, size, layers, usage)
     }
 
-    /// What a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as [`Device::scoped`].
+    /// What a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as
+    /// [`Device::scoped`].
     pub fn screen(&self, size: [u32; 2], host_fills: bool) -> Result<Texture> {
         let TextureKind { format, dimension } = SCREEN;
         match host_fills {
@@ -74,8 +76,8 @@ impl Device {
         Ok(Texture { view, raw, bytes, total })
     }
 
-    /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no whole number
-    /// of rows; as [`Device::scoped`].
+    /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no
+    /// whole number of rows; as [`Device::scoped`].
     pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
         self.write_part(texture, [0, first_row], texture.raw.width(), data)
     }

@@ -2,7 +2,8 @@
 
 use crate::renderer::{FrameRequest, Tile};
 
-/// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog fires.
+/// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog
+/// fires.
 const STEPS_PER_SUBMISSION: u64 = 96 << 20;
 /// Bytes that the records and the radiance of a tile may take; and, in frames with bloom, the light that is kept.
 pub const MEMORY: u64 = 192 << 20;
@@ -18,14 +19,16 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to take.
+    /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to
+    /// take.
     pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, samples: u32) -> Self {
         let steps = steps.max(1);
         let max_side = max_side.saturating_sub(2).max(1);
         let by_memory = MEMORY / bytes_per_pixel.max(1);
         let by_time = STEPS_PER_SUBMISSION / steps;
         let pixels = by_memory.min(by_time).max(1024);
-        // The traced rectangle is one pixel wider on each side; wide tiles waste least on short frames, squarer ones on small tiles.
+        // The traced rectangle is one pixel wider on each side; wide tiles waste least on short frames, squarer ones
+        // on small tiles.
         let wide = (8.0 * (pixels as f64).sqrt()) as u32;
         let width = request.width.min(max_side).min(wide.max(128)).max(1);
         let height = (pixels / u64::from(width + 2)).saturating_sub(2).clamp(1, u64::from(max_side)) as u32;

@@ -47,7 +47,8 @@ impl GpuTimer {
         })
     }
 
-    /// After the last pass, in the same encoder: brings its ticks to `target`, from `offset` (a multiple of 256) on. How many bytes they are.
+    /// After the last pass, in the same encoder: brings its ticks to `target`, from `offset` (a multiple of 256) on.
+    /// How many bytes they are.
     pub fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder, target: &wgpu::Buffer, offset: u64) -> u64 {
         let passes = std::mem::take(&mut self.passes);
         let bytes = u64::from(passes) * PASS_BYTES;

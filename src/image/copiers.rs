@@ -1,5 +1,5 @@
-//! Threads that share the copying of large pieces of memory: one core brings about 12 GB/s out of a GPU's staging memory, a PCIe 5 bus
-//! carries 50. Knows no images and touches no memory itself.
+//! Threads that share the copying of large pieces of memory: one core brings about 12 GB/s out of a GPU's staging
+//! memory, a PCIe 5 bus carries 50. Knows no images and touches no memory itself.
 
 use crate::allocate::{self, THREAD_ROOM};
 use rayon::ThreadPool;
@@ -35,8 +35,8 @@ impl Copiers {
         Self { threads, pool: OnceLock::new() }
     }
 
-    /// Calls `copy` with ranges that make up 0 .. `rows`, each row in one of them, and returns when all is done: on several threads if the rows
-    /// are of `bytes` that are worth it.
+    /// Calls `copy` with ranges that make up 0 .. `rows`, each row in one of them, and returns when all is done: on
+    /// several threads if the rows are of `bytes` that are worth it.
     pub fn share(&self, rows: u32, bytes: usize, copy: impl Fn(Range<u32>) + Sync) {
         let pool = if bytes < SHARED_FROM || self.threads < 2 { None } else { self.pool() };
         let Some(pool) = pool else { return copy(0..rows) };

@@ -298,8 +298,9 @@ impl Copying<'_> {
             let begin = line as usize * self.bytes_per_row;
             let bytes = at_once as usize * self.row_bytes;
             if let (Some(to), Some(from)) = (self.rows.row(self.top + line), self.pixels.get(begin..begin + bytes)) {
-                // SAFETY: the tile lies inside the image, and the image's rows inside the host's block, which is no part of `pixels`;
-                // rows do not overlap, since `Layout::check` sees that the stride is no shorter than a row.
+                // SAFETY: the tile lies inside the image, and the image's rows inside the host's block, which is no
+                // part of `pixels`; rows do not overlap, since `Layout::check` sees that the stride is no shorter than
+                // a row.
                 unsafe { std::ptr::copy_nonoverlapping(from.as_ptr(), to.add(self.left), bytes) };
             }
         }

@@ -1,7 +1,7 @@
-//! The two threads that make a renderer's jobs. One prepares frames and submits them to the GPU; the other waits for what it has made
-//! and copies that into the host's memory. So copying, which may take as long as tracing, delays no submission. Frames end in the
-//! order in which they were ordered. Only the first thread holds a tracer; the second needs nothing that anybody holds for longer than
-//! a few instructions, so that it always gets on.
+//! The two threads that make a renderer's jobs. One prepares frames and submits them to the GPU; the other waits for
+//! what it has made and copies that into the host's memory. So copying, which may take as long as tracing, delays no
+//! submission. Frames end in the order in which they were ordered. Only the first thread holds a tracer; the second
+//! needs nothing that anybody holds for longer than a few instructions, so that it always gets on.
 
 use super::{Job, Order, Shared, lock};
 use crate::allocate::{self, THREAD_ROOM};
@@ -19,11 +19,12 @@ use std::thread::JoinHandle;
 /// Jobs of one renderer that may be unfinished at a time.
 pub const MAX_UNFINISHED: usize = 64;
 
-/// Submissions that are not finished, at most: one is copied to the host, one has run and waits for that, two keep the GPU busy.
+/// Submissions that are not finished, at most: one is copied to the host, one has run and waits for that, two keep the
+/// GPU busy.
 const AHEAD: usize = 4;
 
-/// What the submitting thread hands to the finishing one. Of each frame: `Begun`, then its steps, and `Left` if those are not all; or
-/// `Made` alone.
+/// What the submitting thread hands to the finishing one. Of each frame: `Begun`, then its steps, and `Left` if those
+/// are not all; or `Made` alone.
 enum Event {
     Begun(Box<Running>),
     Step(Box<Submitted>),

@@ -1,6 +1,6 @@
-//! Thermal light as the eye sees it: Planck's law through the CIE 1931 observer to linear Rec. 709 colour, the table of it that
-//! both tracers read, and the one rule by which a redshift changes it. Knows nothing of disks, stars or film.
-//! `shaders/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.
+//! Thermal light as the eye sees it: Planck's law through the CIE 1931 observer to linear Rec. 709 colour, the table
+//! of it that both tracers read, and the one rule by which a redshift changes it. Knows nothing of disks, stars or
+//! film. `shaders/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.
 
 use super::cie1931::{COLOUR_MATCHING, FIRST_WAVELENGTH, WAVELENGTH_STEP};
 use std::sync::OnceLock;
@@ -12,8 +12,8 @@ const BOLTZMANN: f64 = 1.380_649e-23;
 /// h c / k, metre kelvin.
 pub const SECOND_RADIATION_CONSTANT: f64 = PLANCK * LIGHT_SPEED / BOLTZMANN;
 
-/// CIE XYZ -> linear Rec. 709: the inverse of the matrix that the primaries (0.64, 0.33), (0.30, 0.60), (0.15, 0.06) and the
-/// white (0.3127, 0.3290) of ITU-R BT.709 define.
+/// CIE XYZ -> linear Rec. 709: the inverse of the matrix that the primaries (0.64, 0.33), (0.30, 0.60), (0.15, 0.06)
+/// and the white (0.3127, 0.3290) of ITU-R BT.709 define.
 const XYZ_TO_RGB: [[f64; 3]; 3] = [
     [3.240_969_941_904_522_6, -1.537_383_177_570_094, -0.498_610_760_293_003_4],
     [-0.969_243_636_280_879_6, 1.875_967_501_507_720_2, 0.041_555_057_407_175_59],
@@ -29,7 +29,8 @@ pub fn radiance_xyz(temperature: f64) -> [f64; 3] {
     if temperature > 0.0 { reduced_xyz(1.0 / temperature).map(|v| v * temperature) } else { [0.0; 3] }
 }
 
-/// The same light in linear Rec. 709; components outside the gamut are negative. Its luminance is the Y of `radiance_xyz`.
+/// The same light in linear Rec. 709; components outside the gamut are negative. Its luminance is the Y of
+/// `radiance_xyz`.
 pub fn linear_rgb(temperature: f64) -> [f64; 3] {
     xyz_to_rgb(radiance_xyz(temperature))
 }
@@ -67,8 +68,8 @@ pub const BLACKBODY_SIZE: usize = 512;
 pub const MIN_TEMPERATURE: f64 = 100.0;
 /// Light of a hotter body is that of this one: keeps it finite in f32 next to the faintest reference, 500 K.
 pub const MAX_TEMPERATURE: f64 = 1e20;
-/// K. The table's coordinate is T0 / (T + T0): 0 at infinite temperature, where everything tabulated is analytic in 1 / T.
-/// The value puts the nodes where the residual bends most.
+/// K. The table's coordinate is T0 / (T + T0): 0 at infinite temperature, where everything tabulated is analytic in 1
+/// / T. The value puts the nodes where the residual bends most.
 const COORDINATE_TEMPERATURE: f64 = 1000.0;
 /// Metres. The wavelength of Wien's exponent that is taken out of ln Y; deep red, so that little remains when cold.
 const WIEN_WAVELENGTH: f64 = 650e-9;
@@ -93,8 +94,9 @@ impl BlackbodyTable {
         SHARED.get_or_init(|| Self { nodes: std::array::from_fn(Self::node) })
     }
 
-    /// The table of light that is no blackbody's but dims and reddens like one: `light(g)`, linear Rec. 709, is it under the shift g, and
-    /// `temperature` (K) is to be at most that of its coolest part. Looked up at g `temperature` with the `log_reference` 0, the table gives `light`.
+    /// The table of light that is no blackbody's but dims and reddens like one: `light(g)`, linear Rec. 709, is it
+    /// under the shift g, and `temperature` (K) is to be at most that of its coolest part. Looked up at g
+    /// `temperature` with the `log_reference` 0, the table gives `light`.
     pub fn of_light(temperature: f64, light: impl Fn(f64) -> [f64; 3]) -> Self {
         let node = |index: usize| {
             // Far beyond the last finite node; there luminance is proportional to temperature.
@@ -146,8 +148,8 @@ impl BlackbodyTable {
         self.blackbody_lookup(taken)[3] + taken.ln()
     }
 
-    /// Linear Rec. 709 light of a blackbody at `temperature` (K), where a luminance of e^`log_reference` counts as 1. Inside the gamut,
-    /// finite; 0 below MIN_TEMPERATURE and for NaN.
+    /// Linear Rec. 709 light of a blackbody at `temperature` (K), where a luminance of e^`log_reference` counts as 1.
+    /// Inside the gamut, finite; 0 below MIN_TEMPERATURE and for NaN.
     pub fn blackbody_rgb(&self, temperature: f64, log_reference: f64) -> [f64; 3] {
         self.shifted_blackbody(temperature, log_reference, 1.0, 1.0)
     }
@@ -157,10 +159,11 @@ impl BlackbodyTable {
         self.blackbody_rgb(temperature_observed, self.ln_luminance(temperature_reference))
     }
 
-    /// Light of a blackbody at `temperature` (K) seen under a redshift, in units of the luminance e^`log_reference`. I_nu / nu^3 is invariant,
-    /// so it is that of a blackbody at g T. Colour and brightness can be told apart, for teaching: `g_colour` is the product of the
-    /// shifts that colour the light; of the factor g^4 that the whole spectrum gains, B(g_colour T) carries g_colour^4, and it
-    /// is replaced by `g_beaming`^4 (1 without beaming). Both equal to g: `blackbody_rgb(g T)`.
+    /// Light of a blackbody at `temperature` (K) seen under a redshift, in units of the luminance e^`log_reference`.
+    /// I_nu / nu^3 is invariant, so it is that of a blackbody at g T. Colour and brightness can be told apart, for
+    /// teaching: `g_colour` is the product of the shifts that colour the light; of the factor g^4 that the whole
+    /// spectrum gains, B(g_colour T) carries g_colour^4, and it is replaced by `g_beaming`^4 (1 without beaming). Both
+    /// equal to g: `blackbody_rgb(g T)`.
     pub fn shifted_blackbody(&self, temperature: f64, log_reference: f64, g_colour: f64, g_beaming: f64) -> [f64; 3] {
         let observed = temperature * g_colour;
         // As a positive condition: false for NaN.
@@ -178,8 +181,8 @@ impl BlackbodyTable {
     }
 }
 
-/// A colour of luminance 1 mixed with white of luminance 1 until no component is negative: keeps luminance and hue (in the
-/// chromaticity diagram, the line through white), continuous.
+/// A colour of luminance 1 mixed with white of luminance 1 until no component is negative: keeps luminance and hue (in
+/// the chromaticity diagram, the line through white), continuous.
 pub fn into_gamut(rgb: [f64; 3]) -> [f64; 3] {
     let least = rgb[0].min(rgb[1]).min(rgb[2]).min(0.0);
     rgb.map(|v| (v - least) / (1.0 - least))

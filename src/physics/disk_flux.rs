@@ -1,10 +1,10 @@
-//! The flux of a geometrically thin, optically thick disk on circular geodesics (Page & Thorne 1974), and the temperature
-//! profile that the tracers look up. Knows orbits only.
+//! The flux of a geometrically thin, optically thick disk on circular geodesics (Page & Thorne 1974), and the
+//! temperature profile that the tracers look up. Knows orbits only.
 
 use super::orbit::isco;
 
-/// f(r) of F = (3 Mdot / 8 pi M^2) f, per face, matter towards +ph; 0 at and inside the ISCO. (Page & Thorne 1974, eq. 15n.)
-/// The sqrt(3)/3 of some reprints of the spin-0 form is wrong; it is sqrt(3)/2, the a = 0 value of this.
+/// f(r) of F = (3 Mdot / 8 pi M^2) f, per face, matter towards +ph; 0 at and inside the ISCO. (Page & Thorne 1974, eq.
+/// 15n.) The sqrt(3)/3 of some reprints of the spin-0 form is wrong; it is sqrt(3)/2, the a = 0 value of this.
 pub fn page_thorne(a: f64, r: f64) -> f64 {
     let (x, x0) = (r.sqrt(), isco(a).sqrt());
     if x <= x0 || x.is_nan() {
@@ -41,8 +41,8 @@ pub fn page_thorne_maximum(a: f64) -> (f64, f64) {
 
 /// T(r) / T_max = (f / f_max)^(1/4), tabulated in f64: near the ISCO f32 could not evaluate f.
 ///
-/// Entry i holds T / T_max (r / r_isco)^(3/4) at x = i / (N - 1), x^2 = 1 - sqrt(r_isco / r): smooth from the ISCO, where T
-/// starts linearly in x, to infinity, where T falls as r^(-3/4) times a series in 1 / sqrt(r).
+/// Entry i holds T / T_max (r / r_isco)^(3/4) at x = i / (N - 1), x^2 = 1 - sqrt(r_isco / r): smooth from the ISCO,
+/// where T starts linearly in x, to infinity, where T falls as r^(-3/4) times a series in 1 / sqrt(r).
 #[derive(Clone, Debug)]
 pub struct TemperatureProfile {
     pub isco: f64,

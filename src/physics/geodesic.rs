@@ -1,9 +1,9 @@
 //! Light rays traced backward from the eye, in Mino time tau: the equations of motion and what is measured along a ray.
 //! Knows no integrator and no observer. Mirrored by `shaders/geodesic.wgsl`.
 //!
-//! State: u = 1/r, the unit position vector N (in axes that the drag has not turned), the drag angle and the delay. With the
-//! constants E, L = L_z, Q (Carter's), K = Q + L^2, B = K - 2 a L E + a^2 E^2 and primes for d / d tau (Carter 1968; the N
-//! equation is a Neumann problem):
+//! State: u = 1/r, the unit position vector N (in axes that the drag has not turned), the drag angle and the delay.
+//! With the constants E, L = L_z, Q (Carter's), K = Q + L^2, B = K - 2 a L E + a^2 E^2 and primes for d / d tau
+//! (Carter 1968; the N equation is a Neumann problem):
 //!
 //! ```text
 //! u''    = (a^2 E^2 - K) u + 3 B u^2 - 2 a^2 Q u^3
@@ -11,8 +11,8 @@
 //! drag'  = -a (2 E u - a L u^2) / D,     D = 1 - 2 u + a^2 u^2
 //! ```
 //!
-//! Polynomial right-hand sides without square roots: regular at poles, turning points and infinity (u = 0). The chart position
-//! is N turned about z by `drag`. a = 0 is Schwarzschild.
+//! Polynomial right-hand sides without square roots: regular at poles, turning points and infinity (u = 0). The chart
+//! position is N turned about z by `drag`. a = 0 is Schwarzschild.
 
 use super::orbit::{horizon_inner, horizon_outer};
 use glam::DVec3;
@@ -26,8 +26,9 @@ pub enum Clock {
     Rain,
 }
 
-/// The clock of falling eyes is rain time from here inwards: t would cost the more digits the nearer to the horizon. It is the photon
-/// sphere: from no farther out, all light that escapes moves outwards only, for which the rate of rain time is regular.
+/// The clock of falling eyes is rain time from here inwards: t would cost the more digits the nearer to the horizon.
+/// It is the photon sphere: from no farther out, all light that escapes moves outwards only, for which the rate of
+/// rain time is regular.
 pub const RAIN_CLOCK_RADIUS: f64 = 3.0;
 
 /// H, rain time less t outside the horizon, M: dH/dr = sqrt(2/r) / (1 - 2/r), so that
@@ -36,14 +37,15 @@ pub const RAIN_CLOCK_RADIUS: f64 = 3.0;
 /// H = 2 sqrt(2 r) + 2 ln((sqrt r - sqrt 2) / (sqrt r + sqrt 2)) = 4 / w + 2 ln(D / (1 + w)^2),   w = sqrt(2 u),   D = 1 - 2 u
 /// ```
 ///
-/// (Gullstrand 1922; Martel & Poisson 2001, eq. 2.5). `d` is D: beside the horizon the caller knows it better than `u` tells.
+/// (Gullstrand 1922; Martel & Poisson 2001, eq. 2.5). `d` is D: beside the horizon the caller knows it better than `u`
+/// tells.
 pub fn rain_offset(u: f64, d: f64) -> f64 {
     let w = (2.0 * u).sqrt();
     4.0 / w + 2.0 * (d / (1.0 + w).powi(2)).ln()
 }
 
-/// The constants of one ray. Scaled so that E = 1 where the local energy allows it, else so that the observer of the local
-/// frame measures frequency 1: inside the ergosphere E <= 0 occurs, and E = 1 would turn tau round.
+/// The constants of one ray. Scaled so that E = 1 where the local energy allows it, else so that the observer of the
+/// local frame measures frequency 1: inside the ergosphere E <= 0 occurs, and E = 1 would turn tau round.
 #[derive(Clone, Copy, Debug)]
 pub struct Constants {
     pub a: f64,

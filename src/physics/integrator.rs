@@ -1,6 +1,6 @@
-//! Steps of a light ray in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom method of order 5 that
-//! the renderer uses; their common dense output; the step limit beside the horizon. Knows the equations only through
-//! `geodesic`. Mirrored by `shaders/integrator.wgsl`.
+//! Steps of a light ray in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom method of
+//! order 5 that the renderer uses; their common dense output; the step limit beside the horizon. Knows the equations
+//! only through `geodesic`. Mirrored by `shaders/integrator.wgsl`.
 
 use super::geodesic::{Clock, Constants, State};
 use glam::DVec3;
@@ -30,8 +30,8 @@ pub fn step(method: Method, c: &Constants, s: &State, h: f64, with_delay: bool) 
 pub(super) const B: [f64; 3] = [1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0];
 pub(super) const D: [f64; 4] = [1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0];
 
-/// Nystrom's method for y'' = f(y); without spin N turns evenly, which is exact. Drag and delay, z' = f(u, N), take the weights of
-/// y', which keeps order 5.
+/// Nystrom's method for y'' = f(y); without spin N turns evenly, which is exact. Drag and delay, z' = f(u, N), take
+/// the weights of y', which keeps order 5.
 #[inline]
 pub fn nystrom_step(c: &Constants, s: &State, h: f64, with_delay: bool) -> State {
     let h2 = h * h;
@@ -197,10 +197,10 @@ fn error_norm(c: &Constants, s: &State, error: &State) -> f64 {
 
 /// Largest step in tau at this state.
 ///
-/// Outside, beside the horizon (u > 0.3 u+): k (u+ - u) / (|u'| + sqrt(|u''| (u+ - u))), which cannot overshoot u+: drag and
-/// delay diverge there. k = 1.2 `h`, `h` being the step in sigma: rays that start or pass there lose no accuracy; but at most 0.35,
-/// and not below 0.03, which gives 1e-10. No limit for light that leaves by rain time: for it nothing diverges there. Inside (spin 0):
-/// `h` u / (|u'| + sqrt(|u''| u)), as u is large.
+/// Outside, beside the horizon (u > 0.3 u+): k (u+ - u) / (|u'| + sqrt(|u''| (u+ - u))), which cannot overshoot u+:
+/// drag and delay diverge there. k = 1.2 `h`, `h` being the step in sigma: rays that start or pass there lose no
+/// accuracy; but at most 0.35, and not below 0.03, which gives 1e-10. No limit for light that leaves by rain time: for
+/// it nothing diverges there. Inside (spin 0): `h` u / (|u'| + sqrt(|u''| u)), as u is large.
 #[inline]
 pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     let u_plus = 1.0 / c.r_plus;
@@ -218,8 +218,9 @@ pub fn step_limit(c: &Constants, s: &State, h: f64) -> f64 {
     (1.2 * h).clamp(0.03, 0.35) * room / (s.du.abs() + (curvature * room).sqrt())
 }
 
-/// Inside the horizon (spin 0) with u' from the first integral, u'^2 = E^2 - K u^2 (1 - 2 u): its other terms grow so much larger than
-/// E^2 there that what steps leave of their difference would make it another ray's. No ray from inside turns there: u' < 0.
+/// Inside the horizon (spin 0) with u' from the first integral, u'^2 = E^2 - K u^2 (1 - 2 u): its other terms grow so
+/// much larger than E^2 there that what steps leave of their difference would make it another ray's. No ray from
+/// inside turns there: u' < 0.
 #[inline]
 pub fn held_inside(c: &Constants, s: State) -> State {
     if c.a != 0.0 || s.du >= 0.0 || s.u * c.r_plus < 1.0 {

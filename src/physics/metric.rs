@@ -1,5 +1,5 @@
-//! The Kerr metric in Boyer-Lindquist coordinates (t, r, th, ph), signature - + + +, its inverse, its Christoffel symbols, and
-//! the conversions between Boyer-Lindquist and chart coordinates. Knows nothing of geodesics.
+//! The Kerr metric in Boyer-Lindquist coordinates (t, r, th, ph), signature - + + +, its inverse, its Christoffel
+//! symbols, and the conversions between Boyer-Lindquist and chart coordinates. Knows nothing of geodesics.
 //!
 //! Kerr 1963; Boyer & Lindquist 1967; Bardeen, Press & Teukolsky 1972, eq. 2.1 - 2.4. Schwarzschild is a = 0.
 
@@ -65,8 +65,8 @@ impl Kerr {
         ]
     }
 
-    /// Gamma^a_bc in closed form (Mueller & Grave 2010, Catalogue of Spacetimes, Kerr in Boyer-Lindquist coordinates; checked
-    /// against derivatives of `metric`). Infinite on the horizon and on the axis.
+    /// Gamma^a_bc in closed form (Mueller & Grave 2010, Catalogue of Spacetimes, Kerr in Boyer-Lindquist coordinates;
+    /// checked against derivatives of `metric`). Infinite on the horizon and on the axis.
     pub fn christoffel(&self, r: f64, theta: f64) -> Tensor3 {
         let p = self.parts(r, theta);
         let (a, a2, r2) = (self.a, self.a * self.a, r * r);

@@ -1,8 +1,8 @@
 //! Light and matter around a black hole, in f64 and units G = c = M = 1 (r_s = 2): usable alone, tested alone.
 //! Knows neither scenes nor tracers; the WGSL in `shaders/` mirrors it, function by function, under the same names.
 //!
-//! Chart: x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the Boyer-Lindquist coordinates about the
-//! spin axis +z. `a` is signed: a < 0 turns the hole towards -ph. Prograde means towards +ph.
+//! Chart: x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the Boyer-Lindquist coordinates
+//! about the spin axis +z. `a` is signed: a < 0 turns the hole towards -ph. Prograde means towards +ph.
 
 pub mod blackbody;
 pub mod cie1931;

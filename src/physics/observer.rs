@@ -1,15 +1,17 @@
-//! Observers: the local orthonormal frame at a place, how a moving observer's directions look in it (aberration), and the
-//! start of the light ray that a look direction stands for. Knows no integrator.
+//! Observers: the local orthonormal frame at a place, how a moving observer's directions look in it (aberration), and
+//! the start of the light ray that a look direction stands for. Knows no integrator.
 //!
 //! A look direction n is opposite to the photon's momentum. Components are along (e_r, e_th, e_ph) of the local static
-//! observer (ZAMO when the hole spins), or, at or inside a spin-0 horizon and for a camera falling from rest at infinity, of
-//! the rain observer, whose tetrad is the static one boosted by -sqrt(2/r) e_r (Painleve 1921, Gullstrand 1922).
+//! observer (ZAMO when the hole spins), or, at or inside a spin-0 horizon and for a camera falling from rest at
+//! infinity, of the rain observer, whose tetrad is the static one boosted by -sqrt(2/r) e_r (Painleve 1921, Gullstrand
+//! 1922).
 
 use super::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, State};
 use super::orbit::{circular_orbit, horizon_inner, horizon_outer, zamo_omega};
 use glam::DVec3;
 
-/// Below this E (at nu_local = 1) rays keep nu_local = 1: E = 1 would scale K and L beyond use, and E <= 0 turn tau round.
+/// Below this E (at nu_local = 1) rays keep nu_local = 1: E = 1 would scale K and L beyond use, and E <= 0 turn tau
+/// round.
 const SMALLEST_UNIT_ENERGY: f64 = 1e-4;
 
 /// A place in the chart with its local orthonormal frame.
@@ -30,7 +32,8 @@ pub struct LocalFrame {
     pub lapse: f64,
 }
 
-/// E and L of light along look directions n (components) of one frame, at nu_local = 1: affine in n, as tetrads are linear.
+/// E and L of light along look directions n (components) of one frame, at nu_local = 1: affine in n, as tetrads are
+/// linear.
 #[derive(Clone, Copy, Debug)]
 pub struct Momenta {
     energy: f64,
@@ -141,8 +144,8 @@ impl LocalFrame {
         (big_a / sigma).sqrt() / u
     }
 
-    /// The backward ray along the unit look direction `n` (components). `None`: no light comes from there (E <= 0 in the rain
-    /// frame: it would have to leave the past horizon); such a ray is captured and crosses nothing.
+    /// The backward ray along the unit look direction `n` (components). `None`: no light comes from there (E <= 0 in
+    /// the rain frame: it would have to leave the past horizon); such a ray is captured and crosses nothing.
     pub fn start(&self, n: DVec3) -> Option<(Constants, State)> {
         if self.rain { self.start_rain(n) } else { Some(self.start_zamo(n)) }
     }
@@ -200,8 +203,8 @@ impl LocalFrame {
     }
 }
 
-/// An observer moving at velocity `beta` (components, |beta| < 1) against the frame; its axes are the frame's, boosted without
-/// rotation.
+/// An observer moving at velocity `beta` (components, |beta| < 1) against the frame; its axes are the frame's, boosted
+/// without rotation.
 #[derive(Clone, Copy, Debug)]
 pub struct Observer {
     pub frame: LocalFrame,
@@ -218,8 +221,8 @@ impl Observer {
         Self { frame, beta: DVec3::ZERO, gamma: 1.0 }
     }
 
-    /// Falls radially from rest at infinity. Spin 0: at rest in the rain frame, at any r. With spin: E = 1, L = Q = 0, so that
-    /// gamma = 1 / alpha against the ZAMO and th stays.
+    /// Falls radially from rest at infinity. Spin 0: at rest in the rain frame, at any r. With spin: E = 1, L = Q = 0,
+    /// so that gamma = 1 / alpha against the ZAMO and th stays.
     pub fn free_fall(frame: LocalFrame) -> Self {
         if frame.a == 0.0 {
             return Self::at_rest(frame.to_rain());
@@ -228,8 +231,8 @@ impl Observer {
         Self { frame, beta: DVec3::new(-speed, 0.0, 0.0), gamma: 1.0 / frame.lapse }
     }
 
-    /// On a circular geodesic towards +ph: spin 0 at any latitude (the great circle along e_ph), with spin in the plane.
-    /// `None`: no such orbit there.
+    /// On a circular geodesic towards +ph: spin 0 at any latitude (the great circle along e_ph), with spin in the
+    /// plane. `None`: no such orbit there.
     pub fn orbiting(frame: LocalFrame) -> Option<Self> {
         if frame.rain || (frame.a != 0.0 && frame.cos != 0.0) {
             return None;
@@ -240,7 +243,8 @@ impl Observer {
 
     /// Aberration: the look direction in the frame for `n` seen by the moving observer, and nu_observer / nu_frame.
     ///
-    /// n_frame = (n + ((gamma - 1)(beta.n) / beta^2 - gamma) beta) / (gamma (1 - beta.n)), ratio 1 / (gamma (1 - beta.n)).
+    /// n_frame = (n + ((gamma - 1)(beta.n) / beta^2 - gamma) beta) / (gamma (1 - beta.n)), ratio 1 / (gamma (1 -
+    /// beta.n)).
     pub fn look(&self, n: DVec3) -> (DVec3, f64) {
         if self.beta == DVec3::ZERO {
             return (n, 1.0);
@@ -252,8 +256,8 @@ impl Observer {
         (((n + self.beta * factor) * ratio).normalize(), ratio)
     }
 
-    /// The change of the look direction in the frame, `seen` (with its frequency ratio), for a small change `dn` of the one seen
-    /// by the moving observer: the derivative of `look`.
+    /// The change of the look direction in the frame, `seen` (with its frequency ratio), for a small change `dn` of
+    /// the one seen by the moving observer: the derivative of `look`.
     pub fn look_change(&self, (seen, ratio): (DVec3, f64), dn: DVec3) -> DVec3 {
         if self.beta == DVec3::ZERO {
             return dn;

@@ -1,7 +1,7 @@
 //! Radii and circular equatorial orbits of the Kerr spacetime. Knows nothing of light beyond the photon orbits.
 //!
-//! Bardeen, Press & Teukolsky 1972, eq. 2.12 - 2.21. `a` is signed; matter moves towards +ph ("prograde") unless `retrograde`,
-//! which is the same orbit seen in a mirror: a -> -a, ph -> -ph.
+//! Bardeen, Press & Teukolsky 1972, eq. 2.12 - 2.21. `a` is signed; matter moves towards +ph ("prograde") unless
+//! `retrograde`, which is the same orbit seen in a mirror: a -> -a, ph -> -ph.
 
 /// r+ = 1 + sqrt(1 - a^2).
 pub fn horizon_outer(a: f64) -> f64 {
@@ -54,7 +54,8 @@ pub struct CircularOrbit {
     pub beta: f64,
 }
 
-/// `None` at or inside the circular photon orbit, where no time-like circular orbit exists. (Eq. 2.12, 2.13, 2.16, 3.11a.)
+/// `None` at or inside the circular photon orbit, where no time-like circular orbit exists. (Eq. 2.12, 2.13, 2.16,
+/// 3.11a.)
 pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
     let u = 1.0 / r;
     let v = u * u.sqrt();
@@ -72,9 +73,9 @@ pub fn circular_orbit(a: f64, r: f64) -> Option<CircularOrbit> {
     })
 }
 
-/// g = nu_receiver / nu_emitter of a photon with constants E, L (scaled so that the receiver measures `nu_receiver`) emitted
-/// at u = 1 / r by matter on the circular orbit towards +ph, or -ph if `retrograde`. (Luminet 1979; eq. 2.16 above.)
-/// Also for E <= 0, inside the ergosphere. NaN where no such orbit exists.
+/// g = nu_receiver / nu_emitter of a photon with constants E, L (scaled so that the receiver measures `nu_receiver`)
+/// emitted at u = 1 / r by matter on the circular orbit towards +ph, or -ph if `retrograde`. (Luminet 1979; eq. 2.16
+/// above.) Also for E <= 0, inside the ergosphere. NaN where no such orbit exists.
 pub fn redshift(a: f64, u: f64, retrograde: bool, energy: f64, angular_momentum: f64, nu_receiver: f64) -> f64 {
     let v = if retrograde { -u * u.sqrt() } else { u * u.sqrt() };
     nu_receiver * (1.0 - 3.0 * u + 2.0 * a * v).sqrt() / (energy * (1.0 + a * v) - v * angular_momentum)

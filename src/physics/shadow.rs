@@ -19,8 +19,8 @@ pub struct Shadow {
 /// The spin-0 shadow, a circle for every observer: Synge 1966 for the static one, aberrated for a moving one.
 ///
 /// Look directions n on a circle about k, n.k = cos psi, are the null vectors (1, n) orthogonal to the unit space-like
-/// vector S = (cos psi, k) / sin psi; a boost takes S to S', whose time part is cot psi' and whose space part points to the
-/// new centre. (Look directions transform like (nu, nu n) under the opposite velocity.)
+/// vector S = (cos psi, k) / sin psi; a boost takes S to S', whose time part is cot psi' and whose space part points
+/// to the new centre. (Look directions transform like (nu, nu n) under the opposite velocity.)
 pub fn shadow(observer: &Observer) -> Shadow {
     let r = observer.frame.r;
     let inward = DVec3::NEG_X;
@@ -35,11 +35,12 @@ pub fn shadow(observer: &Observer) -> Shadow {
     Shadow { radius: 1.0_f64.atan2(time), center: space.normalize() }
 }
 
-/// (sin, cos) of psi_c, the angle from the inward radius at which a spin-0 ray winds up on the photon sphere, for the static
-/// observer at `r` > 2 or, with `rain`, for the one that falls from rest at infinity, at any `r` > 0.
+/// (sin, cos) of psi_c, the angle from the inward radius at which a spin-0 ray winds up on the photon sphere, for the
+/// static observer at `r` > 2 or, with `rain`, for the one that falls from rest at infinity, at any `r` > 0.
 ///
-/// Static: sin psi = b_c sqrt(1 - 2/r) / r (Synge 1966). Rain: r sin psi = b_c (1 - sqrt(2/r) cos psi), inside the horizon too.
-/// r^3 - 27 r + 54 = (r - 3)^2 (r + 6) is 1 - sin^2 psi without cancellation at the photon sphere, and the root's sign.
+/// Static: sin psi = b_c sqrt(1 - 2/r) / r (Synge 1966). Rain: r sin psi = b_c (1 - sqrt(2/r) cos psi), inside the
+/// horizon too. r^3 - 27 r + 54 = (r - 3)^2 (r + 6) is 1 - sin^2 psi without cancellation at the photon sphere, and
+/// the root's sign.
 pub fn critical_direction(r: f64, rain: bool) -> (f64, f64) {
     let b = CRITICAL_IMPACT_PARAMETER;
     let root = (r - 3.0) * ((r + 6.0) / r).sqrt();

@@ -1,5 +1,5 @@
-//! One light ray from the eye to its fate: steps, crossings of the equatorial plane, escape and capture. The only driver of the
-//! integrators. Mirrored by `shaders/trace.wgsl`.
+//! One light ray from the eye to its fate: steps, crossings of the equatorial plane, escape and capture. The only
+//! driver of the integrators. Mirrored by `shaders/trace.wgsl`.
 
 use super::geodesic::{Constants, State};
 use super::integrator::{Method, Quintic, held_inside, step, step_limit};
@@ -152,9 +152,9 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
 /// What rounding leaves of a sigma of order 1.
 const ROUNDING: f64 = 1e-15;
 
-/// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method with
-/// the integrator itself, so that dense output only has to be good enough to begin with. Corrections of less than `slack` in sigma
-/// are left out.
+/// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method
+/// with the integrator itself, so that dense output only has to be good enough to begin with. Corrections of less than
+/// `slack` in sigma are left out.
 pub(super) fn land(
     c: &Constants,
     s: &Settings,
@@ -267,7 +267,8 @@ pub fn trace_look(frame: &LocalFrame, n: DVec3, settings: &Settings) -> (Option<
 }
 
 impl PlaneCrossing {
-    /// g = nu(observer of the local frame) / nu(matter on its circular orbit); NaN inside that orbit's ISCO (`isco_radius`).
+    /// g = nu(observer of the local frame) / nu(matter on its circular orbit); NaN inside that orbit's ISCO
+    /// (`isco_radius`).
     pub fn redshift(&self, c: &Constants, retrograde: bool, isco_radius: f64) -> f64 {
         if self.u * isco_radius > 1.0 {
             return f64::NAN;
@@ -283,8 +284,8 @@ pub struct PathPoint {
     pub delay: f64,
 }
 
-/// The path in `count` (>= 2) points, evenly spaced in Mino time from the eye to the end: the horizon (1 + 1e-6), or, for
-/// a ray that escapes, the radius `far`. Errors: OUT_OF_MEMORY.
+/// The path in `count` (>= 2) points, evenly spaced in Mino time from the eye to the end: the horizon (1 + 1e-6), or,
+/// for a ray that escapes, the radius `far`. Errors: OUT_OF_MEMORY.
 pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: usize) -> Result<Vec<PathPoint>> {
     let point = |s: &State| PathPoint { position: s.chart_direction() / s.u, delay: c.delay(start, s) };
     let u_far = 1.0 / far;
@@ -330,8 +331,8 @@ mod tests {
     use super::*;
     use crate::physics::orbit::{horizon_inner, horizon_outer};
 
-    /// Boyer-Lindquist time along the ray from the eye to Mino time `tau`, by Simpson's rule on dt/dtau as Carter 1968 has it:
-    /// [(r^2 + a^2)(E (r^2 + a^2) - a L)] / Delta + a (L - a E sin^2 theta).
+    /// Boyer-Lindquist time along the ray from the eye to Mino time `tau`, by Simpson's rule on dt/dtau as Carter 1968
+    /// has it: [(r^2 + a^2)(E (r^2 + a^2) - a L)] / Delta + a (L - a E sin^2 theta).
     fn coordinate_time(c: &Constants, start: &State, tau: f64) -> f64 {
         let rate = |s: &State| {
             let (a, r) = (c.a, 1.0 / s.u);
@@ -395,7 +396,8 @@ mod tests {
         tau
     }
 
-    /// t = r_eye - r + 2 ln((r_eye - 2) / (r - 2)) along a radial ray; the rain time of an eye inside is finite through r = 2.
+    /// t = r_eye - r + 2 ln((r_eye - 2) / (r - 2)) along a radial ray; the rain time of an eye inside is finite
+    /// through r = 2.
     #[test]
     fn radial_paths_take_the_textbook_time() {
         let frame = LocalFrame::new(0.0, DVec3::new(0.0, 40.0, 0.0)).unwrap();
@@ -409,7 +411,8 @@ mod tests {
         let (c, start) = inside.start(DVec3::X).unwrap();
         let points = path(&c, &start, &Settings::exact(0.0), 100.0, 9).unwrap();
         for pair in points.windows(2) {
-            // Outgoing light looked back along: dT/dr = 1 / (1 + sqrt(2/r)) on the radial ray that falls in with the eye.
+            // Outgoing light looked back along: dT/dr = 1 / (1 + sqrt(2/r)) on the radial ray that falls in with the
+            // eye.
             let [r0, r1] = [0, 1].map(|i| pair[i].position.length());
             assert!(r1 > r0 && pair[1].delay > pair[0].delay && pair[1].delay.is_finite());
             let time = |r: f64| r - 2.0 * (2.0 * r).sqrt() + 4.0 * (1.0 + (r / 2.0).sqrt()).ln();

@@ -49,7 +49,8 @@ pub struct Camera {
     pub forward: DVec3,
     /// Default +z.
     pub up: DVec3,
-    /// Radians. `Perspective`: full vertical angle, in (0, pi); `Fisheye`: angle across the circle, in (0, 2 pi]. Default pi / 3.
+    /// Radians. `Perspective`: full vertical angle, in (0, pi); `Fisheye`: angle across the circle, in (0, 2 pi].
+    /// Default pi / 3.
     pub fov_y: f64,
     pub motion: Motion,
     /// v / c against the local static observer, |v| < 1; components as for a direction given at `position` (bhr.h).

@@ -7,7 +7,8 @@ use crate::error::{Error, Result};
 pub struct Disk {
     /// Matter orbits towards -phi.
     pub retrograde: bool,
-    /// 0: the ISCO (default). Matter inside the ISCO has no circular orbit and does not shine: what lies there is not drawn.
+    /// 0: the ISCO (default). Matter inside the ISCO has no circular orbit and does not shine: what lies there is not
+    /// drawn.
     pub inner_radius: f64,
     /// Default 20.
     pub outer_radius: f64,

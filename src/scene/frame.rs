@@ -50,20 +50,21 @@ impl Region {
     }
 }
 
-/// Where about its pixel sample `index` of `count` lies, the pixel being 0 .. 1 each way: the centre for one sample, else by the
-/// filter that a picture is reconstructed with, so that all samples weigh the same (importance sampling of the filter: M. Ernst,
-/// M. Stamminger, G. Greiner, IEEE Ray Tracing 2006). The same for every pixel and machine.
+/// Where about its pixel sample `index` of `count` lies, the pixel being 0 .. 1 each way: the centre for one sample,
+/// else by the filter that a picture is reconstructed with, so that all samples weigh the same (importance sampling of
+/// the filter: M. Ernst, M. Stamminger, G. Greiner, IEEE Ray Tracing 2006). The same for every pixel and machine.
 ///
-/// The filter is the quadratic B-spline, 3 pixels wide, sigma 1/2. A box, which a pixel is, lets through 30 % of what repeats every 4/3
-/// pixels, which then shows as a pattern 4 pixels long; the spline 3 %, and 26 % of the finest detail that pixels can show (box: 64 %). Filters
-/// that keep more of it have negative lobes, which make dark rings around stars and the photon ring. Of
-/// CUBE it is the box: across a border of its faces lies another part of the sky.
+/// The filter is the quadratic B-spline, 3 pixels wide, sigma 1/2. A box, which a pixel is, lets through 30 % of what
+/// repeats every 4/3 pixels, which then shows as a pattern 4 pixels long; the spline 3 %, and 26 % of the finest
+/// detail that pixels can show (box: 64 %). Filters that keep more of it have negative lobes, which make dark rings
+/// around stars and the photon ring. Of CUBE it is the box: across a border of its faces lies another part of the sky.
 pub fn sample_offset(index: u32, count: u32, projection: Projection) -> [f64; 2] {
     let place = lattice(index, count);
     if projection == Projection::Cube { place } else { place.map(|share| 0.5 + spline_quantile(share)) }
 }
 
-/// `count` places in a unit square, spread evenly for any count: even steps in x and steps of the golden ratio, modulo 1, in y.
+/// `count` places in a unit square, spread evenly for any count: even steps in x and steps of the golden ratio, modulo
+/// 1, in y.
 pub fn lattice(index: u32, count: u32) -> [f64; 2] {
     let (i, n) = (f64::from(index), f64::from(count));
     let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
@@ -135,8 +136,8 @@ mod tests {
         }
     }
 
-    /// A straight edge through the pixel at any angle and place: what samples see of it comes near what the filter does, and the nearer
-    /// the more they are.
+    /// A straight edge through the pixel at any angle and place: what samples see of it comes near what the filter
+    /// does, and the nearer the more they are.
     #[test]
     fn edges_converge() {
         let exact = offsets_of_a_grid(512);

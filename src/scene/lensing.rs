@@ -1,6 +1,5 @@
 //! Whether a frame looks its rays up in tables of the eye's lens or integrates each. Decided by scene and frame size
-//! alone, so that
-//! a frame's bytes never depend on those before it.
+//! alone, so that a frame's bytes never depend on those before it.
 
 use super::{Method, Scene, View};
 use crate::physics::lens::critical;
@@ -23,23 +22,20 @@ const SCHWARZSCHILD_WORTH: u64 = 4096;
 const SCHWARZSCHILD_STATIC: std::ops::RangeInclusive<f64> = 2.0005..=1e6;
 const SCHWARZSCHILD_RAIN: std::ops::RangeInclusive<f64> = 0.9..=1e6;
 
-/// Pixels times samples that pay for the tables of a spinning hole's lens on a tracer: as many as it integrates in
-/// the time that it
-/// builds and reads the tables in. The GPU's are finer than the CPU's.
+/// Pixels times samples that pay for the tables of a spinning hole's lens on a tracer: as many as it integrates in the
+/// time that it builds and reads the tables in. The GPU's are finer than the CPU's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KerrWorth(u64);
 
 impl KerrWorth {
     pub const GPU: Self = Self(500_000);
-    /// At spin 0.9, r = 30 M building takes as long as 100,000 pixels (115,000 with turbulence) and reading a fifth
-    /// of what integration
-    /// takes; at spin 0.998, r = 8 M a third.
+    /// At spin 0.9, r = 30 M building takes as long as 100,000 pixels (115,000 with turbulence) and reading a fifth of
+    /// what integration takes; at spin 0.998, r = 8 M a third.
     pub const CPU: Self = Self(140_000);
 }
 
 /// Orders of crossings that tables within 32 MB hold with azimuth and delay (without: four times as many): for all
-/// eyes, and for those
-/// no farther than KERR_NEAR, M.
+/// eyes, and for those no farther than KERR_NEAR, M.
 const KERR_ORDERS: usize = 3;
 const KERR_ORDERS_NEAR: usize = 4;
 const KERR_NEAR: f64 = 1e4;

@@ -1,5 +1,5 @@
-//! What to draw, as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
-//! May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
+//! What to draw, as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot
+//! of it. May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
 
 pub mod camera;
 pub mod disk;
@@ -91,8 +91,8 @@ pub struct Scene {
     pub sky_map: Option<Arc<SkyMap>>,
     pub film: Film,
     pub effects: Effects,
-    /// Scene time, in scene lengths; turns the disk. It is t, but for a camera at or inside a spin-0 horizon rain time T = t + H
-    /// (`physics::geodesic::rain_offset`), which goes on where t ends.
+    /// Scene time, in scene lengths; turns the disk. It is t, but for a camera at or inside a spin-0 horizon rain time
+    /// T = t + H (`physics::geodesic::rain_offset`), which goes on where t ends.
     pub time: f64,
     pub quality: Quality,
     pub view: View,

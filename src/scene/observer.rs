@@ -1,5 +1,5 @@
-//! From the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks through a
-//! pixel. The only place that converts; both tracers and the queries build on it.
+//! From the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks
+//! through a pixel. The only place that converts; both tracers and the queries build on it.
 
 use super::hole::unit;
 use super::projection::Mapping;
@@ -14,8 +14,8 @@ pub const MIN_RADIUS: f64 = 1e-6;
 pub const MAX_RADIUS: f64 = 1e15;
 
 impl Scene {
-    /// The local frame at a place given in scene axes and lengths.
-    /// Errors: INVALID_ARGUMENT for no place at all, INVALID_STATE outside 1e-6 .. 1e15 M, UNSUPPORTED at or inside a spinning hole's horizon.
+    /// The local frame at a place given in scene axes and lengths. Errors: INVALID_ARGUMENT for no place at all,
+    /// INVALID_STATE outside 1e-6 .. 1e15 M, UNSUPPORTED at or inside a spinning hole's horizon.
     pub fn local_frame(&self, position: DVec3) -> Result<LocalFrame> {
         let chart = self.hole.scene_to_chart() * position / self.hole.mass;
         let r = chart.length();
@@ -110,8 +110,8 @@ pub struct Lens {
 }
 
 impl Lens {
-    /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0) being
-    /// its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look`).
+    /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0)
+    /// being its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look`).
     pub fn look(&self, x: f64, y: f64) -> DVec3 {
         (self.axes * self.mapping.point(x, y)).normalize()
     }
@@ -126,8 +126,8 @@ impl Lens {
         (look, steps.map(|step| (step - look * look.dot(step)) * inverse))
     }
 
-    /// At right angles to the circle about `centre`, a look direction in the frame, that runs through position (x, y), in pixels right and
-    /// down; of any length.
+    /// At right angles to the circle about `centre`, a look direction in the frame, that runs through position (x, y),
+    /// in pixels right and down; of any length.
     pub fn across(&self, centre: DVec3, [x, y]: [f64; 2]) -> [f64; 2] {
         let (look, changes) = self.look_and_changes(x, y);
         let seen = self.observer.look(look);

@@ -1,13 +1,13 @@
-//! How a camera's projection takes positions of the frame to directions, in the camera's own axes (right, up, forward). Knows neither
-//! hole nor observer. Mirrored by `shaders/projection.wgsl`.
+//! How a camera's projection takes positions of the frame to directions, in the camera's own axes (right, up,
+//! forward). Knows neither hole nor observer. Mirrored by `shaders/projection.wgsl`.
 
 use super::{Camera, Projection, Region};
 use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A projection onto a frame. Every position has a point, which continues the projection outside the frame; where the projection shows
-/// something is for `has_look` to say.
+/// A projection onto a frame. Every position has a point, which continues the projection outside the frame; where the
+/// projection shows something is for `has_look` to say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mapping {
     pub projection: Projection,
@@ -56,8 +56,9 @@ impl Mapping {
         self.projection != Projection::Cube || self.face(x0) == self.face(x1)
     }
 
-    /// A point (right, up, forward) in the direction seen at (x, y) of the full frame, (0, 0) being its top-left corner; PERSPECTIVE:
-    /// right and up in units of `plane`. Outside the frame the image plane, the angles or the nearest face continue.
+    /// A point (right, up, forward) in the direction seen at (x, y) of the full frame, (0, 0) being its top-left
+    /// corner; PERSPECTIVE: right and up in units of `plane`. Outside the frame the image plane, the angles or the
+    /// nearest face continue.
     pub fn point(&self, x: f64, y: f64) -> DVec3 {
         match self.projection {
             Projection::Perspective => DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0),
@@ -128,8 +129,8 @@ impl Mapping {
     }
 }
 
-/// A point that a 90 degree camera sees, of the camera that looks along a face's middle: right left up down front back. Its right =
-/// forward x up as everywhere; up is up, on the up face backward, on the down face forward.
+/// A point that a 90 degree camera sees, of the camera that looks along a face's middle: right left up down front
+/// back. Its right = forward x up as everywhere; up is up, on the up face backward, on the down face forward.
 fn turned_to_face(face: u8, p: DVec3) -> DVec3 {
     match face {
         0 => DVec3::new(p.z, p.y, -p.x),

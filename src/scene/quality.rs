@@ -41,8 +41,7 @@ pub struct Quality {
     #[doc(hidden)]
     pub shares_kernels: Option<bool>,
     /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put
-    /// most of their work off
-    /// until a kernel runs. Not the host's to choose.
+    /// most of their work off until a kernel runs. Not the host's to choose.
     #[doc(hidden)]
     pub anticipates: Option<bool>,
     /// Whether pixels that edges run through get more rays; not the host's to choose.

@@ -145,12 +145,13 @@ impl Scene {
         Ok((Eye { lens, aberration }, region))
     }
 
-    /// `camera` moved along its own world line by `proper_time` (scene lengths, any sign), and the scene time that went by: by the
-    /// clock of the end (`Scene::time`) less that of the begin. For a fall inside the horizon that is proper time.
+    /// `camera` moved along its own world line by `proper_time` (scene lengths, any sign), and the scene time that
+    /// went by: by the clock of the end (`Scene::time`) less that of the begin. For a fall inside the horizon that is
+    /// proper time.
     ///
-    /// ORBIT follows the geodesic: at spin 0 and off the plane the great circle along +ph, position and axes turned together.
-    /// Errors: UNSUPPORTED for VELOCITY; as `observer` for where the camera is; INVALID_STATE when a fall ends in the singularity
-    /// or, with spin, at the horizon; INVALID_ARGUMENT for a `proper_time` not finite.
+    /// ORBIT follows the geodesic: at spin 0 and off the plane the great circle along +ph, position and axes turned
+    /// together. Errors: UNSUPPORTED for VELOCITY; as `observer` for where the camera is; INVALID_STATE when a fall
+    /// ends in the singularity or, with spin, at the horizon; INVALID_ARGUMENT for a `proper_time` not finite.
     pub fn advance_camera(&self, camera: &Camera, proper_time: f64) -> Result<(Camera, f64)> {
         if !proper_time.is_finite() {
             return Err(Error::argument(format!("proper_time is {proper_time}; it must be finite")));
@@ -236,8 +237,8 @@ struct Fall {
     time: f64,
 }
 
-/// r^(3/2) falls evenly in proper time, which is rain time: r^(3/2) = r0^(3/2) - (3/2) sqrt(2) tau (Martel & Poisson 2001, eq. 2.5).
-/// Outside the horizon the clock is t.
+/// r^(3/2) falls evenly in proper time, which is rain time: r^(3/2) = r0^(3/2) - (3/2) sqrt(2) tau (Martel & Poisson
+/// 2001, eq. 2.5). Outside the horizon the clock is t.
 fn fall_schwarzschild(r0: f64, tau: f64) -> Result<Fall> {
     let left = r0.powf(1.5) - 1.5 * std::f64::consts::SQRT_2 * tau;
     if left.is_nan() || left <= 0.0 {

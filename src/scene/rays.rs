@@ -9,8 +9,8 @@ pub const MAX_CROSSINGS: usize = 4;
 pub struct Ray {
     /// Scene axes and lengths.
     pub position: DVec3,
-    /// Where the eye looks, opposite to the photon's momentum; components along the local frame, placed on the Euclidean unit
-    /// vectors of spherical coordinates (bhr.h, Conventions), scene axes.
+    /// Where the eye looks, opposite to the photon's momentum; components along the local frame, placed on the
+    /// Euclidean unit vectors of spherical coordinates (bhr.h, Conventions), scene axes.
     pub direction: DVec3,
     /// nu(camera) / nu(observer of the local frame), > 0.
     pub frequency_ratio: f64,

@@ -1,8 +1,8 @@
-//! Pixels that edges run through: which these are, where their samples lie, and how much of a sample's cell the disk covers. Shared by
-//! both tracers (shaders/record.wgsl and shaders/refine.wgsl mirror it); knows no rays and no light.
+//! Pixels that edges run through: which these are, where their samples lie, and how much of a sample's cell the disk
+//! covers. Shared by both tracers (shaders/record.wgsl and shaders/refine.wgsl mirror it); knows no rays and no light.
 //!
-//! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, and misses rings thinner than the
-//! pixel. Two kinds of pixels get more rays:
+//! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, and misses rings
+//! thinner than the pixel. Two kinds of pixels get more rays:
 //!
 //! - An edge of the disk ([`Edge::Disk`]): u of a crossing changes evenly there, so a few rays tell it all over the pixel, and with it
 //!   the share of each ray's cell in which it lies between the disk's radii. That share of the disk's opacity is composed as usual.
@@ -16,7 +16,8 @@ use super::frame::lattice;
 pub enum Edge {
     #[default]
     None,
-    /// An edge of the disk, or the neighbourhood of the critical curve, where that is likely, or a steep change on the disk.
+    /// An edge of the disk, or the neighbourhood of the critical curve, where that is likely, or a steep change on the
+    /// disk.
     Disk,
     /// The critical curve.
     Curve,
@@ -33,8 +34,8 @@ const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
 const CURVE_REACH: f64 = 0.85;
 const RINGS_REACH: f64 = 3.0;
-/// Between the samples of a pixel of `EDGE_SAMPLES`: what u may change, of the disk's own range of it, and still count as even; and of the
-/// direct image, relative to u, as there the light itself may not change evenly.
+/// Between the samples of a pixel of `EDGE_SAMPLES`: what u may change, of the disk's own range of it, and still count
+/// as even; and of the direct image, relative to u, as there the light itself may not change evenly.
 const EVEN_CHANGE: f64 = 0.5;
 const DIRECT_CHANGE: f64 = 0.25;
 
@@ -43,8 +44,8 @@ pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {
     [outer / 1.5, inner * 1.15]
 }
 
-/// Whether an edge of the disk runs through the pixel whose crossing lies at `u`, or u changes steeply there; `change`: of u to the next
-/// pixel right and down.
+/// Whether an edge of the disk runs through the pixel whose crossing lies at `u`, or u changes steeply there;
+/// `change`: of u to the next pixel right and down.
 pub fn near_disk_edge(u: f64, change: [f64; 2], disk_u: [f64; 2]) -> bool {
     let sum = change[0].abs() + change[1].abs();
     let [far, near] = disk_u;
@@ -57,8 +58,8 @@ pub fn is_steep(u: f64, change: f64) -> bool {
     change > STEEP_CHANGE * u
 }
 
-/// Of a looked-up pixel `curve` pixels from the critical curve that nothing hides; `rings`: there is a disk, whose rings lie outside the
-/// curve as the pixel does.
+/// Of a looked-up pixel `curve` pixels from the critical curve that nothing hides; `rings`: there is a disk, whose
+/// rings lie outside the curve as the pixel does.
 pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
     match () {
         () if curve < CURVE_REACH => Edge::Curve,
@@ -72,9 +73,9 @@ pub fn quarter_place(index: u32) -> [f64; 2] {
     [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side))
 }
 
-/// Where in its pixel sample `index` of `CURVE_SAMPLES` lies, 0 .. 1: the strips between samples at right angles to `across` are of equal
-/// area, so that of a thin ring at right angles to it each pixel gets the same share of its samples; along the strips steps of the
-/// golden ratio.
+/// Where in its pixel sample `index` of `CURVE_SAMPLES` lies, 0 .. 1: the strips between samples at right angles to
+/// `across` are of equal area, so that of a thin ring at right angles to it each pixel gets the same share of its
+/// samples; along the strips steps of the golden ratio.
 pub fn curve_place(index: u32, across: [f64; 2]) -> [f64; 2] {
     let [share, along] = lattice(index, CURVE_SAMPLES);
     let length = across[0].hypot(across[1]);
@@ -105,7 +106,8 @@ fn level_of_share(share: f64, slope: [f64; 2]) -> f64 {
     size.copysign(share - 0.5)
 }
 
-/// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or two sides.
+/// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or
+/// two sides.
 fn share_below(level: f64, slope: [f64; 2]) -> f64 {
     let [x, y] = slope.map(f64::abs);
     let (most, least) = (x.max(y).max(1e-20), x.min(y));

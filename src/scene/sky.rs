@@ -84,7 +84,8 @@ impl Sky {
 }
 
 impl Scene {
-    /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as `StarField::index`.
+    /// The stars that a tracer is to hold: those of the sky, but none are made while none are shown. Errors: as
+    /// `StarField::index`.
     pub fn stars(&self) -> Result<Arc<StarIndex>> {
         if let Some(stars) = &self.given_stars {
             return Ok(stars.clone());

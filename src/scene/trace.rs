@@ -1,4 +1,5 @@
-//! A host's ray and quality in the terms of `physics::trace`, and a trace's result in the host's: what both tracers share.
+//! A host's ray and quality in the terms of `physics::trace`, and a trace's result in the host's: what both tracers
+//! share.
 
 use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
@@ -11,10 +12,11 @@ use crate::physics::trace::{self, RayTrace, Settings};
 use crate::sky::SkyMap;
 use std::sync::Arc;
 
-/// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning), of 1e-11.
+/// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning),
+/// of 1e-11.
 pub const RAY_STEP: f64 = 0.025;
-/// The same for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7 for crossing radii, at most 1e-5; a
-/// pixel of a 3840 x 2160 frame is 5e-4 wide.
+/// The same for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7 for crossing radii, at most
+/// 1e-5; a pixel of a 3840 x 2160 frame is 5e-4 wide.
 pub const PIXEL_STEP: f64 = 0.25;
 
 impl Quality {
@@ -53,7 +55,8 @@ impl Scene {
         settings
     }
 
-    /// 1/r of the disk's outer and inner edge; no matter orbits inside the ISCO. `None` without a disk, or with all of it inside.
+    /// 1/r of the disk's outer and inner edge; no matter orbits inside the ISCO. `None` without a disk, or with all of
+    /// it inside.
     pub fn disk_u(&self) -> Option<[f64; 2]> {
         let disk = self.disk?;
         let inner = disk.inner_radius.max(self.disk_isco());
@@ -89,8 +92,8 @@ impl Scene {
         steps.clamp(1, settings.max_steps.into())
     }
 
-    /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde photon
-    /// orbit, and no disk is drawn there, the ISCO being outside it; only METRIC looks deeper.
+    /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde
+    /// photon orbit, and no disk is drawn there, the ISCO being outside it; only METRIC looks deeper.
     pub fn pixel_capture_u(&self) -> f64 {
         let spin = self.hole.spin;
         if self.view == super::View::Metric {
@@ -100,7 +103,8 @@ impl Scene {
         1.0 / (0.99 * photon_orbit(spin.abs())).max(horizon_outer(spin))
     }
 
-    /// The start of a host's ray; `None` when it is not valid. The inner `None`: captured at once (`LocalFrame::start`).
+    /// The start of a host's ray; `None` when it is not valid. The inner `None`: captured at once
+    /// (`LocalFrame::start`).
     pub fn start(&self, ray: &Ray) -> Option<(LocalFrame, Option<(Constants, State)>)> {
         if !(ray.frequency_ratio > 0.0 && ray.frequency_ratio.is_finite() && ray.position.is_finite()) {
             return None;

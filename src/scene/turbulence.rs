@@ -1,26 +1,27 @@
-//! Structure of the disk: what its turbulence makes of the brightness, where and when. The pattern, its motion and the split of
-//! the scene's time; both tracers use it, and `shaders/turbulence.wgsl` mirrors `brightness`. Knows no colours and no rays.
+//! Structure of the disk: what its turbulence makes of the brightness, where and when. The pattern, its motion and the
+//! split of the scene's time; both tracers use it, and `shaders/turbulence.wgsl` mirrors `brightness`. Knows no
+//! colours and no rays.
 //!
-//! Octaves of gradient noise (Perlin 2002) in (ln r, azimuth fixed to the matter) multiply: factor = prod (1 + t a_i n_i), with
-//! n_i independent, of mean 0, within [-1, 1]. So the mean is 1 whatever octaves are filtered away, the factor is never
-//! negative, and its distribution is near log-normal, as is that of the light of accreting black holes (Uttley, McHardy &
-//! Vaughan 2005).
+//! Octaves of gradient noise (Perlin 2002) in (ln r, azimuth fixed to the matter) multiply: factor = prod (1 + t a_i
+//! n_i), with n_i independent, of mean 0, within [-1, 1]. So the mean is 1 whatever octaves are filtered away, the
+//! factor is never negative, and its distribution is near log-normal, as is that of the light of accreting black holes
+//! (Uttley, McHardy & Vaughan 2005).
 //!
-//! Matter at radius r turns by Omega(r) times its age. Were age counted from one instant, differential rotation would wind the
-//! pattern up without end; so generations are born every `LIFETIME` / 2 and live for `LIFETIME`, each with a seed of its own,
-//! sheared by its own age only, and with weight sin(pi age / LIFETIME): the squares of the two alive add up to 1, which keeps the
-//! variance, and a generation is invisible when it comes and goes.
+//! Matter at radius r turns by Omega(r) times its age. Were age counted from one instant, differential rotation would
+//! wind the pattern up without end; so generations are born every `LIFETIME` / 2 and live for `LIFETIME`, each with a
+//! seed of its own, sheared by its own age only, and with weight sin(pi age / LIFETIME): the squares of the two alive
+//! add up to 1, which keeps the variance, and a generation is invisible when it comes and goes.
 
 use super::{Effects, Scene, View};
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
 use std::f64::consts::{PI, TAU};
 
-/// Of a generation, M: at its brightest (half of it) it is sheared 6 : 1 at r = 6 and 1 : 1 at r = 20. Much
-/// longer, and the inner disk would be rings; much shorter, and nothing could be seen to go round there (92 M at r = 6).
+/// Of a generation, M: at its brightest (half of it) it is sheared 6 : 1 at r = 6 and 1 : 1 at r = 20. Much longer,
+/// and the inner disk would be rings; much shorter, and nothing could be seen to go round there (92 M at r = 6).
 const LIFETIME: f64 = 120.0;
-/// Cells of the coarsest octave: around the disk (whole, so that there is no seam), and in an e-fold of the radius, where
-/// 5 / 2 pi would make them square. The next octave has twice as many.
+/// Cells of the coarsest octave: around the disk (whole, so that there is no seam), and in an e-fold of the radius,
+/// where 5 / 2 pi would make them square. The next octave has twice as many.
 const CELLS_AROUND: u32 = 5;
 const CELLS_PER_E_FOLD: f64 = 2.5;
 /// a_i.
@@ -46,8 +47,8 @@ pub struct Turbulence {
     pub seed: u32,
     /// Delay of light that left at the reference time; 0 where light is not delayed.
     pub reference_delay: f64,
-    /// The youngest generation at the reference time (counted modulo 2^32), and its age: small numbers that f32 can hold,
-    /// however large the scene's time is.
+    /// The youngest generation at the reference time (counted modulo 2^32), and its age: small numbers that f32 can
+    /// hold, however large the scene's time is.
     pub generation: u32,
     pub age: f64,
     /// Spin as the matter meets it, and +1 or -1: its sense of motion.
@@ -93,8 +94,8 @@ fn clock_advance(eye: &LocalFrame) -> f64 {
 }
 
 impl Turbulence {
-    /// What the disk's radiance is multiplied by: mean 1, within 0 .. prod (1 + a_i) = 7.4. `per_pixel`: change of `at` to the next
-    /// pixel in x and in y; octaves whose cells are narrower than that fade out.
+    /// What the disk's radiance is multiplied by: mean 1, within 0 .. prod (1 + a_i) = 7.4. `per_pixel`: change of
+    /// `at` to the next pixel in x and in y; octaves whose cells are narrower than that fade out.
     pub fn brightness(&self, at: Place, per_pixel: [Place; 2]) -> f64 {
         let since = self.age + (self.reference_delay - at.delay);
         let births = (since / (0.5 * LIFETIME)).floor();
@@ -136,7 +137,8 @@ pub fn mix(mut x: u32) -> u32 {
     x ^ (x >> 16)
 }
 
-/// Gradient noise at `x` and at `turn` of a circle with `around` cells. Each key shifts its lattice, on which the noise is 0.
+/// Gradient noise at `x` and at `turn` of a circle with `around` cells. Each key shifts its lattice, on which the
+/// noise is 0.
 fn noise(x: f64, turn: f64, around: u32, key: u32) -> f64 {
     let x = x + f64::from(key & 0xffff) / 65536.0;
     let turn = turn + f64::from(key >> 16) / 65536.0;

@@ -1,4 +1,5 @@
-//! The embedded stars, decoded: where they are, how bright, how hot. `data/README.md` describes the bytes and names their source.
+//! The embedded stars, decoded: where they are, how bright, how hot. `data/README.md` describes the bytes and names
+//! their source.
 
 use glam::DVec3;
 
@@ -8,8 +9,8 @@ const RECORD_BYTES: usize = 12;
 const UNKNOWN_COLOUR: i16 = i16::MIN;
 /// B-V of a star whose colour is not known: about the Sun's, and the middle of the catalogue's.
 const DEFAULT_COLOUR: f64 = 0.6;
-/// Range of B-V in which `temperature` is used: the hottest O stars to the coolest M stars. Redder ones are carbon stars, whose B-V is
-/// absorption, not temperature.
+/// Range of B-V in which `temperature` is used: the hottest O stars to the coolest M stars. Redder ones are carbon
+/// stars, whose B-V is absorption, not temperature.
 const COLOUR_RANGE: (f64, f64) = (-0.4, 2.0);
 
 /// V of the faintest stars of the catalogue, which has all that are brighter.

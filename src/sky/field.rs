@@ -1,4 +1,5 @@
-//! Which stars a sky shows, and their index: one for the whole process, made when it is first asked for and shared while anybody holds it.
+//! Which stars a sky shows, and their index: one for the whole process, made when it is first asked for and shared
+//! while anybody holds it.
 
 use super::catalogue;
 use super::index::StarIndex;
@@ -26,7 +27,8 @@ const ROOM: usize = 300 << 20;
 static MADE: Mutex<Vec<(StarField, Weak<StarIndex>)>> = Mutex::new(Vec::new());
 
 impl StarField {
-    /// Its index; the catalogue's takes milliseconds and stays, others take about a second unless somebody holds them. Errors: OUT_OF_MEMORY.
+    /// Its index; the catalogue's takes milliseconds and stays, others take about a second unless somebody holds them.
+    /// Errors: OUT_OF_MEMORY.
     pub fn index(self) -> Result<Arc<StarIndex>> {
         if self == Self::Catalogue {
             return Self::catalogue();

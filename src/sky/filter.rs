@@ -1,11 +1,13 @@
-//! The light of a sky map in a pixel, filtered over the pixel's patch of sky, and what frequency shifts make of it. The same in both
-//! tracers: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no holes.
+//! The light of a sky map in a pixel, filtered over the pixel's patch of sky, and what frequency shifts make of it.
+//! The same in both tracers: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no
+//! holes.
 //!
-//! The patch is taken for an ellipse, whose axes are the singular values of the pixel's derivatives. Trilinear taps, each about as wide as
-//! the minor axis, stand along the major one: a tap blurs by its own width already, so they are spread over
-//! sqrt(major^2 - minor^2), which gives the variance of the whole (P. Heckbert 1989, "Fundamentals of Texture Mapping and Image Warping", on
-//! elliptical filters). A tap's weight is the length of that line that lies nearer to it than to its neighbours, so the
-//! sum changes without steps from pixel to pixel. Longer ellipses than MAX_SPREAD allows are taken for wider ones.
+//! The patch is taken for an ellipse, whose axes are the singular values of the pixel's derivatives. Trilinear taps,
+//! each about as wide as the minor axis, stand along the major one: a tap blurs by its own width already, so they are
+//! spread over sqrt(major^2 - minor^2), which gives the variance of the whole (P. Heckbert 1989, "Fundamentals of
+//! Texture Mapping and Image Warping", on elliptical filters). A tap's weight is the length of that line that lies
+//! nearer to it than to its neighbours, so the sum changes without steps from pixel to pixel. Longer ellipses than
+//! MAX_SPREAD allows are taken for wider ones.
 
 use super::map::{Level, SkyMap, unpack};
 use crate::physics::blackbody::BlackbodyTable;
@@ -41,7 +43,8 @@ struct Taps {
 }
 
 impl SkyMap {
-    /// Linear Rec. 709 radiance of the map in a pixel at rest. `d`: unit direction in sky axes; `dx`, `dy`: its derivatives by pixel.
+    /// Linear Rec. 709 radiance of the map in a pixel at rest. `d`: unit direction in sky axes; `dx`, `dy`: its
+    /// derivatives by pixel.
     pub fn light(&self, d: DVec3, dx: DVec3, dy: DVec3) -> [f64; 3] {
         let taps = self.taps(d, dx, dy);
         let reach = 0.5 * taps.spread + 0.5;
@@ -132,9 +135,10 @@ impl Level {
     }
 }
 
-/// Light of a map under a shift; shifts as for `BlackbodyTable::shifted_blackbody`. What a picture says of light is three numbers, not its
-/// spectrum; so it is taken for light that shifts as a blackbody of its blue-to-red ratio does, of 2500 K to 25000 K: each channel
-/// is multiplied by what that blackbody's is. Exact for the light of stars and dust; unshifted light stays as it is.
+/// Light of a map under a shift; shifts as for `BlackbodyTable::shifted_blackbody`. What a picture says of light is
+/// three numbers, not its spectrum; so it is taken for light that shifts as a blackbody of its blue-to-red ratio does,
+/// of 2500 K to 25000 K: each channel is multiplied by what that blackbody's is. Exact for the light of stars and
+/// dust; unshifted light stays as it is.
 pub fn shifted_map_light(rgb: [f64; 3], g_colour: f64, g_beaming: f64) -> [f64; 3] {
     let ratio = rgb[2].max(TINY_LIGHT) / rgb[0].max(TINY_LIGHT);
     let temperature = colour_temperature(ratio.ln());
@@ -210,8 +214,8 @@ mod tests {
         }
     }
 
-    /// A map of noise changes little from one direction or patch to the next, everywhere: no seam, no pole, no step between levels
-    /// or counts of taps.
+    /// A map of noise changes little from one direction or patch to the next, everywhere: no seam, no pole, no step
+    /// between levels or counts of taps.
     #[test]
     fn light_is_continuous() {
         let map = SkyMap::of_rows([256, 128], &|y, out| {

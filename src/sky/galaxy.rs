@@ -1,17 +1,18 @@
-//! Where the Milky Way's plane lies, and how stars crowd towards it: one law for the procedural field, for the mean light of faint stars and
-//! for `shaders/stars.wgsl`.
+//! Where the Milky Way's plane lies, and how stars crowd towards it: one law for the procedural field, for the mean
+//! light of faint stars and for `shaders/stars.wgsl`.
 
 use super::catalogue::Star;
 use glam::DVec3;
 
-/// The galactic pole and, at right angles to it, galactic longitudes 0 and 90 degrees, in sky axes: rows of the matrix of The Hipparcos and
-/// Tycho Catalogues (ESA SP-1200, 1997), volume 1, eq. 1.5.11.
+/// The galactic pole and, at right angles to it, galactic longitudes 0 and 90 degrees, in sky axes: rows of the matrix
+/// of The Hipparcos and Tycho Catalogues (ESA SP-1200, 1997), volume 1, eq. 1.5.11.
 pub const GALACTIC_POLE: DVec3 = DVec3::new(-0.867_666_135_7, -0.198_076_389_6, 0.455_983_795_0);
 pub const GALACTIC_CENTRE: DVec3 = DVec3::new(-0.054_875_539_4, -0.873_437_104_7, -0.483_834_991_8);
 pub const GALACTIC_EAST: DVec3 = DVec3::new(0.494_109_453_6, -0.444_829_594_3, 0.746_982_248_7);
 
-/// Stars at a galactic latitude b relative to their mean over the sky, for `sine` = |sin b|: 2 in the plane, 1/2 at the poles, 1 on average over
-/// the sphere. Of the real stars a share does so (`crowding`) and the rest is spread evenly.
+/// Stars at a galactic latitude b relative to their mean over the sky, for `sine` = |sin b|: 2 in the plane, 1/2 at
+/// the poles, 1 on average over the sphere. Of the real stars a share does so (`crowding`) and the rest is spread
+/// evenly.
 pub fn crowded_density(sine: f64) -> f64 {
     2.0 / ((1.0 + sine) * (1.0 + sine))
 }
@@ -21,8 +22,9 @@ pub fn crowded_sine(share: f64) -> f64 {
     share / (2.0 - share)
 }
 
-/// The share, 0 .. 1, of `stars` that follows `crowded_density` while the others are spread evenly, by the mean of the density where they are: it is
-/// 1 for even spread, and 7 / 6, the mean of the density's square, if all follow it. (0.7 for the catalogue.)
+/// The share, 0 .. 1, of `stars` that follows `crowded_density` while the others are spread evenly, by the mean of the
+/// density where they are: it is 1 for even spread, and 7 / 6, the mean of the density's square, if all follow it.
+/// (0.7 for the catalogue.)
 pub fn crowding(stars: &[Star]) -> f64 {
     let sum = stars.iter().map(|star| crowded_density(star.direction.dot(GALACTIC_POLE).abs())).sum::<f64>();
     // Without stars: 0.

@@ -1,5 +1,6 @@
-//! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the stars within the cell
-//! enlarged by half its size on every side. Flat arrays, the same ones on the GPU. `shaders/stars.wgsl` has `cell_of` and `level_for` too.
+//! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the
+//! stars within the cell enlarged by half its size on every side. Flat arrays, the same ones on the GPU.
+//! `shaders/stars.wgsl` has `cell_of` and `level_for` too.
 
 use super::catalogue::Star;
 use super::field::StarField;
@@ -15,11 +16,11 @@ use std::sync::Arc;
 pub const STAR_LEVELS: u32 = 6;
 /// Cells along a cube side at level 0.
 pub const STAR_FINEST: u32 = 256;
-/// Bend of the map from the plane of a cube side, u in [-1, 1], to cells, w = u (1 + k - k |u|): with (sqrt 3 - 1) / (sqrt 3 + 1) the smallest
-/// search radius inside a side is as large as that in its corner.
+/// Bend of the map from the plane of a cube side, u in [-1, 1], to cells, w = u (1 + k - k |u|): with (sqrt 3 - 1) /
+/// (sqrt 3 + 1) the smallest search radius inside a side is as large as that in its corner.
 pub const STAR_WARP: f64 = 0.268;
-/// Search radius times the cells along a side: 1 / (1.268 sqrt 2) = 0.5577 for small cells, 0.5457 on the coarsest level, less a
-/// little for rounding in f32.
+/// Search radius times the cells along a side: 1 / (1.268 sqrt 2) = 0.5577 for small cells, 0.5457 on the coarsest
+/// level, less a little for rounding in f32.
 pub const STAR_MARGIN: f64 = 0.545;
 
 /// Display convention: a star of V = 0 has this radiance when its light is spread over REFERENCE_SOLID_ANGLE.
@@ -28,12 +29,13 @@ pub const STAR_REFERENCE_RADIANCE: f64 = 30.0;
 pub const REFERENCE_SOLID_ANGLE: f64 =
     (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
 
-/// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many faint stars
-/// that their mean light stands for them. By the number of stars in the real sky no list is long: about 10 on average, with a million stars too.
+/// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many
+/// faint stars that their mean light stands for them. By the number of stars in the real sky no list is long: about 10
+/// on average, with a million stars too.
 const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, 9.6, 8.3, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
 
-/// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for `PROFILE_SIZE` entries of
-/// the disk's, the mean skies, and the stars.
+/// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for
+/// `PROFILE_SIZE` entries of the disk's, the mean skies, and the stars.
 const MEAN_SKY_TABLES: usize = BLACKBODY_SIZE;
 pub const PROFILE_OFFSET: usize = MEAN_SKY_TABLES + (STAR_LEVELS as usize + 1) * BLACKBODY_SIZE;
 pub const PROFILE_SIZE: usize = 2048;
@@ -75,8 +77,8 @@ fn warp(u: f64) -> f64 {
     u * (1.0 + STAR_WARP - STAR_WARP * u.abs())
 }
 
-/// The cell of `level` that holds the direction: sides +x, -x, +y, -y, +z, -z; columns and rows along the axes that follow
-/// the side's own, cyclically. Any vector gives a cell that exists.
+/// The cell of `level` that holds the direction: sides +x, -x, +y, -y, +z, -z; columns and rows along the axes that
+/// follow the side's own, cyclically. Any vector gives a cell that exists.
 pub fn cell_of(direction: DVec3, level: u32) -> u32 {
     let a = direction.abs();
     let (axis, along, u, v) = if a.x >= a.y && a.x >= a.z {
@@ -116,8 +118,8 @@ pub struct MeanSky {
 
 /// Stars, cells and mean light, ready to draw.
 pub struct StarIndex {
-    /// Two per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. In f32, what the GPU has,
-    /// so that both tracers see the same sky.
+    /// Two per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. In f32,
+    /// what the GPU has, so that both tracers see the same sky.
     pub stars: Vec<[f32; 4]>,
     /// For every cell, where its list begins in `star_lists`, times 256, plus its length.
     pub star_cells: Vec<u32>,
@@ -164,9 +166,9 @@ impl StarIndex {
         })
     }
 
-    /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean skies' tables; room for the disk's profile; of each level the
-    /// temperatures that its table and the next one are looked up at (0: no light), the next one's flux limit, and the crowding; of every star
-    /// flux, temperature, its ln Y, 0; the lists.
+    /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean skies' tables; room for
+    /// the disk's profile; of each level the temperatures that its table and the next one are looked up at (0: no
+    /// light), the next one's flux limit, and the crowding; of every star flux, temperature, its ln Y, 0; the lists.
     pub fn light_tables(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
         let of_mean = |mean: &MeanSky| match &mean.light {
             Some((_, table)) => table.gpu_table(),
@@ -257,8 +259,8 @@ fn scaled_flux(star: &Star) -> f64 {
     star.flux() * STAR_REFERENCE_RADIANCE * REFERENCE_SOLID_ANGLE
 }
 
-/// Calls `visit` with every cell whose list the star belongs to: on each level that is not too coarse for it, on each cube side whose plane it is near enough to, the two
-/// columns by two rows whose enlarged cells hold it.
+/// Calls `visit` with every cell whose list the star belongs to: on each level that is not too coarse for it, on each
+/// cube side whose plane it is near enough to, the two columns by two rows whose enlarged cells hold it.
 fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
     let d = star.direction.to_array();
     for face in 0..6_u32 {
@@ -272,7 +274,8 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
         let (u, v) = (warp(u / along), warp(v / along));
         for level in (0..STAR_LEVELS).filter(|&level| star.magnitude <= FAINTEST[level as usize]) {
             let n = side(level) as i32;
-            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 64 moves every level's cells above 0.
+            // floor(cell - 1/2), as a conversion of a positive number: w > -1.3, so 64 moves every level's cells above
+            // 0.
             let first = |w: f64| ((w + 1.0) * 0.5 * f64::from(n) + 63.5) as i32 - 64;
             let (column, row) = (first(u), first(v));
             for row in (row..=row + 1).filter(|row| (0..n).contains(row)) {
@@ -333,8 +336,8 @@ fn list_cells(stars: &[Star]) -> Result<(Vec<u32>, Vec<[f32; 4]>)> {
 /// Light and light / temperature of stars, by temperature.
 type MeanSkySums = [(f64, f64); MEAN_SKY_PARTS];
 
-/// `StarIndex::mean_sky`. A part's 1 / T is the mean of its stars', weighted by light: to first order the shifted spectra, whose
-/// exponents are in 1 / T, then sum to the part's.
+/// `StarIndex::mean_sky`. A part's 1 / T is the mean of its stars', weighted by light: to first order the shifted
+/// spectra, whose exponents are in 1 / T, then sum to the part's.
 fn mean_skies(stars: &[Star]) -> Vec<MeanSky> {
     // Of the stars that a level leaves out and the one before it does not.
     let mut sums = [MeanSkySums::default(); FAINTEST.len()];

@@ -1,9 +1,10 @@
-//! Pictures of the whole sky as both tracers read them: an equirectangular pyramid of RGB9E5 texels, filtered so that a texel is as wide on
-//! the sky as it is high, everywhere. `filter.rs` reads it. Knows the host's pixel formats, but neither holes nor cameras.
+//! Pictures of the whole sky as both tracers read them: an equirectangular pyramid of RGB9E5 texels, filtered so that
+//! a texel is as wide on the sky as it is high, everywhere. `filter.rs` reads it. Knows the host's pixel formats, but
+//! neither holes nor cameras.
 //!
-//! Row 0 ends at the north pole of the sky axes, the last row at the south pole. The middle column is right ascension 0, which
-//! grows to the left, as on the maps of astronomers: the picture looks as the sky does from inside. With (u, v) in [0, 1) from the top left,
-//! RA = 360 deg (1/2 - u), declination = 180 deg (1/2 - v).
+//! Row 0 ends at the north pole of the sky axes, the last row at the south pole. The middle column is right ascension
+//! 0, which grows to the left, as on the maps of astronomers: the picture looks as the sky does from inside. With (u,
+//! v) in [0, 1) from the top left, RA = 360 deg (1/2 - u), declination = 180 deg (1/2 - v).
 
 use crate::allocate::{THREAD_ROOM, check_room, filled};
 use crate::error::{Error, Result};
@@ -22,8 +23,8 @@ const TALL: u32 = 1024;
 
 /// A picture of the whole sky.
 pub struct SkyMap {
-    /// Finest first, at least as wide as high; each has half the columns and rows of the one before, rounded down, and the last is one
-    /// texel: the mean.
+    /// Finest first, at least as wide as high; each has half the columns and rows of the one before, rounded down, and
+    /// the last is one texel: the mean.
     levels: Vec<Level>,
 }
 
@@ -50,7 +51,8 @@ impl std::fmt::Debug for SkyMap {
 }
 
 impl SkyMap {
-    /// Of the host's picture, which is read before this returns; alpha does not count. Errors: INVALID_ARGUMENT for R32F; OUT_OF_MEMORY.
+    /// Of the host's picture, which is read before this returns; alpha does not count. Errors: INVALID_ARGUMENT for
+    /// R32F; OUT_OF_MEMORY.
     pub fn new(image: &ImageRef<'_>) -> Result<Self> {
         let size = [image.width(), image.height()];
         let eight_bit = |order: [usize; 3]| {
@@ -159,7 +161,8 @@ fn add(sum: &mut [f64; 3], weight: f64, light: [f64; 3]) {
     (0..3).for_each(|c| sum[c] += weight * light[c]);
 }
 
-/// The parts of the source that make up item `index` of `count`: of each its index and how much of it, as a share of itself.
+/// The parts of the source that make up item `index` of `count`: of each its index and how much of it, as a share of
+/// itself.
 fn parts(index: usize, count: usize, source: usize) -> impl Iterator<Item = (usize, f64, f64)> {
     let scale = source as f64 / count as f64;
     let (begin, end) = (index as f64 * scale, (index + 1) as f64 * scale);
@@ -262,8 +265,8 @@ impl Scratch {
     }
 }
 
-/// Texels along longitude that row `y` of a level is averaged over: as many as make it as wide on the sky as it is high. The rows
-/// at the poles, where all longitudes meet, become constant.
+/// Texels along longitude that row `y` of a level is averaged over: as many as make it as wide on the sky as it is
+/// high. The rows at the poles, where all longitudes meet, become constant.
 fn blur_width([width, height]: [u32; 2], y: u32) -> f64 {
     if y == 0 || y + 1 == height {
         return width.into();

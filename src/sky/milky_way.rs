@@ -1,6 +1,6 @@
-//! The glow of the Milky Way as a sky map, made at first use from an embedded picture of nested outlines (`data/README.md`): smooth
-//! brightness from the picture, colour from the galactic longitude, and dust finer than the picture by noise that is always the same.
-//! Plausible, not measured; where things are is true to about a degree.
+//! The glow of the Milky Way as a sky map, made at first use from an embedded picture of nested outlines
+//! (`data/README.md`): smooth brightness from the picture, colour from the galactic longitude, and dust finer than the
+//! picture by noise that is always the same. Plausible, not measured; where things are is true to about a degree.
 
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE};
 use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
@@ -24,8 +24,8 @@ const MAP_SIZE: [u32; 2] = [2048, 1024];
 /// 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the next, and in the end nothing.
 const BRIGHTEST: f64 = 20.6;
 const MAGNITUDES_A_HEIGHT: f64 = 0.3;
-/// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer steps between its white and
-/// its black than a dark-adapted eye sees in the sky.
+/// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer
+/// steps between its white and its black than a dark-adapted eye sees in the sky.
 const MILKY_WAY_GAIN: f64 = 8.0;
 /// sr.
 const SQUARE_ARC_SECOND: f64 = (PI / 648_000.0) * (PI / 648_000.0);
@@ -36,16 +36,18 @@ const ARM_TEMPERATURE: f64 = 6800.0;
 /// rad. How far the bulge reaches.
 const BULGE_RADIUS: f64 = 0.45;
 
-/// Octaves of the dust, the cells of the first per radian, and how much smaller the cells of the next are, and its amplitude.
+/// Octaves of the dust, the cells of the first per radian, and how much smaller the cells of the next are, and its
+/// amplitude.
 const DUST_OCTAVES: u32 = 6;
 const DUST_CELLS: f64 = 7.0;
 const DUST_FINER: f64 = 2.03;
 const DUST_FAINTER: f64 = 0.7;
-/// Magnitudes of extinction in the plane where the noise is 1, none where it is negative; rad: the layer's height. (The true layer is
-/// half as high in the distance; what is near us reaches to 10 degrees.)
+/// Magnitudes of extinction in the plane where the noise is 1, none where it is negative; rad: the layer's height.
+/// (The true layer is half as high in the distance; what is near us reaches to 10 degrees.)
 const DUST_DEPTH: f64 = 1.3;
 const DUST_HEIGHT: f64 = 0.11;
-/// Extinction at the primaries of Rec. 709, about 610, 550 and 465 nm, over that in V (Cardelli, Clayton & Mathis 1989, R_V = 3.1).
+/// Extinction at the primaries of Rec. 709, about 610, 550 and 465 nm, over that in V (Cardelli, Clayton & Mathis
+/// 1989, R_V = 3.1).
 const EXTINCTION: [f64; 3] = [0.88, 1.0, 1.24];
 const DUST_SEED: u32 = 0x4d57;
 
@@ -75,7 +77,8 @@ struct MilkyWay {
     brightest: f64,
 }
 
-/// What all texels of a column share: the picture's columns that it lies between, where, and cosine and sine of the right ascension.
+/// What all texels of a column share: the picture's columns that it lies between, where, and cosine and sine of the
+/// right ascension.
 struct Column {
     between: [u32; 2],
     share: f64,

@@ -1,5 +1,5 @@
-//! A random sky that is like the real one in what can be counted: how many stars of each magnitude, how they crowd towards the Milky Way, and which
-//! colours they have. The same stars for the same seed on every machine.
+//! A random sky that is like the real one in what can be counted: how many stars of each magnitude, how they crowd
+//! towards the Milky Way, and which colours they have. The same stars for the same seed on every machine.
 
 use super::catalogue::{self, Star};
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE, crowded_sine};
@@ -11,22 +11,23 @@ use rand_pcg::Pcg32;
 /// In a field; the faintest of them have V = 11.07.
 pub const PROCEDURAL_STARS: u32 = 1_000_000;
 
-/// Stars of the whole sky that are not fainter than V = 0, 1, 2 ..: to 8 the embedded catalogue's, then by Allen 1973, Astrophysical Quantities,
-/// 3rd edition, section 117.
+/// Stars of the whole sky that are not fainter than V = 0, 1, 2 ..: to 8 the embedded catalogue's, then by Allen 1973,
+/// Astrophysical Quantities, 3rd edition, section 117.
 const COUNTS: [f64; 13] =
     [4.0, 15.0, 49.0, 177.0, 519.0, 1627.0, 5044.0, 15544.0, 41411.0, 121_000.0, 340_000.0, 927_000.0, 2_460_000.0];
 /// V of the brightest star there may be: Sirius.
 const BRIGHTEST: f64 = -1.46;
-/// Share of the stars that crowd towards the Milky Way (`galaxy::crowding`), for stars as bright as the catalogue's, measured there; beyond it all
-/// do, which makes them 4 times as dense in the plane as at the poles (Allen: 3.5 to 5 for V 8 to 11).
+/// Share of the stars that crowd towards the Milky Way (`galaxy::crowding`), for stars as bright as the catalogue's,
+/// measured there; beyond it all do, which makes them 4 times as dense in the plane as at the poles (Allen: 3.5 to 5
+/// for V 8 to 11).
 const CROWDING_OF_BRIGHT: f64 = 0.7;
 
 /// The catalogue's colours by magnitude.
 struct Colours(Vec<Star>);
 
 impl Colours {
-    /// B-V of a star of the catalogue about as bright: of those within a twentieth of the number of brighter ones, and 200; for
-    /// stars fainter than the catalogue's of its faintest.
+    /// B-V of a star of the catalogue about as bright: of those within a twentieth of the number of brighter ones, and
+    /// 200; for stars fainter than the catalogue's of its faintest.
     fn like(&self, magnitude: f64, random: &mut Pcg32) -> f64 {
         let rank = self.0.partition_point(|star| star.magnitude < magnitude);
         let reach = 200.max(rank / 20);
@@ -52,8 +53,8 @@ fn unit(random: &mut Pcg32) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// V of the star that `brighter` stars of the sky outshine, log N going straight between the counts. In thousandths, as in the catalogue: what the
-/// last bits of a machine's logarithm are then does not matter.
+/// V of the star that `brighter` stars of the sky outshine, log N going straight between the counts. In thousandths,
+/// as in the catalogue: what the last bits of a machine's logarithm are then does not matter.
 fn magnitude(brighter: f64) -> f64 {
     let bin = COUNTS.iter().skip(1).take_while(|&&count| count < brighter).count().min(COUNTS.len() - 2);
     let (low, high) = (COUNTS[bin], COUNTS[bin + 1]);

@@ -1,22 +1,23 @@
-//! How stars are drawn, the same in both tracers (`shaders/stars.wgsl`): as points with a fixed footprint in pixels, so that they neither alias
-//! nor sparkle, and with the brightness that the lens's magnification gives them.
+//! How stars are drawn, the same in both tracers (`shaders/stars.wgsl`): as points with a fixed footprint in pixels,
+//! so that they neither alias nor sparkle, and with the brightness that the lens's magnification gives them.
 
 use super::index::{STAR_LEVELS, StarIndex, cell_of, level_for, margin};
 use crate::physics::blackbody::BlackbodyTable;
 use glam::{DVec2, DVec3};
 
-/// A pixel's patch of sky counts as at least a share of the square of its length (`least_patch`). On a critical curve of the lens the patch that the
-/// derivatives span has no area and its stars would be infinitely bright; within one pixel that area really varies from 0 to about length^2 / (pixels
-/// around the curve), which is this share for an ordinary frame. Images of higher order are as narrow far from any critical curve, but only
-/// cameras with a narrow field of view see them, whose pixels are small: no less than an f32 can tell.
+/// A pixel's patch of sky counts as at least a share of the square of its length (`least_patch`). On a critical curve
+/// of the lens the patch that the derivatives span has no area and its stars would be infinitely bright; within one
+/// pixel that area really varies from 0 to about length^2 / (pixels around the curve), which is this share for an
+/// ordinary frame. Images of higher order are as narrow far from any critical curve, but only cameras with a narrow
+/// field of view see them, whose pixels are small: no less than an f32 can tell.
 const LEAST_PATCH: (f64, f64) = (1e-5, 1e-3);
 /// Keeps the division finite for cameras of no field of view at all.
 const TINY_AREA: f64 = 1e-30;
 /// Brightest sum: finite in f32, whatever the host multiplies it by.
 const MAX_STAR_LIGHT: f64 = 1e9;
 
-/// Quadratic B-spline, support [-1.5, 1.5]: its values at t + integers sum to 1, so a star's light does not depend on where between
-/// the pixels it lies.
+/// Quadratic B-spline, support [-1.5, 1.5]: its values at t + integers sum to 1, so a star's light does not depend on
+/// where between the pixels it lies.
 fn footprint(t: f64) -> f64 {
     let t = t.abs();
     if t < 0.5 {
@@ -49,8 +50,8 @@ impl Patch {
         Self { d, across: dy.cross(d), down: d.cross(dx), area, magnification }
     }
 
-    /// Radiance per flux of a star in direction `s`. Solves [dx dy] (px, py) = s - d in the tangent plane by triple products; a star
-    /// outside the footprint is found out before anything is divided.
+    /// Radiance per flux of a star in direction `s`. Solves [dx dy] (px, py) = s - d in the tangent plane by triple
+    /// products; a star outside the footprint is found out before anything is divided.
     fn spread(&self, s: DVec3) -> f64 {
         let e = s - self.d;
         let p = DVec2::new(e.dot(self.across), e.dot(self.down));
@@ -74,9 +75,10 @@ fn footprint_radius(dx: DVec3, dy: DVec3) -> f64 {
 }
 
 impl StarIndex {
-    /// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1. `d`: unit direction in sky axes; `dx`, `dy`: its derivatives by
-    /// pixel; `g_colour`, `g_beaming` as for `BlackbodyTable::shifted_blackbody`; `least_patch`: see there. Where the pixel is wider than the index reaches, or
-    /// its derivatives are not finite (at the edge of the shadow), the mean light of all stars. Finite for any input.
+    /// Linear Rec. 709 radiance of the stars in a pixel, for stars_brightness 1. `d`: unit direction in sky axes;
+    /// `dx`, `dy`: its derivatives by pixel; `g_colour`, `g_beaming` as for `BlackbodyTable::shifted_blackbody`;
+    /// `least_patch`: see there. Where the pixel is wider than the index reaches, or its derivatives are not finite
+    /// (at the edge of the shadow), the mean light of all stars. Finite for any input.
     pub fn star_light(
         &self,
         d: DVec3,
@@ -114,8 +116,8 @@ impl StarIndex {
     }
 }
 
-/// How much is left, at this footprint, of the stars that the next level leaves out: they go over into the mean sky as the
-/// footprint grows through the second half of the level's margin.
+/// How much is left, at this footprint, of the stars that the next level leaves out: they go over into the mean sky as
+/// the footprint grows through the second half of the level's margin.
 fn fade(level: u32, radius: f64) -> f64 {
     1.0 - smoothstep(0.5 * margin(level), margin(level), radius)
 }

@@ -1,4 +1,5 @@
-//! Which windows have a surface: one window takes one, since what two would show in turn is up to the driver, if it does not fail.
+//! Which windows have a surface: one window takes one, since what two would show in turn is up to the driver, if it
+//! does not fail.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;

@@ -1,5 +1,6 @@
-//! Frames into a window as plain memory, where no GPU device can present to it: by XCB to X11 windows, by the softbuffer crate to others.
-//! (Softbuffer's own X11 loads Xlib into every process that loads bhr, and sets Xlib's error handler.)
+//! Frames into a window as plain memory, where no GPU device can present to it: by XCB to X11 windows, by the
+//! softbuffer crate to others. (Softbuffer's own X11 loads Xlib into every process that loads bhr, and sets Xlib's
+//! error handler.)
 
 use super::native::Handles;
 use super::{Window, native::NativeWindow};
@@ -74,7 +75,8 @@ impl MemoryWindow {
         Ok(Self::Other(Box::new(surface)))
     }
 
-    /// Shows `pixels`, rows of `size` BGRA pixels without gaps, from the window's top left corner. Errors: SURFACE_LOST.
+    /// Shows `pixels`, rows of `size` BGRA pixels without gaps, from the window's top left corner. Errors:
+    /// SURFACE_LOST.
     pub fn present(&mut self, window: &Window, size: [u32; 2], pixels: &[u8]) -> Result<()> {
         match self {
             #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]

@@ -1,7 +1,7 @@
-//! Windows of the host as targets of frames. A [`Surface`] shows a renderer's frames in one window: traced and presented by the same
-//! GPU device, or, where that cannot present, uploaded to one that can, or put there as memory. Hosts' handles come in as a
-//! [`NativeWindow`]; nothing here knows C, or what a frame shows. Without the cargo feature `window` every window is
-//! UNSUPPORTED.
+//! Windows of the host as targets of frames. A [`Surface`] shows a renderer's frames in one window: traced and
+//! presented by the same GPU device, or, where that cannot present, uploaded to one that can, or put there as memory.
+//! Hosts' handles come in as a [`NativeWindow`]; nothing here knows C, or what a frame shows. Without the cargo
+//! feature `window` every window is UNSUPPORTED.
 
 mod claim;
 #[cfg_attr(not(feature = "window"), path = "memory_absent.rs")]
@@ -48,7 +48,8 @@ pub struct Window {
 
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 impl Window {
-    /// Errors: INVALID_ARGUMENT for a window that is not there; UNSUPPORTED for a kind that this platform does not have.
+    /// Errors: INVALID_ARGUMENT for a window that is not there; UNSUPPORTED for a kind that this platform does not
+    /// have.
     pub fn open(native: NativeWindow) -> Result<Self> {
         native.check_platform()?;
         Ok(Self { native, x11: x11::X11Window::open(&native)? })

@@ -1,5 +1,5 @@
-//! One window and the way frames get into it. Frames of the window's own device are not waited for: their numbers are taken when they
-//! have run. Locks: its own before the tracer's.
+//! One window and the way frames get into it. Frames of the window's own device are not waited for: their numbers are
+//! taken when they have run. Locks: its own before the tracer's.
 
 use super::claim::Claim;
 use super::memory::{self, MemoryWindow};
@@ -52,7 +52,8 @@ enum Way {
     Direct(Screen, SharedTracer),
     /// Traced elsewhere, and uploaded to a device that can present.
     Uploaded(Screen, Vec<u8>),
-    /// Traced, and put there as memory, in every mode when the pacer says so: softbuffer waits for a silent compositor without a limit.
+    /// Traced, and put there as memory, in every mode when the pacer says so: softbuffer waits for a silent compositor
+    /// without a limit.
     Memory(MemoryWindow, Vec<u8>, Option<Box<dyn Pacer>>),
 }
 
@@ -91,8 +92,8 @@ pub struct Showing<'a> {
 impl Surface {
     /// `tracing`: with a GPU tracer. `validation` of a device that is opened for presenting.
     ///
-    /// Errors: INVALID_ARGUMENT for a window that is not there; INVALID_STATE for one that has a surface; UNSUPPORTED where nothing
-    /// can present to it, with every reason; for a size beyond what the device's images have.
+    /// Errors: INVALID_ARGUMENT for a window that is not there; INVALID_STATE for one that has a surface; UNSUPPORTED
+    /// where nothing can present to it, with every reason; for a size beyond what the device's images have.
     pub fn new(
         native: NativeWindow,
         size: [u32; 2],
@@ -120,7 +121,8 @@ impl Surface {
         })
     }
 
-    /// The window's new size in pixels; 0 x 0: minimised. Errors: UNSUPPORTED beyond what the device's images have; SURFACE_LOST.
+    /// The window's new size in pixels; 0 x 0: minimised. Errors: UNSUPPORTED beyond what the device's images have;
+    /// SURFACE_LOST.
     pub fn resize(&self, size: [u32; 2]) -> Result<()> {
         let mut inner = self.inner.lock();
         inner.way()?.check_size(size)?;
@@ -150,7 +152,8 @@ impl Surface {
         self.inner.lock().end(reason);
     }
 
-    /// Renders the scene into the window. Errors: as `Renderer::render`; SURFACE_LOST, then and ever after, when the window is gone.
+    /// Renders the scene into the window. Errors: as `Renderer::render`; SURFACE_LOST, then and ever after, when the
+    /// window is gone.
     pub fn show(&self, showing: &Showing<'_>) -> Result<Shown> {
         let mut inner = self.inner.lock();
         let shown = inner.show(showing);
@@ -305,7 +308,8 @@ fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut 
     showing.tracer.lock().render(showing.scene, request, &mut sink, &mut |_| true)
 }
 
-/// `pixels` in the window's size, if the frame has another; bilinear, as the sampler of present.wgsl. Errors: OUT_OF_MEMORY.
+/// `pixels` in the window's size, if the frame has another; bilinear, as the sampler of present.wgsl. Errors:
+/// OUT_OF_MEMORY.
 fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Option<Vec<u8>>> {
     let [width, height] = size.map(|side| side as usize);
     let (from_width, from_height) = (request.width as usize, request.height as usize);
@@ -428,8 +432,8 @@ impl Screen {
 
     fn window_changed(&mut self) {
         self.swapchain.window_changed();
-        // The driver drops frames of a window that changes, and one that the host hid has nothing to show before its next frame:
-        // compositors may be silent then.
+        // The driver drops frames of a window that changes, and one that the host hid has nothing to show before its
+        // next frame: compositors may be silent then.
         if let Some(pacer) = &mut self.pacer {
             pacer.forget();
         }
@@ -439,8 +443,8 @@ impl Screen {
         self.pacer.as_mut().filter(|_| mode == PresentMode::Vsync)
     }
 
-    /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors: SURFACE_LOST; as
-    /// [`Swapchain::acquire`].
+    /// The window's next image, and its size; `None`: none now. `tracer`: who else submits to the device. Errors:
+    /// SURFACE_LOST; as [`Swapchain::acquire`].
     fn acquire(
         &mut self,
         window: &Window,

@@ -1,7 +1,7 @@
-//! When a window of Wayland takes its next frame: by wl_surface.frame ("a hint when it is a good time to start drawing a new frame",
-//! Wayland protocol, wl_surface), on the host's connection, with an event queue of bhr's own. Drivers do the same for VSYNC, some
-//! of them (Mesa's) without a limit: a compositor says nothing to a window that it does not show, and the host hangs. Sends nothing
-//! else, and never reads or dispatches what is the host's.
+//! When a window of Wayland takes its next frame: by wl_surface.frame ("a hint when it is a good time to start drawing
+//! a new frame", Wayland protocol, wl_surface), on the host's connection, with an event queue of bhr's own. Drivers do
+//! the same for VSYNC, some of them (Mesa's) without a limit: a compositor says nothing to a window that it does not
+//! show, and the host hangs. Sends nothing else, and never reads or dispatches what is the host's.
 
 use super::Pacer;
 use crate::error::{Error, ErrorKind, Result};
@@ -54,8 +54,8 @@ impl ObjectData for Done {
     fn destroyed(&self, _: ObjectId) {}
 }
 
-/// A stand-in for the host's wl_surface in the client's library. Its memory is bhr's: should the host, against the header, destroy the
-/// wl_surface first, the compositor refuses the request, and nothing that was freed is read.
+/// A stand-in for the host's wl_surface in the client's library. Its memory is bhr's: should the host, against the
+/// header, destroy the wl_surface first, the compositor refuses the request, and nothing that was freed is read.
 struct Wrapper(NonNull<wl_proxy>);
 
 // SAFETY: libwayland-client locks its display around every use of a proxy; this one is used by one thread at a time.
@@ -109,8 +109,8 @@ impl FramePacer {
             return Err(unsupported("libwayland-client cannot be loaded"));
         }
         guarded(unsupported, || {
-            // SAFETY: by the header both pointers are what their kind says, and outlive the surface, with which this goes. The host's
-            // wl_surface is only read here.
+            // SAFETY: by the header both pointers are what their kind says, and outlive the surface, with which this
+            // goes. The host's wl_surface is only read here.
             let (wrapper, backend) =
                 unsafe { (Wrapper::new(surface), Backend::from_foreign_display(display.as_ptr().cast())) };
             let wrapper = wrapper.ok_or_else(|| unsupported("out of memory"))?;
@@ -180,7 +180,8 @@ impl Pacer for FramePacer {
 
     fn forget(&mut self) {
         let Some(asked) = self.asked.take() else { return };
-        // One that has come is gone already, which is no error here; after a panic the next use of the connection says so.
+        // One that has come is gone already, which is no error here; after a panic the next use of the connection says
+        // so.
         let _ = guarded(lost, || self.connection.backend().destroy_object(&asked.id).map_err(lost));
     }
 }

@@ -1,6 +1,6 @@
-//! X11 windows, through a connection of bhr's own to the server they are on. Errors of the X server then never reach the host's
-//! connection, whose Xlib handler would end the process, and the host may destroy its window, or close its connection, before
-//! the surface. Reads of the host's connection only where it leads.
+//! X11 windows, through a connection of bhr's own to the server they are on. Errors of the X server then never reach
+//! the host's connection, whose Xlib handler would end the process, and the host may destroy its window, or close its
+//! connection, before the surface. Reads of the host's connection only where it leads.
 
 use super::claim;
 use super::native::{Handles, NativeWindow};
@@ -28,8 +28,8 @@ pub struct X11Window {
 }
 
 impl X11Window {
-    /// `None` for windows that are not of X11. Errors: INVALID_ARGUMENT for a window that is not on the server of the host's connection,
-    /// or for a connection that is broken; UNSUPPORTED when bhr gets no connection of its own.
+    /// `None` for windows that are not of X11. Errors: INVALID_ARGUMENT for a window that is not on the server of the
+    /// host's connection, or for a connection that is broken; UNSUPPORTED when bhr gets no connection of its own.
     pub fn open(native: &NativeWindow) -> Result<Option<Self>> {
         let (server, id) = match *native {
             NativeWindow::Xlib { display, window, .. } => (server_of_xlib(display)?, window),
@@ -135,8 +135,8 @@ fn sync(native: &NativeWindow) -> Result<()> {
     match *native {
         NativeWindow::Xlib { display, .. } => {
             type Sync = unsafe extern "C" fn(*mut c_void, c_int) -> c_int;
-            // On a connection that the server has closed it would end the process.
-            // SAFETY: Xlib's `int XConnectionNumber(Display *)`, which reads a field; the display keeps its socket open during this call.
+            // On a connection that the server has closed it would end the process. SAFETY: Xlib's `int
+            // XConnectionNumber(Display *)`, which reads a field; the display keeps its socket open during this call.
             let socket = unsafe {
                 let number = function::<ConnectionNumber>(c"libX11.so.6", c"XConnectionNumber")?;
                 BorrowedFd::borrow_raw(number(display.as_ptr()))
@@ -144,8 +144,8 @@ fn sync(native: &NativeWindow) -> Result<()> {
             if is_closed(socket) {
                 return Ok(());
             }
-            // SAFETY: Xlib's `int XSync(Display *, Bool)`, which keeps the host's events; the host vouches for its `Display *`, and by the
-            // header calls on the thread that uses it, unless it has called XInitThreads.
+            // SAFETY: Xlib's `int XSync(Display *, Bool)`, which keeps the host's events; the host vouches for its
+            // `Display *`, and by the header calls on the thread that uses it, unless it has called XInitThreads.
             unsafe { function::<Sync>(c"libX11.so.6", c"XSync")?(display.as_ptr(), 0) };
         }
         NativeWindow::Xcb { connection, .. } => {
@@ -175,8 +175,8 @@ fn server_of_xlib(display: NonNull<c_void>) -> Result<CString> {
 /// The name of the server that an XCB connection leads to, by the other end of its socket: XCB keeps no name.
 fn server_of_xcb(connection: NonNull<c_void>) -> Result<CString> {
     type Ask = unsafe extern "C" fn(*mut c_void) -> c_int;
-    // SAFETY: XCB's `int xcb_connection_has_error(xcb_connection_t *)` and `int xcb_get_file_descriptor(..)`, which read fields; the host
-    // vouches for its connection.
+    // SAFETY: XCB's `int xcb_connection_has_error(xcb_connection_t *)` and `int xcb_get_file_descriptor(..)`, which
+    // read fields; the host vouches for its connection.
     let (error, socket) = unsafe {
         let has_error = function::<Ask>(c"libxcb.so.1", c"xcb_connection_has_error")?;
         let descriptor = function::<Ask>(c"libxcb.so.1", c"xcb_get_file_descriptor")?;
@@ -199,7 +199,8 @@ fn server_of(socket: BorrowedFd<'_>) -> Option<String> {
     rustix::net::getpeername(socket).ok().flatten().and_then(|address| server_at(&address))
 }
 
-/// The name of the server behind the far end of a socket: `:N` for the local socket `../X<N>`, `host:N` for port 6000 + N.
+/// The name of the server behind the far end of a socket: `:N` for the local socket `../X<N>`, `host:N` for port 6000
+/// + N.
 fn server_at(address: &rustix::net::SocketAddrAny) -> Option<String> {
     if let Ok(unix) = rustix::net::SocketAddrUnix::try_from(address.clone()) {
         let path = unix.path_bytes().or(unix.abstract_name())?;

@@ -121,7 +121,7 @@ fn exr_bombs(add: &mut impl FnMut(&str, Vec<u8>, &'static [&'static str])) {
     // 1 GiB, of 44 channels: 4 times that may be unpacked, and no data follow.
     add("used by size.exr", exr_header([8192, 8192], [8192, 8192], 3, 33, None), &["at most 4294967296 are unpacked"]);
     add("just used by size.exr", exr_header([8192, 8192], [8192, 8192], 3, 32, None), &["missing bytes"]);
-    // What a few scan lines reach is all that is unpacked.
+    // Only the blocks that the few scan lines shown reach are unpacked.
     add("a window of many channels.exr", exr_header([4096, 16], [4096, 16384], 3, 512, None), &["missing bytes"]);
     for (code, name) in [(8, "dwaa"), (9, "dwab")] {
         add(&format!("{name}.exr"), exr_header([16, 16], [16, 16], code, 4, None), &["compression is not read"]);

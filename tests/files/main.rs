@@ -192,7 +192,7 @@ fn part_with_more(
     part
 }
 
-/// Of a file with many lines and channels that are not shown only the first lines are needed: the rest may be missing.
+/// A file with many lines and channels that are not shown may lack all but its first lines.
 #[cfg(feature = "exr")]
 #[test]
 fn blocks_past_the_display_window_are_not_read() {

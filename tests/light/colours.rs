@@ -90,8 +90,8 @@ fn encode(linear: f64) -> f64 {
     if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Every code is 255 times the sRGB curve of the exposed linear light, plus the dither, rounded down. Where that lies within 1e-3
-/// of a whole number either one is right.
+/// Every code is 255 times the sRGB curve of the exposed linear light, plus the dither, rounded down. Where that lies
+/// within 1e-3 of a whole number either one is right.
 #[test]
 fn codes_are_the_srgb_curve_of_the_light() {
     let size = [160, 90];

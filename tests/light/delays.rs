@@ -1,5 +1,5 @@
-//! Times along rays: the delay of a crossing and the t of a path, against Carter's equations in Boyer-Lindquist coordinates, written and
-//! integrated here. The tracer has other variables, another method and another form of dt.
+//! Times along rays: the delay of a crossing and the t of a path, against Carter's equations in Boyer-Lindquist
+//! coordinates, written and integrated here. The tracer has other variables, another method and another form of dt.
 
 use super::{both, cpu};
 use bhr::physics::orbit::horizon_outer;
@@ -21,7 +21,8 @@ struct Carter {
 /// u = 1/r, theta, their derivatives by Mino time along the backward ray, phi, and the time gone by.
 type State = [f64; 6];
 
-/// The ray that the ZAMO at (r, theta, phi = 0) sees at the components `n` of its frame (Bardeen, Press & Teukolsky 1972, eq. 3.2).
+/// The ray that the ZAMO at (r, theta, phi = 0) sees at the components `n` of its frame (Bardeen, Press & Teukolsky
+/// 1972, eq. 3.2).
 fn start(a: f64, r: f64, theta: f64, n: DVec3) -> (Carter, State) {
     let (sin, cos) = theta.sin_cos();
     let sigma = r * r + a * a * cos * cos;

@@ -1,4 +1,5 @@
-//! The disk's light summed over a picture, against the integral over the isoradials; and pixel by pixel, against the rule of light.
+//! The disk's light summed over a picture, against the integral over the isoradials; and pixel by pixel, against the
+//! rule of light.
 
 use super::orbit::{isoradial, luminance as blackbody_luminance, redshift, swept_to_plane, temperature, u_at};
 use super::{both, camera, hits, light, luminance, neighbours, view, whole};
@@ -12,8 +13,8 @@ const R_EYE: f64 = 1000.0;
 const RADII: [f64; 2] = [6.0, 20.0];
 const TEMPERATURE: f64 = 6500.0;
 
-/// Integral of luminance over solid angle of the image of this order: of the direct one, or of what of the secondary one the opaque disk
-/// does not hide.
+/// Integral of luminance over solid angle of the image of this order: of the direct one, or of what of the secondary
+/// one the opaque disk does not hide.
 fn expected(inclination_degrees: f64, order: u32) -> f64 {
     let i = inclination_degrees.to_radians();
     // b = r sin(psi) / sqrt(1 - 2/r).
@@ -89,8 +90,9 @@ fn summed_light_is_the_integral_over_the_isoradials() {
     }
 }
 
-/// In every pixel of the opaque disk's first two images: light = B(g T(r)) over the luminance of the hottest ring at rest, g being what the
-/// REDSHIFT view shows and r what the tracer says of that pixel's ray: I_nu / nu^3 is the same at the disk and at the eye.
+/// In every pixel of the opaque disk's first two images: light = B(g T(r)) over the luminance of the hottest ring at
+/// rest, g being what the REDSHIFT view shows and r what the tracer says of that pixel's ray: I_nu / nu^3 is the same
+/// at the disk and at the eye.
 #[test]
 fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
     let size = [160, 120];

@@ -1,5 +1,5 @@
-//! A fall through a horizon without spin sees the turbulent disk go on: the times at which its light left, from inside too, against
-//! an integral in advanced time, and pictures a little before and after against those between others.
+//! A fall through a horizon without spin sees the turbulent disk go on: the times at which its light left, from inside
+//! too, against an integral in advanced time, and pictures a little before and after against those between others.
 
 use super::{both, camera, light, luminance, whole};
 use bhr::renderer::Renderer;
@@ -34,9 +34,10 @@ fn ways() -> [(&'static str, Set); 3] {
     ]
 }
 
-/// Rain time at the eye less t where light left, M, by way of advanced time v = t + r*, r* = r + 2 ln(r/2 - 1), regular at the horizon
-/// (Eddington 1924, Finkelstein 1958): T = v - r + 2 sqrt(2 r) - 4 ln(1 + sqrt(r/2)) (Gullstrand 1922). Along light that flies inwards
-/// with the impact parameter b, from dt/dr = -1 / (D s), s^2 = 1 - b^2 u^2 D: dv/du = b^2 / (s (1 + s)).
+/// Rain time at the eye less t where light left, M, by way of advanced time v = t + r*, r* = r + 2 ln(r/2 - 1),
+/// regular at the horizon (Eddington 1924, Finkelstein 1958): T = v - r + 2 sqrt(2 r) - 4 ln(1 + sqrt(r/2))
+/// (Gullstrand 1922). Along light that flies inwards with the impact parameter b, from dt/dr = -1 / (D s), s^2 = 1 -
+/// b^2 u^2 D: dv/du = b^2 / (s (1 + s)).
 fn retardation(r_eye: f64, r_disk: f64, b: f64) -> f64 {
     let rate = |u: f64| {
         let s = (1.0 - b * b * u * u * (1.0 - 2.0 * u)).sqrt();
@@ -55,8 +56,9 @@ fn retardation(r_eye: f64, r_disk: f64, b: f64) -> f64 {
     tortoise - rain + advanced
 }
 
-/// Within 1e-7 M by the CPU's adaptive method; by what pixels usually take 5e-4 M, and 5e-3 M deep inside, where the pattern moves by 1e-4
-/// of its coarsest cell. Errors near the shadow's edge, where b is critical, count for less: there delays diverge.
+/// Within 1e-7 M by the CPU's adaptive method; by what pixels usually take 5e-4 M, and 5e-3 M deep inside, where the
+/// pattern moves by 1e-4 of its coarsest cell. Errors near the shadow's edge, where b is critical, count for less:
+/// there delays diverge.
 #[test]
 fn light_left_when_advanced_time_says() {
     for (tracer, mut renderer) in both() {
@@ -113,8 +115,8 @@ fn change(a: &[f64], b: &[f64]) -> (f64, usize) {
     (sum / count as f64, count)
 }
 
-/// Frames 1e-3 M of proper time apart, the scene's time being what `advance_camera` says: through the horizon, and where the tracers
-/// change from t to rain time, each follows from those before as well as others do.
+/// Frames 1e-3 M of proper time apart, the scene's time being what `advance_camera` says: through the horizon, and
+/// where the tracers change from t to rain time, each follows from those before as well as others do.
 #[test]
 fn a_fall_has_no_seam() {
     let step = 1e-3;

@@ -1,6 +1,6 @@
-//! Whether the light is right: of the disk, its colours, its turbulence, the delays and the views, each against an expected value that owes
-//! nothing to the tracers. What is a picture is asked of both tracers; the GPU is whatever adapter comes first, and without one
-//! the tests fail. This file: what the tests share.
+//! Whether the light is right: of the disk, its colours, its turbulence, the delays and the views, each against an
+//! expected value that owes nothing to the tracers. What is a picture is asked of both tracers; the GPU is whatever
+//! adapter comes first, and without one the tests fail. This file: what the tests share.
 
 mod colours;
 mod delays;
@@ -32,7 +32,8 @@ fn both() -> [(&'static str, Renderer); 2] {
     list
 }
 
-/// A static camera that looks at the hole from (r, inclination), azimuth 0, and sees `width` M at the hole's distance across its shorter side.
+/// A static camera that looks at the hole from (r, inclination), azimuth 0, and sees `width` M at the hole's distance
+/// across its shorter side.
 fn camera(r: f64, inclination_degrees: f64, width: f64) -> Camera {
     let theta = inclination_degrees.to_radians();
     let position = DVec3::new(theta.sin(), 0.0, theta.cos()) * r;

@@ -1,10 +1,12 @@
-//! Light about a hole without spin, and the disk there, written from the textbooks: nothing of the library's tracer. M = 1.
+//! Light about a hole without spin, and the disk there, written from the textbooks: nothing of the library's tracer. M
+//! = 1.
 
 use bhr::physics::blackbody::radiance_xyz;
 use std::f64::consts::PI;
 
-/// u = 1/r where a ray from the eye at radius `r_eye` with impact parameter `b`, going inward, has swept `angle` about the hole: u'' = 3 u^2 - u
-/// (Darwin 1959), by RK4. `None`: it has fallen in before; not positive: it has escaped before.
+/// u = 1/r where a ray from the eye at radius `r_eye` with impact parameter `b`, going inward, has swept `angle` about
+/// the hole: u'' = 3 u^2 - u (Darwin 1959), by RK4. `None`: it has fallen in before; not positive: it has escaped
+/// before.
 pub fn u_at(r_eye: f64, b: f64, angle: f64) -> Option<f64> {
     let steps = (angle / 0.01).ceil();
     let h = angle / steps;
@@ -28,8 +30,8 @@ pub fn u_at(r_eye: f64, b: f64, angle: f64) -> Option<f64> {
     Some(u)
 }
 
-/// Angle swept until the plane of the disk is met for the (order + 1)-th time, by the ray that an eye at inclination `i` sees at `alpha`
-/// from upward towards its right, about the hole's centre (Luminet 1979, eq. 10).
+/// Angle swept until the plane of the disk is met for the (order + 1)-th time, by the ray that an eye at inclination
+/// `i` sees at `alpha` from upward towards its right, about the hole's centre (Luminet 1979, eq. 10).
 pub fn swept_to_plane(i: f64, alpha: f64, order: u32) -> f64 {
     i.cos().atan2(-i.sin() * alpha.cos()) + f64::from(order) * PI
 }
@@ -46,8 +48,8 @@ pub fn isoradial(r_eye: f64, i: f64, alpha: f64, order: u32, r: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// g of light of matter orbiting at u, seen by a static eye at `r_eye` (Luminet 1979, eq. 19, at a finite distance). `b` is seen at `alpha`: the photon's
-/// L / E is -b sin i sin alpha, the matter on the eye's right going away.
+/// g of light of matter orbiting at u, seen by a static eye at `r_eye` (Luminet 1979, eq. 19, at a finite distance).
+/// `b` is seen at `alpha`: the photon's L / E is -b sin i sin alpha, the matter on the eye's right going away.
 pub fn redshift(r_eye: f64, i: f64, alpha: f64, b: f64, u: f64) -> f64 {
     let lambda = -b * i.sin() * alpha.sin();
     (1.0 - 3.0 * u).sqrt() / (1.0 - u.powf(1.5) * lambda) / (1.0 - 2.0 / r_eye).sqrt()
@@ -68,7 +70,8 @@ pub fn temperature(r: f64) -> f64 {
     (flux(r).max(0.0) / HOTTEST.1).powf(0.25)
 }
 
-/// Luminance of a blackbody in units of that of another one; I_nu / nu^3 being invariant, one seen under g is one at g T.
+/// Luminance of a blackbody in units of that of another one; I_nu / nu^3 being invariant, one seen under g is one at g
+/// T.
 pub fn luminance(temperature: f64, reference: f64) -> f64 {
     radiance_xyz(temperature)[1] / radiance_xyz(reference)[1]
 }

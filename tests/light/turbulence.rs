@@ -1,4 +1,5 @@
-//! The disk's turbulence as pictures show it: mean, motion, steadiness of its statistics, and the time at which it is seen.
+//! The disk's turbulence as pictures show it: mean, motion, steadiness of its statistics, and the time at which it is
+//! seen.
 
 use super::{both, camera, cpu, hits, light, luminance, whole};
 use bhr::renderer::Renderer;
@@ -86,8 +87,8 @@ fn brightness_is_kept_on_average() {
     assert!((average - 1.0).abs() < 0.03 && spread < 0.2 && spread > 1e-3, "{average} +- {spread}");
 }
 
-/// A frame turned, ring by ring, by k Omega dt is most like the one dt later where k is 1, or -1 for a disk that goes the other way. Omega =
-/// r^(-3/2); r of a ring that is seen at b from the axis, far away, is b - 1 to first order.
+/// A frame turned, ring by ring, by k Omega dt is most like the one dt later where k is 1, or -1 for a disk that goes
+/// the other way. Omega = r^(-3/2); r of a ring that is seen at b from the axis, far away, is b - 1 to first order.
 #[test]
 fn pattern_goes_round_with_the_orbits() {
     for retrograde in [false, true] {
@@ -124,8 +125,8 @@ fn correlation(pairs: &[[f64; 2]]) -> f64 {
     product / (sum(&|p| (p[0] - a).powi(2)) * sum(&|p| (p[1] - b).powi(2))).sqrt()
 }
 
-/// Variance, and power of the change along the radius (which differential rotation would raise without end), over two generations: the
-/// same at the beginning, after 1e3 M and after 1e6 M.
+/// Variance, and power of the change along the radius (which differential rotation would raise without end), over two
+/// generations: the same at the beginning, after 1e3 M and after 1e6 M.
 #[test]
 fn statistics_do_not_age() {
     let mut renderer = face_on(false);
@@ -156,8 +157,9 @@ fn statistics_do_not_age() {
     }
 }
 
-/// Parts of a large frame, before and behind the hole and at its sides: each pixel shows the pattern as it was when its light left, by the delay that the
-/// tracer states for its ray. Without the effect, all of it is of the scene's time.
+/// Parts of a large frame, before and behind the hole and at its sides: each pixel shows the pattern as it was when
+/// its light left, by the delay that the tracer states for its ray. Without the effect, all of it is of the scene's
+/// time.
 #[test]
 fn pattern_is_seen_at_its_retarded_time() {
     let size = [24, 16];

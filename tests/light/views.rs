@@ -18,7 +18,8 @@ const DISK: Disk = Disk {
     seed: 0,
 };
 
-/// What a view should show of a ray that became `hit`. `look`: the observer's own, not aberrated. `isco`: of the disk's matter.
+/// What a view should show of a ray that became `hit`. `look`: the observer's own, not aberrated. `isco`: of the
+/// disk's matter.
 fn expected(view: View, hit: &Hit, look: DVec3, isco: f64) -> f64 {
     let listed = &hit.crossings[..hit.crossing_count as usize];
     let on_disk = listed.iter().position(|x| x.radius >= isco && x.radius <= DISK.outer_radius);
@@ -47,8 +48,9 @@ struct Case {
     velocity: DVec3,
 }
 
-/// design.md: 2e-5 of what the conditioning leaves for 1 + it, RK4 ten times that; the CPU's pixels take the GPU's steps. Beside edges of the disk
-/// and of the shadow a pixel may belong to either side, but no more than 1 of 500 does.
+/// design.md: 2e-5 of what the conditioning leaves for 1 + it, RK4 ten times that; the CPU's pixels take the GPU's
+/// steps. Beside edges of the disk and of the shadow a pixel may belong to either side, but no more than 1 of 500
+/// does.
 #[test]
 fn raw_values_are_those_of_the_rays() {
     let case = |spin: f64, method, tables| {
@@ -128,7 +130,8 @@ fn steps_are_those_of_integrated_rays() {
     }
 }
 
-/// Both tracers' 8-bit pictures, to one step in 99.9 % of the pixels; each shows many colours (ORDER: few), and no value as grey.
+/// Both tracers' 8-bit pictures, to one step in 99.9 % of the pixels; each shows many colours (ORDER: few), and no
+/// value as grey.
 #[test]
 fn false_colours_agree() {
     for shown in [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric] {

@@ -16,7 +16,7 @@
 #define HEIGHT 90u
 #define BYTES (WIDTH * HEIGHT * 4u)
 
-/* What a life consists of. One of its parts is hit. */
+/* The parts of a context's life. The display ends during one of them. */
 enum Part { CREATE, RENDER, JOB, RAYS, RECOVER, DESTROY, PARTS };
 
 static const char *const NAMES[] = {"create", "render", "job", "rays", "recover", "destroy"};

@@ -36,9 +36,9 @@ const MAX_BLOCK_BYTES: u64 = 256 << 20;
 /// if those are more, as a file may be one tile.
 const MAX_SMALL_BLOCK_BYTES: u64 = 64 << 20;
 /// At most `MAX_UNPACKED_BYTES` are unpacked for a picture, or `MAX_UNPACKED_TIMES` its bytes as they are handed out,
-/// if those are more. All channels of a block are packed together, so that those that are not used are unpacked as well: a file of a
-/// thousandth of their size may hold them, and 0.16 GiB a second of ZIP were measured, with assertions, on a busy
-/// machine. The numbers leave room for 32 float channels at 3840 x 2160, and 16 at any size.
+/// if those are more. All channels of a block are packed together, so that those that are not used are unpacked as
+/// well: a file of a thousandth of their size may hold them, and 0.16 GiB a second of ZIP were measured, with
+/// assertions, on a busy machine. The numbers leave room for 32 float channels at 3840 x 2160, and 16 at any size.
 const MAX_UNPACKED_BYTES: u64 = 1 << 30;
 const MAX_UNPACKED_TIMES: u64 = 4;
 /// Blocks that the decoder may hold at a time: the packed one, the unpacked one, and up to four that it makes on the
@@ -184,8 +184,8 @@ struct Picture {
     missing: usize,
 }
 
-/// Which blocks of `block` pixels, of a data window of `data` pixels, reach the `shown` ones, and how many pixels they
-/// have, along one side.
+/// The blocks, of `block` pixels in a data window of `data` pixels, that reach the `shown` ones, and how many pixels
+/// they have, along one side.
 fn reaching(shown: Range<i64>, data: usize, block: usize) -> (Range<usize>, usize) {
     let shown = shown.start.clamp(0, data as i64) as usize..shown.end.clamp(0, data as i64) as usize;
     if shown.is_empty() {

@@ -1,9 +1,10 @@
-//! The axis of a lens table: distance of a ray from the critical direction, on a logarithmic scale. Plain trigonometry of one
-//! angle; knows nothing of metrics.
+//! The axis of a lens table: distance of a ray from the critical direction, on a logarithmic scale. Plain trigonometry
+//! of one angle; knows nothing of metrics.
 //!
-//! psi is a ray's angle from a centre inside the shadow, psi_c its critical value, t = tan((psi - psi_c) / 2). The swept angle
-//! grows as -ln|t| towards t = 0 and is smooth elsewhere, so nodes at even steps of log2|t| suit it. Everything is computed
-//! from sines and cosines, without acos and without a difference of angles: exact in f32, however near the shadow's edge.
+//! psi is a ray's angle from a centre inside the shadow, psi_c its critical value, t = tan((psi - psi_c) / 2). The
+//! swept angle grows as -ln|t| towards t = 0 and is smooth elsewhere, so nodes at even steps of log2|t| suit it.
+//! Everything is computed from sines and cosines, without acos and without a difference of angles: exact in f32,
+//! however near the shadow's edge.
 
 use std::f64::consts::LN_2;
 
@@ -19,7 +20,8 @@ pub struct Coordinate {
     pub cos_critical: f64,
     /// tan(psi_c / 2).
     pub tan_half: f64,
-    /// t = scale t_hat with scale = min(tan(psi_c / 2), cot(psi_c / 2)): the nearer pole of the sphere is at |t_hat| = 1.
+    /// t = scale t_hat with scale = min(tan(psi_c / 2), cot(psi_c / 2)): the nearer pole of the sphere is at |t_hat| =
+    /// 1.
     pub scale: f64,
     pub nodes_per_octave: f64,
 }
@@ -98,7 +100,8 @@ impl Coordinate {
         (1.0 + t * t) / (2.0 * t) * (self.nodes_per_octave / LN_2)
     }
 
-    /// Nodes from x = 0 to the second one past the pole psi = pi (`outer`) or psi = 0, so that four nodes surround every x.
+    /// Nodes from x = 0 to the second one past the pole psi = pi (`outer`) or psi = 0, so that four nodes surround
+    /// every x.
     pub fn nodes(&self, outer: bool) -> usize {
         let pole = if outer { 1.0 / self.tan_half } else { self.tan_half };
         self.x(pole / self.scale) as usize + 3

@@ -1,5 +1,6 @@
-//! The critical curve - the shadow's edge - on the sky of an eye outside the photon region, as a table over the angle along it,
-//! and polar coordinates about its centre. Knows the ray's constants and the local frame; integrates nothing.
+//! The critical curve - the shadow's edge - on the sky of an eye outside the photon region, as a table over the angle
+//! along it, and polar coordinates about its centre. Knows the ray's constants and the local frame; integrates
+//! nothing.
 //!
 //! An inward ray is captured when the radial potential has no zero between the eye and the horizon. The potential
 //!
@@ -7,8 +8,8 @@
 //! P(u) = u'^2 = E^2 + (a^2 E^2 - K) u^2 + 2 B u^3 - a^2 Q u^4
 //! ```
 //!
-//! (Carter 1968) is least at the smaller root of P'(u) / u = 0, a quadratic; the critical rays have P = P' = 0 there: they
-//! wind up on a spherical photon orbit (Teo 2003). Components are (n_r, n_th, n_ph) of the local frame.
+//! (Carter 1968) is least at the smaller root of P'(u) / u = 0, a quadratic; the critical rays have P = P' = 0 there:
+//! they wind up on a spherical photon orbit (Teo 2003). Components are (n_r, n_th, n_ph) of the local frame.
 
 use crate::physics::geodesic::Constants;
 use crate::physics::observer::LocalFrame;
@@ -20,8 +21,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Nodes of the table over chi in [0, 2 pi).
 pub const CRITICAL_NODES: usize = 512;
 
-/// Eyes from this many radii of the retrograde photon orbit: no spherical photon orbit reaches them, so that every captured ray
-/// starts inward, and the curve stays away from the directions with n_r = 0.
+/// Eyes from this many radii of the retrograde photon orbit: no spherical photon orbit reaches them, so that every
+/// captured ray starts inward, and the curve stays away from the directions with n_r = 0.
 pub const NEAREST_EYE: f64 = 1.03;
 
 /// Farthest eye, in M.
@@ -36,8 +37,8 @@ pub fn reaches(frame: &LocalFrame) -> bool {
     !frame.rain && frame.r > nearest && frame.r <= FARTHEST_EYE
 }
 
-/// The middle of the shadow on the sky of `frame`'s observer, and of circles much like its edge: a unit look direction. Outside the reach of
-/// curves the hole's own, which without spin it is everywhere.
+/// The middle of the shadow on the sky of `frame`'s observer, and of circles much like its edge: a unit look
+/// direction. Outside the reach of curves the hole's own, which without spin it is everywhere.
 pub fn shadow_centre(frame: &LocalFrame) -> DVec3 {
     if reaches(frame) { CriticalCurve::centred(frame).k } else { DVec3::NEG_X }
 }
@@ -48,8 +49,8 @@ pub fn radial_potential(c: &Constants, u: f64) -> f64 {
     c.energy * c.energy + u * u * quadratic
 }
 
-/// u of the least P between infinity and the horizon: 2 a^2 Q u^2 - 3 B u + K - a^2 E^2 = 0, the smaller root, in the form that
-/// holds for a^2 Q -> 0. 0 when P rises all the way, 1/r+ when it falls all the way.
+/// u of the least P between infinity and the horizon: 2 a^2 Q u^2 - 3 B u + K - a^2 E^2 = 0, the smaller root, in the
+/// form that holds for a^2 Q -> 0. 0 when P rises all the way, 1/r+ when it falls all the way.
 pub fn potential_minimum(c: &Constants) -> f64 {
     let rise = c.k - c.a2e2;
     let b3 = 3.0 * c.b;
@@ -65,8 +66,8 @@ pub fn capture_margin(c: &Constants) -> f64 {
     radial_potential(c, potential_minimum(c))
 }
 
-/// The critical curve of one eye, about its centre k: n = k cos psi + (e1 sin chi + e2 cos chi) sin psi. The curve lies at
-/// psi = R(chi); R(-chi) = R(chi), as the potential knows n_th only by its square.
+/// The critical curve of one eye, about its centre k: n = k cos psi + (e1 sin chi + e2 cos chi) sin psi. The curve
+/// lies at psi = R(chi); R(-chi) = R(chi), as the potential knows n_th only by its square.
 #[derive(Clone, Debug)]
 pub struct CriticalCurve {
     pub k: DVec3,

@@ -1,16 +1,19 @@
-//! The Kerr lens table: everything about a ray of one eye as a function of its look direction, tabulated in polar coordinates
-//! about the critical curve (`critical`), interpolated instead of integrated. Physics alone: knows neither pixels nor threads;
-//! callers may spread `Grid::node` and `Grid::flags`, which are one independent task per node and per cell.
+//! The Kerr lens table: everything about a ray of one eye as a function of its look direction, tabulated in polar
+//! coordinates about the critical curve (`critical`), interpolated instead of integrated. Physics alone: knows neither
+//! pixels nor threads; callers may spread `Grid::node` and `Grid::flags`, which are one independent task per node and
+//! per cell.
 //!
-//! Coordinates: w(chi) along the curve (`Columns`), periodic, and x = n log2 |t^| with t^ = tan((psi - R(chi)) / 2) / T(chi), T = tan(R / 2) and
-//! n nodes per octave: deflections and crossings diverge with ln |psi - R| at the curve. Two branches: outer (t^ > 0, the ray
-//! escapes) and inner (captured). Both are continued a few nodes past the point where psi reaches pi or 0, on to the other side
-//! of the axis, where everything stays smooth. Interpolation: cubic Lagrange, 4 x 4 nodes.
+//! Coordinates: w(chi) along the curve (`Columns`), periodic, and x = n log2 |t^| with t^ = tan((psi - R(chi)) / 2) /
+//! T(chi), T = tan(R / 2) and n nodes per octave: deflections and crossings diverge with ln |psi - R| at the curve.
+//! Two branches: outer (t^ > 0, the ray escapes) and inner (captured). Both are continued a few nodes past the point
+//! where psi reaches pi or 0, on to the other side of the axis, where everything stays smooth. Interpolation: cubic
+//! Lagrange, 4 x 4 nodes.
 //!
-//! A node is `channels` numbers: the sky direction (chart; 0 when captured), then for every order of crossing U = u S, with
-//! u = 1 / r there, continued through infinity to u < 0, and S = (1 - n_r^2)^(1/2) (a straight ray has u S = u_eye sin(angle):
-//! u itself diverges like 1 / S for rays that leave radially), and if wanted the unit vector of its azimuth and its delay in a form
-//! regular at infinity (`regular_delay`). Tables hold them in f32 and by fours, as interpolation loads them (`Grid::pack`).
+//! A node is `channels` numbers: the sky direction (chart; 0 when captured), then for every order of crossing U = u S,
+//! with u = 1 / r there, continued through infinity to u < 0, and S = (1 - n_r^2)^(1/2) (a straight ray has u S =
+//! u_eye sin(angle): u itself diverges like 1 / S for rays that leave radially), and if wanted the unit vector of its
+//! azimuth and its delay in a form regular at infinity (`regular_delay`). Tables hold them in f32 and by fours, as
+//! interpolation loads them (`Grid::pack`).
 
 use super::critical::{CriticalCurve, Polar};
 use super::plane::PlaneImage;
@@ -42,7 +45,8 @@ const NEAR_EYE: f64 = 15.0;
 const NARROWEST_LAYER: f64 = 0.03;
 /// Share of the nodes that gather in the layers of `Columns`.
 const LAYER_SHARE: f64 = 0.5;
-/// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without one.
+/// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without
+/// one.
 const INWARD: f64 = 1.5;
 /// U of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
 pub const NO_CROSSING: f64 = 1e3;
@@ -86,8 +90,8 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// What keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1, which matters inside the
-    /// shadow, and behind an eye near the disk.
+    /// What keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1, which
+    /// matters inside the shadow, and behind an eye near the disk.
     pub fn for_eye(frame: &LocalFrame) -> Self {
         Self { chi_nodes: 512, nodes_per_octave: [if frame.r < NEAR_EYE { 32 } else { 16 }, 32] }
     }
@@ -104,10 +108,12 @@ pub struct Crossings {
     pub pattern: bool,
 }
 
-/// The coordinate along the critical curve: w = (chi + v) / 2 with tan v = tan chi / epsilon, epsilon = |cot th| of the eye.
+/// The coordinate along the critical curve: w = (chi + v) / 2 with tan v = tan chi / epsilon, epsilon = |cot th| of
+/// the eye.
 ///
-/// A ray that starts at the angle chi to the plane first meets it after the orbit angle atan2(|cot th|, sin chi) (spin 0): for an
-/// eye near the plane that changes from 0 to pi within epsilon about chi = 0 and pi. Half of the nodes go there, in even steps of v.
+/// A ray that starts at the angle chi to the plane first meets it after the orbit angle atan2(|cot th|, sin chi) (spin
+/// 0): for an eye near the plane that changes from 0 to pi within epsilon about chi = 0 and pi. Half of the nodes go
+/// there, in even steps of v.
 #[derive(Clone, Debug)]
 struct Columns {
     epsilon: f64,
@@ -259,7 +265,8 @@ impl Grid {
 
     /// Where the unit look direction `n` lies; `None`: too close to the critical curve.
     ///
-    /// tan((psi - R) / 2) = (s - T (1 + c)) / (1 + c + T s), with c, s = cos, sin psi and 1 + c = s^2 / (1 - c) beyond 90 deg.
+    /// tan((psi - R) / 2) = (s - T (1 + c)) / (1 + c + T s), with c, s = cos, sin psi and 1 + c = s^2 / (1 - c) beyond
+    /// 90 deg.
     pub fn locate(&self, n: DVec3) -> Option<Place> {
         let p = self.curve.polar(n);
         let (t_critical, slope) = self.curve.at(p.chi);
@@ -293,7 +300,8 @@ impl Grid {
         })
     }
 
-    /// d chi = along . dn / sin psi; dt = (1 + t^2) / 2 (d psi - d R), d R = 2 d T / (1 + T^2), d ln |t^| = dt / t - dT / T.
+    /// d chi = along . dn / sin psi; dt = (1 + t^2) / 2 (d psi - d R), d R = 2 d T / (1 + T^2), d ln |t^| = dt / t -
+    /// dT / T.
     fn gradients(&self, p: &Polar, w_slope: f64, t: f64, (t_critical, slope): (f64, f64)) -> (DVec3, DVec3) {
         let chi = p.along / p.sin.max(1e-9);
         let t_critical_gradient = chi * slope;
@@ -313,8 +321,9 @@ impl Grid {
         ray.finish()
     }
 
-    /// Flags of the cell whose lower corner is (`column`, `row`), from the nodes about it: `node(column, row)` with columns
-    /// from `column` - 2 (wrapped) to `column` + 3, rows alike. Only cells with `row` in `ROWS_BELOW` .. rows - `ROWS_ABOVE` hold rays.
+    /// Flags of the cell whose lower corner is (`column`, `row`), from the nodes about it: `node(column, row)` with
+    /// columns from `column` - 2 (wrapped) to `column` + 3, rows alike. Only cells with `row` in `ROWS_BELOW` .. rows
+    /// - `ROWS_ABOVE` hold rays.
     pub fn flags<'a>(
         &self,
         branch: Branch,
@@ -362,8 +371,9 @@ fn side(n: DVec3) -> f64 {
     n.yz().length().max(1e-12)
 }
 
-/// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity smoothly (but
-/// for terms of u^2 ln |u|). And 1 / u_eye is what it is from far, which leaves little to round in tables.
+/// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity
+/// smoothly (but for terms of u^2 ln |u|). And 1 / u_eye is what it is from far, which leaves little to round in
+/// tables.
 pub fn divergent_delay(u: f64, u_eye: f64) -> f64 {
     1.0 / u + 1.0 / u_eye - 2.0 * (u / u_eye).abs().max(f64::MIN_POSITIVE).ln()
 }
@@ -482,8 +492,8 @@ impl Patch<'_> {
         self.at[i][j][channel]
     }
 
-    /// Error of cubic interpolation at mid-cell, 3/128 of the fourth difference (the greater one of both centres), summed over
-    /// both directions, on the cell's four edges' worst.
+    /// Error of cubic interpolation at mid-cell, 3/128 of the fourth difference (the greater one of both centres),
+    /// summed over both directions, on the cell's four edges' worst.
     fn error(&self, channel: usize) -> f64 {
         let fourth = |f: &dyn Fn(usize) -> f64| {
             let at = |c: usize| (f(c - 2) - 4.0 * f(c - 1) + 6.0 * f(c) - 4.0 * f(c + 1) + f(c + 2)).abs();
@@ -499,8 +509,8 @@ impl Patch<'_> {
         self.value(channel, i, j) / self.sides[i - 1][j - 1]
     }
 
-    /// Change per rad of look direction, from changes between nodes: the smaller one over the cell of the greater one of both
-    /// directions.
+    /// Change per rad of look direction, from changes between nodes: the smaller one over the cell of the greater one
+    /// of both directions.
     fn stretch(&self, change: impl Fn((usize, usize), (usize, usize)) -> f64) -> f64 {
         let row = change((2, 2), (2, 3)).min(change((3, 2), (3, 3))) / self.angles.row;
         let column = change((2, 2), (3, 2)).min(change((2, 3), (3, 3))) / self.angles.column.max(1e-12);
@@ -551,8 +561,8 @@ impl Patch<'_> {
             && turn * self.error(channel + 3) <= PATTERN_TOLERANCE * delay_conditioning
     }
 
-    /// Least and greatest value over the 4 x 4 nodes of the interpolation, widened by a quarter of their spread: between the
-    /// nodes the values may go beyond. Missing crossings count as what they are, but do not widen.
+    /// Least and greatest value over the 4 x 4 nodes of the interpolation, widened by a quarter of their spread:
+    /// between the nodes the values may go beyond. Missing crossings count as what they are, but do not widen.
     fn range(&self, channel: usize) -> [f64; 2] {
         let (mut all, mut finite) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
         for (i, j) in (1..5).flat_map(|i| (1..5).map(move |j| (i, j))) {
@@ -704,7 +714,8 @@ impl Seen<'_> {
         sum
     }
 
-    /// The end of the ray, unless it is captured: the interpolated direction, normalised, and its derivatives at right angles to it.
+    /// The end of the ray, unless it is captured: the interpolated direction, normalised, and its derivatives at right
+    /// angles to it.
     pub fn sky(&self) -> Option<Sky> {
         if self.place.branch == Branch::Inner {
             return None;
@@ -778,8 +789,8 @@ impl Seen<'_> {
 #[derive(Clone, Debug)]
 pub struct KerrLens {
     grid: Grid,
-    /// By branch: rows of packed nodes, from the last column over all of them to the first two again, so that every cell's lie
-    /// side by side.
+    /// By branch: rows of packed nodes, from the last column over all of them to the first two again, so that every
+    /// cell's lie side by side.
     nodes: [Vec<Vec4>; 2],
     flags: [Vec<u32>; 2],
 }
@@ -802,8 +813,8 @@ impl KerrLens {
         Some(Self::assemble(grid, packed, flags))
     }
 
-    /// From what the caller computed for outer and inner branch: `Grid::packed_row` of all rows and `Grid::flag_row` of all
-    /// `Grid::cell_rows`, in order.
+    /// From what the caller computed for outer and inner branch: `Grid::packed_row` of all rows and `Grid::flag_row`
+    /// of all `Grid::cell_rows`, in order.
     pub fn assemble(grid: Grid, nodes: [Vec<Vec4>; 2], flags: [Vec<u32>; 2]) -> Self {
         Self { grid, nodes, flags }
     }
@@ -818,7 +829,8 @@ impl KerrLens {
         index.and_then(|index| self.flags[branch as usize].get(index).copied()).unwrap_or(DIRECT)
     }
 
-    /// What is seen along the unit look direction `n` (components of the local frame). `None`: the ray is to be integrated.
+    /// What is seen along the unit look direction `n` (components of the local frame). `None`: the ray is to be
+    /// integrated.
     pub fn look(&self, n: DVec3) -> Option<Seen<'_>> {
         let place = self.grid.locate(n)?;
         let flags = self.flags(place.branch, place.column, place.row);

@@ -242,7 +242,8 @@ fn compare_ray(frame: &LocalFrame, grid: &Grid, n: DVec3, seen: &Seen, m: &mut M
 
 const SPINS: [f64; 8] = [0.1, -0.5, 0.9, -0.9, 0.95, 0.998, -0.998, 0.3];
 
-/// Eye number `i`: spins in turn, r log-uniform, theta over the sphere, every fifth in the plane or on the axis or near.
+/// Eye number `i`: spins in turn, r log-uniform, theta over the sphere, every fifth in the plane or on the axis or
+/// near.
 fn eye(i: usize, random: &mut Random) -> LocalFrame {
     let a = SPINS[i % SPINS.len()];
     let r = 4.5 * (1000.0_f64 / 4.5).powf(random.next());

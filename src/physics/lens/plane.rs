@@ -1,5 +1,5 @@
-//! From a spin-0 ray in its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane, and how
-//! both change with the look direction. Geometry of great circles; the ray itself comes from `table::Look`.
+//! From a spin-0 ray in its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane,
+//! and how both change with the look direction. Geometry of great circles; the ray itself comes from `table::Look`.
 //!
 //! The ray lies at N(phi) = e_r cos phi + T sin phi, T the unit vector of (e_th n_th + e_ph n_ph).
 
@@ -73,8 +73,9 @@ impl OrbitPlane {
         self.tangent * cos - self.e_r * sin
     }
 
-    /// The angle at which the ray crosses the equatorial plane for the (`order` + 1)-th time, however far it goes: the zeros of
-    /// N_z = cos(theta) cos(phi) + T_z sin(phi), the eye's own place not counted. `None`: the ray lies in that plane.
+    /// The angle at which the ray crosses the equatorial plane for the (`order` + 1)-th time, however far it goes: the
+    /// zeros of N_z = cos(theta) cos(phi) + T_z sin(phi), the eye's own place not counted. `None`: the ray lies in
+    /// that plane.
     pub fn crossing_angle(&self, order: u32) -> Option<f64> {
         if self.cos_theta == 0.0 {
             return (self.tangent.z != 0.0).then(|| PI * (f64::from(order) + 1.0));

@@ -1,10 +1,11 @@
-//! The light rays of one eye at spin 0, integrated one by one (`Family::column`): what a lens table holds of each. Each ray is
-//! independent of the others. Knows neither threads nor how the tables are interpolated.
+//! The light rays of one eye at spin 0, integrated one by one (`Family::column`): what a lens table holds of each.
+//! Each ray is independent of the others. Knows neither threads nor how the tables are interpolated.
 //!
-//! In the ray's plane, with phi the angle swept from the eye and primes for d/dphi: u'' = -u + 3 u^2, u = 1/r. The eye is at
-//! u_e, the ray leaves it at the angle psi from the inward radius: u' = f u_e (cos psi - beta) / sin psi, with
-//! f = sqrt(1 - 2 u_e), beta = 0 for the static frame and f = 1, beta = sqrt(2 u_e) for the rain frame. Integrated is the
-//! deviation v = u - u_s from the critical ray, which is known in closed form (Darwin 1959, tanh^2 being written out):
+//! In the ray's plane, with phi the angle swept from the eye and primes for d/dphi: u'' = -u + 3 u^2, u = 1/r. The eye
+//! is at u_e, the ray leaves it at the angle psi from the inward radius: u' = f u_e (cos psi - beta) / sin psi, with f
+//! = sqrt(1 - 2 u_e), beta = 0 for the static frame and f = 1, beta = sqrt(2 u_e) for the rain frame. Integrated is
+//! the deviation v = u - u_s from the critical ray, which is known in closed form (Darwin 1959, tanh^2 being written
+//! out):
 //!
 //! ```text
 //! u_s = -1/6 + ((1 - e) / (1 + e))^2 / 2,   e = e_0 exp(-phi),   e_0 = 2 (1/3 - u_e) / (1 + sqrt(2 u_e + 1/3))^2
@@ -12,13 +13,14 @@
 //! v'(0) = -2 f u_e sin(d/2) (cos(d/2) - beta cos((psi + psi_c)/2)) / (sin psi sin psi_c),   d = psi - psi_c
 //! ```
 //!
-//! No nearly equal numbers are subtracted, so rays as near the critical one as one likes come out right, in f32 too. e_0 > 0,
-//! = 0, < 0 for eyes outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would lose by the
-//! subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray it is small where
-//! u is well conditioned, so that few points suffice however long the ray winds.
+//! No nearly equal numbers are subtracted, so rays as near the critical one as one likes come out right, in f32 too.
+//! e_0 > 0, = 0, < 0 for eyes outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would lose
+//! by the subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray it
+//! is small where u is well conditioned, so that few points suffice however long the ray winds.
 //!
-//! The parameter is sigma, phi = kappa sigma, kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is singular for
-//! radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi oddly.
+//! The parameter is sigma, phi = kappa sigma, kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is
+//! singular for radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi
+//! oddly.
 
 use super::LENS;
 use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE};
@@ -166,8 +168,8 @@ impl Point {
 }
 
 impl Ray {
-    /// v'' and w'' by sigma: kappa^2 v (6 u_s - 1 + 3 v); kappa^2 w (6 u - 1) + 2 kappa kappa_x u (3 u - 1), the latter because
-    /// w is taken at fixed sigma and not at fixed phi, where it is singular for radial rays.
+    /// v'' and w'' by sigma: kappa^2 v (6 u_s - 1 + 3 v); kappa^2 w (6 u - 1) + 2 kappa kappa_x u (3 u - 1), the
+    /// latter because w is taken at fixed sigma and not at fixed phi, where it is singular for radial rays.
     fn accelerations(&self, e: f64, v: f64, w: f64) -> [f64; 2] {
         let u_s = self.reference * separatrix(e);
         let u = u_s + v;
@@ -338,7 +340,8 @@ impl Family {
         Ok(points)
     }
 
-    /// v(x, y) = V(y length(x); x) with its derivatives. w being dU/dx at fixed sigma, that of V is w - u_s' kappa_x sigma.
+    /// v(x, y) = V(y length(x); x) with its derivatives. w being dU/dx at fixed sigma, that of V is w - u_s' kappa_x
+    /// sigma.
     fn row(&self, ray: &Ray, points: &[Point], length: f64, length_x: f64) -> Result<Vec<[f64; 4]>> {
         let values = points.iter().enumerate().map(|(i, p)| {
             let y = i as f64 / f64::from(self.resolution.intervals);
@@ -388,8 +391,8 @@ impl Family {
         sin / (self.f * self.u_eye * (1.0 - self.beta * cos))
     }
 
-    /// The ray's constants, with the clock in whose form the delay is integrated: rain time where all rays move outwards, as
-    /// it has no singularity at the horizon, near or far.
+    /// The ray's constants, with the clock in whose form the delay is integrated: rain time where all rays move
+    /// outwards, as it has no singularity at the horizon, near or far.
     fn constants(&self, b: f64) -> Constants {
         let mut constants = Constants::new(0.0, 1.0, b, 0.0, 1.0, self.u_eye);
         if self.r <= RAIN_CLOCK_RADIUS {
@@ -398,8 +401,8 @@ impl Family {
         constants
     }
 
-    /// `Constants::retardation` by the eye's clock (`LocalFrame::clock`) at the crossing `u` of the ray of impact parameter `b`, from the
-    /// integral part J there. The slopes are du/dtau = b du/dphi, at the eye and there.
+    /// `Constants::retardation` by the eye's clock (`LocalFrame::clock`) at the crossing `u` of the ray of impact
+    /// parameter `b`, from the integral part J there. The slopes are du/dtau = b du/dphi, at the eye and there.
     pub fn delay(&self, b: f64, eye_slope: f64, u: f64, slope: f64, integral: f64) -> f64 {
         let constants = self.constants(b);
         let rise = constants.delay_boundary(u, slope) - constants.delay_boundary(self.u_eye, eye_slope) + integral;

@@ -1,8 +1,9 @@
-//! The lens table of one eye at spin 0, and looking directions up in it: what becomes of a ray and where it is after a swept
-//! angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane` leads to the chart).
+//! The lens table of one eye at spin 0, and looking directions up in it: what becomes of a ray and where it is after a
+//! swept angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane` leads to
+//! the chart).
 //!
-//! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's integral part
-//! cubic Hermite in y and Lagrange with four nodes in x.
+//! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's
+//! integral part cubic Hermite in y and Lagrange with four nodes in x.
 
 use super::LENS;
 use super::coordinate::LEAST_T_HAT;
@@ -48,7 +49,8 @@ pub struct Look<'a> {
     pub cos: f64,
     /// Impact parameter, M.
     pub b: f64,
-    /// Angle swept to the ray's end (u = 0, or `CAPTURE_U`), and its derivative by psi; 0 where captured rays are of no use.
+    /// Angle swept to the ray's end (u = 0, or `CAPTURE_U`), and its derivative by psi; 0 where captured rays are of
+    /// no use.
     pub swept: f64,
     pub swept_slope: f64,
 }
@@ -165,8 +167,8 @@ impl Look<'_> {
         self.family.coordinate.sin_critical
     }
 
-    /// d ln |t| / d psi, t = tan((psi - psi_c) / 2): 1 over the angle from the critical curve, nearly. Beyond 90 degrees from it 1, as its
-    /// antipode is not near it.
+    /// d ln |t| / d psi, t = tan((psi - psi_c) / 2): 1 over the angle from the critical curve, nearly. Beyond 90
+    /// degrees from it 1, as its antipode is not near it.
     pub fn curve_slope(&self) -> f64 {
         let t = (self.t_hat * self.family.coordinate.scale).clamp(-1.0, 1.0);
         (1.0 + t * t) / (2.0 * t)
@@ -255,8 +257,8 @@ impl Look<'_> {
         lagrange(values, (self.column - first) as f64 - 1.0 + self.fraction)
     }
 
-    /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay to the
-    /// eye is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
+    /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay
+    /// to the eye is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
     ///
     /// 0 if the table has no delays.
     pub fn delay_gradient(&self, crossing: &Crossing) -> (f64, f64) {
