@@ -7,13 +7,14 @@
 // every submission, and keeps it as long as the device lives: 0.5 to 4 MiB and up to 0.25 s a frame. (It stops after a
 // binding whose values made the kernel a little smaller, which is why it may not show. What it puts in place of the
 // word is, by a slip in the stride of its table, the first word of the buffer; and for a fourth uniform buffer it
-// writes beyond the table: the crash that other files tell of.) What a `select`, or an `if` short enough to become
-// one, depends on does not matter.
+// writes beyond the table, and the first dispatch crashes.) What a `select`, or an `if` short enough to become one,
+// depends on does not matter.
 
 // Set this to the z of workgroup_id or global_invocation_id at the entry point: 0, as every dispatch is one workgroup
 // deep, but no compiler knows; and the same for all threads, so that a GPU's branch stays uniform.
 var<private> zero: u32;
 
 fn deciding(word: u32) -> u32 {
-    return word + zero;
+    // `zero` comes first: lavapipe notes the words that it meets in a condition before it meets what is not one.
+    return zero + word;
 }

@@ -4,6 +4,7 @@
 
 @compute @workgroup_size(8, 16)
 fn develop_tile(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
     if outside_tile(id.xy) {
         return;
     }

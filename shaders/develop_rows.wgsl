@@ -4,6 +4,7 @@
 
 @compute @workgroup_size(32, 4)
 fn develop_tile(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) i: u32) {
+    zero = group.z;
     let corner = group.xy * vec2<u32>(ROWS_WIDTH, ROWS_PIXELS / ROWS_WIDTH);
     let id = corner + vec2<u32>(i % ROWS_WIDTH, i / ROWS_WIDTH);
     rows_index = i;

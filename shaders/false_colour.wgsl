@@ -1,36 +1,21 @@
 // False colour for views other than light. Mirrors src/film/false_colour.rs, where the formulas, sources and reasons
 // are. Reads the uniform `film` of packed.wgsl or screen.wgsl, and film.wgsl's functions.
 
-// What a pipeline is made for: the number of View, 0 shows light; or FROM_FILM (film.wgsl).
-override FALSE_COLOUR: u32 = 0u;
-
 const COLOUR_OF_REDSHIFT: u32 = 1u;
 const COLOUR_OF_ORDER: u32 = 2u;
 const COLOUR_OF_METRIC: u32 = 5u;
 
-// View of the film.
-fn colour_of() -> u32 {
-    return select(FALSE_COLOUR, film.false_colour, FALSE_COLOUR == FROM_FILM);
-}
-
 // sRGB-encoded colour of a view's value.
 fn false_colour(value: f32) -> vec3<f32> {
     let share = clamp((scaled(value) - film.view_low) * film.view_scale, 0.0, 1.0);
-    var lab = sequential(share);
-    if colour_of() == COLOUR_OF_REDSHIFT {
-        lab = diverging(share);
-    }
+    let lab = select(sequential(share), diverging(share), film.false_colour == COLOUR_OF_REDSHIFT);
     return select(lab_encoded(lab), vec3<f32>(0.5), is_nan(vec3<f32>(value)));
 }
 
+// A view's value as its colours are spread: by itself, by its logarithm, or as METRIC has it.
 fn scaled(value: f32) -> f32 {
-    if colour_of() == COLOUR_OF_ORDER {
-        return value;
-    }
-    if colour_of() == COLOUR_OF_METRIC {
-        return 1.0 - sqrt(1.0 - min(value, 1.0));
-    }
-    return log2(max(value, 1e-9));
+    let spread = select(log2(max(value, 1e-9)), value, film.false_colour == COLOUR_OF_ORDER);
+    return select(spread, 1.0 - sqrt(1.0 - min(value, 1.0)), film.false_colour == COLOUR_OF_METRIC);
 }
 
 fn sequential(share: f32) -> vec3<f32> {

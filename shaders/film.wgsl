@@ -1,12 +1,17 @@
 // Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of
-// packed.wgsl or screen.wgsl.
+// packed.wgsl or screen.wgsl, and deciding.wgsl. Functions that pixels are put by in loops have no early return: Mesa
+// 22.3's shader compiler crashes on one.
 
-// What a pipeline is made for: the numbers of ToneMap and PixelFormat, or FROM_FILM where it serves all and the
-// uniform says which. (The view: false_colour.wgsl.)
+// The number of the ToneMap that a kernel is made for, or FROM_FILM where it serves all and the uniform says which.
 override TONE_MAP: u32 = 1u;
-override FORMAT: u32 = 1u;
+// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, or R32F.
+override PIXELS: u32 = 0u;
+// Whether a kernel is made for the views other than light.
+override FALSE_COLOUR: bool = false;
 
 const FROM_FILM: u32 = 0xffffffffu;
+const PIXELS_FLOAT: u32 = 1u;
+const PIXELS_R32F: u32 = 2u;
 
 struct FilmParams {
     exposure: f32,
@@ -22,61 +27,70 @@ struct FilmParams {
 const TONE_MAP_ACES: u32 = 1u;
 const TONE_MAP_AGX: u32 = 2u;
 const FORMAT_BGRA8: u32 = 2u;
-const FORMAT_RGBA16F: u32 = 3u;
 const FORMAT_RGBA32F: u32 = 4u;
-const FORMAT_R32F: u32 = 5u;
 const MAX_SCENE_LIGHT: f32 = 65504.0;
 const MAX_F16: f32 = 65504.0;
 const MAX_F32: f32 = 3.40282347e38;
 
-// PixelFormat and ToneMap of the film.
-fn pixel_format() -> u32 {
-    return select(FORMAT, film.format, FORMAT == FROM_FILM);
+// Whether the pixels are RGBA32F.
+fn is_rgba32f() -> bool {
+    if PIXELS == PIXELS_FLOAT {
+        return deciding(film.format) == FORMAT_RGBA32F;
+    }
+    return false;
 }
 
-fn chosen_tone_map() -> u32 {
-    return select(TONE_MAP, film.tone_map, TONE_MAP == FROM_FILM);
+fn is_aces() -> bool {
+    if TONE_MAP == FROM_FILM {
+        return deciding(film.tone_map) == TONE_MAP_ACES;
+    }
+    return TONE_MAP == TONE_MAP_ACES;
 }
 
-// One pixel, in as many of the four words as the format has: 1 (8-bit, R32F), 2 (RGBA16F) or 4 (RGBA32F).
+fn is_agx() -> bool {
+    if TONE_MAP == FROM_FILM {
+        return deciding(film.tone_map) == TONE_MAP_AGX;
+    }
+    return TONE_MAP == TONE_MAP_AGX;
+}
+
+// 32-bit words of a pixel.
+fn pixel_words() -> u32 {
+    if PIXELS == PIXELS_FLOAT {
+        return select(2u, 4u, is_rgba32f());
+    }
+    return 1u;
+}
+
+// One pixel, in the first pixel_words() of the four words.
 fn develop(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    if pixel_format() == FORMAT_RGBA16F {
-        return vec4<u32>(develop_rgba16f(radiance), 0u, 0u);
+    var words = vec4<u32>(0u);
+    if PIXELS == PIXELS_FLOAT {
+        words = select(vec4<u32>(develop_rgba16f(radiance), 0u, 0u), develop_rgba32f(radiance), is_rgba32f());
+    } else if PIXELS == PIXELS_R32F {
+        words.x = bitcast<u32>(radiance.x);
+    } else {
+        let rgba = develop_8bit(radiance, x, y);
+        let codes = select(rgba, rgba.zyxw, film.format == FORMAT_BGRA8);
+        words.x = codes.x | (codes.y << 8u) | (codes.z << 16u) | (codes.w << 24u);
     }
-    if pixel_format() == FORMAT_RGBA32F {
-        return develop_rgba32f(radiance);
-    }
-    if pixel_format() == FORMAT_R32F {
-        return vec4<u32>(bitcast<u32>(radiance.x), 0u, 0u, 0u);
-    }
-    if pixel_format() == FORMAT_BGRA8 {
-        return vec4<u32>(develop_bgra8(radiance, x, y), 0u, 0u, 0u);
-    }
-    return vec4<u32>(develop_rgba8(radiance, x, y), 0u, 0u, 0u);
-}
-
-fn develop_rgba8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
-    let codes = develop_8bit(radiance, x, y);
-    return codes.x | (codes.y << 8u) | (codes.z << 16u) | (codes.w << 24u);
-}
-
-fn develop_bgra8(radiance: vec4<f32>, x: u32, y: u32) -> u32 {
-    let codes = develop_8bit(radiance, x, y);
-    return codes.z | (codes.y << 8u) | (codes.x << 16u) | (codes.w << 24u);
+    return words;
 }
 
 fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
-    if colour_of() != 0u {
-        return vec4<u32>(vec3<u32>(false_colour(radiance.x) * 255.0 + 0.5), 255u);
+    var codes = vec4<u32>(255u);
+    if FALSE_COLOUR {
+        codes = vec4<u32>(vec3<u32>(false_colour(radiance.x) * 255.0 + 0.5), 255u);
+    } else {
+        let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
+        // Most of the sky is black, and black stays black, whatever the dither.
+        var colour = vec3<u32>(0u);
+        if is_agx() || any(scene != vec3<f32>(0.0)) {
+            colour = vec3<u32>(srgb_encode(tone_map(scene)) * 255.0 + dither(x, y));
+        }
+        codes = vec4<u32>(colour, u32(alpha_of(radiance.w) * 255.0 + 0.5));
     }
-    let scene = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
-    // Most of the sky is black, and black stays black, whatever the dither. (A `return` here, called from a loop,
-    // crashes the shader compiler of Mesa 22.3.)
-    var codes = vec3<u32>(0u);
-    if chosen_tone_map() == TONE_MAP_AGX || any(scene != vec3<f32>(0.0)) {
-        codes = vec3<u32>(srgb_encode(tone_map(scene)) * 255.0 + dither(x, y));
-    }
-    return vec4<u32>(codes, u32(alpha_of(radiance.w) * 255.0 + 0.5));
+    return codes;
 }
 
 fn develop_rgba16f(radiance: vec4<f32>) -> vec2<u32> {
@@ -130,13 +144,13 @@ fn dither(x: u32, y: u32) -> f32 {
 }
 
 fn tone_map(rgb: vec3<f32>) -> vec3<f32> {
-    if chosen_tone_map() == TONE_MAP_ACES {
-        return aces(rgb);
+    var mapped = clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0));
+    if is_aces() {
+        mapped = aces(rgb);
+    } else if is_agx() {
+        mapped = agx(rgb);
     }
-    if chosen_tone_map() == TONE_MAP_AGX {
-        return agx(rgb);
-    }
-    return clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0));
+    return mapped;
 }
 
 // A matrix whose rows sum to 1, by what each component takes from the other two.

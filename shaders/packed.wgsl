@@ -8,14 +8,7 @@ fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let place = vec2<u32>(pass_.origin + vec2<i32>(id) + 1);
     let words = develop(radiance, place.x, place.y);
     let i = id.y * (pass_.size.x - 2u) + id.x;
-    if pixel_format() == FORMAT_RGBA16F {
-        pixels[2u * i] = words.x;
-        pixels[2u * i + 1u] = words.y;
-    } else if pixel_format() == FORMAT_RGBA32F {
-        for (var k = 0u; k < 4u; k++) {
-            pixels[4u * i + k] = words[k];
-        }
-    } else {
-        pixels[i] = words.x;
+    for (var k = 0u; k < pixel_words(); k += 1u) {
+        pixels[pixel_words() * i + k] = words[k];
     }
 }

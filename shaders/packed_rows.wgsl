@@ -14,14 +14,6 @@ var<workgroup> row_words: array<u32, 512>;
 // Of this thread's pixel among them.
 var<private> rows_index: u32;
 
-// Words of a pixel.
-fn pixel_words() -> u32 {
-    if pixel_format() == FORMAT_RGBA16F {
-        return 2u;
-    }
-    return select(1u, 4u, pixel_format() == FORMAT_RGBA32F);
-}
-
 fn keep_words(words: vec4<u32>) {
     for (var k = 0u; k < pixel_words(); k += 1u) {
         row_words[pixel_words() * rows_index + k] = words[k];

@@ -106,23 +106,33 @@ fn windows_are_prepared_at_the_scale_of_their_quality() {
 
 #[test]
 fn what_a_host_changes_next_is_made_in_the_background() {
+    // BGRA8 shares its kernels with RGBA8; RGBA16F and RGBA32F have theirs together. One renderer each for formats and
+    // for scenes, as a software driver keeps few kernels.
+    let formats = [PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
+    next_frames(&formats.map(|format| -> (Change, _) { (|_| (), format) }));
+    let scenes: [Change; 3] = [CHANGES[1], CHANGES[3], |scene| scene.view = View::Order];
+    next_frames(&scenes.map(|change| (change, PixelFormat::Rgba8Srgb)));
+}
+
+/// Demands that frames after these changes to a first frame in RGBA8 wait for no pipeline.
+fn next_frames(changes: &[(Change, PixelFormat)]) {
     let mut renderer = renderer();
     // As on hardware.
     let quality = &mut renderer.scene.quality;
     (quality.anticipates, quality.shares_kernels) = (Some(true), Some(true));
     render(&mut renderer, PixelFormat::Rgba8Srgb);
     let before = missing(&renderer);
-    for change in [CHANGES[1], CHANGES[3], |scene: &mut Scene| scene.view = View::Order] {
+    for (change, format) in changes {
         change(&mut renderer.scene);
-        render(&mut renderer, PixelFormat::Rgba8Srgb);
-        assert_eq!(missing(&renderer), before);
+        render(&mut renderer, *format);
+        assert_eq!(missing(&renderer), before, "{format:?}");
     }
 }
 
-/// On hardware one kernel serves all films and projections but the usual ones; on software drivers each has its own.
-/// Their pixels are the same.
+/// On hardware one kernel serves all tone maps and projections but the usual ones; on software drivers each has its
+/// own. Their pixels are the same.
 #[test]
-fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
+fn a_kernel_for_any_tone_map_and_projection_puts_the_same_bytes() {
     let mut renderer = renderer();
     let mut compare = |scene: Change, format| {
         scene(&mut renderer.scene);
@@ -133,7 +143,7 @@ fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
         let scene = &renderer.scene;
         assert!(own == any, "{format:?}, {:?}, {:?}, {:?}", scene.film.tone_map, scene.view, scene.camera.projection);
     };
-    // RGBA8_SRGB with ACES, the usual film, has its own kernel in either case.
+    // 8 bits with ACES, the usual film, have their own kernel in either case.
     compare(|_| (), PixelFormat::Bgra8Srgb);
     compare(|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Bgra8Srgb);
     compare(|scene| scene.film.tone_map = ToneMap::None, PixelFormat::Rgba8Srgb);

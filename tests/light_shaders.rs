@@ -9,12 +9,13 @@ use bhr::sky::StarIndex;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
-const SNIPPETS: [&str; 5] = [
+const SNIPPETS: [&str; 6] = [
     include_str!("../shaders/blackbody.wgsl"),
     include_str!("../shaders/stars.wgsl"),
     include_str!("../shaders/film.wgsl"),
     include_str!("../shaders/record.wgsl"),
     include_str!("../shaders/false_colour.wgsl"),
+    include_str!("../shaders/deciding.wgsl"),
 ];
 
 const BINDINGS: &str = "
@@ -149,10 +150,15 @@ impl Gpu {
             bind_group_layouts: &[Some(&layout)],
             ..Default::default()
         });
+        let pixels = match film.format {
+            1 | 2 => 0,
+            3 | 4 => 1,
+            _ => 2,
+        };
         let constants = [
-            ("FORMAT", f64::from(film.format)),
+            ("PIXELS", f64::from(pixels)),
             ("TONE_MAP", f64::from(film.tone_map)),
-            ("FALSE_COLOUR", f64::from(film.false_colour)),
+            ("FALSE_COLOUR", f64::from(u32::from(film.false_colour != 0))),
         ];
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: None,

@@ -5,10 +5,9 @@ use super::slots::{
     LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, SCREEN, Slot, TRACED, edge_slots, shade_slots, sum_slots,
 };
 use super::wgsl;
-use crate::film::FilmParams;
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
-use crate::scene::{Projection, ToneMap, View};
+use crate::scene::{Film, Projection, ToneMap, View};
 
 /// Everything that decides how the tracing kernels are compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -48,11 +47,22 @@ pub struct Look {
 /// Everything that decides how development is compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FilmLook {
-    pub(super) format: u32,
-    pub(super) tone_map: u32,
-    /// Number of the view; 0: light.
-    pub(super) false_colour: u32,
+    pub(super) pixels: PixelKind,
+    /// Pixels show a view other than light in false colour.
+    pub(super) false_colour: bool,
+    /// `None`: any, which the kernel asks while it runs. `ToneMap::None` where it does not matter.
+    pub(super) tone_map: Option<ToneMap>,
     pub(super) target: PixelTarget,
+}
+
+/// Pixel formats that one kernel serves: `PIXELS` of film.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PixelKind {
+    /// RGBA8 and BGRA8.
+    EightBit,
+    /// RGBA16F and RGBA32F.
+    Float,
+    R32F,
 }
 
 /// Where the last kernel of a frame puts pixels.
@@ -70,28 +80,33 @@ pub enum PixelTarget {
 
 /// `FROM_FILM` of film.wgsl and `FROM_FRAME` of projection.wgsl: the uniform says which.
 const FROM_UNIFORM: u32 = u32::MAX;
-/// Format, tone map and view of the default scene in 8 bits: RGBA8_SRGB, ACES, LIGHT.
-const USUAL_FILM: (u32, u32, u32) = (PixelFormat::Rgba8Srgb as u32, ToneMap::Aces as u32, View::Light as u32);
 
 impl FilmLook {
-    /// For `film` alone: software drivers run both sides of every branch.
-    pub fn new(film: &FilmParams, target: PixelTarget) -> Self {
-        Self { format: film.format, tone_map: film.tone_map, false_colour: film.false_colour, target }
+    /// For `film` in pixels of `format`. `any_tone_map`: for every tone map, where it matters; a kernel that leaves it
+    /// open costs its frames 2 % (H200).
+    pub fn new(film: &Film, view: View, format: PixelFormat, target: PixelTarget, any_tone_map: bool) -> Self {
+        let pixels = match format {
+            PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => PixelKind::EightBit,
+            PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
+            PixelFormat::R32F => PixelKind::R32F,
+        };
+        let eight_bit = pixels == PixelKind::EightBit;
+        let tone_map = match eight_bit && view == View::Light {
+            true => (!any_tone_map).then_some(film.tone_map),
+            false => Some(ToneMap::None),
+        };
+        Self { pixels, false_colour: eight_bit && view != View::Light, tone_map, target }
     }
 
-    /// For every film, which the kernel asks while it runs.
-    pub fn of_any(target: PixelTarget) -> Self {
-        Self { format: FROM_UNIFORM, tone_map: FROM_UNIFORM, false_colour: FROM_UNIFORM, target }
-    }
-
-    /// Whether `film` is the one that hosts begin with. A kernel for every film would cost its frames 13 % (H200).
-    pub fn is_usual(film: &FilmParams) -> bool {
-        (film.format, film.tone_map, film.false_colour) == USUAL_FILM
+    /// Whether hosts begin with such pixels: light in 8 bits by ACES, the default.
+    pub fn is_usual(self) -> bool {
+        self.pixels == PixelKind::EightBit && self.tone_map == Some(ToneMap::Aces)
     }
 
     /// Of light that bloom is to spread.
     pub fn of_light() -> Self {
-        Self { format: 1, tone_map: 0, false_colour: 0, target: PixelTarget::Light }
+        let (tone_map, target) = (Some(ToneMap::None), PixelTarget::Light);
+        Self { pixels: PixelKind::Float, false_colour: false, tone_map, target }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.
@@ -402,5 +417,9 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
 }
 
 fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
-    vec![("FORMAT", film.format.into()), ("TONE_MAP", film.tone_map.into()), ("FALSE_COLOUR", film.false_colour.into())]
+    vec![
+        ("PIXELS", f64::from(film.pixels as u32)),
+        ("FALSE_COLOUR", flag(film.false_colour)),
+        ("TONE_MAP", film.tone_map.map_or(FROM_UNIFORM, |tone_map| tone_map as u32).into()),
+    ]
 }

@@ -14,6 +14,7 @@ const SCHWARZSCHILD: &str = include_str!("../../shaders/lens_schwarzschild.wgsl"
 const INTEGRATION: [&str; 3] =
     [NYSTROM, include_str!("../../shaders/integrator.wgsl"), include_str!("../../shaders/trace.wgsl")];
 const PASS: &str = include_str!("../../shaders/pass.wgsl");
+const DECIDING: &str = include_str!("../../shaders/deciding.wgsl");
 const FRAME: &str =
     concat!(include_str!("../../shaders/deciding.wgsl"), "\n", include_str!("../../shaders/frame.wgsl"));
 const PROJECTION: &str = include_str!("../../shaders/projection.wgsl");
@@ -184,7 +185,7 @@ pub fn develop(film: FilmLook, glare: bool) -> String {
         true => &[BLOOM, include_str!("../../shaders/glare.wgsl")],
         false => &[include_str!("../../shaders/summed.wgsl")],
     };
-    join(&[&[PASS], light, &film.parts(), &[driver]])
+    join(&[&[DECIDING, PASS], light, &film.parts(), &[driver]])
 }
 
 const BLOOM: &str = include_str!("../../shaders/bloom.wgsl");
@@ -208,7 +209,7 @@ pub fn give_back() -> String {
 
 /// Every shader of this tracer, joined from its parts as the device gets it: name and WGSL.
 pub fn shader_sources() -> Vec<(&'static str, String)> {
-    let film = |target| FilmLook { format: 1, tone_map: 1, false_colour: 0, target };
+    let film = |target| FilmLook { target, ..FilmLook::of_light() };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
