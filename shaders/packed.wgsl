@@ -8,7 +8,16 @@ fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let place = vec2<u32>(pass_.origin + vec2<i32>(id) + 1);
     let words = develop(radiance, place.x, place.y);
     let i = id.y * (pass_.size.x - 2u) + id.x;
-    for (var k = 0u; k < pixel_words(); k += 1u) {
-        pixels[pixel_words() * i + k] = words[k];
+    // Not a loop over words[k]: with one, frames at spin 0.9 take 11 % longer (H200).
+    if PIXELS == PIXELS_FLOAT {
+        let first = pixel_words() * i;
+        pixels[first] = words.x;
+        pixels[first + 1u] = words.y;
+        if is_rgba32f() {
+            pixels[first + 2u] = words.z;
+            pixels[first + 3u] = words.w;
+        }
+    } else {
+        pixels[i] = words.x;
     }
 }
