@@ -4,7 +4,7 @@
 
 // The number of the ToneMap that a kernel is made for, or FROM_FILM where it serves all and the uniform says which.
 override TONE_MAP: u32 = 1u;
-// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, or R32F.
+// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, R32F, or FROM_FILM.
 override PIXELS: u32 = 0u;
 // Whether a kernel is made for the views other than light.
 override FALSE_COLOUR: bool = false;
@@ -27,17 +27,30 @@ struct FilmParams {
 const TONE_MAP_ACES: u32 = 1u;
 const TONE_MAP_AGX: u32 = 2u;
 const FORMAT_BGRA8: u32 = 2u;
+const FORMAT_RGBA16F: u32 = 3u;
 const FORMAT_RGBA32F: u32 = 4u;
+const FORMAT_R32F: u32 = 5u;
 const MAX_SCENE_LIGHT: f32 = 65504.0;
 const MAX_F16: f32 = 65504.0;
 const MAX_F32: f32 = 3.40282347e38;
 
-// Whether the pixels are RGBA32F.
-fn is_rgba32f() -> bool {
-    if PIXELS == PIXELS_FLOAT {
-        return deciding(film.format) == FORMAT_RGBA32F;
+fn is_float() -> bool {
+    if PIXELS == FROM_FILM {
+        let format = deciding(film.format);
+        return (format == FORMAT_RGBA16F) | (format == FORMAT_RGBA32F);
     }
-    return false;
+    return PIXELS == PIXELS_FLOAT;
+}
+
+fn is_r32f() -> bool {
+    if PIXELS == FROM_FILM {
+        return deciding(film.format) == FORMAT_R32F;
+    }
+    return PIXELS == PIXELS_R32F;
+}
+
+fn is_rgba32f() -> bool {
+    return deciding(film.format) == FORMAT_RGBA32F;
 }
 
 fn is_aces() -> bool {
@@ -56,7 +69,7 @@ fn is_agx() -> bool {
 
 // 32-bit words of a pixel.
 fn pixel_words() -> u32 {
-    if PIXELS == PIXELS_FLOAT {
+    if is_float() {
         return select(2u, 4u, is_rgba32f());
     }
     return 1u;
@@ -65,9 +78,9 @@ fn pixel_words() -> u32 {
 // One pixel, in the first pixel_words() of the four words.
 fn develop(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
     var words = vec4<u32>(0u);
-    if PIXELS == PIXELS_FLOAT {
+    if is_float() {
         words = select(vec4<u32>(develop_rgba16f(radiance), 0u, 0u), develop_rgba32f(radiance), is_rgba32f());
-    } else if PIXELS == PIXELS_R32F {
+    } else if is_r32f() {
         words.x = bitcast<u32>(radiance.x);
     } else {
         let rgba = develop_8bit(radiance, x, y);

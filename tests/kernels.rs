@@ -108,8 +108,7 @@ fn windows_are_prepared_at_the_scale_of_their_quality() {
 
 #[test]
 fn what_a_host_changes_next_is_made_in_the_background() {
-    // BGRA8 shares its kernels with RGBA8; RGBA16F and RGBA32F have theirs together. One renderer each for formats and
-    // for scenes, as a software driver keeps few kernels.
+    // One renderer each for formats and for scenes, as a software driver keeps few kernels.
     let formats = [PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
     next_frames(&formats.map(|format| -> (Change, _) { (|_| (), format) }));
     let scenes: [Change; 3] = [CHANGES[1], CHANGES[3], |scene| scene.view = View::Order];
@@ -131,10 +130,10 @@ fn next_frames(changes: &[(Change, PixelFormat)]) {
     }
 }
 
-/// On hardware one kernel serves all tone maps and projections but the usual ones; on software drivers each has its
-/// own. Their pixels are the same.
+/// On hardware one kernel serves all films and projections but the usual ones; on software drivers each has its own.
+/// Their pixels are the same.
 #[test]
-fn a_kernel_for_any_tone_map_and_projection_puts_the_same_bytes() {
+fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
     let mut renderer = renderer();
     let mut compare = |scene: Change, format| {
         scene(&mut renderer.scene);

@@ -255,9 +255,23 @@ fn tables_give_the_same_bytes() {
     }
 }
 
-/// Kernels that put pixels into the host's memory row by row, against those that pack them on the device.
+/// By how many steps of their format two pictures differ in any value: codes, or last places of floats, of which all
+/// are positive.
+fn steps_apart(format: PixelFormat, a: &[u8], b: &[u8]) -> u64 {
+    let size = match format {
+        PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => 1,
+        PixelFormat::Rgba16F => 2,
+        PixelFormat::Rgba32F | PixelFormat::R32F => 4,
+    };
+    let value = |bytes: &[u8]| bytes.iter().rev().fold(0, |value, byte| value << 8 | u64::from(*byte));
+    assert_eq!(a.len(), b.len());
+    a.chunks(size).zip(b.chunks(size)).map(|(a, b)| value(a).abs_diff(value(b))).max().unwrap_or(0)
+}
+
+/// Kernels that put pixels into the host's memory row by row, against those that pack them on the device. They are the
+/// same sums; hardware's compilers may contract them differently, a frame always takes the one or the other.
 #[test]
-fn pixels_put_by_rows_are_the_same_bytes() {
+fn pixels_put_by_rows_are_the_same() {
     let set = |renderer: &mut Renderer, spin: f64, samples: u32, tables: LensTables, view: View| {
         let scene = &mut renderer.scene;
         (scene.hole.spin, scene.view) = (spin, view);
@@ -285,7 +299,14 @@ fn pixels_put_by_rows_are_the_same_bytes() {
                     renderer.scene.quality.mapped_pixels = Some(mapped);
                     picture(&mut renderer, format, size, None, false)
                 });
-                assert!(packed == rows, "{size:?}, spin {spin}, {samples} samples, {tables:?}, {format}");
+                let apart = steps_apart(format, &packed, &rows);
+                let most = match format {
+                    _ if adapter.info.software => 0,
+                    PixelFormat::Rgba32F => 1 << 10,
+                    PixelFormat::R32F => 0,
+                    PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb | PixelFormat::Rgba16F => 1,
+                };
+                assert!(apart <= most, "{apart}: {size:?}, spin {spin}, {samples} samples, {tables:?}, {format}");
                 deferred += if tables == LensTables::Always { renderer.stats().steps } else { 0 };
                 assert!(size == [1, 1] || packed.iter().any(|byte| *byte != packed[0]));
             }

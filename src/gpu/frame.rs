@@ -271,18 +271,17 @@ impl GpuTracer {
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
-        // On hardware, whose branches cost little, all but the usual projection and tone map share kernels, so that a
-        // host that goes through them does not wait for the driver's compiler each time. Software drivers run both
-        // sides of every branch.
+        // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
+        // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 3 % for it
+        // (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
-        let film_look = |any| FilmLook::new(&scene.film, scene.view, request.format, target, any);
-        let usual_view = scene.camera.projection == Projection::Perspective;
-        let usual_film = film_look(false).is_usual();
+        let film_look = FilmLook::new(&scene.film, scene.view, request.format, target);
+        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, film_look.is_usual());
         // Where one kernel both looks and develops, what is unusual in either is left open in both.
         let both = bloom.is_none() && samples == 1;
         let own_view = !shares || (usual_view && (usual_film || !both));
         let own_film = !shares || (usual_film && (usual_view || !both));
-        let developed = film_look(!own_film);
+        let developed = if own_film { film_look } else { film_look.of_any() };
         let projection = own_view.then_some(scene.camera.projection);
         let looks = Looks {
             look: Look {

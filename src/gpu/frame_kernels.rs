@@ -96,17 +96,6 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     list
 }
 
-/// How many neighbours are likelier than another kind of pixels.
-const OTHER_FORMAT_AT: usize = 4;
-
-/// A format of the kind that a host is likeliest to change to.
-fn other_format(format: PixelFormat) -> PixelFormat {
-    match format {
-        PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => PixelFormat::Rgba16F,
-        PixelFormat::Rgba16F | PixelFormat::Rgba32F | PixelFormat::R32F => PixelFormat::Rgba8Srgb,
-    }
-}
-
 /// Kinds of frames whose followers are anticipated, at most.
 const MOST_KINDS: usize = 64;
 
@@ -145,12 +134,7 @@ impl GpuTracer {
         if known || !anticipates {
             return;
         }
-        let mut next: Vec<_> = neighbours(scene).into_iter().map(|next| (next, request.format)).collect();
-        if target != PixelTarget::Screen {
-            next.insert(OTHER_FORMAT_AT, (scene.clone(), other_format(request.format)));
-        }
-        let set_up = |(next, format)| self.set_up(&next, &FrameRequest { format, ..request.clone() }, target).ok();
-        let next = next.into_iter().filter_map(set_up);
+        let next = neighbours(scene).into_iter().filter_map(|next| self.set_up(&next, request, target).ok());
         let mut keys = Vec::<KernelKey>::new();
         for key in next.flat_map(|setup| setup.kernels().into_iter().rev()) {
             if !keys.contains(&key) {

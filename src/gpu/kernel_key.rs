@@ -47,7 +47,8 @@ pub struct Look {
 /// Everything that decides how development is compiled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct FilmLook {
-    pub(super) pixels: PixelKind,
+    /// `None`: any, which the kernel asks while it runs.
+    pub(super) pixels: Option<PixelKind>,
     /// Pixels show a view other than light in false colour.
     pub(super) false_colour: bool,
     /// `None`: any, which the kernel asks while it runs. `ToneMap::None` where it does not matter.
@@ -82,31 +83,33 @@ pub enum PixelTarget {
 const FROM_UNIFORM: u32 = u32::MAX;
 
 impl FilmLook {
-    /// For `film` in pixels of `format`. `any_tone_map`: for every tone map, where it matters; a kernel that leaves it
-    /// open costs its frames 2 % (H200).
-    pub fn new(film: &Film, view: View, format: PixelFormat, target: PixelTarget, any_tone_map: bool) -> Self {
+    /// For `film` in pixels of `format`.
+    pub fn new(film: &Film, view: View, format: PixelFormat, target: PixelTarget) -> Self {
         let pixels = match format {
             PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => PixelKind::EightBit,
             PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
             PixelFormat::R32F => PixelKind::R32F,
         };
-        let eight_bit = pixels == PixelKind::EightBit;
-        let tone_map = match eight_bit && view == View::Light {
-            true => (!any_tone_map).then_some(film.tone_map),
-            false => Some(ToneMap::None),
-        };
-        Self { pixels, false_colour: eight_bit && view != View::Light, tone_map, target }
+        let shows_light = view == View::Light;
+        let tone_map = if shows_light && pixels == PixelKind::EightBit { film.tone_map } else { ToneMap::None };
+        Self { pixels: Some(pixels), false_colour: !shows_light, tone_map: Some(tone_map), target }
+    }
+
+    /// For every format, but in windows, which have one kind, and, of light, every tone map.
+    pub fn of_any(self) -> Self {
+        let pixels = self.pixels.filter(|_| self.target == PixelTarget::Screen);
+        Self { pixels, tone_map: self.false_colour.then_some(ToneMap::None), ..self }
     }
 
     /// Whether hosts begin with such pixels: light in 8 bits by ACES, the default.
     pub fn is_usual(self) -> bool {
-        self.pixels == PixelKind::EightBit && self.tone_map == Some(ToneMap::Aces)
+        self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces)
     }
 
     /// Of light that bloom is to spread.
     pub fn of_light() -> Self {
         let (tone_map, target) = (Some(ToneMap::None), PixelTarget::Light);
-        Self { pixels: PixelKind::Float, false_colour: false, tone_map, target }
+        Self { pixels: Some(PixelKind::Float), false_colour: false, tone_map, target }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.
@@ -418,7 +421,7 @@ fn look_constants(look: Look) -> Vec<(&'static str, f64)> {
 
 fn film_constants(film: FilmLook) -> Vec<(&'static str, f64)> {
     vec![
-        ("PIXELS", f64::from(film.pixels as u32)),
+        ("PIXELS", film.pixels.map_or(FROM_UNIFORM, |pixels| pixels as u32).into()),
         ("FALSE_COLOUR", flag(film.false_colour)),
         ("TONE_MAP", film.tone_map.map_or(FROM_UNIFORM, |tone_map| tone_map as u32).into()),
     ]
