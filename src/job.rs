@@ -7,8 +7,9 @@ pub use worker::{MAX_UNFINISHED, Worker};
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::ImageMut;
-use crate::renderer::{FrameRequest, FrameStats, Progress, SharedTracer, StatsBoard};
 use crate::scene::Scene;
+use crate::tracer::{FrameRequest, FrameStats, Progress, StatsBoard};
+use crate::tracers::SharedTracer;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};

@@ -24,5 +24,8 @@ pub mod physics;
 pub mod renderer;
 pub mod scene;
 pub mod sky;
+pub mod surface;
 mod thread_scope;
+pub mod tracer;
+mod tracers;
 pub mod window;

@@ -2,57 +2,23 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
-use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::bloom::Bloom;
-use crate::gpu::{self, Adapter, GlTracer, GpuTracer, Search};
+use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::job::{Job, Order, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
-use crate::window::{NativeWindow, PresentMode, Showing, Shown, Surface, Tracing, Window, frame_request};
+use crate::surface::{Showing, Shown, Surface, Tracing, frame_request};
+use crate::tracers::{RunsOn, SharedTracer, Tracer};
+use crate::window::{NativeWindow, PresentMode, Window};
 use parking_lot::Mutex;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Weak};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-/// The interfaces a tracer may run on (`BHR_BACKEND_*`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum Backend {
-    Cpu = 1,
-    Vulkan = 2,
-    Metal = 3,
-    D3d12 = 4,
-    Gl = 5,
-}
-
-/// As in `BHR_BACKEND_*`.
-impl std::fmt::Display for Backend {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Cpu => "CPU",
-            Self::Vulkan => "VULKAN",
-            Self::Metal => "METAL",
-            Self::D3d12 => "D3D12",
-            Self::Gl => "GL",
-        })
-    }
-}
-
-/// What a tracer runs on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterInfo {
-    pub backend: Backend,
-    /// A GPU with memory of its own.
-    pub discrete: bool,
-    /// No hardware behind it: a software driver, or the CPU tracer.
-    pub software: bool,
-    pub vendor_id: u32,
-    pub device_id: u32,
-    pub name: String,
-    pub driver: String,
-}
+pub use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, PASSES, Progress, StatsBoard, Tile, TileSink};
+pub use crate::tracers::adapters;
 
 /// How to make a [`Renderer`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,153 +33,6 @@ pub struct RendererOptions {
     pub validation: bool,
     /// Only adapters that can present to this window.
     pub compatible_window: Option<NativeWindow>,
-}
-
-/// Of `FrameStats::pass_ns`.
-pub const PASSES: usize = 3;
-
-/// Numbers about the last finished frame. Times in nanoseconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FrameStats {
-    /// 1 for the first frame of a renderer; 0: none finished yet.
-    pub frame_index: u64,
-    pub rays: u64,
-    pub steps: u64,
-    pub cpu_ns: u64,
-    /// 0: the adapter has no timestamps.
-    pub gpu_ns: u64,
-    /// What `gpu_ns` is the sum of: tracing and shading, without bloom with development; bloom; development.
-    pub pass_ns: [u64; PASSES],
-    pub readback_ns: u64,
-    /// Device memory held by this renderer.
-    pub device_bytes: u64,
-}
-
-/// Every adapter on this machine, best first; the CPU tracer, always there, is last.
-pub fn adapters() -> Vec<AdapterInfo> {
-    let mut list = gpu::adapters(Search::All, false).into_iter().map(|a| a.info).collect::<Vec<_>>();
-    list.push(crate::cpu::adapter_info());
-    list
-}
-
-/// A part of the target, in its own pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Tile {
-    pub x: u32,
-    pub y: u32,
-    pub width: u32,
-    pub height: u32,
-}
-
-/// What a tracer is asked for: a width x height image, part of the frame that `region` describes.
-#[derive(Clone, Copy, Debug)]
-pub struct FrameRequest {
-    pub width: u32,
-    pub height: u32,
-    pub region: Region,
-    pub format: PixelFormat,
-    /// Premultiplied alpha = 1 - the sky's share, sky left out.
-    pub transparent: bool,
-}
-
-/// Takes a finished tile: packed pixels, rows `bytes_per_row` apart. Runs on a thread of the tracer's, if that has one.
-pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + Send + 'a;
-
-/// Hears how much of the frame is done, 0 .. 1; false cancels. Runs on the thread that asked for the frame.
-pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;
-
-/// What traces: one frame at a time.
-pub enum Tracer {
-    Cpu(CpuTracer),
-    Gpu(Box<GpuTracer>),
-    Gl(Box<GlTracer>),
-}
-
-/// What a tracer runs on, as far as it can be asked while the tracer is at work.
-enum RunsOn {
-    Cpu,
-    Gpu(Arc<Adapter>, Arc<gpu::Device>),
-    Gl(gpu::Loss),
-}
-
-/// A tracer that a renderer, its jobs and its windows take turns with.
-pub type SharedTracer = Arc<Mutex<Tracer>>;
-
-impl Tracer {
-    /// Renders a frame and waits for it. Errors: as `Renderer::render`.
-    pub fn render(
-        &mut self,
-        scene: &Scene,
-        request: &FrameRequest,
-        sink: &mut TileSink<'_>,
-        progress: &mut Progress<'_>,
-    ) -> Result<FrameStats> {
-        match self {
-            Self::Cpu(t) => t.render(scene, request, sink, progress),
-            Self::Gpu(t) => t.render(scene, request, sink, progress),
-            Self::Gl(t) => t.render(scene, request, sink, progress),
-        }
-    }
-
-    /// Errors: as `Device::open`.
-    fn on_gpu(adapter: Adapter) -> Result<Self> {
-        match adapter.info.backend {
-            Backend::Gl => GlTracer::open(adapter).map(|t| Self::Gl(Box::new(t))),
-            _ => {
-                let name = adapter.info.name.clone();
-                let opened = catch_unwind(AssertUnwindSafe(|| GpuTracer::new(adapter)));
-                let panicked = |_| Err(Error::new(ErrorKind::NoAdapter, format!("{name}: opening it panicked")));
-                opened.unwrap_or_else(panicked).map(|t| Self::Gpu(Box::new(t)))
-            }
-        }
-    }
-
-    /// Makes all that such frames need, and a window's frames like `window`, and keeps it. Errors: as
-    /// `Renderer::render`.
-    fn prepare(
-        &mut self,
-        scene: &Scene,
-        request: &FrameRequest,
-        window: Option<&FrameRequest>,
-        progress: &mut Progress<'_>,
-    ) -> Result<()> {
-        match self {
-            Self::Cpu(t) => window.into_iter().chain([request]).try_for_each(|request| t.prepare(scene, request)),
-            Self::Gpu(t) => t.prepare(scene, request, window, progress),
-            Self::Gl(t) => t.prepare(scene, request, window, progress),
-        }
-    }
-
-    fn info(&self) -> &AdapterInfo {
-        match self {
-            Self::Cpu(t) => t.adapter(),
-            Self::Gpu(t) => &t.adapter().info,
-            Self::Gl(t) => t.info(),
-        }
-    }
-
-    fn runs_on(&self) -> RunsOn {
-        match self {
-            Self::Cpu(_) => RunsOn::Cpu,
-            Self::Gpu(t) => RunsOn::Gpu(t.adapter().clone(), t.device()),
-            Self::Gl(t) => RunsOn::Gl(t.loss().clone()),
-        }
-    }
-}
-
-/// Where the numbers about a renderer's last finished frame stand, whoever made it.
-#[derive(Clone, Default)]
-pub struct StatsBoard(Arc<Mutex<FrameStats>>);
-
-impl StatsBoard {
-    /// Numbers the frame, which is finished and took this long.
-    pub fn publish(&self, mut stats: FrameStats, took: Duration) -> FrameStats {
-        let mut last = self.0.lock();
-        stats.frame_index = last.frame_index + 1;
-        stats.cpu_ns = took.as_nanos() as u64;
-        *last = stats;
-        stats
-    }
 }
 
 /// One scene, one tracer.
@@ -267,7 +86,7 @@ impl Renderer {
     fn open(options: &RendererOptions) -> Result<Tracer> {
         gpu::check_built(options.backend)?;
         let window = options.compatible_window.map(Window::open).transpose()?;
-        let cpu = || CpuTracer::new(options.cpu_threads).map(Tracer::Cpu);
+        let cpu = || crate::cpu::CpuTracer::new(options.cpu_threads).map(Tracer::Cpu);
         if options.backend == Some(Backend::Cpu) && options.adapter_index.is_none() {
             return cpu();
         }
@@ -429,7 +248,7 @@ impl Renderer {
 
     /// Numbers about the last finished frame.
     pub fn stats(&self) -> FrameStats {
-        *self.stats.0.lock()
+        self.stats.last()
     }
 
     /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a

@@ -5,7 +5,8 @@ use super::pointer::{Out, unknown};
 use super::status::BhrStatus;
 use super::versioned::{OutStruct, Versioned};
 use crate::error::{Error, Result};
-use crate::renderer::{self, AdapterInfo, Backend};
+use crate::tracer::{AdapterInfo, Backend};
+use crate::tracers;
 use std::ffi::c_char;
 
 /// The interface to an adapter.
@@ -126,7 +127,7 @@ pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     let out = unsafe { Out::cleared(out_count) };
     outside_callbacks("bhr_adapter_count", || {
         out.required("out_count")?;
-        out.set(renderer::adapters().len() as u32);
+        out.set(tracers::adapters().len() as u32);
         Ok(())
     })
 }
@@ -139,7 +140,7 @@ pub unsafe extern "C" fn bhr_adapter_info(index: u32, info: *mut BhrAdapterInfo)
     // SAFETY: NULL or valid, by the header's conventions.
     let info = unsafe { OutStruct::cleared(info, "info") };
     outside_callbacks("bhr_adapter_info", || {
-        let adapters = renderer::adapters();
+        let adapters = tracers::adapters();
         let adapter = adapters.get(index as usize).ok_or_else(|| {
             Error::argument(format!("index is {index}; this machine has {} adapters", adapters.len()))
         })?;

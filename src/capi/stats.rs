@@ -6,7 +6,7 @@ use super::job::{self, BhrJob};
 use super::status::BhrStatus;
 use super::versioned::{OutStruct, Versioned};
 use crate::error::Error;
-use crate::renderer::FrameStats;
+use crate::tracer::FrameStats;
 
 /// Numbers about the last finished frame; all 0 before the first. Times in nanoseconds.
 #[repr(C)]

@@ -8,7 +8,8 @@ use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, Result};
 use crate::image::MAX_SIDE;
-use crate::window::{PresentMode, Shown, Surface};
+use crate::surface::{Shown, Surface};
+use crate::window::PresentMode;
 use std::sync::Arc;
 
 /// A window that a context renders into. It belongs to that context; end it with bhr_surface_destroy, before or

@@ -6,7 +6,7 @@ use crate::allocate::{collected, filled, with_room};
 use crate::error::{Error, ErrorKind, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::{Bloom, Glare};
-use crate::renderer::{Progress, Tile, TileSink};
+use crate::tracer::{Progress, Tile, TileSink};
 use rayon::prelude::*;
 
 /// Bytes of a whole frame's light; a frame with bloom that needs more is traced twice instead.

@@ -11,12 +11,12 @@ use crate::allocate::{self, collected, filled};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::film::{FilmParams, develop_row};
-use crate::renderer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::{KerrWorth, Scene, View};
 use crate::sky::StarIndex;
+use crate::tracer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use rayon::prelude::*;
 use std::sync::Arc;
 

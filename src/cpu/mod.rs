@@ -13,9 +13,9 @@ pub use rays::{trace_path, trace_ray};
 
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::renderer::{AdapterInfo, Backend};
 use crate::scene::{Hit, Ray, Scene};
 use crate::sky::StarIndex;
+use crate::tracer::{AdapterInfo, Backend};
 use lens::LensCache;
 use std::sync::Arc;
 

@@ -1,20 +1,17 @@
-//! Windows of the host as targets of frames. A [`Surface`] shows a renderer's frames in one window: traced and
-//! presented by the same GPU device, or, where that cannot present, uploaded to one that can, or put there as memory.
-//! Hosts' handles come in as a [`NativeWindow`]; nothing here knows C, or what a frame shows. Without the cargo
-//! feature `window` every window is UNSUPPORTED.
+//! Windows of the host, as their platforms know them: handles, sizes, pacing, and frames put there as memory. Hosts'
+//! handles come in as a [`NativeWindow`]; nothing here knows C, a GPU, or what a frame shows. Without the cargo feature
+//! `window` every window is UNSUPPORTED.
 
-mod claim;
+pub(crate) mod claim;
 #[cfg_attr(not(feature = "window"), path = "memory_absent.rs")]
-mod memory;
+pub(crate) mod memory;
 mod native;
-mod surface;
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod wayland;
 #[cfg(all(feature = "window", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod x11;
 
 pub use native::{Handles, NativeWindow};
-pub use surface::{Showing, Shown, Surface, Tracing, frame_request};
 
 use crate::error::Result;
 
@@ -76,7 +73,7 @@ impl Window {
     }
 
     /// What the window's server had against frames that nobody waited for.
-    fn drop_errors(&self) {
+    pub(crate) fn drop_errors(&self) {
         if let Some(window) = &self.x11 {
             window.drop_errors();
         }
@@ -92,7 +89,7 @@ impl Window {
         }
     }
 
-    fn claim_key(&self) -> claim::Key {
+    pub(crate) fn claim_key(&self) -> claim::Key {
         self.x11.as_ref().map_or_else(|| self.native.claim_key(), |window| window.claim_key())
     }
 }
@@ -126,14 +123,14 @@ impl Window {
     }
 
     /// What the window's server had against frames that nobody waited for.
-    fn drop_errors(&self) {}
+    pub(crate) fn drop_errors(&self) {}
 
     /// `None`: the driver's VSYNC is good enough.
     pub fn pacer(&self) -> Result<Option<Box<dyn Pacer>>> {
         Ok(None)
     }
 
-    fn claim_key(&self) -> claim::Key {
+    pub(crate) fn claim_key(&self) -> claim::Key {
         self.native.claim_key()
     }
 }

@@ -1,0 +1,352 @@
+//! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
+
+use super::gl_thread::{DisplayAge, GlThread};
+use super::{driver_lock, loader};
+use crate::error::{Error, Result};
+use crate::tracer::{AdapterInfo, Backend};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+
+/// The interfaces that a search looks at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Search {
+    /// Every interface of this platform. Its order is what an adapter index counts.
+    All,
+    /// Every interface but GL: those that can present.
+    Native,
+    /// Hardware of every interface, then the software adapters of all but GL. GL is looked at only where no other
+    /// interface has hardware: starting it takes as long as all the rest.
+    Auto,
+    /// This interface alone. `Backend::Cpu` finds nothing: the CPU tracer is no adapter of wgpu.
+    Only(Backend),
+}
+
+/// An adapter that a device can be opened on.
+pub struct Adapter {
+    pub info: AdapterInfo,
+    handle: Handle,
+}
+
+impl Adapter {
+    pub(in crate::gpu) fn raw(&self) -> Result<&wgpu::Adapter> {
+        self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
+    }
+
+    /// What makes surfaces for windows; `None` for GL, whose instances are tied to a display.
+    pub(in crate::gpu) fn instance(&self) -> Option<&wgpu::Instance> {
+        self.handle.instance.as_ref()
+    }
+
+    /// Where an adapter of GL may be used; `None` for the other interfaces.
+    pub(in crate::gpu) fn gl_thread(&self) -> Option<Arc<GlThread>> {
+        self.handle.gl.as_ref().map(|(thread, _)| thread.clone())
+    }
+
+    /// How old the EGL display was when an adapter of GL was found; `None` for the other interfaces.
+    pub(in crate::gpu) fn gl_age(&self) -> Option<DisplayAge> {
+        self.handle.gl.as_ref().map(|(_, age)| *age)
+    }
+}
+
+/// An adapter, which is dropped where it may touch GL contexts, and while no other thread starts or ends a driver: it
+/// may be the last to hold its instance.
+struct Handle {
+    /// `None` only while it is being dropped.
+    raw: Option<wgpu::Adapter>,
+    /// What makes surfaces for windows; `None` for GL.
+    instance: Option<wgpu::Instance>,
+    /// Adapters of GL have a thread on which alone they may be used, and the display's age when they were found.
+    gl: Option<(Arc<GlThread>, DisplayAge)>,
+}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        let (raw, instance) = (self.raw.take(), self.instance.take());
+        if self.gl.as_ref().is_some_and(|(_, age)| age.is_over()) {
+            // Its context has gone with its display, and its handles may be those of another one.
+            std::mem::forget((raw, instance));
+            return;
+        }
+        let end = move || {
+            let _alone = driver_lock::lock();
+            drop(raw);
+            drop(instance);
+        };
+        let Some((thread, _)) = &self.gl else { return end() };
+        if let Err(error) = thread.run(end) {
+            log::warn!("a GL adapter that cannot be closed stays behind: {error}");
+        }
+    }
+}
+
+/// Every adapter of `search` that has what the tracer needs, best first: discrete GPUs, integrated ones, virtual and
+/// unknown ones, software. Among equals GL is last; the driver's order decides the rest, so one machine has one order.
+/// Hardware that several interfaces reach is listed once for each.
+///
+/// `validation`: adapters whose devices the driver's validation layers watch, if they are installed. GL has none: what
+/// wgpu would switch on instead is EGL's one debug callback, which is the host's.
+///
+/// Never fails: without a loader or a driver the list is empty, and the log (info) says what was passed over and why.
+pub fn adapters(search: Search, validation: bool) -> Vec<Adapter> {
+    let native = || {
+        let (instance, list) = native(validation);
+        list.into_iter().filter_map(|raw| usable(raw, instance.clone(), None)).collect::<Vec<_>>()
+    };
+    let mut list = match search {
+        Search::All => [native(), gl().unwrap_or_default()].into_iter().flatten().collect(),
+        Search::Native => native(),
+        Search::Auto => match native() {
+            list if list.iter().any(|found| !found.adapter.info.software) => list,
+            list => [list, gl_hardware()].into_iter().flatten().collect(),
+        },
+        Search::Only(Backend::Cpu) => Vec::new(),
+        Search::Only(Backend::Gl) => gl().unwrap_or_default(),
+        Search::Only(backend) => {
+            let mut list = native();
+            list.retain(|found| found.adapter.info.backend == backend);
+            list
+        }
+    };
+    list.sort_by_key(|found| found.rank);
+    list.into_iter().map(|found| found.adapter).collect()
+}
+
+/// Errors: UNSUPPORTED for GL without the feature `gl`.
+pub fn check_built(backend: Option<Backend>) -> Result<()> {
+    if backend == Some(Backend::Gl) && !cfg!(feature = "gl") {
+        return Err(Error::unsupported("this library was built without OpenGL (cargo feature `gl`)"));
+    }
+    Ok(())
+}
+
+/// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not
+/// seen through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search
+/// costs Mesa half a megabyte that it never frees.
+pub fn forget_drivers() {
+    let forgotten = std::mem::take(&mut *found());
+    let _alone = driver_lock::lock();
+    drop(forgotten);
+}
+
+/// The limits a device is opened with where the adapter has no better ones: OpenGL ES 3.1 hardware meets them.
+pub(in crate::gpu) fn required_limits() -> wgpu::Limits {
+    wgpu::Limits::downlevel_defaults()
+}
+
+/// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the
+/// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
+/// under the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
+/// This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other way round.
+static FOUND: Mutex<[Found; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
+
+/// The instance that a search asked, and the adapters it has.
+type Found = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
+
+fn found() -> MutexGuard<'static, [Found; 2]> {
+    FOUND.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn native(validation: bool) -> Found {
+    let kept = || Some(found()[usize::from(validation)].clone()).filter(|(_, list)| !list.is_empty());
+    kept().unwrap_or_else(|| {
+        // Who comes second waits for what the first one finds.
+        let _alone = driver_lock::lock();
+        kept().unwrap_or_else(|| {
+            let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
+            if !loader::is_usable() {
+                log::warn!("no adapter of Vulkan: what is installed as its loader has no functions");
+                all.remove(wgpu::Backends::VULKAN);
+            }
+            let asked = ask_drivers(all, validation);
+            let before = std::mem::replace(&mut found()[usize::from(validation)], asked.clone());
+            drop(before);
+            asked
+        })
+    })
+}
+
+/// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use
+/// at once. None without the feature `gl`; `None` when the search itself failed.
+fn gl() -> Option<Vec<Usable>> {
+    if !cfg!(feature = "gl") {
+        return Some(Vec::new());
+    }
+    let search = || -> Result<Vec<Usable>> {
+        // wgpu makes the contexts of adapters when it searches for them.
+        let (thread, age) = (GlThread::start()?, DisplayAge::now());
+        thread.run(|| {
+            // What is not wanted is dropped here.
+            let _alone = driver_lock::lock();
+            let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
+            keep_display(instance);
+            list.into_iter().filter_map(|raw| usable(raw, None, Some((thread.clone(), age)))).collect()
+        })
+    };
+    search().inspect_err(|error| log::info!("adapters of GL passed over: {error}")).ok()
+}
+
+/// Those of [`gl`] that are no software.
+fn gl_hardware() -> Vec<Usable> {
+    if NO_GL_HARDWARE.load(Ordering::Relaxed) {
+        return Vec::new();
+    }
+    let Some(mut list) = gl() else { return Vec::new() };
+    list.retain(|found| !found.adapter.info.software);
+    NO_GL_HARDWARE.store(list.is_empty(), Ordering::Relaxed);
+    list
+}
+
+/// What the last search by [`gl_hardware`] came to.
+static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
+
+/// With its last instance on an EGL display wgpu terminates the display, which is one for the whole process: with it go
+/// the contexts of a host that uses it too. So the first instance stays.
+fn keep_display(instance: Option<wgpu::Instance>) {
+    static KEPT: OnceLock<wgpu::Instance> = OnceLock::new();
+    if let Some(instance) = instance.filter(|_| !cfg!(windows)) {
+        KEPT.get_or_init(|| instance);
+    }
+}
+
+/// A driver that panics has no adapters.
+fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
+    // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none;
+    // without DEBUG, whose shaders say that they were WGSL, which older layers take for an error.
+    let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
+    let descriptor =
+        wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    let _alone = driver_lock::lock();
+    let ask = || {
+        let instance = wgpu::Instance::new(descriptor);
+        let list = pollster::block_on(instance.enumerate_adapters(backends));
+        (Some(instance), list)
+    };
+    let found = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| {
+        log::warn!("the search for adapters of {backends:?} panicked");
+        (None, Vec::new())
+    });
+    if found.1.is_empty() {
+        log::info!("no adapter of {backends:?}: no loader, no driver, or no device behind it");
+    }
+    found
+}
+
+/// An adapter that can run the tracer, and its place in the list: lower is better.
+struct Usable {
+    rank: Rank,
+    adapter: Adapter,
+}
+
+/// Class of the hardware, then whether it is GL.
+type Rank = (u8, bool);
+
+/// `None`, with the reason in the log, when it cannot run the tracer.
+fn usable(
+    raw: wgpu::Adapter,
+    instance: Option<wgpu::Instance>,
+    gl: Option<(Arc<GlThread>, DisplayAge)>,
+) -> Option<Usable> {
+    let found = raw.get_info();
+    let pass_over = |reason: String| {
+        log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
+        None
+    };
+    let Some(backend) = backend(found.backend) else {
+        return pass_over("bhr does not use this interface".into());
+    };
+    if !raw.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
+        return pass_over("it has no compute shaders".into());
+    }
+    let mut lacking = None;
+    required_limits().check_limits_with_fail_fn(&raw.limits(), true, |name, needed, offered| {
+        lacking = Some(format!("its {name} is {offered}, bhr needs {needed}"));
+    });
+    if let Some(reason) = lacking {
+        return pass_over(reason);
+    }
+    let driver = [found.driver.as_str(), found.driver_info.as_str()];
+    let kind =
+        if backend == Backend::Gl && is_software(&found.name) { wgpu::DeviceType::Cpu } else { found.device_type };
+    let info = AdapterInfo {
+        backend,
+        discrete: kind == wgpu::DeviceType::DiscreteGpu,
+        software: kind == wgpu::DeviceType::Cpu,
+        vendor_id: found.vendor,
+        device_id: found.device,
+        driver: driver.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" "),
+        name: found.name,
+    };
+    let handle = Handle { raw: Some(raw), instance, gl };
+    Some(Usable { rank: rank(kind, backend), adapter: Adapter { info, handle } })
+}
+
+/// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)
+fn is_software(renderer: &str) -> bool {
+    let name = renderer.to_lowercase();
+    ["llvmpipe", "swiftshader", "softpipe", "swrast", "software", "gdi generic", "basic render"]
+        .iter()
+        .any(|known| name.contains(known))
+}
+
+fn rank(kind: wgpu::DeviceType, backend: Backend) -> Rank {
+    let class = match kind {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu | wgpu::DeviceType::Other => 2,
+        wgpu::DeviceType::Cpu => 3,
+    };
+    (class, backend == Backend::Gl)
+}
+
+fn backend(of: wgpu::Backend) -> Option<Backend> {
+    match of {
+        wgpu::Backend::Vulkan => Some(Backend::Vulkan),
+        wgpu::Backend::Metal => Some(Backend::Metal),
+        wgpu::Backend::Dx12 => Some(Backend::D3d12),
+        wgpu::Backend::Gl => Some(Backend::Gl),
+        wgpu::Backend::Noop | wgpu::Backend::BrowserWebGpu => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use wgpu::DeviceType;
+
+    #[test]
+    fn ranks_hardware_before_software_and_gl_last_in_its_class() {
+        let order = [
+            (DeviceType::DiscreteGpu, Backend::Vulkan),
+            (DeviceType::DiscreteGpu, Backend::Gl),
+            (DeviceType::IntegratedGpu, Backend::D3d12),
+            (DeviceType::IntegratedGpu, Backend::Gl),
+            (DeviceType::VirtualGpu, Backend::Vulkan),
+            (DeviceType::Other, Backend::Gl),
+            (DeviceType::Cpu, Backend::Vulkan),
+            (DeviceType::Cpu, Backend::Gl),
+        ];
+        let ranks = order.map(|(kind, backend)| rank(kind, backend));
+        assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
+    }
+
+    #[test]
+    fn knows_software_by_its_name_in_gl() {
+        for name in [
+            "llvmpipe (LLVM 15.0.6, 256 bits)",
+            "softpipe",
+            "zink Vulkan 1.3(llvmpipe (LLVM 15.0.6, 256 bits) (MESA_LLVMPIPE))",
+            "D3D12 (Microsoft Basic Render Driver)",
+            "Apple Software Renderer",
+            "Software Rasterizer",
+            "Google SwiftShader",
+        ] {
+            assert!(is_software(name), "{name}");
+        }
+        for name in
+            ["NVIDIA H200/PCIe/SSE2", "Mesa Intel(R) UHD Graphics 620 (KBL GT2)", "AMD Radeon RX 6800 (radeonsi)"]
+        {
+            assert!(!is_software(name), "{name}");
+        }
+    }
+}

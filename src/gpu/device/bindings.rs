@@ -1,0 +1,104 @@
+//! Bind groups, kept from frame to frame: the frames of a setup bind the same resources again and again. Knows no
+//! kernel.
+
+use super::wgpu_device::Device;
+use crate::deferred::hold;
+use crate::error::Result;
+use std::num::NonZeroU64;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// Groups kept at most: some 10 for each setup that takes turns.
+const MOST: usize = 64;
+
+/// A device's bind groups. As groups keep alive what they bind, all are let go whenever a buffer or a texture is made,
+/// which steady frames do not do: what a new one takes the place of must be gone before, since both together need not
+/// fit.
+#[derive(Default)]
+pub(in crate::gpu) struct Bindings(Mutex<Vec<Kept>>);
+
+struct Kept {
+    layout: wgpu::BindGroupLayout,
+    resources: Vec<Resource>,
+    group: wgpu::BindGroup,
+}
+
+/// A `wgpu::BindingResource` of its own.
+enum Resource {
+    Buffer(wgpu::Buffer, u64, Option<NonZeroU64>),
+    View(wgpu::TextureView),
+    Sampler(wgpu::Sampler),
+}
+
+impl Resource {
+    /// `None` for kinds that bhr does not bind.
+    fn of(resource: &wgpu::BindingResource<'_>) -> Option<Self> {
+        match resource {
+            wgpu::BindingResource::Buffer(part) => Some(Self::Buffer(part.buffer.clone(), part.offset, part.size)),
+            wgpu::BindingResource::TextureView(view) => Some(Self::View((*view).clone())),
+            wgpu::BindingResource::Sampler(sampler) => Some(Self::Sampler((*sampler).clone())),
+            _ => None,
+        }
+    }
+
+    fn is(&self, resource: &wgpu::BindingResource<'_>) -> bool {
+        match (self, resource) {
+            (Self::Buffer(buffer, offset, size), wgpu::BindingResource::Buffer(part)) => {
+                buffer == part.buffer && *offset == part.offset && *size == part.size
+            }
+            (Self::View(view), wgpu::BindingResource::TextureView(other)) => view == *other,
+            (Self::Sampler(sampler), wgpu::BindingResource::Sampler(other)) => sampler == *other,
+            _ => false,
+        }
+    }
+}
+
+impl Kept {
+    fn is(&self, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> bool {
+        self.layout == *layout
+            && self.resources.len() == resources.len()
+            && self.resources.iter().zip(resources).all(|(kept, resource)| kept.is(resource))
+    }
+}
+
+impl Bindings {
+    fn lock(&self) -> MutexGuard<'_, Vec<Kept>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets all go.
+    pub fn clear(&self) {
+        let all = std::mem::take(&mut *self.lock());
+        drop(all);
+    }
+}
+
+impl Device {
+    /// A group of `layout` with `resources` in the order of its bindings: the one made before, if it is still kept.
+    /// Errors: as [`Device::scoped`].
+    pub(in crate::gpu) fn bind(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> Result<wgpu::BindGroup> {
+        if let Some(kept) = self.bindings.lock().iter().find(|kept| kept.is(layout, resources)) {
+            return Ok(kept.group.clone());
+        }
+        let entries = resources
+            .iter()
+            .zip(0..)
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+            .collect::<Vec<_>>();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+        let group = self.scoped("binding buffers", |d| d.create_bind_group(&descriptor))?;
+        if let Some(resources) = resources.iter().map(Resource::of).collect() {
+            // Messages about groups that go wait until the lock is released.
+            let _holding = hold();
+            let mut kept = self.bindings.lock();
+            if kept.len() >= MOST {
+                kept.clear();
+            }
+            kept.push(Kept { layout: layout.clone(), resources, group: group.clone() });
+        }
+        Ok(group)
+    }
+}

@@ -1,0 +1,35 @@
+//! Whether the Vulkan loader of this system may be handed to ash, whose stand-ins for functions that are missing panic
+//! in a foreign frame: nothing can catch that, and the process ends. Asks the loader for nothing else.
+
+/// False for a library that has not even the functions which every loader has had from the first: a stub of a
+/// development kit, or a left-over. True without a loader, which ash takes well.
+#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+pub(in crate::gpu) fn is_usable() -> bool {
+    use std::ffi::{CStr, c_char, c_void};
+    use std::ptr::null_mut;
+    type GetProcAddr = unsafe extern "system" fn(instance: *mut c_void, name: *const c_char) -> *const c_void;
+    const NEEDED: [&CStr; 3] =
+        [c"vkCreateInstance", c"vkEnumerateInstanceExtensionProperties", c"vkEnumerateInstanceLayerProperties"];
+    // SAFETY: the library that ash loads, by the name that ash has for it, as sound as any of the system's. It stays
+    // loaded, as with ash's own instances, which are kept. The type is the function's (Vulkan 1.0, 4.1), and NULL the
+    // instance for these names.
+    unsafe {
+        let library = libc::dlopen(c"libvulkan.so.1".as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL);
+        if library.is_null() {
+            return true;
+        }
+        let found = libc::dlsym(library, c"vkGetInstanceProcAddr".as_ptr());
+        // ash says so itself.
+        if found.is_null() {
+            return true;
+        }
+        let get = std::mem::transmute::<*mut c_void, GetProcAddr>(found);
+        NEEDED.iter().all(|name| !get(null_mut(), name.as_ptr()).is_null())
+    }
+}
+
+/// Elsewhere the system brings the loader.
+#[cfg(not(all(unix, not(target_vendor = "apple"), not(target_os = "android"))))]
+pub(in crate::gpu) fn is_usable() -> bool {
+    true
+}

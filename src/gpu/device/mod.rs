@@ -1,0 +1,15 @@
+//! Adapters, devices, and what lies on them: buffers, textures, timers, and the ways to and from the host. Knows no kernel
+//! and no scene.
+
+pub(in crate::gpu) mod adapter;
+pub(in crate::gpu) mod bindings;
+pub(in crate::gpu) mod buffer;
+#[doc(hidden)]
+pub mod driver_lock;
+pub(in crate::gpu) mod gl_thread;
+pub(in crate::gpu) mod loader;
+pub(in crate::gpu) mod readback;
+pub(in crate::gpu) mod texture;
+pub(in crate::gpu) mod timer;
+pub(in crate::gpu) mod upload;
+pub(in crate::gpu) mod wgpu_device;

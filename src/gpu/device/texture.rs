@@ -1,0 +1,110 @@
+//! Textures on a device: counted while they exist, like buffers.
+
+use super::wgpu_device::Device;
+use crate::error::{Error, Result};
+use crate::gpu::kernel::slots::{SCREEN, TextureKind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A 2-D texture and its view, whose bytes [`Device::bytes`] counts until it is dropped.
+pub struct Texture {
+    pub view: wgpu::TextureView,
+    raw: wgpu::Texture,
+    bytes: u64,
+    total: Arc<AtomicU64>,
+}
+
+impl Device {
+    /// A texture, of `layers` layers if `dimension` is an array, that kernels write and read. Errors: as
+    /// [`Device::scoped`].
+    pub fn texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        dimension: wgpu::TextureViewDimension,
+        size: [u32; 2],
+        layers: u32,
+    ) -> Result<Texture> {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        self.any_texture(label, format, dimension, size, layers, usage)
+    }
+
+    /// What a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as
+    /// [`Device::scoped`].
+    pub fn screen(&self, size: [u32; 2], host_fills: bool) -> Result<Texture> {
+        let TextureKind { format, dimension } = SCREEN;
+        match host_fills {
+            true => self.table("screen", format, size),
+            false => self.texture("screen", format, dimension, size, 1),
+        }
+    }
+
+    /// A texture that the host fills ([`Device::write_rows`]) and kernels read. Errors: as [`Device::scoped`].
+    pub fn table(&self, label: &str, format: wgpu::TextureFormat, size: [u32; 2]) -> Result<Texture> {
+        let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
+        self.any_texture(label, format, wgpu::TextureViewDimension::D2, size, 1, usage)
+    }
+
+    fn any_texture(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        dimension: wgpu::TextureViewDimension,
+        [width, height]: [u32; 2],
+        layers: u32,
+        usage: wgpu::TextureUsages,
+    ) -> Result<Texture> {
+        self.bindings.clear();
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
+        let (raw, view) = self.scoped(label, |device| {
+            let raw = device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size,
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage,
+                view_formats: &[],
+            });
+            let view = wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() };
+            (raw.clone(), raw.create_view(&view))
+        })?;
+        let bytes = texel_bytes(format) * u64::from(width) * u64::from(height) * u64::from(layers);
+        let total = self.byte_count();
+        total.fetch_add(bytes, Ordering::Relaxed);
+        Ok(Texture { view, raw, bytes, total })
+    }
+
+    /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no
+    /// whole number of rows; as [`Device::scoped`].
+    pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
+        self.write_part(texture, [0, first_row], texture.raw.width(), data)
+    }
+
+    /// The same of `width` columns, from the place `first` on.
+    pub fn write_part(&self, texture: &Texture, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
+        let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
+        if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
+            return Err(Error::internal(format!("{} bytes are no rows of {row_bytes}", data.len())));
+        }
+        self.write_texels(&texture.raw, first, width, row_bytes as usize, data)
+    }
+}
+
+fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
+    format.block_copy_size(None).unwrap_or(0).into()
+}
+
+impl Texture {
+    /// In texels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.raw.width(), self.raw.height()]
+    }
+}
+
+impl Drop for Texture {
+    fn drop(&mut self) {
+        self.total.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,439 @@
+//! One wgpu device: opened with the least it needs, and with every way it can fail turned into an [`Error`]. All calls
+//! into wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of
+//! scenes.
+
+use super::adapter::{Adapter, required_limits};
+use super::driver_lock;
+use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
+use crate::deferred::hold;
+use crate::error::{Error, ErrorKind, Result, panic_text};
+use crate::tracer::Backend;
+use std::mem::ManuallyDrop;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A submission that takes longer than this has hung. Drivers give up after 2 to 10 s; a debugger or a busy software
+/// driver may need more.
+const HANG_AFTER: Duration = Duration::from_secs(60);
+
+/// How long to wait in one piece before looking whether the device was lost meanwhile.
+const WAIT_SLICE: Duration = Duration::from_secs(1);
+
+/// Largest buffer and storage binding asked for: what a tile of the largest frames needs, not what the adapter could.
+const MAX_BUFFER_SIZE: u64 = 256 << 20;
+
+/// Largest side of a texture asked for: that of a window.
+const MAX_TEXTURE_SIDE: u32 = 16384;
+
+/// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
+const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
+
+/// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it, but
+/// then the driver's device ends with the last of them, outside [`driver_lock`]: who keeps them keeps the device too,
+/// and lets it go last.
+pub struct Device {
+    /// Until it is being dropped.
+    raw: ManuallyDrop<wgpu::Device>,
+    /// `None` only while it is being dropped.
+    queue: Option<wgpu::Queue>,
+    backend: Backend,
+    /// How old the EGL display was when an adapter of GL was found; `None` for other interfaces.
+    gl_age: Option<DisplayAge>,
+    /// Whether a pipeline was made.
+    compiled: AtomicBool,
+    limits: wgpu::Limits,
+    health: Arc<Health>,
+    bytes: Arc<AtomicU64>,
+    pub(in crate::gpu) shaders: crate::gpu::kernel::pipeline::Shaders,
+    pub(in crate::gpu) bindings: super::bindings::Bindings,
+    pub(in crate::gpu) uploads: super::upload::Uploads,
+}
+
+/// What wgpu's callbacks, which come from any thread, say about a device.
+#[derive(Default)]
+struct Health {
+    lost: Mutex<Option<String>>,
+    /// The first error that came outside every scope and that no call has returned yet.
+    stray: Mutex<Option<Error>>,
+    hung: AtomicBool,
+}
+
+impl Device {
+    /// Opens a device with timestamps and mappable storage buffers if the adapter has them, and no other feature.
+    ///
+    /// A GL device is for threads without a GL context: wgpu leaves none current on the thread of a call, and where
+    /// another interface's is current (GLX beside EGL) it panics, when the device is dropped too. `GlTracer`
+    /// keeps one on a thread of its own.
+    ///
+    /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason, also when the driver panics.
+    pub fn open(adapter: &Adapter) -> Result<Self> {
+        let raw = adapter.raw()?;
+        let offered = raw.limits();
+        let limits = wgpu::Limits {
+            max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
+            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
+            max_texture_dimension_2d: offered.max_texture_dimension_2d.min(MAX_TEXTURE_SIDE),
+            ..required_limits()
+        };
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("bhr"),
+            required_features: raw.features()
+                & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS),
+            required_limits: limits.clone(),
+            memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
+            ..Default::default()
+        };
+        let alone = driver_lock::lock();
+        let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(raw.request_device(&descriptor))));
+        drop(alone);
+        let refused = |why: &dyn std::fmt::Display| {
+            Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {why}", adapter.info.name))
+        };
+        let (raw, queue) = opened.map_err(|panic| refused(&panic_text(&*panic)))?.map_err(|error| refused(&error))?;
+        let health = Arc::new(Health::default());
+        let of_errors = health.clone();
+        raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
+        let of_loss = health.clone();
+        raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
+        Ok(Self {
+            raw: ManuallyDrop::new(raw),
+            queue: Some(queue),
+            backend: adapter.info.backend,
+            gl_age: adapter.gl_age(),
+            compiled: AtomicBool::new(false),
+            limits,
+            health,
+            bytes: Arc::default(),
+            shaders: Default::default(),
+            bindings: Default::default(),
+            uploads: Default::default(),
+        })
+    }
+
+    /// What tells of the device's loss without asking wgpu for anything.
+    pub(in crate::gpu) fn loss(&self) -> Loss {
+        Loss(self.health.clone())
+    }
+
+    /// On the thread of a GL device: whether its context can still be made current. Where it cannot, wgpu panics in
+    /// every call, and in every drop of what it made.
+    pub(in crate::gpu) fn answers(&self) -> bool {
+        catch_unwind(AssertUnwindSafe(|| self.raw.poll(wgpu::PollType::Poll))).is_ok()
+    }
+
+    /// The limits the device was opened with.
+    pub fn limits(&self) -> &wgpu::Limits {
+        &self.limits
+    }
+
+    pub(in crate::gpu) fn backend(&self) -> Backend {
+        self.backend
+    }
+
+    /// Whether the device can time its passes.
+    pub fn has_timestamps(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
+    /// Whether kernels can write buffers that the host maps.
+    pub fn maps_storage(&self) -> bool {
+        self.raw.features().contains(wgpu::Features::MAPPABLE_PRIMARY_BUFFERS)
+    }
+
+    /// Nanoseconds per tick of a timestamp.
+    pub(in crate::gpu) fn timestamp_period(&self) -> f64 {
+        self.queue.as_ref().map_or(0.0, |queue| f64::from(queue.get_timestamp_period()))
+    }
+
+    /// Bytes of the buffers that exist.
+    pub fn bytes(&self) -> u64 {
+        self.bytes.load(Ordering::Relaxed)
+    }
+
+    pub(in crate::gpu) fn byte_count(&self) -> Arc<AtomicU64> {
+        self.bytes.clone()
+    }
+
+    /// Errors: `DeviceLost` once the device is gone; an error that came outside every other call.
+    pub fn check(&self) -> Result<()> {
+        self.check_known_loss()?;
+        let stray = lock(&self.health.stray).take();
+        stray.map_or(Ok(()), |error| Err(self.explain(error)))
+    }
+
+    fn check_known_loss(&self) -> Result<()> {
+        self.leave_what_is_gone();
+        self.health.check()
+    }
+
+    /// Where the EGL display has ended, on the thread for GL, this does not return: nothing may be dropped on the way
+    /// out.
+    fn leave_what_is_gone(&self) {
+        if self.gl_age.is_some_and(DisplayAge::is_over) {
+            self.health.lose(CONTEXT_GONE);
+            park(CONTEXT_GONE);
+        }
+    }
+
+    /// After a failure, whose cause may be a loss that was not told yet: wgpu tells it once all that was submitted has
+    /// ended, and the poll of another thread may be about to. Submits nothing, as another thread may be making a
+    /// window's images (`Swapchain::configure`). Errors: `DeviceLost`.
+    pub(in crate::gpu) fn check_loss_anew(&self) -> Result<()> {
+        self.check_known_loss()?;
+        let all = wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) };
+        let _ = self.poll(all)?;
+        self.check_known_loss()?;
+        if !self.refuses()? {
+            self.learn_loss()?;
+        }
+        self.check_known_loss()
+    }
+
+    /// Whether the device refuses what cannot be, a query set without queries: one that is gone says nothing at all.
+    /// Reaches no driver.
+    fn refuses(&self) -> Result<bool> {
+        let nothing = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Occlusion, count: 0 };
+        self.unpanicked(|| {
+            let refusal = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
+            drop(self.raw.create_query_set(&nothing));
+            pollster::block_on(refusal.pop()).is_some()
+        })
+    }
+
+    /// Runs `work`, which may ask wgpu for anything but waiting, and returns what wgpu had against it. `what` begins
+    /// the message.
+    ///
+    /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
+    pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+        self.check()?;
+        match self.watched(work) {
+            (_, Some(error)) => Err(self.explain(from_wgpu(what, &error))),
+            (done, None) => self.check().map(|()| done),
+        }
+    }
+
+    /// [`Self::scoped`] for threads beside the one that uses the device: leaves the errors that come outside every
+    /// call to that one, and does not ask the device anew whether it is lost.
+    pub(in crate::gpu) fn beside<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+        self.check_known_loss()?;
+        match self.watched(work) {
+            (_, Some(error)) => Err(from_wgpu(what, &error)),
+            (done, None) => Ok(done),
+        }
+    }
+
+    /// Runs `work`, and what wgpu had against it.
+    fn watched<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
+        driver_lock::guard();
+        let _holding = hold();
+        let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
+        let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
+        let done = work(&self.raw);
+        // What is missing for want of memory is not valid either: the cause first.
+        let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
+        (done, errors.into_iter().rev().flatten().next())
+    }
+
+    /// [`Self::scoped`] for calls about windows, some of which panic. What goes wrong in them is `SurfaceLost`, if the
+    /// device is not gone: not the device's fault, but the window's.
+    pub(in crate::gpu) fn guarded<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+        let done = self.scoped(what, |device| catch_unwind(AssertUnwindSafe(|| work(device))));
+        let message = match done {
+            Ok(Ok(done)) => return Ok(done),
+            Ok(Err(panic)) => format!("{what}: {}", panic_text(&*panic)),
+            Err(error) if error.kind == ErrorKind::Internal => error.message,
+            Err(error) => return Err(error),
+        };
+        Err(self.explain(Error::new(ErrorKind::SurfaceLost, message)))
+    }
+
+    /// Begins recording. Mistakes in what is recorded are reported by [`Self::submit`].
+    pub fn encoder(&self, label: &str) -> Result<wgpu::CommandEncoder> {
+        self.scoped(label, |device| {
+            device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some(label) })
+        })
+    }
+
+    /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as
+    /// [`Self::scoped`].
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
+        let queue = self.queue()?;
+        let encoders = self.uploads.take().into_iter().chain([encoder]);
+        self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)))
+    }
+
+    /// Waits until `submission` has run and the callbacks of its buffers were called.
+    ///
+    /// Errors: `DeviceLost`, also when the device hangs for 60 s.
+    pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<()> {
+        let deadline = Instant::now() + HANG_AFTER;
+        loop {
+            let wait = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(WAIT_SLICE) };
+            match self.poll(wait)? {
+                Ok(_) => return self.check(),
+                Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
+                    self.learn_loss()?;
+                }
+                Err(wgpu::PollError::Timeout) if Instant::now() >= deadline => {
+                    self.health.hung.store(true, Ordering::Relaxed);
+                    self.health.lose(&format!("it did not finish within {} s", HANG_AFTER.as_secs()));
+                }
+                Err(wgpu::PollError::Timeout) => {}
+            }
+            self.check()?;
+        }
+    }
+
+    /// After a submission was dropped silently, which wgpu does only when its device is gone. Errors: `DeviceLost` if
+    /// the driver panics.
+    fn learn_loss(&self) -> Result<()> {
+        // Calls the callback that tells why.
+        let _ = self.poll(wgpu::PollType::Poll)?;
+        self.health.lose("it no longer takes work");
+        Ok(())
+    }
+
+    /// An error that may come from the device's loss: the loss, if so.
+    pub(in crate::gpu) fn explain(&self, error: Error) -> Error {
+        self.check_loss_anew().err().unwrap_or(error)
+    }
+
+    /// Whether `submission` has run. Errors: `DeviceLost`.
+    pub fn is_done(&self, submission: &wgpu::SubmissionIndex) -> Result<bool> {
+        let look = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(Duration::ZERO) };
+        let looked = self.poll(look)?;
+        if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = looked {
+            self.learn_loss()?;
+        }
+        self.check()?;
+        Ok(looked.is_ok())
+    }
+
+    /// [`Self::submit`], then [`Self::wait`].
+    pub fn submit_and_wait(&self, encoder: wgpu::CommandEncoder) -> Result<()> {
+        let submission = self.submit(encoder)?;
+        self.wait(&submission)
+    }
+
+    fn poll(&self, how: wgpu::PollType) -> Result<Result<wgpu::PollStatus, wgpu::PollError>> {
+        self.unpanicked(|| self.raw.poll(how))
+    }
+
+    /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
+    fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+        self.leave_what_is_gone();
+        driver_lock::guard();
+        let _holding = hold();
+        catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
+            self.health.lose(panic_text(&*panic));
+            lost(panic_text(&*panic))
+        })
+    }
+
+    pub(in crate::gpu) fn queue(&self) -> Result<&wgpu::Queue> {
+        self.queue.as_ref().ok_or_else(|| Error::internal("the device is being closed"))
+    }
+}
+
+impl Device {
+    /// Makes a pipeline: the first one of a device while no other thread starts or ends a driver.
+    pub(in crate::gpu) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
+        let first = || !self.compiled.load(Ordering::Acquire);
+        // Those who waited for the first one make theirs side by side.
+        let alone = first().then(driver_lock::lock).filter(|_| first());
+        let made = compile();
+        self.compiled.store(true, Ordering::Release);
+        drop(alone);
+        made
+    }
+
+    /// Waits until nothing runs on it any more, so that dropping it does not, or until that is known to be in vain.
+    fn drain(&self) {
+        let deadline = Instant::now() + HANG_AFTER;
+        let all = || self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) });
+        while !self.health.hung.load(Ordering::Relaxed) && matches!(all(), Ok(Err(wgpu::PollError::Timeout))) {
+            self.health.hung.store(Instant::now() >= deadline, Ordering::Relaxed);
+        }
+    }
+}
+
+impl Drop for Device {
+    fn drop(&mut self) {
+        self.drain();
+        let queue = self.queue.take();
+        let alone = driver_lock::lock();
+        let close = || {
+            self.bindings.clear();
+            drop(self.uploads.take());
+            if self.health.hung.load(Ordering::Relaxed) {
+                // Dropping it would wait for the work that never ends.
+                std::mem::forget(queue);
+            } else {
+                drop(queue);
+            }
+            // SAFETY: it is taken here alone, once, and not used any more.
+            drop(unsafe { ManuallyDrop::take(&mut self.raw) });
+        };
+        if catch_unwind(AssertUnwindSafe(close)).is_err() {
+            log::error!("closing the GPU device panicked");
+        }
+        drop(alone);
+    }
+}
+
+/// Whether a device is lost, as far as is known: for any thread, also after the device's end.
+#[derive(Clone)]
+pub struct Loss(Arc<Health>);
+
+impl Loss {
+    /// Errors: `DeviceLost`.
+    pub fn check(&self) -> Result<()> {
+        self.0.check()
+    }
+
+    pub(in crate::gpu) fn lose(&self, reason: &str) {
+        self.0.lose(reason);
+    }
+}
+
+impl Health {
+    fn check(&self) -> Result<()> {
+        lock(&self.lost).as_deref().map_or(Ok(()), |reason| Err(lost(reason)))
+    }
+
+    /// Keeps the first reason.
+    fn lose(&self, reason: &str) {
+        let mut lost = lock(&self.lost);
+        let first = lost.is_none();
+        lost.get_or_insert_with(|| reason.trim().to_owned());
+        drop(lost);
+        if first {
+            log::debug!("GPU device lost: {reason}");
+        }
+    }
+
+    fn stray(&self, error: wgpu::Error) {
+        let error = from_wgpu("the GPU device reports", &error);
+        log::error!("{error}");
+        lock(&self.stray).get_or_insert(error);
+    }
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn lost(reason: &str) -> Error {
+    Error::new(ErrorKind::DeviceLost, format!("the GPU device was lost: {reason}"))
+}
+
+fn from_wgpu(what: &str, error: &wgpu::Error) -> Error {
+    let kind = match error {
+        wgpu::Error::OutOfMemory { .. } => ErrorKind::OutOfMemory,
+        wgpu::Error::Validation { .. } | wgpu::Error::Internal { .. } => ErrorKind::Internal,
+    };
+    Error::new(kind, format!("{what}: {error}"))
+}

@@ -1,0 +1,49 @@
+//! A frame whose steps are being submitted, and what is known of it meanwhile.
+
+use super::stages::Stages;
+use super::steps::{Step, Steps};
+use crate::error::Result;
+use crate::film::bloom::Bloom;
+use crate::gpu::kernel::key::{PixelTarget, Source};
+use crate::scene::Projection;
+use crate::tracer::{FrameRequest, FrameStats};
+
+/// A frame that is prepared and whose steps are being submitted, one after another and before those of any other frame.
+pub struct BegunFrame {
+    pub(in crate::gpu) stages: Stages,
+    pub(in crate::gpu) request: FrameRequest,
+    pub(in crate::gpu) target: PixelTarget,
+    pub(in crate::gpu) samples: u32,
+    pub(in crate::gpu) projection: Projection,
+    pub(in crate::gpu) source: Source,
+    pub(in crate::gpu) steps: Steps,
+    pub(in crate::gpu) bloom: Option<Bloom>,
+    /// Submitted so far.
+    pub(in crate::gpu) submitted: u64,
+}
+
+/// Records commands of its own.
+pub type Recording<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
+
+impl BegunFrame {
+    /// Of steps.
+    pub fn count(&self) -> u64 {
+        self.steps.count()
+    }
+
+    /// Whether no step is left.
+    pub fn is_submitted(&self) -> bool {
+        self.submitted == self.count()
+    }
+
+    /// Of a frame of which nothing has run yet.
+    pub fn stats(&self) -> FrameStats {
+        let rays = u64::from(self.request.width) * u64::from(self.request.height) * u64::from(self.samples);
+        FrameStats { rays, ..FrameStats::default() }
+    }
+
+    /// The next one.
+    pub(in crate::gpu) fn next(&self) -> Option<Step> {
+        (!self.is_submitted()).then(|| self.steps.step(self.submitted))
+    }
+}

@@ -1,0 +1,233 @@
+//! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that
+//! spread it. What goes where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
+
+use super::buffers::Written;
+use crate::error::{Error, Result};
+use crate::film::bloom::{Bloom, Level, MOST_LEVELS, TAIL};
+use crate::gpu::device::buffer::uniform_stride;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::slots::{LIGHT, TextureKind};
+use crate::tracer::Tile;
+use bytemuck::{Pod, Zeroable};
+
+/// Bytes of a pixel's light.
+pub const LIGHT_BYTES: u64 = 8;
+
+/// `BloomLevel` of bloom.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct LevelUniform {
+    fine: [u32; 2],
+    cells: [u32; 2],
+    origin: [i32; 2],
+    first: [u32; 2],
+    count: [u32; 2],
+    own: f32,
+    above: f32,
+    tails: [[f32; TAIL]; 2],
+}
+
+/// Textures that frames with bloom share; they grow and stay.
+#[derive(Default)]
+pub struct BloomBuffers {
+    made: Option<Made>,
+}
+
+struct Made {
+    /// Exposed, of a frame or a tile.
+    light: Texture,
+    /// Mean light, from the finest grid on.
+    gathered: Vec<Texture>,
+    /// What each grid but the last and those above it spread.
+    spread: Vec<Texture>,
+    /// Linear between the centres of cells.
+    smooth: wgpu::Sampler,
+    /// A `LevelUniform` for each grid, `uniform_stride` apart.
+    levels: Written,
+}
+
+/// The passes of a frame's bloom.
+pub struct BloomStages {
+    /// From the finest grid on.
+    gather: Vec<Stage>,
+    /// To each grid but the last from the one above it.
+    give_back: Vec<Stage>,
+    sizes: Vec<[u32; 2]>,
+    stride: u32,
+}
+
+/// Sizes of the frame or grid that each level lies over.
+fn finer(bloom: &Bloom) -> impl Iterator<Item = [u32; 2]> {
+    std::iter::once(bloom.frame).chain(bloom.levels.iter().map(|level| level.size))
+}
+
+impl Made {
+    fn new(device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<Self> {
+        let TextureKind { format, dimension } = LIGHT;
+        let texture = |label: &str, size: [u32; 2]| device.texture(label, format, dimension, size, 1);
+        let grids = |label: &str, levels: &[Level]| {
+            levels.iter().map(|level| texture(label, level.size)).collect::<Result<Vec<_>>>()
+        };
+        let but_last = &bloom.levels[..bloom.levels.len().saturating_sub(1)];
+        let bytes = MOST_LEVELS as u64 * uniform_stride::<LevelUniform>(device);
+        let filter = wgpu::FilterMode::Linear;
+        let sampler = wgpu::SamplerDescriptor { mag_filter: filter, min_filter: filter, ..Default::default() };
+        Ok(Self {
+            smooth: device.scoped("bloom", |device| device.create_sampler(&sampler))?,
+            light: texture("light", light)?,
+            gathered: grids("gathered light", &bloom.levels)?,
+            spread: grids("spread light", but_last)?,
+            levels: Written::new(device, "bloom levels", bytes)?,
+        })
+    }
+
+    /// Textures of exactly these sizes: how samplers round depends on them, and bytes must not depend on earlier
+    /// frames.
+    fn serves(&self, bloom: &Bloom, light: [u32; 2]) -> bool {
+        let sizes = self.gathered.iter().map(Texture::size);
+        self.light.size() == light && sizes.eq(bloom.levels.iter().map(|level| level.size))
+    }
+
+    fn smooth(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Sampler(&self.smooth)
+    }
+
+    fn level(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: self.levels.buffer(),
+            offset: 0,
+            size: std::num::NonZeroU64::new(size_of::<LevelUniform>() as u64),
+        })
+    }
+}
+
+fn view(texture: &Texture) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(&texture.view)
+}
+
+impl BloomBuffers {
+    fn made(&self) -> Result<&Made> {
+        self.made.as_ref().ok_or_else(|| Error::internal("bloom without textures"))
+    }
+
+    /// Makes room for a frame of which `light` pixels are held at once.
+    pub fn prepare(&mut self, device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<()> {
+        if !self.made.as_ref().is_some_and(|made| made.serves(bloom, light)) {
+            // The old ones go first: both together need not fit.
+            self.made = None;
+            self.made = Some(Made::new(device, bloom, light)?);
+        }
+        Ok(())
+    }
+
+    /// Before a submission that gathers `cells` of the finest grid, of light that begins at `origin`, or develops.
+    pub fn write(&mut self, device: &Device, bloom: &Bloom, origin: [u32; 2], cells: Tile) -> Result<()> {
+        let stride = uniform_stride::<LevelUniform>(device) as usize;
+        let mut bytes = vec![0; bloom.levels.len() * stride];
+        for (index, ((slot, level), fine)) in
+            bytes.chunks_exact_mut(stride).zip(&bloom.levels).zip(finer(bloom)).enumerate()
+        {
+            let below = index.checked_sub(1).and_then(|below| bloom.levels.get(below));
+            let base = below.is_none();
+            let uniform = LevelUniform {
+                fine,
+                cells: level.size,
+                origin: if base { origin.map(|v| v as i32) } else { [0, 0] },
+                first: if base { [cells.x, cells.y] } else { [0, 0] },
+                count: if base { [cells.width, cells.height] } else { level.size },
+                own: below.map_or(bloom.direct, |below| below.weight),
+                above: bloom.weight_above(index),
+                tails: below.map_or([[1.0; TAIL]; 2], Level::tails),
+            };
+            slot[..size_of::<LevelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+        }
+        let made = self.made.as_mut().ok_or_else(|| Error::internal("bloom without textures"))?;
+        made.levels.write(device, &bytes)
+    }
+
+    /// After a submission that failed, nobody knows what the buffers hold.
+    pub fn forget(&mut self) {
+        if let Some(made) = &mut self.made {
+            made.levels.forget();
+        }
+    }
+
+    /// What shading is given to.
+    pub fn light(&self) -> Result<wgpu::BindingResource<'_>> {
+        Ok(view(&self.made()?.light))
+    }
+
+    /// Group 1 of development.
+    pub fn group(&self, bloom: &Bloom) -> Result<[wgpu::BindingResource<'_>; 4]> {
+        let made = self.made()?;
+        let grids = if bloom.levels.len() > 1 { &made.spread } else { &made.gathered };
+        let glare = grids.first().ok_or_else(|| Error::internal("bloom without a grid"))?;
+        Ok([view(&made.light), view(glare), made.smooth(), made.level()])
+    }
+
+    pub fn stages(&self, device: &Device, kernels: &Kernels, bloom: &Bloom) -> Result<BloomStages> {
+        let made = self.made()?;
+        let count = bloom.levels.len();
+        let below = std::iter::once(&made.light).chain(&made.gathered);
+        let gather = below.zip(&made.gathered).take(count).enumerate().map(|(index, (finer, cells))| {
+            let key = gather_key(bloom, index);
+            let kernel = kernels.get(key)?;
+            match key {
+                KernelKey::GatherBase => {
+                    kernel.stage(device, &[&[made.level(), view(finer), made.smooth(), view(cells)]])
+                }
+                _ => kernel.stage(device, &[&[made.level(), view(finer), view(cells)]]),
+            }
+        });
+        let gather = gather.collect::<Result<Vec<_>>>()?;
+        let mut give_back = Vec::new();
+        for index in 0..count.saturating_sub(1) {
+            // The last grid spreads what it gathered.
+            let above = if index + 2 == count { made.gathered.get(index + 1) } else { made.spread.get(index + 1) };
+            let all = made.gathered.get(index).zip(above).zip(made.spread.get(index));
+            let ((finer, coarser), spread) = all.ok_or_else(|| Error::internal("bloom without its grids"))?;
+            let group = [made.level(), view(finer), view(coarser), made.smooth(), view(spread)];
+            give_back.push(kernels.get(KernelKey::GiveBack)?.stage(device, &[&group])?);
+        }
+        let sizes = bloom.levels.iter().map(|level| level.size).collect();
+        Ok(BloomStages { gather, give_back, sizes, stride: uniform_stride::<LevelUniform>(device) as u32 })
+    }
+}
+
+/// The kernels that spread light.
+pub fn kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
+    let count = bloom.levels.len();
+    let gather = (0..count).map(|index| gather_key(bloom, index));
+    gather.chain((1 < count).then_some(KernelKey::GiveBack))
+}
+
+/// The kernel that gathers light into the grid of a level.
+fn gather_key(bloom: &Bloom, level: usize) -> KernelKey {
+    match (level, bloom.factor) {
+        (0, 2) => KernelKey::GatherBase,
+        (0, factor) => KernelKey::Gather(factor, false),
+        _ => KernelKey::Gather(2, true),
+    }
+}
+
+impl BloomStages {
+    /// Gathers cells of the finest grid.
+    pub fn gather(&self, pass: &mut wgpu::ComputePass<'_>, cells: Tile) {
+        if let Some(base) = self.gather.first() {
+            base.dispatch(pass, 0, [cells.width, cells.height]);
+        }
+    }
+
+    /// Once all of the finest grid is there.
+    pub fn spread(&self, pass: &mut wgpu::ComputePass<'_>) {
+        for ((stage, size), index) in self.gather.iter().zip(&self.sizes).zip(0..).skip(1) {
+            stage.dispatch(pass, index * self.stride, *size);
+        }
+        for (index, (stage, size)) in self.give_back.iter().zip(&self.sizes).enumerate().rev() {
+            stage.dispatch(pass, (index as u32 + 1) * self.stride, *size);
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! The buffers that frames of one size share: made, grown, and written with what all tiles share. Knows no kernels.
+
+use super::bloom::BloomBuffers;
+use super::refine::EdgeList;
+use super::setup::Setup;
+use super::tiles::MAX_BATCH;
+use super::uniforms::{FrameUniform, PassUniform};
+use crate::error::{Error, Result};
+use crate::film::FilmParams;
+use crate::gpu::device::buffer::{Buffer, uniform_stride};
+use crate::gpu::device::readback::Readback;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::timer::GpuTimer;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::slots::{RADIANCE, TextureKind};
+use crate::gpu::lens::records::{RecordMakers, step_sum};
+use crate::tracer::PASSES;
+use wgpu::BufferUsages as Usage;
+
+/// Buffers that frames of one size share; they grow and stay.
+#[derive(Default)]
+pub struct FrameBuffers {
+    pub fixed: Option<FixedBuffers>,
+    pub sized: Option<SizedBuffers>,
+    pub bloom: BloomBuffers,
+    pub makers: RecordMakers,
+    pub edges: EdgeList,
+    pub readback: Readback,
+    /// Where kernels put pixels row by row.
+    pub mapped: Mapped,
+    pub timer: Option<GpuTimer>,
+}
+
+/// What does not depend on a frame's size.
+pub struct FixedBuffers {
+    pub frame: Written,
+    pub film: Written,
+    /// The same for light that is exposed already.
+    pub film_of_exposed: Written,
+    /// One `PassUniform` for what is developed in frames with bloom, two for each sample of a batch, with
+    /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`; `uniform_stride` apart.
+    pub passes: Written,
+    pub step_sum: Buffer,
+}
+
+/// Staging buffers that kernels write.
+pub struct Mapped(pub Readback);
+
+impl Default for Mapped {
+    fn default() -> Self {
+        Self(Readback::of_kernels())
+    }
+}
+
+/// A buffer of uniforms, and what was written to its begin last.
+pub struct Written {
+    pub buffer: Buffer,
+    bytes: Vec<u8>,
+}
+
+/// What does.
+pub struct SizedBuffers {
+    size: Size,
+    /// Samples are added by turns: from one to the other; as large as a tile only for several samples.
+    pub radiance: [Texture; 2],
+    pub packed: Buffer,
+}
+
+/// What the sized buffers serve: largest tile, bytes of a packed pixel (0: none are packed there).
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Size {
+    pub tile: [u32; 2],
+    pub pixel_bytes: u64,
+    pub several_samples: bool,
+}
+
+impl Size {
+    /// Whether buffers of this size hold what the other asks for.
+    pub fn serves(&self, other: &Self) -> bool {
+        (0..2).all(|i| self.tile[i] >= other.tile[i])
+            && self.pixel_bytes >= other.pixel_bytes
+            && (self.several_samples || !other.several_samples)
+    }
+}
+
+impl Written {
+    pub fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
+        Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
+    }
+
+    /// Before the next submission runs, unless it is there already. Errors: as [`Device::write`].
+    pub fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
+        if self.bytes != bytes {
+            self.bytes.clear();
+            device.write(&self.buffer, 0, bytes)?;
+            self.bytes.extend_from_slice(bytes);
+        }
+        Ok(())
+    }
+
+    pub fn buffer(&self) -> &Buffer {
+        &self.buffer
+    }
+
+    /// After a submission that failed, nobody knows what the buffer holds.
+    pub fn forget(&mut self) {
+        self.bytes.clear();
+    }
+}
+
+impl FixedBuffers {
+    /// The `PassUniform` that a dispatch's offset chooses.
+    pub fn pass(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.passes.buffer,
+            offset: 0,
+            size: std::num::NonZeroU64::new(size_of::<PassUniform>() as u64),
+        })
+    }
+}
+
+impl FrameBuffers {
+    /// Makes room, and writes what all tiles share.
+    pub fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
+        if self.fixed.is_none() {
+            self.fixed = Some(FixedBuffers {
+                frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
+                film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
+                film_of_exposed: Written::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
+                passes: Written::new(
+                    device,
+                    "passes",
+                    u64::from(1 + 2 * MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                )?,
+                step_sum: step_sum(device)?,
+            });
+            // The clocks of software drivers tell nothing about their threads.
+            self.timer = if software { None } else { GpuTimer::new(device, PASSES as u32)? };
+        }
+        if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
+            // The old ones go first: both together need not fit.
+            self.sized = None;
+            let TextureKind { format, dimension } = RADIANCE;
+            let summed = if size.several_samples { size.tile } else { [1, 1] };
+            let radiance = || device.texture("radiance", format, dimension, summed, 1);
+            let bytes = (u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes).max(4);
+            self.sized = Some(SizedBuffers {
+                size,
+                radiance: [radiance()?, radiance()?],
+                packed: device.buffer("packed pixels", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
+            });
+        }
+        self.makers.prepare(device, &setup.making, size.tile)?;
+        self.edges.prepare(device, if setup.looks.look.refines { size.tile } else { [1, 1] })?;
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
+        fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
+        fixed.film_of_exposed.write(device, bytemuck::bytes_of(&setup.film.of_exposed()))
+    }
+
+    /// After a submission that failed, nobody knows what the buffers hold.
+    pub fn forget(&mut self) {
+        self.makers.forget();
+        self.bloom.forget();
+        if let Some(fixed) = &mut self.fixed {
+            for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.film_of_exposed, &mut fixed.passes] {
+                written.forget();
+            }
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! The setup of a frame from its scene: which records, which shader variants, which film. Knows no buffers.
+
+use super::settings::{for_f32, variant};
+use super::setup::{Looks, Setup};
+use super::tracer::GpuTracer;
+use super::uniforms::FrameUniform;
+use crate::error::Result;
+use crate::film::FilmParams;
+use crate::film::bloom::Bloom;
+use crate::gpu::kernel::key::{FilmLook, Look, PixelTarget, Source, Variant};
+use crate::gpu::lens::kerr::Wanted;
+use crate::gpu::lens::records::Making;
+use crate::physics::trace::Settings;
+use crate::scene::observer::Lens;
+use crate::scene::{KerrWorth, Lensing, Projection, Region, Scene, View};
+use crate::tracer::{Backend, FrameRequest};
+use glam::DVec3;
+
+impl GpuTracer {
+    /// How pixels for the host's memory are put.
+    pub(in crate::gpu) fn host_pixels(&self, scene: &Scene) -> PixelTarget {
+        if self.maps_pixels(scene) { PixelTarget::Rows } else { PixelTarget::Packed }
+    }
+
+    /// Whether kernels put pixels into the host's memory themselves, which hides the copy behind the tracing (a device
+    /// of wgpu's runs one thing after another). Other interfaces than Vulkan may keep such memory out of kernels'
+    /// reach, or reach it slowly.
+    fn maps_pixels(&self, scene: &Scene) -> bool {
+        let info = &self.adapter.info;
+        let pays = info.backend == Backend::Vulkan && !info.software;
+        self.device.maps_storage() && scene.quality.mapped_pixels.unwrap_or(pays)
+    }
+
+    pub(in crate::gpu) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
+        let lens = scene.lens(&request.region)?;
+        let settings = for_f32(scene.pixel_settings());
+        let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
+        let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
+        let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
+        // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
+        // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 3 % for it
+        // (H200). Software drivers run both sides of every branch.
+        let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
+        let film_look = FilmLook::new(&scene.film, scene.view, request.format, target);
+        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, film_look.is_usual());
+        // Where one kernel both looks and develops, what is unusual in either is left open in both.
+        let both = bloom.is_none() && samples == 1;
+        let own_view = !shares || (usual_view && (usual_film || !both));
+        let own_film = !shares || (usual_film && (usual_view || !both));
+        let developed = if own_film { film_look } else { film_look.of_any() };
+        let projection = own_view.then_some(scene.camera.projection);
+        let looks = Looks {
+            look: Look {
+                light: scene.view == View::Light,
+                stars: scene.shows_stars() && !request.transparent,
+                milky_way: scene.shows_milky_way() && !request.transparent,
+                map: scene.shown_map().is_some() && !request.transparent,
+                grid: scene.shows_grid() && !request.transparent,
+                all_effects: scene.effects.all_light(),
+                disk: scene.disk_u().is_some(),
+                opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
+                footprints: scene.turbulence().is_some(),
+                projection,
+                refines: scene.view == View::Light && scene.quality.refines,
+            },
+            film: if bloom.is_some() { FilmLook::of_light() } else { developed },
+            developed: bloom.is_some().then_some(developed),
+            several_samples: samples > 1,
+            rows: target == PixelTarget::Rows,
+        };
+        let making = self.making(scene, &lens, &settings, &request.region, projection);
+        let uniform = FrameUniform::new(scene, &lens, &settings)?;
+        Ok(Setup { making, looks, samples, uniform, film, bloom })
+    }
+
+    /// How the records of a frame are made.
+    fn making(
+        &self,
+        scene: &Scene,
+        lens: &Lens,
+        settings: &Settings,
+        region: &Region,
+        projection: Option<Projection>,
+    ) -> Making {
+        let eye = lens.observer.frame;
+        let pattern = scene.turbulence().is_some();
+        let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
+        let pixels = u64::from(region.full_width) * u64::from(region.full_height);
+        let source = match scene.lensing(&eye, pixels, KerrWorth::GPU) {
+            Lensing::Traced => Source::Traced,
+            Lensing::Schwarzschild => Source::Schwarzschild { delay, moving },
+            Lensing::Kerr => Source::Kerr { delay, pattern, moving, rest: false },
+        };
+        // An opaque disk hides all but its first crossing.
+        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
+        let inside = eye.r <= 2.0;
+        let disk_u = scene.disk_u();
+        Making {
+            source,
+            variant: Variant { azimuth: pattern, projection, ..variant(scene, settings, inside) },
+            // wgpu makes no array texture of one layer on GL.
+            crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
+            eye,
+            wanted: Wanted {
+                orders: if disk_u.is_some() { settings.max_crossings as u32 } else { 0 },
+                disk_u: disk_u.unwrap_or([1.0, 0.0]),
+                pattern,
+                delay,
+            },
+        }
+    }
+}

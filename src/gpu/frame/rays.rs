@@ -1,0 +1,211 @@
+//! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
+//! in f32; but for eyes so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
+
+use super::settings::{ray_settings, variant};
+use super::tracer::GpuTracer;
+use crate::allocate::{collected, with_room};
+use crate::error::{Error, Result};
+use crate::gpu::device::buffer::Buffer;
+use crate::gpu::device::readback::Readback;
+use crate::gpu::kernel::key::KernelKey;
+use crate::physics::geodesic::{Constants, State, wrap_angle};
+use crate::physics::observer::LocalFrame;
+use crate::physics::orbit::{horizon_inner, horizon_outer};
+use crate::physics::trace::{self, PlaneCrossing, RayTrace};
+use crate::scene::{Fate, Hit, MAX_CROSSINGS, Ray, Scene};
+use arrayvec::ArrayVec;
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use wgpu::BufferUsages as Usage;
+
+/// Rays of one submission.
+const CHUNK: usize = 1 << 14;
+/// Distance of an eye from the horizon, relative to its radius, below which u in f32 is off by more than 1e-3 of that
+/// distance.
+const TOO_NEAR: f64 = 1e-4;
+/// `RayEnd`s of a ray: its end and its crossings.
+const ENDS: usize = 1 + MAX_CROSSINGS;
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct RaysUniform {
+    step: f32,
+    tolerance: f32,
+    max_steps: u32,
+    count: u32,
+    a: f32,
+    r_plus: f32,
+    r_minus: f32,
+    capture_u: f32,
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct RayStart {
+    light: [f32; 4],
+    curve: [f32; 4],
+    n: [f32; 4],
+    dn: [f32; 4],
+}
+
+#[repr(C)]
+#[derive(Clone, Copy, Pod, Zeroable)]
+struct RayEnd {
+    n: [f32; 4],
+    rest: [u32; 4],
+}
+
+#[derive(Default)]
+pub struct RayBuffers {
+    made: Option<[Buffer; 3]>,
+    readback: Readback,
+}
+
+/// A valid ray of the batch.
+struct Begun {
+    index: usize,
+    frame: LocalFrame,
+    constants: Constants,
+}
+
+impl GpuTracer {
+    /// Traces `rays` in submissions of bounded size. Errors: whatever the device reports.
+    pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
+        for (rays, hits) in rays.chunks(CHUNK).zip(hits.chunks_mut(CHUNK)) {
+            self.trace_chunk(scene, rays, hits)?;
+        }
+        Ok(())
+    }
+
+    fn trace_chunk(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
+        let horizon = horizon_outer(scene.hole.spin);
+        let exact = scene.quality.ray_settings(scene.hole.spin);
+        let mut begun = with_room(rays.len(), "rays to trace")?;
+        let mut starts = with_room(rays.len(), "rays to trace")?;
+        for (index, (ray, hit)) in rays.iter().zip(hits.iter_mut()).enumerate() {
+            *hit = Hit::default();
+            match scene.start(ray) {
+                None => {}
+                Some((frame, None)) => {
+                    let nothing = RayTrace { fate: trace::Fate::Captured, swept: 0.0, ..unresolved() };
+                    *hit = scene.hit(ray, &frame, None, &nothing);
+                }
+                Some((frame, _)) if (frame.r / horizon - 1.0).abs() < TOO_NEAR => {
+                    *hit = crate::cpu::trace_ray(scene, &exact, ray);
+                }
+                Some((frame, Some((constants, state)))) => {
+                    starts.push(ray_start(&constants, &state));
+                    begun.push(Begun { index, frame, constants });
+                }
+            }
+        }
+        if starts.is_empty() {
+            return Ok(());
+        }
+        let ends = self.run(scene, &starts)?;
+        for (ray, ends) in begun.iter().zip(ends.chunks_exact(ENDS)) {
+            hits[ray.index] = finish(scene, &rays[ray.index], ray, ends);
+        }
+        Ok(())
+    }
+
+    fn run(&mut self, scene: &Scene, starts: &[RayStart]) -> Result<Vec<RayEnd>> {
+        let device = &self.device;
+        let settings = ray_settings(scene);
+        let compiled = self.kernels.get(KernelKey::Rays(variant(scene, &settings, true)))?;
+        if self.ray_buffers.made.is_none() {
+            let bytes = |size: usize| (CHUNK * size) as u64;
+            self.ray_buffers.made = Some([
+                device.buffer("rays", size_of::<RaysUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST)?,
+                device.buffer("ray starts", bytes(size_of::<RayStart>()), Usage::STORAGE | Usage::COPY_DST)?,
+                device.buffer("ray ends", bytes(size_of::<RayEnd>() * ENDS), Usage::STORAGE | Usage::COPY_SRC)?,
+            ]);
+        }
+        let Some([uniform, input, output]) = &self.ray_buffers.made else {
+            return Err(Error::internal("rays without buffers"));
+        };
+        let a = scene.hole.spin;
+        let values = RaysUniform {
+            step: settings.step as f32,
+            tolerance: settings.tolerance as f32,
+            max_steps: settings.max_steps,
+            count: starts.len() as u32,
+            a: a as f32,
+            r_plus: horizon_outer(a) as f32,
+            r_minus: horizon_inner(a) as f32,
+            capture_u: settings.capture_u as f32,
+        };
+        device.write(uniform, 0, bytemuck::bytes_of(&values))?;
+        device.write(input, 0, bytemuck::cast_slice(starts))?;
+        let stage = compiled
+            .stage(device, &[&[uniform.as_entire_binding(), input.as_entire_binding(), output.as_entire_binding()]])?;
+        let mut encoder = device.encoder("rays")?;
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            stage.run(&mut pass, None, [values.count.div_ceil(64), 1]);
+        }
+        let size = (starts.len() * ENDS * size_of::<RayEnd>()) as u64;
+        let copied = self.ray_buffers.readback.copy(device, &mut encoder, output, size)?;
+        let submission = device.submit(encoder)?;
+        copied.read(device, &submission, |bytes| {
+            collected(bytes.chunks_exact(size_of::<RayEnd>()).map(bytemuck::pod_read_unaligned), "what rays hit")
+        })
+    }
+}
+
+fn ray_start(c: &Constants, s: &State) -> RayStart {
+    let four = |x: f64, y: f64, z: f64, w: f64| [x as f32, y as f32, z as f32, w as f32];
+    RayStart {
+        light: four(c.energy, c.angular_momentum, c.nu_local, s.du),
+        curve: four(c.k, c.b, c.a2e2, c.a * c.a * c.carter),
+        n: four(s.n.x, s.n.y, s.n.z, s.u),
+        dn: four(s.dn.x, s.dn.y, s.dn.z, c.scale),
+    }
+}
+
+fn unresolved() -> RayTrace {
+    RayTrace {
+        fate: trace::Fate::Unresolved,
+        direction: DVec3::ZERO,
+        swept: f64::NAN,
+        steps: 0,
+        crossings: ArrayVec::new(),
+    }
+}
+
+/// N and drag as f64, a state without the rest.
+fn place(end: &RayEnd) -> State {
+    let [x, y, z, drag] = end.n.map(f64::from);
+    State { u: 0.0, du: 0.0, n: DVec3::new(x, y, z), dn: DVec3::ZERO, drag, delay: 0.0 }
+}
+
+fn finish(scene: &Scene, ray: &Ray, begun: &Begun, ends: &[RayEnd]) -> Hit {
+    let Some((end, crossings)) = ends.split_first() else { return Hit { fate: Fate::Unresolved, ..Hit::default() } };
+    let [fate, steps, count, tau] = end.rest;
+    let mut traced = RayTrace { steps, ..unresolved() };
+    let swept = || {
+        let tau = f64::from(f32::from_bits(tau));
+        if begun.constants.a == 0.0 { begun.constants.k.max(0.0).sqrt() * tau } else { f64::NAN }
+    };
+    match fate {
+        0 => (traced.fate, traced.swept) = (trace::Fate::Captured, swept()),
+        1 => {
+            (traced.fate, traced.swept) = (trace::Fate::Escaped, swept());
+            traced.direction = place(end).chart_direction();
+            if !traced.direction.is_finite() {
+                traced = RayTrace { steps, ..unresolved() };
+            }
+        }
+        _ => {}
+    }
+    for x in crossings.iter().take(count as usize) {
+        let at = place(x);
+        let _ = traced.crossings.try_push(PlaneCrossing {
+            u: f64::from(f32::from_bits(x.rest[0])),
+            azimuth: wrap_angle(at.n.y.atan2(at.n.x) + at.drag),
+            delay: f64::from(f32::from_bits(x.rest[1])),
+            order: x.rest[2],
+        });
+    }
+    scene.hit(ray, &begun.frame, Some(&begun.constants), &traced)
+}

@@ -1,0 +1,194 @@
+//! A frame on the GPU: tile by tile, sample by sample, records -> shade (-> bloom) -> develop -> readback, or a
+//! window's texture. A frame is prepared ([`GpuTracer::begin`]), submitted step by step, and each step read when it
+//! has run, so that readback overlaps the work of the next steps and frames. Knows no host memory: finished tiles go
+//! to the sink.
+
+use super::begun::{BegunFrame, Recording};
+use super::bloom::LIGHT_BYTES;
+use super::buffers::Size;
+use super::refine::EdgeList;
+use super::setup::{FrameTarget, Setup};
+use super::steps::Steps;
+use super::submission::Submitted;
+use super::tables::Tables;
+use super::tiles::{MEMORY, Plan};
+use super::tracer::GpuTracer;
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::kernel::key::{PixelTarget, Source};
+use crate::scene::Scene;
+use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
+use std::collections::VecDeque;
+
+/// Largest side of a tile with the border that is traced, pixels. The list of edges of a tile this large is all but
+/// the 128 MiB that each device can bind.
+const MAX_TILE_SIDE: u32 = 4096;
+/// Bytes of a pixel's radiance.
+const RADIANCE_BYTES: u64 = 16;
+
+/// Steps under way at once while a frame is rendered for a caller who waits: one is read while the next runs.
+const AHEAD: usize = 2;
+
+impl GpuTracer {
+    /// Errors: as `Renderer::render`.
+    pub fn render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        let rendered = self.try_render(scene, request, sink, progress);
+        if rendered.is_err() {
+            self.forget();
+        }
+        rendered
+    }
+
+    fn try_render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        let mut frame = self.begin(scene, request, FrameTarget::Host)?;
+        let mut stats = frame.stats();
+        let total = frame.count();
+        let mut under_way = VecDeque::new();
+        let mut done = 0;
+        while done < total {
+            if under_way.len() < AHEAD
+                && let Some(step) = self.submit(&mut frame)?
+            {
+                under_way.push_back(step);
+                continue;
+            }
+            let Some(step) = under_way.pop_front() else { break };
+            step.finish(&self.device, &mut stats, sink)?;
+            done += 1;
+            // At the last one the frame is complete: nothing is left to cancel.
+            if !progress(done as f64 / total as f64) && done < total {
+                return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
+            }
+        }
+        stats.device_bytes = self.device.bytes();
+        Ok(stats)
+    }
+
+    /// Makes all that frames of the scene like this one need, and frames like `window` on a screen, and keeps it.
+    /// Errors: as `Renderer::render`.
+    pub fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
+        if let Some(window) = window {
+            keys.extend(self.set_up(scene, window, PixelTarget::Screen)?.kernels());
+        }
+        let wanted = self.kernels.begin(&keys);
+        self.kernels.finish(wanted)?;
+        // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as
+        // well.
+        self.render(scene, request, &mut |_, _, _| Ok(()), progress).map(|_| ())
+    }
+
+    /// How many pipelines are not there that such a frame would run in a window; for tests. Errors: as
+    /// `Renderer::render`.
+    pub fn missing_on_screen(&self, scene: &Scene, request: &FrameRequest) -> Result<usize> {
+        Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::Screen)?.kernels()).len())
+    }
+
+    /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as
+    /// `Renderer::render`; the tables of lenses are then forgotten.
+    pub fn begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
+        let begun = self.try_begin(scene, request, target);
+        if begun.is_err() {
+            self.forget();
+        }
+        begun
+    }
+
+    fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
+        let kind = match target {
+            FrameTarget::Screen(_) => PixelTarget::Screen,
+            FrameTarget::Host => self.host_pixels(scene),
+        };
+        let mut setup = self.set_up(scene, request, kind)?;
+        let needed = setup.kernels();
+        let wanted = self.kernels.begin(&needed);
+        let samples = setup.samples;
+        let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
+        let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
+        // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
+        // in a view of nothing but the shadow's edge.
+        let ray_steps = match setup.making.source {
+            Source::Traced => scene.expected_steps(),
+            Source::Schwarzschild { .. } => 2,
+            Source::Kerr { .. } => 8,
+        };
+        // Packed pixels have two staging buffers.
+        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
+        let steps = self.steps(scene, request, &setup, bytes, ray_steps);
+
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
+        setup.uniform.map_sizes = tables.map_sizes();
+        let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
+        let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };
+        if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
+            self.buffers.bloom.prepare(&self.device, bloom, light)?;
+        }
+        self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
+        let software = self.adapter.info.software;
+        // Meanwhile the sky and the buffers were made.
+        self.kernels.finish(wanted)?;
+        let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
+        let source = setup.making.source;
+        let bloom = setup.bloom;
+        let projection = scene.camera.projection;
+        let request = *request;
+        self.anticipate(scene, &request, kind, needed);
+        Ok(BegunFrame { stages, request, target: kind, samples, projection, source, steps, bloom, submitted: 0 })
+    }
+
+    /// `bytes` that a pixel of a tile takes, and steps of its ray.
+    fn steps(&self, scene: &Scene, request: &FrameRequest, setup: &Setup, bytes: u64, ray_steps: u64) -> Steps {
+        let longest = self.device.limits().max_texture_dimension_2d;
+        let side = longest.min(MAX_TILE_SIDE);
+        let (samples, size) = (setup.samples, [request.width, request.height]);
+        let Some(bloom) = &setup.bloom else {
+            return Steps::plain(Plan::new(request, bytes, side, ray_steps, samples), samples);
+        };
+        let light = LIGHT_BYTES * size.map(u64::from).iter().product::<u64>();
+        let fits = size.iter().all(|side| *side <= longest) && light <= MEMORY;
+        if fits && scene.quality.keep_light.unwrap_or(true) {
+            return Steps::kept(Plan::new(request, bytes, side, ray_steps, samples), samples, bloom);
+        }
+        Steps::twice(request, samples, bloom, |request, pixels| {
+            let side = (u64::from(side) / pixels.isqrt()) as u32;
+            Plan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, samples)
+        })
+    }
+
+    /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are
+    /// then forgotten.
+    pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
+        self.submit_and(frame, &mut |_| Ok(()))
+    }
+
+    /// [`Self::submit`]; the frame's last step ends with what `then` records. Errors: those of `then` as well.
+    pub fn submit_and(&mut self, frame: &mut BegunFrame, then: &mut Recording<'_>) -> Result<Option<Submitted>> {
+        let submitted = self.buffers.submit(&self.device, frame, then);
+        if submitted.is_err() {
+            self.forget();
+        }
+        submitted
+    }
+
+    /// After a frame that failed or was left before its first step, nobody knows what the tables of lenses hold.
+    pub fn forget(&mut self) {
+        self.buffers.forget();
+    }
+}

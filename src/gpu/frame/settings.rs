@@ -1,0 +1,36 @@
+//! Settings of the f64 tracer brought to what f32 can do, and what the tracing kernels are compiled with for them.
+
+use crate::gpu::kernel::key::Variant;
+use crate::physics::trace::Settings;
+use crate::scene::{Method, Projection, Scene};
+
+/// f32 rounds at 6e-8; a step's error estimate cannot be trusted below a few times that.
+const SMALLEST_TOLERANCE: f64 = 3e-7;
+/// Nystrom step in sigma for given rays: truncation stays below rounding.
+const RAY_STEP: f64 = 0.2;
+
+/// Settings of the f64 tracer brought to what f32 can do.
+pub(in crate::gpu) fn for_f32(settings: Settings) -> Settings {
+    Settings { tolerance: settings.tolerance.max(SMALLEST_TOLERANCE), ..settings }
+}
+
+pub(in crate::gpu) fn ray_settings(scene: &Scene) -> Settings {
+    let mut settings = for_f32(scene.quality.ray_settings(scene.hole.spin));
+    if scene.quality.method == Method::Auto {
+        settings.step = RAY_STEP;
+    }
+    settings
+}
+
+/// What the tracing kernels of a scene are compiled with; pixels add what their shading needs.
+pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant {
+    let spinning = scene.hole.spin != 0.0;
+    Variant {
+        method: settings.method.into(),
+        spinning,
+        delay: settings.delay,
+        step_limit: spinning || settings.delay || inside_horizon,
+        azimuth: false,
+        projection: Some(Projection::Perspective),
+    }
+}

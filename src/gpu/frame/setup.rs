@@ -1,0 +1,40 @@
+//! What a frame is set up with before its tiles run: how its records are made, its light shaded and its pixels put.
+//! Plain data; configure.rs fills it from a scene.
+
+use super::uniforms::FrameUniform;
+use crate::film::FilmParams;
+use crate::film::bloom::Bloom;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::kernel::key::{FilmLook, Look};
+use crate::gpu::lens::records::Making;
+
+/// How a frame's shading is compiled.
+pub(in crate::gpu) struct Looks {
+    pub(in crate::gpu) look: Look,
+    /// Of the kernel that ends shading.
+    pub(in crate::gpu) film: FilmLook,
+    /// Of development, in frames with bloom.
+    pub(in crate::gpu) developed: Option<FilmLook>,
+    pub(in crate::gpu) several_samples: bool,
+    /// Whether pixels are put row by row into the host's memory.
+    pub(in crate::gpu) rows: bool,
+}
+
+/// Where a frame's pixels go.
+#[derive(Clone, Copy)]
+pub enum FrameTarget<'a> {
+    /// To the host, through staging buffers.
+    Host,
+    /// Into a texture as large as the frame: a window's.
+    Screen(&'a Texture),
+}
+
+/// What a frame is set up with before its tiles run.
+pub(in crate::gpu) struct Setup {
+    pub(in crate::gpu) making: Making,
+    pub(in crate::gpu) looks: Looks,
+    pub(in crate::gpu) samples: u32,
+    pub(in crate::gpu) uniform: FrameUniform,
+    pub(in crate::gpu) film: FilmParams,
+    pub(in crate::gpu) bloom: Option<Bloom>,
+}

@@ -1,0 +1,129 @@
+//! The sky maps of a scene as textures: the Milky Way's, made when it is first shown, and the host's, made anew when
+//! it is another.
+
+use crate::error::{Error, Result};
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::slots::SKY_MAP;
+use crate::scene::Scene;
+use crate::sky::{Level, SkyMap};
+use std::sync::{Arc, Weak};
+
+/// Bytes that are written in one submission, about: until it has run, the driver keeps a copy of them.
+const BAND_BYTES: usize = 16 << 20;
+
+/// A map on the device.
+struct MapTexture {
+    texture: Texture,
+    /// Size of its finest level.
+    finest: [u32; 2],
+}
+
+pub struct SkyMaps {
+    milky_way: Option<MapTexture>,
+    /// Together with what it was made from.
+    map: Option<(Weak<SkyMap>, MapTexture)>,
+    /// A dark texel, bound in the place of what is not shown.
+    nothing: MapTexture,
+}
+
+impl SkyMaps {
+    pub fn new(device: &Device) -> Result<Self> {
+        let texture = device.table("no sky map", SKY_MAP.format, [1, 1])?;
+        device.write_rows(&texture, 0, &[0; 4])?;
+        Ok(Self { milky_way: None, map: None, nothing: MapTexture { texture, finest: [1, 1] } })
+    }
+
+    /// The Milky Way's and the host's.
+    fn bound(&self) -> [&MapTexture; 2] {
+        let map = self.map.as_ref().map(|(_, map)| map);
+        [self.milky_way.as_ref(), map].map(|map| map.unwrap_or(&self.nothing))
+    }
+
+    /// The Milky Way's and the host's.
+    pub fn textures(&self) -> [&Texture; 2] {
+        self.bound().map(|map| &map.texture)
+    }
+
+    /// Columns and rows of their finest levels.
+    pub fn sizes(&self) -> [u32; 4] {
+        let [milky_way, map] = self.bound().map(|map| map.finest);
+        [milky_way[0], milky_way[1], map[0], map[1]]
+    }
+
+    /// Brings them up to the scene: a map that is not shown keeps its texture as long as the scene has it. Errors: as
+    /// [`Device::scoped`]; the texture is then made when it is needed next.
+    pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+        if scene.shows_milky_way() && self.milky_way.is_none() {
+            self.milky_way = Some(upload(device, SkyMap::milky_way()?)?);
+        }
+        let made_from = self.map.as_ref().map(|(map, _)| map.as_ptr());
+        if made_from.is_some() && made_from != scene.sky_map.as_ref().map(Arc::as_ptr) {
+            // Before the next one is made: both together need not fit.
+            self.map = None;
+            device.bindings.clear();
+        }
+        if let (Some(map), None) = (scene.shown_map(), &self.map) {
+            self.map = Some((Arc::downgrade(map), upload(device, map)?));
+        }
+        Ok(())
+    }
+}
+
+/// All levels in one texture: the finest on top, below it the others side by side (`level_place` of sky_map.wgsl). A
+/// texture's own levels would do, but lavapipe (Mesa 22.3) takes the size of one for the size of another where pixels
+/// of a workgroup read different ones. Levels that do not fit into a texture are left out.
+fn upload(device: &Device, map: &SkyMap) -> Result<MapTexture> {
+    let limit = device.limits().max_texture_dimension_2d;
+    let fitting = |level: &&Level| level.size[0] <= limit && texture_height(level.size) <= limit;
+    let levels = map.levels();
+    let first = levels.iter().position(|level| fitting(&level)).unwrap_or(levels.len());
+    let levels = levels.get(first..).unwrap_or(&[]);
+    let finest = levels.first().ok_or_else(|| Error::internal("a sky map without levels"))?.size;
+    let texture = device.table("sky map", SKY_MAP.format, [finest[0], texture_height(finest)])?;
+    let mut written = 0;
+    for (level, number) in levels.iter().zip(0..) {
+        let [left, top] = level_place(finest, number);
+        let width = level.size[0] as usize;
+        let band_rows = (BAND_BYTES / size_of::<u32>() / width).max(1);
+        for (band, row) in level.texels.chunks(band_rows * width).zip((top..).step_by(band_rows)) {
+            device.write_part(&texture, [left, row], level.size[0], bytemuck::cast_slice(band))?;
+            written += size_of_val(band);
+            if written >= BAND_BYTES {
+                written = 0;
+                device.submit_and_wait(device.encoder("sky map")?)?;
+            }
+        }
+    }
+    Ok(MapTexture { texture, finest })
+}
+
+/// Of the texture of a map whose finest level has this size.
+fn texture_height([width, height]: [u32; 2]) -> u32 {
+    if width > 1 { height + (height / 2).max(1) } else { height }
+}
+
+/// Where level `number` begins. Each is at most half as wide as the one before, so that it ends before the next begins.
+fn level_place([width, height]: [u32; 2], number: u32) -> [u32; 2] {
+    if number == 0 { [0, 0] } else { [width - (width >> (number - 1)), height] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_do_not_overlap() {
+        for size in [[1, 1], [2, 1], [7, 7], [64, 32], [301, 299], [16384, 8192]] {
+            let map_levels = 32 - u32::leading_zeros(size[0]);
+            let mut end = 0;
+            for number in 1..map_levels {
+                let [left, top] = level_place(size, number);
+                let [width, height] = size.map(|side: u32| (side >> number).max(1));
+                assert!(left >= end && top >= size[1] && top + height <= texture_height(size), "{size:?} {number}");
+                end = left + width;
+                assert!(end <= size[0], "{size:?} {number}");
+            }
+        }
+    }
+}

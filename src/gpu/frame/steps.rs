@@ -1,0 +1,225 @@
+//! In which steps a frame is made, each a submission: tiles and samples of them; and with bloom, what comes between
+//! shading and development. Knows numbers only.
+
+use super::tiles::Plan;
+use crate::film::bloom::Bloom;
+use crate::scene::Region;
+use crate::tracer::{FrameRequest, Tile};
+use std::ops::Range;
+
+/// What a submission does, in this order.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// What is shaded.
+    pub shades: Tile,
+    /// Which samples of it; none: nothing is shaded.
+    pub samples: Range<u32>,
+    /// With bloom: the cells of the finest grid that then have all their light.
+    pub gathers: Option<Tile>,
+    /// With bloom: whether all have it, so that it spreads.
+    pub spreads: bool,
+    /// What becomes pixels.
+    pub develops: Option<Tile>,
+    /// Where the texture of light begins.
+    pub light_origin: [u32; 2],
+}
+
+/// The steps of a frame.
+#[derive(Debug)]
+pub struct Steps {
+    plan: Plan,
+    samples: u32,
+    way: Way,
+}
+
+/// What becomes of light.
+#[derive(Debug)]
+enum Way {
+    /// A tile's is developed at once.
+    Plain,
+    /// A whole frame's is kept until it has spread over a grid of so many cells.
+    Kept([u32; 2]),
+    /// It is made twice: first for the cells of tiles of the grid, then for development.
+    Twice { gather: Plan, frame: [u32; 2], factor: u32 },
+}
+
+impl Steps {
+    pub fn plain(plan: Plan, samples: u32) -> Self {
+        Self { plan, samples, way: Way::Plain }
+    }
+
+    /// With bloom, for a device that holds a whole frame's light.
+    pub fn kept(plan: Plan, samples: u32, bloom: &Bloom) -> Self {
+        Self { plan, samples, way: Way::Kept(base(bloom)) }
+    }
+
+    /// With bloom, for one that does not. `plan_of`: of a request, and how many pixels each of its own stands for.
+    pub fn twice(
+        request: &FrameRequest,
+        samples: u32,
+        bloom: &Bloom,
+        plan_of: impl Fn(&FrameRequest, u64) -> Plan,
+    ) -> Self {
+        let [width, height] = base(bloom);
+        let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
+        let gather = plan_of(&FrameRequest { width, height, region, ..*request }, u64::from(bloom.factor).pow(2));
+        let way = Way::Twice { gather, frame: bloom.frame, factor: bloom.factor };
+        Self { plan: plan_of(request, 1), samples, way }
+    }
+
+    fn batches(&self, plan: &Plan) -> u64 {
+        u64::from(self.samples.div_ceil(plan.batch))
+    }
+
+    /// Steps in which the light that spreads is made.
+    fn gathering(&self) -> u64 {
+        match &self.way {
+            Way::Plain => 0,
+            Way::Kept(_) => self.plan.count() * self.batches(&self.plan),
+            Way::Twice { gather, .. } => gather.count() * self.batches(gather),
+        }
+    }
+
+    pub fn count(&self) -> u64 {
+        match &self.way {
+            // The step in which the last light is made develops the first tile.
+            Way::Kept(_) => self.gathering() + self.plan.count() - 1,
+            Way::Plain | Way::Twice { .. } => self.gathering() + self.plan.count() * self.batches(&self.plan),
+        }
+    }
+
+    /// Width and height of the largest tile that is shaded.
+    pub fn largest(&self) -> [u32; 2] {
+        let tile = self.plan.largest();
+        match &self.way {
+            Way::Plain | Way::Kept(_) => tile,
+            Way::Twice { gather, frame, factor } => {
+                let cells = gather.largest();
+                [0, 1].map(|i| tile[i].max((cells[i] * factor + factor).min(frame[i])))
+            }
+        }
+    }
+
+    /// How much of the light is held at once; `None`: no light is kept.
+    pub fn light(&self) -> Option<[u32; 2]> {
+        match &self.way {
+            Way::Plain => None,
+            Way::Kept(_) => Some(self.plan.frame()),
+            Way::Twice { .. } => Some(self.largest()),
+        }
+    }
+
+    /// The `index`th of all.
+    pub fn step(&self, index: u64) -> Step {
+        let gathering = self.gathering();
+        let ends = index + 1 == gathering;
+        match &self.way {
+            Way::Kept(base) if index < gathering => {
+                let (shades, samples) = self.shading(&self.plan, index);
+                let whole = Tile { x: 0, y: 0, width: base[0], height: base[1] };
+                let (gathers, develops) = (ends.then_some(whole), ends.then(|| self.plan.tile(0)));
+                Step { shades, samples, gathers, spreads: ends, develops, light_origin: [0, 0] }
+            }
+            Way::Kept(_) => {
+                let tile = self.plan.tile(index + 1 - gathering);
+                let light_origin = [0, 0];
+                Step { shades: tile, samples: 0..0, gathers: None, spreads: false, develops: Some(tile), light_origin }
+            }
+            Way::Twice { gather, frame, factor } if index < gathering => {
+                let (cells, samples) = self.shading(gather, index);
+                let shades = under(cells, *factor, *frame);
+                let gathers = (samples.end == self.samples).then_some(cells);
+                let light_origin = [shades.x, shades.y];
+                Step { shades, samples, gathers, spreads: ends, develops: None, light_origin }
+            }
+            Way::Plain | Way::Twice { .. } => {
+                let (shades, samples) = self.shading(&self.plan, index - gathering);
+                let develops = (samples.end == self.samples).then_some(shades);
+                let light_origin = [shades.x, shades.y];
+                Step { shades, samples, gathers: None, spreads: false, develops, light_origin }
+            }
+        }
+    }
+
+    /// The `index`th tile and samples of a plan.
+    fn shading(&self, plan: &Plan, index: u64) -> (Tile, Range<u32>) {
+        let batches = self.batches(plan);
+        let begin = (index % batches) as u32 * plan.batch;
+        (plan.tile(index / batches), begin..(begin + plan.batch).min(self.samples))
+    }
+}
+
+/// Of the finest grid.
+fn base(bloom: &Bloom) -> [u32; 2] {
+    bloom.levels.first().map_or([1, 1], |level| level.size)
+}
+
+/// The pixels that share their light with `cells`: half a cell beyond them on each side.
+fn under(cells: Tile, factor: u32, frame: [u32; 2]) -> Tile {
+    let begin = |cell: u32| (cell * factor).saturating_sub(factor / 2);
+    let end = |cell: u32, cells: u32, side: u32| ((cell + cells) * factor + factor / 2).min(side);
+    let [x, y] = [begin(cells.x), begin(cells.y)];
+    let [right, bottom] = [end(cells.x, cells.width, frame[0]), end(cells.y, cells.height, frame[1])];
+    Tile { x, y, width: right - x, height: bottom - y }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::PixelFormat;
+
+    fn request([width, height]: [u32; 2]) -> FrameRequest {
+        let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
+        FrameRequest { width, height, region, format: PixelFormat::Rgba8Srgb, transparent: false }
+    }
+
+    fn all(steps: &Steps) -> Vec<Step> {
+        (0..steps.count()).map(|i| steps.step(i)).collect()
+    }
+
+    /// Every way shades what it gathers or develops before it does, and develops every pixel once.
+    #[test]
+    fn everything_is_done_once_and_in_order() {
+        for frame in [[64, 48], [1000, 700], [5001, 333], [16384, 2000]] {
+            let bloom = Bloom::of(1.0, frame).expect("grids");
+            let plan_of = |request: &FrameRequest, each: u64| Plan::new(request, 400 * each, 2048, 300 * each, 20);
+            let plan = || plan_of(&request(frame), 1);
+            let ways = [
+                Steps::plain(plan(), 20),
+                Steps::kept(plan(), 20, &bloom),
+                Steps::twice(&request(frame), 20, &bloom, plan_of),
+            ];
+            for (way, steps) in ways.iter().enumerate() {
+                let list = all(steps);
+                let area = |tile: Tile| u64::from(tile.width) * u64::from(tile.height);
+                let developed = list.iter().filter_map(|step| step.develops).map(area).sum::<u64>();
+                assert_eq!(developed, u64::from(frame[0]) * u64::from(frame[1]), "{frame:?} {way}");
+                let gathered = list.iter().filter_map(|step| step.gathers).map(area).sum::<u64>();
+                let cells = bloom.levels[0].size.map(u64::from);
+                assert_eq!(gathered, if way == 0 { 0 } else { cells[0] * cells[1] });
+                let spreads = list.iter().position(|step| step.spreads);
+                assert_eq!(spreads.is_some(), way > 0);
+                assert!(list.iter().filter(|step| step.spreads).count() <= 1);
+                assert!(list.iter().take(spreads.unwrap_or(0)).all(|step| step.develops.is_none()));
+                let [width, height] = steps.largest();
+                for step in &list {
+                    assert!(
+                        step.shades.width <= width && step.shades.height <= height,
+                        "{step:?} in {width} x {height}"
+                    );
+                    assert!(
+                        step.shades.x + step.shades.width <= frame[0] && step.shades.y + step.shades.height <= frame[1]
+                    );
+                }
+            }
+        }
+    }
+
+    /// The pixels shaded for a tile of cells are all those that the cells take from.
+    #[test]
+    fn cells_get_all_their_light() {
+        let cells = Tile { x: 10, y: 0, width: 5, height: 7 };
+        assert_eq!(under(cells, 4, [58, 30]), Tile { x: 38, y: 0, width: 20, height: 30 });
+        assert_eq!(under(cells, 2, [400, 400]), Tile { x: 19, y: 0, width: 12, height: 15 });
+    }
+}

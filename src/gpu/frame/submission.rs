@@ -1,0 +1,260 @@
+//! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
+
+use super::begun::{BegunFrame, Recording};
+use super::buffers::FrameBuffers;
+use super::uniforms::PassUniform;
+use crate::error::{Error, Result};
+use crate::gpu::device::buffer::uniform_stride;
+use crate::gpu::device::readback::Copied;
+use crate::gpu::device::timer;
+use crate::gpu::device::timer::GpuTimer;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{check_groups, pixel_groups};
+use crate::gpu::kernel::key::PixelTarget;
+use crate::gpu::lens::records::STEP_SUM;
+use crate::scene::Projection;
+use crate::scene::frame::sample_offset;
+use crate::scene::refine::{CURVE_SAMPLES, EDGE_SAMPLES};
+use crate::tracer::{FrameRequest, FrameStats, PASSES, Tile, TileSink};
+use arrayvec::ArrayVec;
+use std::time::Instant;
+
+/// Passes of a submission, at most one of each kind.
+#[derive(Clone, Copy)]
+enum PassKind {
+    Shading,
+    Bloom,
+    Development,
+}
+
+/// Of a step that gathers none.
+const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
+
+/// A submission that has not been read yet.
+pub struct Submitted {
+    submission: wgpu::SubmissionIndex,
+    /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
+    copied: Copied,
+    tick_bytes: u64,
+    /// Bytes of all that comes before the pixels.
+    head: u64,
+    passes: ArrayVec<PassKind, PASSES>,
+    /// Whether steps were counted: none are taken where rays are looked up and nothing else.
+    counts: bool,
+    tile: Option<Tile>,
+    row_bytes: usize,
+}
+
+/// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device.
+const TICKS: u64 = 0;
+const STEPS: u64 = 64;
+pub const PIXELS: u64 = 256;
+
+/// Pixels are taken in bands of so many bytes. Threads that present to a window of the device wait for one band at
+/// most: 1.4 ms at the 12 GB/s of one core. Much smaller bands would keep the threads that share the copying
+/// (`Copiers`) busy waking up.
+const BAND_BYTES: usize = 16 << 20;
+
+impl FrameBuffers {
+    /// Starts the frame's next step; what it develops is copied to the host.
+    pub fn submit(
+        &mut self,
+        device: &Device,
+        frame: &mut BegunFrame,
+        then: &mut Recording<'_>,
+    ) -> Result<Option<Submitted>> {
+        let Some(step) = frame.next() else { return Ok(None) };
+        let begins = frame.submitted == 0;
+        let stages = &frame.stages;
+        let stride = uniform_stride::<PassUniform>(device);
+        let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
+        // The first is what is developed, which with bloom may be another tile than the shaded one.
+        let developed = (step.develops.unwrap_or(step.shades), 0, 0);
+        let of = |(tile, sample, i)| {
+            pass_of(&frame.request, tile, (sample, frame.samples), frame.projection, i, step.light_origin)
+        };
+        let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
+        let passes = [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice));
+        let mut places = vec![0; (1 + 2 * step.samples.len()) * stride as usize];
+        for (slot, pass) in places.chunks_exact_mut(stride as usize).zip(passes) {
+            slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
+        }
+        let size_of_tile = [step.shades.width, step.shades.height];
+        check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
+        let developed = step.develops.filter(|_| frame.target != PixelTarget::Screen);
+        let row_bytes = developed.map_or(0, |tile| tile.width as usize * frame.request.format.bytes_per_pixel());
+        let pixel_bytes = developed.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
+        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
+        let staging = match frame.target {
+            PixelTarget::Rows if pixel_bytes > 0 => self.mapped.0.staging(device, size)?,
+            _ => self.readback.staging(device, size)?,
+        };
+        let to = staging.buffer()?;
+        let mut encoder = device.encoder("frame")?;
+        let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
+        fixed.passes.write(device, &places)?;
+        if let Some(bloom) = &frame.bloom {
+            self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
+        }
+        let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
+        self.edges.reset(&mut encoder);
+        let puts = stages.glare.is_some() || step.develops.is_some();
+        let put = if puts { Some(stages.put.group(device, to)?) } else { None };
+        let timer = &mut self.timer;
+        let mut passes = ArrayVec::new();
+        let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
+            passes.push(kind);
+            let timestamp_writes = timer.as_mut().and_then(GpuTimer::next_pass);
+            record(
+                &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(label), timestamp_writes }),
+            );
+        };
+        if !step.samples.is_empty() {
+            in_pass(PassKind::Shading, "frame", &mut |pass| {
+                stages.shade(pass, &step, frame.samples, begins, stride as u32, put.as_ref())
+            });
+        }
+        if let Some(glare) = &stages.glare {
+            if let Some(cells) = step.gathers {
+                in_pass(PassKind::Bloom, "bloom", &mut |pass| {
+                    glare.bloom.gather(pass, cells);
+                    if step.spreads {
+                        glare.bloom.spread(pass);
+                    }
+                });
+            }
+            if let Some(tile) = step.develops {
+                let put = glare.put.group(device, to)?;
+                in_pass(PassKind::Development, "develop", &mut |pass| {
+                    pass.set_bind_group(2, &put, &[]);
+                    glare.develop.dispatch(pass, 0, [tile.width, tile.height]);
+                });
+            }
+        }
+        let counts = steps.is_some();
+        if let Some(steps) = steps {
+            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
+        }
+        let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
+        if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, pixel_bytes > 0) {
+            encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
+        }
+        let mut copied = staging.filled(size);
+        if frame.submitted + 1 == frame.count() {
+            then(&mut encoder)?;
+        }
+        let submission = device.submit(encoder)?;
+        copied.request(device)?;
+        frame.submitted += 1;
+        let head = size.min(PIXELS);
+        Ok(Some(Submitted { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
+    }
+}
+
+impl Submitted {
+    /// What to wait for.
+    pub fn submission(&self) -> &wgpu::SubmissionIndex {
+        &self.submission
+    }
+
+    /// Whether it has run, so that [`Self::finish`] does not wait. Errors: as [`Device::wait`].
+    pub fn is_done(&self, device: &Device) -> Result<bool> {
+        device.is_done(&self.submission)
+    }
+
+    /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as
+    /// [`Device::wait`].
+    pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
+        let arrived = self.copied.wait(device, &self.submission)?;
+        let started = Instant::now();
+        let mut head = [0; PIXELS as usize];
+        arrived.part(0..self.head, |bytes| {
+            head[..bytes.len()].copy_from_slice(bytes);
+            Ok(())
+        })?;
+        if self.counts {
+            let steps = bytemuck::try_pod_read_unaligned::<u32>(part(&head, STEPS, STEP_SUM)?);
+            stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
+        }
+        let ticks = part(&head, TICKS, self.tick_bytes)?;
+        stats.gpu_ns += timer::nanoseconds(device, ticks)?;
+        for (kind, ticks) in self.passes.iter().zip(ticks.chunks(timer::PASS_BYTES as usize)) {
+            stats.pass_ns[*kind as usize] += timer::nanoseconds(device, ticks)?;
+        }
+        for band in self.tile.iter().flat_map(|tile| bands(*tile, self.row_bytes)) {
+            let bytes = self.row_bytes as u64 * u64::from(band.tile.height);
+            let begin = PIXELS + self.row_bytes as u64 * u64::from(band.first_row);
+            arrived.part(begin..begin + bytes, |pixels| sink(band.tile, pixels, self.row_bytes))?;
+        }
+        stats.readback_ns += started.elapsed().as_nanos() as u64;
+        Ok(())
+    }
+}
+
+/// Rows of a tile that are taken at once.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Band {
+    tile: Tile,
+    /// Of the whole tile.
+    first_row: u32,
+}
+
+/// The tile's rows from the top down, as many at a time as [`BAND_BYTES`] holds.
+fn bands(tile: Tile, row_bytes: usize) -> impl Iterator<Item = Band> {
+    let rows = (BAND_BYTES / row_bytes.max(1)).max(1);
+    (0..tile.height).step_by(rows).map(move |first_row| {
+        let height = (rows as u32).min(tile.height - first_row);
+        Band { tile: Tile { y: tile.y + first_row, height, ..tile }, first_row }
+    })
+}
+
+/// Of the numbers that a submission left in its staging buffer.
+fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
+    let found = bytes.get(begin as usize..(begin + size) as usize);
+    found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
+}
+
+/// Of the sample of so many, the `slot`th of its submission.
+pub fn pass_of(
+    request: &FrameRequest,
+    tile: Tile,
+    (sample, samples): (u32, u32),
+    projection: Projection,
+    slot: u32,
+    light_origin: [u32; 2],
+) -> PassUniform {
+    let region = request.region;
+    let [dx, dy] = sample_offset(sample, samples, projection);
+    PassUniform {
+        origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
+        size: [tile.width + 2, tile.height + 2],
+        offset: [dx as f32, dy as f32],
+        weight: 1.0 / samples as f32,
+        first: u32::from(sample == 0),
+        slot,
+        refined: EDGE_SAMPLES,
+        light_origin: light_origin.map(|v| v as i32),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bands_are_all_rows_of_a_tile_in_their_order() {
+        let tile = Tile { x: 3, y: 100, width: 7, height: 10 };
+        for (row_bytes, rows) in [(1, 10), (BAND_BYTES / 3, 3), (BAND_BYTES, 1), (2 * BAND_BYTES, 1), (0, 10)] {
+            let found = bands(tile, row_bytes).collect::<Vec<_>>();
+            assert_eq!(found.len(), 10_usize.div_ceil(rows), "{row_bytes}");
+            let mut next = 0;
+            for band in found {
+                let height = rows.min(10 - next) as u32;
+                let expected = Band { tile: Tile { y: 100 + next as u32, height, ..tile }, first_row: next as u32 };
+                assert_eq!(band, expected);
+                next += rows;
+            }
+        }
+        assert_eq!(bands(Tile { height: 0, ..tile }, 28).count(), 0);
+    }
+}

@@ -1,0 +1,120 @@
+//! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
+//! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
+//! entries a row (shade.wgsl says why).
+
+use super::sky_maps::SkyMaps;
+use crate::allocate::with_room;
+use crate::error::{Error, Result};
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::physics::disk_flux::TemperatureProfile;
+use crate::scene::Scene;
+use crate::sky::StarIndex;
+use crate::sky::index::{PROFILE_OFFSET, PROFILE_SIZE};
+use std::sync::Arc;
+
+/// Entries of a row: a width that every device takes.
+const TABLE_WIDTH: usize = 2048;
+/// Rows that are written at once: 4 MiB.
+const WRITTEN_ROWS: usize = 128;
+
+const PROFILE_ROW: u32 = (PROFILE_OFFSET / TABLE_WIDTH) as u32;
+const _: () = assert!(PROFILE_OFFSET.is_multiple_of(TABLE_WIDTH) && PROFILE_SIZE == TABLE_WIDTH);
+const _: () = assert!(PROFILE_SIZE == TemperatureProfile::SIZE);
+
+pub struct Tables {
+    /// What the textures hold.
+    stars: Arc<StarIndex>,
+    /// Blackbodies, mean sky, profile, stars: `light_tables` of the shaders.
+    light: Texture,
+    star_cells: Texture,
+    sky_maps: SkyMaps,
+    /// Spin as the disk's matter meets it, of the profile in the texture.
+    profile_spin: Option<f64>,
+}
+
+/// A texture of `size` entries in rows, the last one filled up.
+fn table<T: bytemuck::Pod>(
+    device: &Device,
+    label: &str,
+    format: wgpu::TextureFormat,
+    size: usize,
+    entries: impl Iterator<Item = T>,
+) -> Result<Texture> {
+    let (rows, limit) = (size.div_ceil(TABLE_WIDTH), device.limits().max_texture_dimension_2d);
+    if rows > limit as usize {
+        let message = format!("the sky's {label} take a texture of {rows} rows; this device's limit is {limit}");
+        return Err(Error::unsupported(message));
+    }
+    let texture = device.table(label, format, [TABLE_WIDTH as u32, rows as u32])?;
+    let mut entries = entries.take(size).fuse();
+    let mut written = with_room(WRITTEN_ROWS.min(rows) * TABLE_WIDTH, label)?;
+    for first_row in (0..rows).step_by(WRITTEN_ROWS) {
+        written.clear();
+        written.extend(entries.by_ref().take(WRITTEN_ROWS * TABLE_WIDTH));
+        written.resize(written.len().next_multiple_of(TABLE_WIDTH), T::zeroed());
+        device.write_rows(&texture, first_row as u32, bytemuck::cast_slice(&written))?;
+    }
+    Ok(texture)
+}
+
+impl Tables {
+    fn new(device: &Device, stars: Arc<StarIndex>, sky_maps: SkyMaps) -> Result<Self> {
+        let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
+        let format = wgpu::TextureFormat::Rgba32Float;
+        let light = table(device, "light tables", format, entries, stars.light_tables())?;
+        let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
+        Ok(Self { stars, light, star_cells, sky_maps, profile_spin: None })
+    }
+
+    /// Brings the tables up to the scene's stars, maps and disk. Errors: UNSUPPORTED where the device's textures are
+    /// too small; OUT_OF_MEMORY.
+    pub fn prepare<'a>(tables: &'a mut Option<Self>, device: &Device, scene: &Scene) -> Result<&'a mut Self> {
+        let stars = scene.stars()?;
+        let made = match tables.take() {
+            Some(held) if Arc::ptr_eq(&held.stars, &stars) => held,
+            // The old stars go first: both together need not fit.
+            Some(held) => {
+                let maps = held.into_maps();
+                Self::new(device, stars, maps)?
+            }
+            None => Self::new(device, stars, SkyMaps::new(device)?)?,
+        };
+        let tables = tables.insert(made);
+        tables.update(device, scene)?;
+        Ok(tables)
+    }
+
+    /// The maps; all else is let go.
+    fn into_maps(self) -> SkyMaps {
+        self.sky_maps
+    }
+
+    /// In the order of group 0 of shade.wgsl.
+    pub fn textures(&self) -> [&Texture; 4] {
+        let [milky_way, map] = self.sky_maps.textures();
+        [&self.light, &self.star_cells, milky_way, map]
+    }
+
+    /// `Frame::map_sizes` of frame.wgsl.
+    pub fn map_sizes(&self) -> [u32; 4] {
+        self.sky_maps.sizes()
+    }
+
+    /// Brings the profile up to the scene's disk, and the maps up to its sky.
+    fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+        self.sky_maps.update(device, scene)?;
+        let spin = scene.matter_spin();
+        if self.profile_spin == Some(spin) {
+            return Ok(());
+        }
+        let profile = TemperatureProfile::new(spin);
+        let mut row = vec![[0.0_f32; 4]; TABLE_WIDTH];
+        for (out, pair) in row.iter_mut().zip(profile.entries().windows(2)) {
+            *out = [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0];
+        }
+        device.write_rows(&self.light, PROFILE_ROW, bytemuck::cast_slice(&row))?;
+        self.profile_spin = Some(spin);
+        Ok(())
+    }
+}

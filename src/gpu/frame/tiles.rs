@@ -1,0 +1,102 @@
+//! How a frame is cut into tiles, so that memory stays bounded and no submission runs for long. Knows numbers only.
+
+use crate::tracer::{FrameRequest, Tile};
+
+/// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog
+/// fires.
+const STEPS_PER_SUBMISSION: u64 = 96 << 20;
+/// Bytes that the records and the radiance of a tile may take; and, in frames with bloom, the light that is kept.
+pub const MEMORY: u64 = 192 << 20;
+/// Samples of one submission at most.
+pub const MAX_BATCH: u32 = 16;
+
+/// Tiles of one frame, and how many samples of a tile go into one submission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plan {
+    frame: [u32; 2],
+    tile: [u32; 2],
+    pub batch: u32,
+}
+
+impl Plan {
+    /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to
+    /// take.
+    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, samples: u32) -> Self {
+        let steps = steps.max(1);
+        let max_side = max_side.saturating_sub(2).max(1);
+        let by_memory = MEMORY / bytes_per_pixel.max(1);
+        let by_time = STEPS_PER_SUBMISSION / steps;
+        let pixels = by_memory.min(by_time).max(1024);
+        // The traced rectangle is one pixel wider on each side; wide tiles waste least on short frames, squarer ones
+        // on small tiles.
+        let wide = (8.0 * (pixels as f64).sqrt()) as u32;
+        let width = request.width.min(max_side).min(wide.max(128)).max(1);
+        let height = (pixels / u64::from(width + 2)).saturating_sub(2).clamp(1, u64::from(max_side)) as u32;
+        let height = height.min(request.height.max(1));
+        // Even shares: no sliver at the end.
+        let share = |full: u32, part: u32| full.div_ceil(full.div_ceil(part).max(1)).max(1);
+        let tile = [share(request.width, width), share(request.height, height)];
+        let traced = u64::from(tile[0] + 2) * u64::from(tile[1] + 2);
+        let batch = (STEPS_PER_SUBMISSION / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(samples.max(1)))) as u32;
+        Self { frame: [request.width, request.height], tile, batch }
+    }
+
+    /// Width and height of all tiles together.
+    pub fn frame(&self) -> [u32; 2] {
+        self.frame
+    }
+
+    /// Width and height of the largest tile.
+    pub fn largest(&self) -> [u32; 2] {
+        self.tile
+    }
+
+    /// The `index`th, row by row from the top left.
+    pub fn tile(&self, index: u64) -> Tile {
+        let [width, height] = self.frame;
+        let [w, h] = self.tile;
+        let across = u64::from(width.div_ceil(w));
+        let [x, y] = [(index % across) as u32 * w, (index / across) as u32 * h];
+        Tile { x, y, width: w.min(width - x), height: h.min(height - y) }
+    }
+
+    pub fn count(&self) -> u64 {
+        let [nx, ny] = [0, 1].map(|i| u64::from(self.frame[i].div_ceil(self.tile[i])));
+        nx * ny
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::PixelFormat;
+    use crate::scene::Region;
+
+    fn request(width: u32, height: u32) -> FrameRequest {
+        let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
+        FrameRequest { width, height, region, format: PixelFormat::Rgba8Srgb, transparent: false }
+    }
+
+    #[test]
+    fn tiles_cover_every_pixel_once_within_the_limits() {
+        for (width, height, steps) in [(1, 1, 30), (1280, 720, 30), (16384, 16384, 30), (5000, 3, 30), (300, 70, 6000)]
+        {
+            let plan = Plan::new(&request(width, height), 100, 2048, steps, 1);
+            let [w, h] = plan.largest().map(u64::from);
+            assert!((w + 2) * (h + 2) * 100 <= MEMORY, "{width} x {height}: {plan:?}");
+            assert!(w * h * steps <= STEPS_PER_SUBMISSION && w.max(h) + 2 <= 2048, "{plan:?}");
+            let tiles = (0..plan.count()).map(|i| plan.tile(i)).collect::<Vec<_>>();
+            let pixels = tiles.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>();
+            assert_eq!(pixels, u64::from(width) * u64::from(height));
+            let corners = tiles.iter().map(|t| (t.y, t.x)).collect::<Vec<_>>();
+            assert!(corners.is_sorted_by(|a, b| a < b), "each tile once, row by row");
+            assert!(tiles.iter().all(|t| t.x + t.width <= width && t.y + t.height <= height));
+        }
+    }
+
+    #[test]
+    fn a_frame_of_720_rows_is_one_submission_even_on_the_smallest_devices() {
+        let plan = Plan::new(&request(1280, 720), 112, 2048, 30, 1);
+        assert_eq!((plan.count(), plan.batch), (1, 1));
+    }
+}

@@ -1,0 +1,235 @@
+//! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames
+//! that may come. They end with their owner. Knows no scene.
+
+use super::kernels::{Compiled, Store};
+use super::key::KernelKey;
+use crate::deferred::hold;
+use crate::error::Result;
+use crate::gpu::device::wgpu_device::Device;
+use crate::thread_scope;
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+
+/// Threads that make pipelines in the background at most, and at most for a frame that waits. More in the background
+/// make the same number in the same time, and each, so also the one that is needed first, takes longer (H200: 8 at
+/// once take twice as long as one).
+const MOST_BEHIND: usize = 5;
+const MOST_AT_ONCE: usize = 12;
+
+/// Their owner's drop ends the threads, after the pipeline that each is making.
+pub struct Compilers {
+    /// Whether pipelines may be made on threads other than their user's.
+    threads: bool,
+    queue: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Shared {
+    queue: Mutex<Queue>,
+    /// No frame waits any more, or nothing is left to be made.
+    free: Condvar,
+}
+
+#[derive(Default)]
+struct Queue {
+    keys: VecDeque<KernelKey>,
+    /// Threads that take from the queue. One that finds it empty ends.
+    running: usize,
+    /// Frames that wait for pipelines. Meanwhile nothing is begun for frames that may come: it would take the cores,
+    /// and the locks of the driver.
+    waiting: usize,
+    started: Vec<JoinHandle<()>>,
+}
+
+impl Queue {
+    /// Keeps a thread, to wait for its end.
+    fn keep(&mut self, thread: JoinHandle<()>) {
+        self.started.retain(|thread| !thread.is_finished());
+        self.started.push(thread);
+    }
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Queue> {
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits until no frame waits, and takes the next kernel to make in the background; `None` when nothing is left,
+    /// and then the thread that asks counts as ended.
+    fn next(&self) -> Option<KernelKey> {
+        let mut queue = self.lock();
+        while queue.waiting > 0 && !queue.keys.is_empty() {
+            queue = self.free.wait(queue).unwrap_or_else(PoisonError::into_inner);
+        }
+        let key = queue.keys.pop_front();
+        if key.is_none() {
+            queue.running = queue.running.saturating_sub(1);
+        }
+        key
+    }
+}
+
+/// Pipelines that a frame waits for, and those of them that nobody has begun.
+#[must_use]
+pub struct Wanted {
+    keys: Vec<KernelKey>,
+    left: Arc<Mutex<VecDeque<KernelKey>>>,
+    shared: Arc<Shared>,
+}
+
+impl Drop for Wanted {
+    /// A frame that failed before wants nothing more.
+    fn drop(&mut self) {
+        self.left.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.shared.lock().waiting -= 1;
+        self.shared.free.notify_all();
+    }
+}
+
+impl Wanted {
+    /// The entry points, for the log.
+    pub fn names(&self) -> String {
+        self.keys.iter().map(|key| key.entry_point()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Takes part in making them until all are there. Errors: the first one's.
+    pub fn finish(self, store: &Store, device: &Device) -> Result<()> {
+        while make_next(&self.left, store, device) {}
+        self.keys.iter().copied().try_for_each(|key| store.get(device, key).map(drop))
+    }
+}
+
+/// Makes one of those that are `left`, as well as it can be. Whether there was one.
+fn make_next(left: &Mutex<VecDeque<KernelKey>>, store: &Store, device: &Device) -> bool {
+    let key = left.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+    if let Some(key) = key {
+        make(store, |store| store.get(device, key));
+    }
+    key.is_some()
+}
+
+/// Makes a pipeline; a failure is left for the frame that needs it.
+fn make(store: &Store, make_it: impl FnOnce(&Store) -> Result<Compiled>) {
+    // A host's callback hears of it once those who wait for the pipeline have it.
+    let _holding = hold();
+    // Unwind safe: the store settles a pipeline whose making panics.
+    if !matches!(catch_unwind(AssertUnwindSafe(|| make_it(store))), Ok(Ok(_))) {
+        log::debug!("a pipeline could not be made; the frame that needs it will tell why");
+    }
+}
+
+fn cores() -> usize {
+    thread::available_parallelism().map_or(1, usize::from)
+}
+
+impl Compilers {
+    /// `threads`: whether the device may be used from several at once.
+    pub fn new(threads: bool) -> Self {
+        Self { threads, queue: Arc::default() }
+    }
+
+    /// Begins to make `missing` on several threads. What fails is tried again by [`Wanted::finish`].
+    pub fn make_now(&self, store: &Arc<Store>, device: &Arc<Device>, missing: Vec<KernelKey>) -> Wanted {
+        let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
+        // Those that take longest, which come last, are begun first.
+        let left = Arc::new(Mutex::new(missing.iter().rev().copied().collect::<VecDeque<_>>()));
+        let scope = thread_scope::of_caller();
+        let mut queue = self.queue.lock();
+        queue.waiting += 1;
+        for _ in 0..helpers {
+            let (left, store, device, scope) = (left.clone(), store.clone(), device.clone(), scope.clone());
+            // A machine that has no more threads makes do with fewer.
+            let work = move || {
+                let _scope = scope();
+                while make_next(&left, &store, &device) {}
+            };
+            let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { break };
+            queue.keep(thread);
+        }
+        Wanted { keys: missing, left, shared: self.queue.clone() }
+    }
+
+    /// Does `work` on a thread of low priority.
+    pub fn run_behind(&self, work: impl FnOnce() + Send + 'static) {
+        if !self.threads {
+            return;
+        }
+        let scope = thread_scope::of_caller();
+        let work = move || {
+            let _scope = scope();
+            lower_priority();
+            if catch_unwind(AssertUnwindSafe(work)).is_err() {
+                log::debug!("work ahead of a frame panicked; the frame will do it again");
+            }
+        };
+        if let Ok(thread) = thread::Builder::new().name("bhr-ahead".into()).spawn(work) {
+            self.queue.lock().keep(thread);
+        }
+    }
+
+    /// Makes those of `keys` that are not there, and keeps those that are, in the background, in place of what waits
+    /// since an earlier call.
+    pub fn make_later(&self, store: &Arc<Store>, device: &Arc<Device>, keys: Vec<KernelKey>) {
+        if !self.threads {
+            return;
+        }
+        let mut queue = self.queue.lock();
+        queue.keys = keys.into();
+        // Half of the cores are left to the host, where there are several.
+        let most = cores().div_ceil(2).min(MOST_BEHIND);
+        while queue.running < most.min(queue.keys.len()) {
+            let (shared, store, device) = (self.queue.clone(), store.clone(), device.clone());
+            let scope = thread_scope::of_caller();
+            let work = move || {
+                let _scope = scope();
+                make_behind(&shared, &store, &device);
+            };
+            let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { return };
+            queue.running += 1;
+            queue.keep(thread);
+        }
+    }
+
+    /// Waits until the queue is empty and its threads have ended.
+    pub fn settle(&self) {
+        let started = std::mem::take(&mut self.queue.lock().started);
+        for thread in started {
+            // It catches its panics itself.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Drop for Compilers {
+    fn drop(&mut self) {
+        self.queue.lock().keys.clear();
+        self.queue.free.notify_all();
+        self.settle();
+    }
+}
+
+fn make_behind(shared: &Shared, store: &Store, device: &Device) {
+    lower_priority();
+    while let Some(key) = shared.next() {
+        make(store, |store| store.get_ahead(device, key));
+    }
+}
+
+/// On Linux a thread has a priority of its own, which it may lower; elsewhere their small number has to do. Lowered to
+/// a third of the usual share and no further, as a frame may come to wait for the pipeline that such a thread is
+/// making.
+fn lower_priority() {
+    #[cfg(target_os = "linux")]
+    {
+        const NICER: i32 = 5;
+        const NICEST: i32 = 19;
+        // SAFETY: plain system calls on this thread.
+        unsafe {
+            let thread = libc::syscall(libc::SYS_gettid) as libc::id_t;
+            let own = libc::getpriority(libc::PRIO_PROCESS, thread);
+            libc::setpriority(libc::PRIO_PROCESS, thread, (own + NICER).min(NICEST));
+        }
+    }
+}

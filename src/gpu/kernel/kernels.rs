@@ -1,0 +1,346 @@
+//! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time. Knows
+//! what each kernel binds ([`KernelKey`]), not what with.
+
+use super::compilers::{Compilers, Wanted};
+use super::key::{GROUP, KernelKey};
+use super::pipeline::{Kernel, Loops, ProvenFinite};
+use super::slots::{Slot, edge_slots};
+use crate::deferred::hold;
+use crate::error::{Error, Result};
+use crate::gpu::device::wgpu_device::Device;
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// A pipeline and the layouts of its groups.
+#[derive(Clone)]
+pub struct Compiled {
+    pipeline: wgpu::ComputePipeline,
+    layouts: Vec<wgpu::BindGroupLayout>,
+    /// Threads of a workgroup that goes over pixels.
+    group: [u32; 2],
+}
+
+/// A pipeline with what it binds; its group 0 has one `UniformPart`.
+pub struct Stage {
+    pipeline: wgpu::ComputePipeline,
+    groups: Vec<wgpu::BindGroup>,
+    group: [u32; 2],
+}
+
+/// Pipelines that a device keeps, on hardware and on software drivers, where each that has run takes some 6 MiB of
+/// the host's memory.
+const MOST_KERNELS: usize = 160;
+const MOST_KERNELS_SOFTWARE: usize = 48;
+
+/// The pipelines of one device.
+pub struct Kernels {
+    /// First, so that its threads end before the device does.
+    compilers: Compilers,
+    store: Arc<Store>,
+    device: Arc<Device>,
+    waits: AtomicU64,
+    late: AtomicU64,
+}
+
+/// How often frames found pipelines missing; for tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct KernelWaits {
+    /// Pipelines that were not there when a frame began.
+    pub waits: u64,
+    /// Pipelines that a frame had not listed, and that were made one after the other.
+    pub late: u64,
+}
+
+/// The pipelines that are there or being made; shared with the threads that make them.
+pub(in crate::gpu) struct Store {
+    state: Mutex<State>,
+    /// Pipelines that are kept.
+    most: usize,
+    /// A pipeline is there, or could not be made.
+    settled: Condvar,
+}
+
+#[derive(Default)]
+struct State {
+    made: HashMap<KernelKey, Progress>,
+    /// Those of `made` that are there: first those that no frame has asked for yet, the one made last being the last
+    /// of them; then the others, the one used last being the last.
+    used: Vec<KernelKey>,
+    /// How many no frame has asked for yet.
+    ahead: usize,
+    /// Kernels that bind the same share the layout, so that they can share groups.
+    layouts: HashMap<Vec<Slot>, wgpu::BindGroupLayout>,
+}
+
+enum Progress {
+    /// By a thread that will say so when it is done.
+    Making,
+    Made(Compiled),
+}
+
+impl State {
+    /// A frame asks for a pipeline that is there, or one that may come (`ahead`).
+    fn note_use(&mut self, key: KernelKey, ahead: bool) {
+        let Some(place) = self.used.iter().position(|used| *used == key) else { return };
+        let was_ahead = place < self.ahead;
+        if ahead && !was_ahead {
+            return;
+        }
+        self.used.remove(place);
+        self.ahead -= usize::from(was_ahead);
+        let place = if ahead { self.ahead } else { self.used.len() };
+        self.used.insert(place, key);
+        self.ahead += usize::from(ahead);
+    }
+}
+
+impl Store {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The kernel's pipeline, made now unless it is there; waits for a thread that is making it. Errors: as
+    /// [`Device::compute_pipeline`].
+    pub(in crate::gpu) fn get(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
+        self.get_for(device, key, false)
+    }
+
+    /// The same for frames that may come: takes the place of no pipeline that a frame has used.
+    pub(in crate::gpu) fn get_ahead(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
+        self.get_for(device, key, true)
+    }
+
+    fn get_for(&self, device: &Device, key: KernelKey, ahead: bool) -> Result<Compiled> {
+        let mut state = self.lock();
+        loop {
+            match state.made.get(&key) {
+                Some(Progress::Made(compiled)) => {
+                    let compiled = compiled.clone();
+                    state.note_use(key, ahead);
+                    return Ok(compiled);
+                }
+                Some(Progress::Making) => {
+                    state = self.settled.wait(state).unwrap_or_else(PoisonError::into_inner);
+                }
+                None => break,
+            }
+        }
+        state.made.insert(key, Progress::Making);
+        drop(state);
+        // Messages wait until those who wait for the pipeline have it.
+        let _holding = hold();
+        let settling = Settling { store: self, key, ahead, made: None };
+        settling.settle(self.compile(device, key))
+    }
+
+    /// Whether the kernel's pipeline is there.
+    pub(in crate::gpu) fn has(&self, key: KernelKey) -> bool {
+        matches!(self.lock().made.get(&key), Some(Progress::Made(_)))
+    }
+
+    fn compile(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
+        let layouts = key.groups().iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
+        let pipeline = device.compute_pipeline(&Kernel {
+            label: key.entry_point(),
+            source: &[&key.wgsl()],
+            loops: LOOPS,
+            entry_point: key.entry_point(),
+            constants: &key.constants(),
+            zero_workgroup_memory: false,
+            groups: &layouts.iter().collect::<Vec<_>>(),
+        })?;
+        Ok(Compiled { pipeline, layouts, group: key.workgroup() })
+    }
+
+    fn layout(&self, device: &Device, slots: &[Slot]) -> Result<wgpu::BindGroupLayout> {
+        // Messages wait until the lock is released.
+        let _holding = hold();
+        let mut state = self.lock();
+        if let Some(layout) = state.layouts.get(slots) {
+            return Ok(layout.clone());
+        }
+        let entries = slots
+            .iter()
+            .zip(0..)
+            .map(|(slot, binding)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: slot.binding_type(),
+                count: None,
+            })
+            .collect::<Vec<_>>();
+        let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
+        let layout = device.beside("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
+        state.layouts.insert(slots.into(), layout.clone());
+        Ok(layout)
+    }
+}
+
+/// A promise to tell those who wait for a pipeline what became of it, kept even if making it panics.
+struct Settling<'a> {
+    store: &'a Store,
+    key: KernelKey,
+    /// No frame has asked for it yet.
+    ahead: bool,
+    made: Option<Compiled>,
+}
+
+impl Settling<'_> {
+    fn settle(mut self, made: Result<Compiled>) -> Result<Compiled> {
+        made.inspect(|compiled| self.made = Some(compiled.clone()))
+    }
+}
+
+impl Drop for Settling<'_> {
+    fn drop(&mut self) {
+        let mut state = self.store.lock();
+        match self.made.take() {
+            Some(compiled) => {
+                state.made.insert(self.key, Progress::Made(compiled));
+                let place = if self.ahead { state.ahead } else { state.used.len() };
+                state.used.insert(place, self.key);
+                state.ahead += usize::from(self.ahead);
+                // The oldest go first.
+                let too_many = state.used.len().saturating_sub(self.store.most);
+                let old = state.used.drain(..too_many).collect::<Vec<_>>();
+                state.ahead = state.ahead.saturating_sub(too_many);
+                old.iter().for_each(|key| drop(state.made.remove(key)));
+            }
+            None => drop(state.made.remove(&self.key)),
+        }
+        drop(state);
+        self.store.settled.notify_all();
+    }
+}
+
+impl Kernels {
+    /// `threads`: whether the device may be used from several.
+    pub fn new(device: Arc<Device>, threads: bool, software: bool) -> Self {
+        let most = if software { MOST_KERNELS_SOFTWARE } else { MOST_KERNELS };
+        let store = Arc::new(Store { state: Mutex::default(), most, settled: Condvar::new() });
+        Self { compilers: Compilers::new(threads), store, device, waits: AtomicU64::new(0), late: AtomicU64::new(0) }
+    }
+
+    pub fn waits(&self) -> KernelWaits {
+        KernelWaits { waits: self.waits.load(Ordering::Relaxed), late: self.late.load(Ordering::Relaxed) }
+    }
+
+    /// Waits until nothing is left to be made in the background; for tests.
+    pub fn settle(&self) {
+        self.compilers.settle();
+    }
+
+    /// The kernel's pipeline, made now unless it is there. Errors: as [`Device::compute_pipeline`].
+    pub fn get(&self, key: KernelKey) -> Result<Compiled> {
+        if !self.store.has(key) {
+            self.late.fetch_add(1, Ordering::Relaxed);
+        }
+        self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
+    }
+
+    /// Those of `keys` whose pipelines are not there.
+    pub fn missing(&self, keys: &[KernelKey]) -> Vec<KernelKey> {
+        keys.iter().copied().filter(|key| !self.store.has(*key)).collect()
+    }
+
+    /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are
+    /// missing.
+    pub fn begin(&self, keys: &[KernelKey]) -> Option<Wanted> {
+        let missing = self.missing(keys);
+        self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
+        (!missing.is_empty()).then(|| self.compilers.make_now(&self.store, &self.device, missing))
+    }
+
+    /// Waits for what was begun. Errors: as [`Self::get`], the first one.
+    pub fn finish(&self, wanted: Option<Wanted>) -> Result<()> {
+        let Some(wanted) = wanted else { return Ok(()) };
+        let (started, names) = (Instant::now(), wanted.names());
+        let made = wanted.finish(&self.store, &self.device);
+        log::debug!("a frame waited {} ms for kernels: {names}", started.elapsed().as_millis());
+        made.map_err(|error| self.device.explain(error))
+    }
+
+    /// Does `work`, which makes what frames will need, in the background.
+    pub fn run_behind(&self, work: impl FnOnce() + Send + 'static) {
+        self.compilers.run_behind(work);
+    }
+
+    /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an
+    /// earlier call asked for and that were not begun. Without effect where a device may be used from one thread only.
+    pub fn anticipate(&self, mut keys: Vec<KernelKey>) {
+        let asked_for = {
+            let state = self.store.lock();
+            state.used.len() - state.ahead
+        };
+        // The less likely ones would take the places of the more likely ones.
+        keys.truncate(self.store.most.saturating_sub(asked_for));
+        self.compilers.make_later(&self.store, &self.device, keys);
+    }
+
+    /// The layout of group 3 of kernels that shade.
+    pub fn edge_list(&self) -> Result<wgpu::BindGroupLayout> {
+        self.store.layout(&self.device, &edge_slots())
+    }
+}
+
+/// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in
+/// every turn before it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner
+/// one has taken a step; loops counted over constants (of a pipeline or of all), over the samples of a pixel (32 at
+/// most), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host
+/// keeps `max_crossings` and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
+/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the
+/// bits of a word, which loses a bit in every turn; and the two of `star_light`, of which every turn uses up a star of
+/// the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
+const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
+
+impl Compiled {
+    /// The layout of group 2.
+    pub fn target(&self) -> Result<&wgpu::BindGroupLayout> {
+        self.layouts.get(2).ok_or_else(|| Error::internal("a kernel without a target"))
+    }
+
+    /// The pipeline with `groups`, the first of its groups: of each the resources in the order of its slots.
+    pub fn stage(&self, device: &Device, groups: &[&[wgpu::BindingResource<'_>]]) -> Result<Stage> {
+        let groups = groups.iter().zip(&self.layouts).map(|(resources, layout)| device.bind(layout, resources));
+        let groups = groups.collect::<Result<Vec<_>>>()?;
+        Ok(Stage { pipeline: self.pipeline.clone(), groups, group: self.group })
+    }
+}
+
+impl Stage {
+    /// Binds the stage and runs `groups` workgroups. `offset`: of the `UniformPart` of group 0; `None` if it has none.
+    pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, offset: Option<u32>, groups: [u32; 2]) {
+        pass.set_pipeline(&self.pipeline);
+        for (group, index) in self.groups.iter().zip(0..) {
+            pass.set_bind_group(index, group, if index == 0 { offset.as_slice() } else { &[] });
+        }
+        pass.dispatch_workgroups(groups[0], groups[1], 1);
+    }
+
+    /// One thread for each pixel of a rectangle.
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, size: [u32; 2]) {
+        self.run(pass, Some(offset), groups_over(size, self.group));
+    }
+}
+
+fn groups_over(size: [u32; 2], group: [u32; 2]) -> [u32; 2] {
+    [0, 1].map(|i| size[i].div_ceil(group[i]))
+}
+
+/// Workgroups over a rectangle of pixels.
+pub fn pixel_groups(size: [u32; 2]) -> [u32; 2] {
+    groups_over(size, GROUP)
+}
+
+/// Errors: INTERNAL if a count of workgroups exceeds what the device takes.
+pub fn check_groups(device: &Device, groups: [u32; 2]) -> Result<()> {
+    let limit = device.limits().max_compute_workgroups_per_dimension;
+    if groups.iter().any(|&g| g > limit) {
+        return Err(Error::internal(format!(
+            "a dispatch of {groups:?} workgroups exceeds the device's limit of {limit}"
+        )));
+    }
+    Ok(())
+}

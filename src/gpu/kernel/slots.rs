@@ -1,0 +1,131 @@
+//! What kernels bind: kinds of bindings, the formats of textures as the shaders declare them, and groups that kernels
+//! share.
+
+use super::key::Source;
+
+/// What a binding is.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Slot {
+    Uniform,
+    /// A uniform of which each dispatch chooses a part.
+    UniformPart,
+    Read,
+    Write,
+    Texture(TextureKind),
+    /// A texture that a sampler filters.
+    Filtered(TextureKind),
+    Sampler,
+    TextureWrite(TextureKind),
+}
+
+/// A texture as a kernel declares it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct TextureKind {
+    pub format: wgpu::TextureFormat,
+    pub dimension: wgpu::TextureViewDimension,
+}
+
+/// `record_sky`, `record_meta` and `record_disk` of traced_layout.wgsl.
+pub const TRACED: [TextureKind; 3] = [
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
+    TextureKind { format: wgpu::TextureFormat::Rgba32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array },
+];
+
+/// Radiance of shade_sample.wgsl and develop.wgsl.
+pub const RADIANCE: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// Light that bloom spreads, of frames and of grids: exposed_light, finer, coarser and glare of the shaders.
+pub const LIGHT: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba16Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// What a window is filled from: 8-bit codes, whatever curve they follow.
+pub const SCREEN: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
+
+/// Tables of a lens: a row for each branch; and columns, a layer for each branch.
+pub const LENS_ROWS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
+pub const LENS_COLUMNS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array };
+/// Flags of a lens's cells.
+pub const LENS_FLAGS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 };
+/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade.wgsl.
+const TABLES: [TextureKind; 4] = [
+    TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
+    TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
+    SKY_MAP,
+    SKY_MAP,
+];
+
+/// Pyramids of sky_map.wgsl.
+pub const SKY_MAP: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
+
+impl Slot {
+    pub(in crate::gpu) fn binding_type(self) -> wgpu::BindingType {
+        let buffer =
+            |ty, has_dynamic_offset| wgpu::BindingType::Buffer { ty, has_dynamic_offset, min_binding_size: None };
+        match self {
+            Self::Uniform => buffer(wgpu::BufferBindingType::Uniform, false),
+            Self::UniformPart => buffer(wgpu::BufferBindingType::Uniform, true),
+            Self::Read => buffer(wgpu::BufferBindingType::Storage { read_only: true }, false),
+            Self::Write => buffer(wgpu::BufferBindingType::Storage { read_only: false }, false),
+            Self::Texture(of) => wgpu::BindingType::Texture {
+                sample_type: match of.format {
+                    wgpu::TextureFormat::Rgba32Uint | wgpu::TextureFormat::R32Uint => wgpu::TextureSampleType::Uint,
+                    _ => wgpu::TextureSampleType::Float { filterable: false },
+                },
+                view_dimension: of.dimension,
+                multisampled: false,
+            },
+            Self::Filtered(of) => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: of.dimension,
+                multisampled: false,
+            },
+            Self::Sampler => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            Self::TextureWrite(of) => wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: of.format,
+                view_dimension: of.dimension,
+            },
+        }
+    }
+}
+
+impl Source {
+    /// Group 1.
+    pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
+        match self {
+            Self::Traced => TRACED.map(Slot::Texture).into(),
+            Self::Schwarzschild { .. } => {
+                let [swept, u, delay] = [LENS_ROWS, LENS_COLUMNS, LENS_COLUMNS].map(Slot::Texture);
+                vec![Slot::Uniform, swept, u, delay]
+            }
+            Self::Kerr { .. } => {
+                let [curve, sky, crossings, flags] =
+                    [LENS_ROWS, LENS_ROWS, LENS_COLUMNS, LENS_FLAGS].map(Slot::Texture);
+                vec![Slot::Uniform, curve, sky, crossings, flags, Slot::Write]
+            }
+        }
+    }
+}
+
+/// Group 0 of shade.wgsl.
+pub fn shade_slots() -> Vec<Slot> {
+    let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
+}
+
+/// Group 2 of shade_sample.wgsl.
+pub fn sum_slots() -> Vec<Slot> {
+    vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]
+}
+
+/// Group 3 of edges.wgsl.
+pub fn edge_slots() -> Vec<Slot> {
+    vec![Slot::Write]
+}

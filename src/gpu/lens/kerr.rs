@@ -1,0 +1,260 @@
+//! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk
+//! has changed, read by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
+//! no scene.
+
+use crate::error::{Error, Result};
+use crate::gpu::device::buffer::Buffer;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{self, Kernels, Stage};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind};
+use crate::physics::lens::critical::CRITICAL_NODES;
+use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution};
+use crate::physics::observer::LocalFrame;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec4};
+use wgpu::BufferUsages as Usage;
+
+/// As in lens_kerr.wgsl; as many as nodes of the critical curve, which shares their texture.
+const COLUMNS: u32 = CRITICAL_NODES as u32;
+const PER_OCTAVE: usize = 16;
+/// Orders in a layer without pattern.
+const ORDERS_A_LAYER: u32 = 4;
+/// Rows are made in so many at once: an eye that moves changes their number.
+const ROWS_STEP: u32 = 64;
+/// `Deferred` of lens_kerr_record.wgsl: bytes before the pixels, and of a pixel.
+const DEFERRED_HEAD: u64 = 68;
+const DEFERRED_PIXEL: u64 = 4;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct KerrUniform {
+    k: Vec4,
+    e1: Vec4,
+    e2: Vec4,
+    rows: [u32; 2],
+    orders: u32,
+    capture_u: f32,
+}
+
+/// What is asked of the tables.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wanted {
+    /// Of crossings; 0 without a disk.
+    pub orders: u32,
+    pub disk_u: [f64; 2],
+    pub pattern: bool,
+    pub delay: bool,
+}
+
+/// What decides the nodes' content.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Eye {
+    a: f64,
+    place: [f64; 3],
+    /// Azimuth.
+    e_phi: DVec3,
+    orders: u32,
+    pattern: bool,
+    delay: bool,
+}
+
+impl Eye {
+    fn new(frame: &LocalFrame, wanted: &Wanted) -> Self {
+        Self {
+            a: frame.a,
+            place: [frame.r, frame.sin, frame.cos],
+            e_phi: frame.e_phi,
+            orders: wanted.orders,
+            pattern: wanted.pattern,
+            delay: wanted.delay,
+        }
+    }
+}
+
+/// The tables; made when first needed.
+#[derive(Default)]
+pub struct KerrTables {
+    made: Option<Made>,
+    deferred: Option<Buffer>,
+}
+
+struct Made {
+    /// Of outer and of all rows.
+    rows: [u32; 2],
+    layers: u32,
+    uniform: Buffer,
+    curve: Texture,
+    sky: Texture,
+    crossings: Texture,
+    flags: Texture,
+    traced: Option<(Eye, KerrUniform)>,
+    flagged: Option<[f64; 2]>,
+}
+
+/// The passes that bring tables up to date.
+pub struct KerrStages {
+    trace_nodes: Option<Stage>,
+    flag_cells: Stage,
+    size: [u32; 2],
+}
+
+impl KerrTables {
+    /// Bytes of a tile's pixel on the device.
+    pub const BYTES_PER_PIXEL: u64 = DEFERRED_PIXEL;
+
+    /// Makes room for the deferred pixels of a tile.
+    pub fn prepare(&mut self, device: &Device, tile: [u32; 2]) -> Result<()> {
+        let size = DEFERRED_HEAD + u64::from(tile[0]) * u64::from(tile[1]) * DEFERRED_PIXEL;
+        if self.deferred.as_ref().is_none_or(|d| d.size() < size) {
+            self.deferred = None;
+            let usage = Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST;
+            self.deferred = Some(device.buffer("deferred pixels", size, usage)?);
+        }
+        Ok(())
+    }
+
+    /// Empties the list of deferred pixels and the sum of their steps.
+    pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(deferred) = &self.deferred {
+            encoder.clear_buffer(deferred, 0, Some(DEFERRED_HEAD));
+        }
+    }
+
+    /// Begins with the sum of the steps of deferred pixels.
+    pub fn deferred(&self) -> Option<&Buffer> {
+        self.deferred.as_ref()
+    }
+
+    /// Brings the tables up to the eye and the disk; the stages to run before they are read, `None` if they are as
+    /// needed already. `frame_uniform` holds the eye. Errors: INTERNAL for an eye that has no tables.
+    pub fn update(
+        &mut self,
+        device: &Device,
+        kernels: &Kernels,
+        frame: &LocalFrame,
+        wanted: &Wanted,
+        frame_uniform: wgpu::BindingResource<'_>,
+    ) -> Result<Option<KerrStages>> {
+        let eye = Eye::new(frame, wanted);
+        let current = self.made.as_ref().and_then(|m| m.traced).filter(|(traced, _)| *traced == eye);
+        if current.is_some() && self.made.as_ref().is_some_and(|m| m.flagged == Some(wanted.disk_u)) {
+            return Ok(None);
+        }
+        let uniform = match current {
+            Some((_, uniform)) => uniform,
+            None => self.remake(device, frame, wanted)?,
+        };
+        let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        made.traced = Some((eye, uniform));
+        made.flagged = Some(wanted.disk_u);
+        let view = |texture: &Texture| texture.view.clone();
+        let (curve, sky, crossings, flags) =
+            (view(&made.curve), view(&made.sky), view(&made.crossings), view(&made.flags));
+        let texture = wgpu::BindingResource::TextureView;
+        let lens = made.uniform.as_entire_binding();
+        let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
+        let trace_nodes = match current {
+            Some(_) => None,
+            None => Some(
+                kernels
+                    .get(KernelKey::KerrNodes { delay: wanted.delay, pattern: wanted.pattern })?
+                    .stage(device, &[&shared])?,
+            ),
+        };
+        let all = [shared.as_slice(), &[texture(&flags)]].concat();
+        let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: wanted.pattern })?.stage(device, &[&all])?;
+        Ok(Some(KerrStages { trace_nodes, flag_cells, size: [COLUMNS, uniform.rows[0] + uniform.rows[1]] }))
+    }
+
+    /// Makes room for the eye's tables and writes what the host knows of them.
+    fn remake(&mut self, device: &Device, frame: &LocalFrame, wanted: &Wanted) -> Result<KerrUniform> {
+        let resolution = Resolution { chi_nodes: COLUMNS as usize, nodes_per_octave: [PER_OCTAVE; 2] };
+        let crossings = Crossings { orders: wanted.orders as usize, disk_u: wanted.disk_u, pattern: wanted.pattern };
+        let grid = Grid::new(frame, resolution, crossings)
+            .ok_or_else(|| Error::internal(format!("no lens tables for an eye at r = {} M", frame.r)))?;
+        let rows = [Branch::Outer, Branch::Inner].map(|branch| grid.rows(branch) as u32);
+        let needed = [rows[0], rows[0] + rows[1]];
+        let layers = if wanted.pattern { wanted.orders } else { wanted.orders.div_ceil(ORDERS_A_LAYER) };
+        let serves = |m: &Made| (0..2).all(|i| m.rows[i] >= needed[i]) && m.layers >= layers;
+        if !self.made.as_ref().is_some_and(serves) {
+            self.made = None;
+            self.made = Some(Made::new(device, needed.map(|n| n.next_multiple_of(ROWS_STEP)), layers)?);
+        }
+        let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let curve = grid.curve();
+        let local = |v: DVec3| v.as_vec3().extend(0.0);
+        let uniform = KerrUniform {
+            k: curve.k.as_vec3().extend(grid.epsilon() as f32),
+            e1: local(curve.e1),
+            e2: local(curve.e2),
+            rows,
+            orders: wanted.orders,
+            capture_u: grid.capture_u() as f32,
+        };
+        let node = |i: usize| curve.at(std::f64::consts::TAU * i as f64 / CRITICAL_NODES as f64);
+        let nodes = (0..=CRITICAL_NODES).map(node).collect::<Vec<_>>();
+        let table = nodes.windows(2).flat_map(|pair| pair.iter().flat_map(|(t, slope)| [*t as f32, *slope as f32]));
+        let column = |chi: f64| [chi.sin(), chi.cos(), curve.at(chi).0, 0.0].map(|v| v as f32);
+        let columns = grid.column_angles().iter().flat_map(|chi| column(*chi)).collect::<Vec<f32>>();
+        made.traced = None;
+        device.write(&made.uniform, 0, bytemuck::bytes_of(&uniform))?;
+        device.write_rows(&made.curve, 0, bytemuck::cast_slice(&table.collect::<Vec<f32>>()))?;
+        device.write_rows(&made.curve, 1, bytemuck::cast_slice(&columns))?;
+        Ok(uniform)
+    }
+
+    /// Frees the tables.
+    pub fn release(&mut self) {
+        self.made = None;
+    }
+
+    /// After a submission that failed, nobody knows what the tables hold.
+    pub fn forget(&mut self) {
+        if let Some(made) = &mut self.made {
+            made.traced = None;
+        }
+    }
+
+    /// Group 1 of a shading kernel.
+    pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        let parts = self.made.as_ref().zip(self.deferred.as_ref());
+        let (made, deferred) = parts.ok_or_else(|| Error::internal("a lens without tables"))?;
+        let tables = [&made.curve, &made.sky, &made.crossings, &made.flags];
+        let tables = tables.map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let (uniform, deferred) = (made.uniform.as_entire_binding(), deferred.as_entire_binding());
+        Ok([uniform].into_iter().chain(tables).chain([deferred]).collect())
+    }
+}
+
+impl Made {
+    fn new(device: &Device, rows: [u32; 2], layers: u32) -> Result<Self> {
+        let texture = |kind: TextureKind, label: &str, height: u32, layers: u32| {
+            device.texture(label, kind.format, kind.dimension, [COLUMNS, height], layers)
+        };
+        // wgpu makes no array texture of one layer on GL.
+        let layers = layers.max(2);
+        Ok(Self {
+            rows,
+            layers,
+            uniform: device.buffer("lens", size_of::<KerrUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST)?,
+            curve: device.table("critical curve", LENS_ROWS.format, [COLUMNS, 2])?,
+            sky: texture(LENS_ROWS, "lens sky", rows[0], 1)?,
+            crossings: texture(LENS_COLUMNS, "lens crossings", rows[1], layers)?,
+            flags: texture(LENS_FLAGS, "lens flags", rows[1], 1)?,
+            traced: None,
+            flagged: None,
+        })
+    }
+}
+
+impl KerrStages {
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
+        let groups = kernels::pixel_groups(self.size);
+        if let Some(trace) = &self.trace_nodes {
+            trace.run(pass, None, groups);
+        }
+        self.flag_cells.run(pass, None, groups);
+    }
+}

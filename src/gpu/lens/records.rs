@@ -1,0 +1,235 @@
+//! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens.
+//! Gives shading its group 1 and knows nothing else of it.
+
+use super::kerr::{KerrStages, KerrTables, Wanted};
+use super::schwarzschild::{LensStages, SchwarzschildTables};
+use crate::error::{Error, Result};
+use crate::gpu::device::buffer::Buffer;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::key::{KernelKey, Source, Variant};
+use crate::gpu::kernel::slots::{TRACED, TextureKind};
+use crate::physics::observer::LocalFrame;
+
+/// Pixels of a row that a thread of count.wgsl sums.
+const COUNT_RUN: u32 = 8;
+/// Bytes of a texel of the record textures.
+const TEXEL: u64 = 16;
+
+/// How a frame's records are to be made.
+pub struct Making {
+    pub source: Source,
+    /// How rays are traced.
+    pub variant: Variant,
+    /// Of the disk, that a record holds at most.
+    pub crossings: u32,
+    pub eye: LocalFrame,
+    pub wanted: Wanted,
+}
+
+/// All that makes records, kept from frame to frame.
+#[derive(Default)]
+pub struct RecordMakers {
+    traced: TracedRecords,
+    schwarzschild: SchwarzschildTables,
+    kerr: KerrTables,
+}
+
+/// The passes that make the records of a tile, or the tables that they are looked up in.
+pub enum RecordStages {
+    Traced(TraceStages),
+    /// Before the frame's first tile, if the tables are stale.
+    Schwarzschild(Option<LensStages>),
+    Kerr(Option<KerrStages>),
+}
+
+impl Making {
+    /// Bytes of a tile's pixel on the device.
+    pub fn bytes_per_pixel(&self) -> u64 {
+        match self.source {
+            Source::Traced => TEXEL * (2 + u64::from(self.crossings)),
+            Source::Schwarzschild { .. } => 0,
+            Source::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
+        }
+    }
+
+    /// What makes the records of the pixels that the source leaves pending.
+    pub fn rest(&self) -> Option<Source> {
+        match self.source {
+            Source::Kerr { delay, pattern, moving, .. } => Some(Source::Kerr { delay, pattern, moving, rest: true }),
+            _ => None,
+        }
+    }
+}
+
+impl RecordMakers {
+    /// Makes room for a tile.
+    pub fn prepare(&mut self, device: &Device, making: &Making, tile: [u32; 2]) -> Result<()> {
+        match making.source {
+            Source::Traced => self.traced.prepare(device, tile, making.crossings),
+            Source::Schwarzschild { .. } => Ok(()),
+            Source::Kerr { .. } => self.kerr.prepare(device, tile),
+        }
+    }
+
+    /// The stages that `making` asks for; tables are brought up to its eye.
+    pub fn stages(
+        &mut self,
+        device: &Device,
+        kernels: &Kernels,
+        making: &Making,
+        shared: &Shared<'_>,
+    ) -> Result<RecordStages> {
+        let frame = shared.frame.clone();
+        Ok(match making.source {
+            Source::Traced => RecordStages::Traced(self.traced.stages(device, kernels, making.variant, shared)?),
+            // Only one lens is kept: both together could take 48 MB.
+            Source::Schwarzschild { delay, .. } => {
+                self.kerr.release();
+                RecordStages::Schwarzschild(self.schwarzschild.update(device, kernels, &making.eye, delay, frame)?)
+            }
+            Source::Kerr { .. } => {
+                self.schwarzschild = SchwarzschildTables::default();
+                RecordStages::Kerr(self.kerr.update(device, kernels, &making.eye, &making.wanted, frame)?)
+            }
+        })
+    }
+
+    /// Group 1 of a kernel that reads records.
+    pub fn group(&self, source: Source) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        match source {
+            Source::Traced => self.traced.group(),
+            Source::Schwarzschild { .. } => self.schwarzschild.group(),
+            Source::Kerr { .. } => self.kerr.group(),
+        }
+    }
+
+    /// Before a submission. What will hold the steps of its rays, `step_sum` or a buffer that begins with them;
+    /// `None`: they take none.
+    pub fn reset<'a>(
+        &'a self,
+        source: Source,
+        step_sum: &'a Buffer,
+        encoder: &mut wgpu::CommandEncoder,
+    ) -> Option<&'a Buffer> {
+        match source {
+            Source::Traced => {
+                encoder.clear_buffer(step_sum, 0, None);
+                Some(step_sum)
+            }
+            Source::Schwarzschild { .. } => None,
+            Source::Kerr { .. } => {
+                self.kerr.reset(encoder);
+                self.kerr.deferred()
+            }
+        }
+    }
+
+    /// After a submission that failed, nobody knows what the tables hold.
+    pub fn forget(&mut self) {
+        self.schwarzschild.forget();
+        self.kerr.forget();
+    }
+}
+
+impl RecordStages {
+    /// `begins`: these are the frame's first.
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, begins: bool, offset: u32, tile: [u32; 2]) {
+        match self {
+            Self::Traced(stages) => stages.encode(pass, offset, tile),
+            Self::Schwarzschild(Some(stages)) if begins => stages.encode(pass),
+            Self::Kerr(Some(stages)) if begins => stages.encode(pass),
+            Self::Schwarzschild(_) | Self::Kerr(_) => {}
+        }
+    }
+}
+
+/// Records of traced pixels, of a tile and one pixel around it; they grow and stay.
+#[derive(Default)]
+struct TracedRecords {
+    made: Option<Made>,
+}
+
+struct Made {
+    size: [u32; 2],
+    crossings: u32,
+    textures: [Texture; 3],
+}
+
+/// The buffers that every kernel of a frame shares.
+#[derive(Clone)]
+pub struct Shared<'a> {
+    pub frame: wgpu::BindingResource<'a>,
+    /// The `PassUniform` that the dispatch's offset chooses.
+    pub pass: wgpu::BindingResource<'a>,
+    pub step_sum: wgpu::BindingResource<'a>,
+}
+
+/// What makes the records of a tile before they are shaded.
+pub struct TraceStages {
+    trace: Stage,
+    count: Stage,
+}
+
+impl TracedRecords {
+    /// Makes room for tiles of `tile` pixels with at most `crossings` crossings of the disk.
+    fn prepare(&mut self, device: &Device, tile: [u32; 2], crossings: u32) -> Result<()> {
+        let size = tile.map(|side| side + 2);
+        let serves = |m: &Made| (0..2).all(|i| m.size[i] >= size[i]) && m.crossings >= crossings;
+        if self.made.as_ref().is_some_and(serves) {
+            return Ok(());
+        }
+        // The old ones go first: both together need not fit.
+        self.made = None;
+        let texture = |kind: TextureKind, label: &str, layers: u32| {
+            device.texture(label, kind.format, kind.dimension, size, layers)
+        };
+        let [sky, meta, disk] = TRACED;
+        let textures = [
+            texture(sky, "record sky", 1)?,
+            texture(meta, "record meta", 1)?,
+            texture(disk, "record disk", crossings)?,
+        ];
+        self.made = Some(Made { size, crossings, textures });
+        Ok(())
+    }
+
+    fn resources(&self) -> Result<[wgpu::BindingResource<'_>; 3]> {
+        let made = self.made.as_ref().ok_or_else(|| Error::internal("records without textures"))?;
+        Ok(made.textures.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view)))
+    }
+
+    /// Group 1 of a shading kernel.
+    fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        Ok(self.resources()?.into())
+    }
+
+    fn stages(&self, device: &Device, kernels: &Kernels, variant: Variant, shared: &Shared<'_>) -> Result<TraceStages> {
+        let [sky, meta, disk] = self.resources()?;
+        let Shared { frame, pass, step_sum } = shared.clone();
+        Ok(TraceStages {
+            trace: kernels
+                .get(KernelKey::Pixels(variant))?
+                .stage(device, &[&[frame, pass.clone(), sky, meta.clone(), disk]])?,
+            count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
+        })
+    }
+}
+
+impl TraceStages {
+    /// Traces a tile of `width` x `height` pixels and its margin.
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, [width, height]: [u32; 2]) {
+        self.trace.dispatch(pass, offset, [width + 2, height + 2]);
+        self.count.dispatch(pass, offset, [(width + 2).div_ceil(COUNT_RUN), height + 2]);
+    }
+}
+
+/// Bytes of the step sum.
+pub const STEP_SUM: u64 = 4;
+
+/// Creates the step sum that `Shared` holds.
+pub fn step_sum(device: &Device) -> Result<Buffer> {
+    use wgpu::BufferUsages as Usage;
+    device.buffer("step sum", STEP_SUM, Usage::STORAGE | Usage::COPY_SRC | Usage::COPY_DST)
+}

@@ -1,0 +1,170 @@
+//! The tables of a spin-0 lens on the device: built by compute passes when the eye's radius has changed, read by
+//! lens_schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
+
+use crate::error::{Error, Result};
+use crate::gpu::device::buffer::Buffer;
+use crate::gpu::device::texture::Texture;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::key::{KernelKey, LENS_GROUP};
+use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_ROWS, TextureKind};
+use crate::physics::observer::{LocalFrame, Observer};
+use crate::physics::shadow::shadow;
+use bytemuck::{Pod, Zeroable};
+use wgpu::BufferUsages as Usage;
+
+/// As in lens_schwarzschild.wgsl.
+const PER_OCTAVE: f64 = 32.0;
+const OCTAVES: f64 = 22.0;
+const INTERVALS: u32 = 128;
+/// Nodes beyond the last place that is looked up.
+const MARGIN: f64 = 4.0;
+/// Eyes further in have no captured ray that meets a disk.
+const INNER_BRANCH_FROM: f64 = 6.0;
+const BRANCHES: u32 = 2;
+
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+struct SchwarzschildUniform {
+    critical: [f32; 4],
+    separatrix: f32,
+    slope: f32,
+    nodes: [u32; 2],
+}
+
+impl SchwarzschildUniform {
+    fn new(frame: &LocalFrame) -> Self {
+        let u = 1.0 / frame.r;
+        let psi = shadow(&Observer::at_rest(*frame)).radius;
+        let half = (0.5 * psi).tan();
+        let w = half.min(1.0 / half);
+        // e0 = 2 (1/3 - u) / (1 + sqrt(2 u + 1/3))^2
+        let q = (2.0 * u + 1.0 / 3.0).sqrt();
+        let separatrix = 2.0 * (1.0 / 3.0 - u) / ((1.0 + q) * (1.0 + q));
+        let slope = if frame.rain { 1.0 } else { (1.0 - 2.0 * u).max(0.0).sqrt() };
+        let nodes = |t_hat: f64| (PER_OCTAVE * (t_hat.log2() + OCTAVES) + MARGIN).ceil() as u32;
+        let inner = if frame.r > INNER_BRANCH_FROM { nodes(half / w) } else { 0 };
+        Self {
+            critical: [half as f32, psi.sin() as f32, psi.cos() as f32, w as f32],
+            separatrix: separatrix as f32,
+            slope: slope as f32,
+            nodes: [nodes(1.0 / (half * w)), inner],
+        }
+    }
+}
+
+/// What decides the tables' content.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Eye {
+    r: f64,
+    rain: bool,
+    delay: bool,
+}
+
+/// The tables; made when first needed.
+#[derive(Default)]
+pub struct SchwarzschildTables {
+    made: Option<Made>,
+}
+
+struct Made {
+    nodes: u32,
+    delay: bool,
+    uniform: Buffer,
+    ends: Texture,
+    swept: Texture,
+    u: Texture,
+    delays: Texture,
+    filled: Option<Eye>,
+}
+
+/// The passes that fill tables.
+pub struct LensStages {
+    find_ends: Stage,
+    fill_columns: Stage,
+    groups: [u32; 2],
+}
+
+impl SchwarzschildTables {
+    /// Brings the tables up to the eye; the stages to run before they are read, `None` if they are as needed already.
+    /// `frame_uniform` holds the eye.
+    pub fn update(
+        &mut self,
+        device: &Device,
+        kernels: &Kernels,
+        frame: &LocalFrame,
+        delay: bool,
+        frame_uniform: wgpu::BindingResource<'_>,
+    ) -> Result<Option<LensStages>> {
+        let uniform = SchwarzschildUniform::new(frame);
+        let nodes = uniform.nodes[0].max(uniform.nodes[1]);
+        if !self.made.as_ref().is_some_and(|m| m.nodes >= nodes && (m.delay || !delay)) {
+            self.made = None;
+            self.made = Some(Made::new(device, nodes, delay)?);
+        }
+        let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        // Tables with delays do not serve frames without: another kernel fills them, which may round otherwise.
+        let eye = Eye { r: frame.r, rain: frame.rain, delay };
+        if made.filled == Some(eye) {
+            return Ok(None);
+        }
+        device.write(&made.uniform, 0, bytemuck::bytes_of(&uniform))?;
+        made.filled = Some(eye);
+        let view = |texture: &Texture| texture.view.clone();
+        let (ends, swept, u, delays) = (view(&made.ends), view(&made.swept), view(&made.u), view(&made.delays));
+        let texture = wgpu::BindingResource::TextureView;
+        let lens = made.uniform.as_entire_binding();
+        let find_ends = kernels
+            .get(KernelKey::SchwarzschildEnds)?
+            .stage(device, &[&[frame_uniform.clone(), lens.clone(), texture(&ends)]])?;
+        let fill_columns = kernels
+            .get(KernelKey::SchwarzschildColumns { delay })?
+            .stage(device, &[&[frame_uniform, lens, texture(&ends), texture(&swept), texture(&u), texture(&delays)]])?;
+        Ok(Some(LensStages { find_ends, fill_columns, groups: [nodes.div_ceil(LENS_GROUP), BRANCHES] }))
+    }
+
+    /// After a submission that failed, nobody knows what the tables hold.
+    pub fn forget(&mut self) {
+        if let Some(made) = &mut self.made {
+            made.filled = None;
+        }
+    }
+
+    /// Group 1 of a shading kernel.
+    pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        let made = self.made.as_ref().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let tables = [&made.swept, &made.u, &made.delays].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        Ok([made.uniform.as_entire_binding()].into_iter().chain(tables).collect())
+    }
+}
+
+impl Made {
+    fn new(device: &Device, nodes: u32, delay: bool) -> Result<Self> {
+        let texture = |kind: TextureKind, label: &str, size: [u32; 2]| {
+            device.texture(label, kind.format, kind.dimension, size, BRANCHES)
+        };
+        let row = |label| device.texture(label, LENS_ROWS.format, LENS_ROWS.dimension, [nodes, BRANCHES], 1);
+        let columns = [nodes, INTERVALS];
+        Ok(Self {
+            nodes,
+            delay,
+            uniform: device.buffer(
+                "lens",
+                size_of::<SchwarzschildUniform>() as u64,
+                Usage::UNIFORM | Usage::COPY_DST,
+            )?,
+            ends: row("lens ends")?,
+            swept: row("lens swept")?,
+            u: texture(LENS_COLUMNS, "lens u", columns)?,
+            delays: texture(LENS_COLUMNS, "lens delay", if delay { columns } else { [1, 1] })?,
+            filled: None,
+        })
+    }
+}
+
+impl LensStages {
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
+        self.find_ends.run(pass, None, self.groups);
+        self.fill_columns.run(pass, None, self.groups);
+    }
+}

@@ -1,0 +1,10 @@
+//! What tracers take and give: frames asked for, tiles, numbers, and the adapters that they run on. The tracers
+//! themselves (`cpu`, `gpu`) lie above this room; nothing here knows them.
+
+mod adapter;
+mod request;
+mod stats;
+
+pub use adapter::{AdapterInfo, Backend};
+pub use request::{FrameRequest, Progress, Tile, TileSink};
+pub use stats::{FrameStats, PASSES, StatsBoard};

@@ -1,0 +1,31 @@
+//! What is asked of a tracer: a frame, whose tiles go to a sink as they are finished. Knows no target.
+
+use crate::error::Result;
+use crate::image::PixelFormat;
+use crate::scene::Region;
+
+/// A part of the target, in its own pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Tile {
+    pub x: u32,
+    pub y: u32,
+    pub width: u32,
+    pub height: u32,
+}
+
+/// What a tracer is asked for: a width x height image, part of the frame that `region` describes.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameRequest {
+    pub width: u32,
+    pub height: u32,
+    pub region: Region,
+    pub format: PixelFormat,
+    /// Premultiplied alpha = 1 - the sky's share, sky left out.
+    pub transparent: bool,
+}
+
+/// Takes a finished tile: packed pixels, rows `bytes_per_row` apart. Runs on a thread of the tracer's, if that has one.
+pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + Send + 'a;
+
+/// Hears how much of the frame is done, 0 .. 1; false cancels. Runs on the thread that asked for the frame.
+pub type Progress<'a> = dyn FnMut(f64) -> bool + 'a;

@@ -1,0 +1,97 @@
+//! The two tracers behind one face: the CPU's, the GPU's, and the GPU's with GL, which runs on a thread of its own.
+//! Renderers, their jobs and their windows take turns with one. Knows no target of frames.
+
+use crate::cpu::CpuTracer;
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::{self, Adapter, GlTracer, GpuTracer, Search};
+use crate::scene::Scene;
+use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, Progress, TileSink};
+use parking_lot::Mutex;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+/// Every adapter on this machine, best first; the CPU tracer, always there, is last.
+pub fn adapters() -> Vec<AdapterInfo> {
+    let mut list = gpu::adapters(Search::All, false).into_iter().map(|a| a.info).collect::<Vec<_>>();
+    list.push(crate::cpu::adapter_info());
+    list
+}
+
+/// What traces: one frame at a time.
+pub enum Tracer {
+    Cpu(CpuTracer),
+    Gpu(Box<GpuTracer>),
+    Gl(Box<GlTracer>),
+}
+
+/// What a tracer runs on, as far as it can be asked while the tracer is at work.
+pub enum RunsOn {
+    Cpu,
+    Gpu(Arc<Adapter>, Arc<gpu::Device>),
+    Gl(gpu::Loss),
+}
+
+/// A tracer that a renderer, its jobs and its windows take turns with.
+pub type SharedTracer = Arc<Mutex<Tracer>>;
+
+impl Tracer {
+    /// Renders a frame and waits for it. Errors: as `Renderer::render`.
+    pub fn render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        match self {
+            Self::Cpu(t) => t.render(scene, request, sink, progress),
+            Self::Gpu(t) => t.render(scene, request, sink, progress),
+            Self::Gl(t) => t.render(scene, request, sink, progress),
+        }
+    }
+
+    /// Errors: as `Device::open`.
+    pub fn on_gpu(adapter: Adapter) -> Result<Self> {
+        match adapter.info.backend {
+            Backend::Gl => GlTracer::open(adapter).map(|t| Self::Gl(Box::new(t))),
+            _ => {
+                let name = adapter.info.name.clone();
+                let opened = catch_unwind(AssertUnwindSafe(|| GpuTracer::new(adapter)));
+                let panicked = |_| Err(Error::new(ErrorKind::NoAdapter, format!("{name}: opening it panicked")));
+                opened.unwrap_or_else(panicked).map(|t| Self::Gpu(Box::new(t)))
+            }
+        }
+    }
+
+    /// Makes all that such frames need, and a window's frames like `window`, and keeps it. Errors: as
+    /// `Renderer::render`.
+    pub fn prepare(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        window: Option<&FrameRequest>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        match self {
+            Self::Cpu(t) => window.into_iter().chain([request]).try_for_each(|request| t.prepare(scene, request)),
+            Self::Gpu(t) => t.prepare(scene, request, window, progress),
+            Self::Gl(t) => t.prepare(scene, request, window, progress),
+        }
+    }
+
+    pub fn info(&self) -> &AdapterInfo {
+        match self {
+            Self::Cpu(t) => t.adapter(),
+            Self::Gpu(t) => &t.adapter().info,
+            Self::Gl(t) => t.info(),
+        }
+    }
+
+    pub fn runs_on(&self) -> RunsOn {
+        match self {
+            Self::Cpu(_) => RunsOn::Cpu,
+            Self::Gpu(t) => RunsOn::Gpu(t.adapter().clone(), t.device()),
+            Self::Gl(t) => RunsOn::Gl(t.loss().clone()),
+        }
+    }
+}
