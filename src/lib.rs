@@ -21,6 +21,7 @@ pub mod gpu;
 pub mod image;
 pub mod job;
 pub mod physics;
+mod random;
 pub mod renderer;
 pub mod scene;
 pub mod sky;

@@ -407,6 +407,6 @@ impl Renderer {
     /// (>= 2) points, the last one its end. Always traced in f64 on the CPU. Errors: INVALID_ARGUMENT for a ray that
     /// is not valid.
     pub fn trace_path(&self, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
-        crate::cpu::trace_path(&self.scene, ray, capacity)
+        crate::scene::host_rays::trace_path(&self.scene, ray, capacity)
     }
 }

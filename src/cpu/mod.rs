@@ -9,8 +9,6 @@ mod record;
 mod refine;
 mod shade;
 
-pub use rays::{trace_path, trace_ray};
-
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Hit, Ray, Scene};

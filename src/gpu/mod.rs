@@ -16,6 +16,7 @@ pub use device::driver_lock;
 #[cfg(test)]
 pub(crate) use device::gl_thread::GlThread;
 pub(crate) use device::gl_thread::park;
+pub use device::pipeline::{Kernel, Loops, ProvenFinite};
 pub use device::readback::{Arrived, Copied, Readback};
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
@@ -26,7 +27,6 @@ pub use frame::submission::Submitted;
 pub use frame::tracer::GpuTracer;
 pub use gl_tracer::GlTracer;
 pub use kernel::kernels::KernelWaits;
-pub use kernel::pipeline::{Kernel, Loops, ProvenFinite};
 #[doc(hidden)]
 pub use kernel::wgsl::shader_sources;
 #[doc(hidden)]

@@ -1,20 +1,9 @@
 //! Whether a frame looks its rays up in tables of the eye's lens or integrates each. Decided by scene and frame size
 //! alone, so that a frame's bytes never depend on those before it.
 
-use super::{Method, Scene, View};
+use super::{LensTables, Method, Scene, View};
 use crate::physics::lens::critical;
 use crate::physics::observer::LocalFrame;
-
-/// Where tables are used; anything but `Auto` is for tests.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LensTables {
-    /// In frames large enough to pay for them.
-    #[default]
-    Auto,
-    /// In frames of any size.
-    Always,
-    Never,
-}
 
 /// Pixels times samples that pay for the tables of a spin-0 lens.
 const SCHWARZSCHILD_WORTH: u64 = 4096;

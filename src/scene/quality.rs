@@ -1,7 +1,17 @@
 //! How exactly to trace, as the host states it.
 
-use super::LensTables;
 use crate::error::{Error, Result};
+
+/// Where tables are used; anything but `Auto` is for tests.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LensTables {
+    /// In frames large enough to pay for them.
+    #[default]
+    Auto,
+    /// In frames of any size.
+    Always,
+    Never,
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]

@@ -15,6 +15,7 @@
 use super::{Effects, Scene, View};
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
+use crate::random::mix;
 use std::f64::consts::{PI, TAU};
 
 /// Of a generation, M: at its brightest (half of it) it is sheared 6 : 1 at r = 6 and 1 : 1 at r = 20. Much longer,
@@ -128,13 +129,6 @@ impl Turbulence {
             weight * visible * noise(along, turn, CELLS_AROUND * finer, key)
         })
     }
-}
-
-/// A bijection of 32 bits in which every input bit moves every output bit (Wellons 2018, "lowbias32").
-pub fn mix(mut x: u32) -> u32 {
-    x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
-    x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
-    x ^ (x >> 16)
 }
 
 /// Gradient noise at `x` and at `turn` of a circle with `around` cells. Each key shifts its lattice, on which the

@@ -220,8 +220,7 @@ mod tests {
     fn light_is_continuous() {
         let map = SkyMap::of_rows([256, 128], &|y, out| {
             (0..).zip(out).for_each(|(x, out)| {
-                *out = [0, 1, 2]
-                    .map(|c| (crate::scene::turbulence::mix(x + 1000 * y + 77_777_777 * c) >> 16) as f32 / 65536.0);
+                *out = [0, 1, 2].map(|c| (crate::random::mix(x + 1000 * y + 77_777_777 * c) >> 16) as f32 / 65536.0);
             });
         })
         .unwrap();

@@ -9,7 +9,7 @@ use crate::allocate::collected;
 use crate::error::Result;
 use crate::image::file::decode_png;
 use crate::physics::blackbody::BlackbodyTable;
-use crate::scene::turbulence::mix;
+use crate::random::mix;
 use glam::{DMat3, DVec3};
 use std::f64::consts::{LN_10, PI, TAU};
 use std::sync::OnceLock;

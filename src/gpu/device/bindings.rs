@@ -1,9 +1,7 @@
 //! Bind groups, kept from frame to frame: the frames of a setup bind the same resources again and again. Knows no
 //! kernel.
 
-use super::wgpu_device::Device;
 use crate::deferred::hold;
-use crate::error::Result;
 use std::num::NonZeroU64;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -65,40 +63,35 @@ impl Bindings {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// The group that was made of these before, if it is still kept.
+    pub fn find(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> Option<wgpu::BindGroup> {
+        self.lock().iter().find(|kept| kept.is(layout, resources)).map(|kept| kept.group.clone())
+    }
+
+    /// Keeps a group, if it binds nothing but what bhr binds.
+    pub fn keep(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
+        group: &wgpu::BindGroup,
+    ) {
+        let Some(resources) = resources.iter().map(Resource::of).collect() else { return };
+        // Messages about groups that go wait until the lock is released.
+        let _holding = hold();
+        let mut kept = self.lock();
+        if kept.len() >= MOST {
+            kept.clear();
+        }
+        kept.push(Kept { layout: layout.clone(), resources, group: group.clone() });
+    }
+
     /// Lets all go.
     pub fn clear(&self) {
         let all = std::mem::take(&mut *self.lock());
         drop(all);
-    }
-}
-
-impl Device {
-    /// A group of `layout` with `resources` in the order of its bindings: the one made before, if it is still kept.
-    /// Errors: as [`Device::scoped`].
-    pub(in crate::gpu) fn bind(
-        &self,
-        layout: &wgpu::BindGroupLayout,
-        resources: &[wgpu::BindingResource<'_>],
-    ) -> Result<wgpu::BindGroup> {
-        if let Some(kept) = self.bindings.lock().iter().find(|kept| kept.is(layout, resources)) {
-            return Ok(kept.group.clone());
-        }
-        let entries = resources
-            .iter()
-            .zip(0..)
-            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
-            .collect::<Vec<_>>();
-        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
-        let group = self.scoped("binding buffers", |d| d.create_bind_group(&descriptor))?;
-        if let Some(resources) = resources.iter().map(Resource::of).collect() {
-            // Messages about groups that go wait until the lock is released.
-            let _holding = hold();
-            let mut kept = self.bindings.lock();
-            if kept.len() >= MOST {
-                kept.clear();
-            }
-            kept.push(Kept { layout: layout.clone(), resources, group: group.clone() });
-        }
-        Ok(group)
     }
 }

@@ -2,9 +2,19 @@
 
 use super::wgpu_device::Device;
 use crate::error::{Error, Result};
-use crate::gpu::kernel::slots::{SCREEN, TextureKind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A texture as a kernel declares it.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct TextureKind {
+    pub format: wgpu::TextureFormat,
+    pub dimension: wgpu::TextureViewDimension,
+}
+
+/// What a window is filled from: 8-bit codes, whatever curve they follow.
+pub const SCREEN: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
 
 /// A 2-D texture and its view, whose bytes [`Device::bytes`] counts until it is dropped.
 pub struct Texture {

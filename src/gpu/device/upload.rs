@@ -8,21 +8,10 @@
 use super::wgpu_device::Device;
 use crate::deferred::hold;
 use crate::error::{Error, Result};
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 
 /// Bytes that are put into one buffer, about.
 const BAND_BYTES: usize = 16 << 20;
-
-/// Commands that fill buffers and textures, and go before those of the next submission.
-#[derive(Default)]
-pub(in crate::gpu) struct Uploads(Mutex<Option<wgpu::CommandEncoder>>);
-
-impl Uploads {
-    /// What is to be submitted first.
-    pub fn take(&self) -> Option<wgpu::CommandEncoder> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
-    }
-}
 
 impl Device {
     /// Writes `data` into `buffer` at `offset` (both multiples of 4) before the next submission runs. Errors: as

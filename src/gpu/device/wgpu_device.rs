@@ -46,9 +46,20 @@ pub struct Device {
     limits: wgpu::Limits,
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
-    pub(in crate::gpu) shaders: crate::gpu::kernel::pipeline::Shaders,
+    pub(in crate::gpu) shaders: super::specialise::Shaders,
     pub(in crate::gpu) bindings: super::bindings::Bindings,
-    pub(in crate::gpu) uploads: super::upload::Uploads,
+    pub(in crate::gpu) uploads: Uploads,
+}
+
+/// Commands that fill buffers and textures, and go before those of the next submission.
+#[derive(Default)]
+pub(in crate::gpu) struct Uploads(pub(in crate::gpu) Mutex<Option<wgpu::CommandEncoder>>);
+
+impl Uploads {
+    /// What is to be submitted first.
+    pub fn take(&self) -> Option<wgpu::CommandEncoder> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
 }
 
 /// What wgpu's callbacks, which come from any thread, say about a device.
@@ -248,6 +259,27 @@ impl Device {
             Err(error) => return Err(error),
         };
         Err(self.explain(Error::new(ErrorKind::SurfaceLost, message)))
+    }
+
+    /// A group of `layout` with `resources` in the order of its bindings: the one made before, if it is still kept.
+    /// Errors: as [`Device::scoped`].
+    pub(in crate::gpu) fn bind(
+        &self,
+        layout: &wgpu::BindGroupLayout,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> Result<wgpu::BindGroup> {
+        if let Some(group) = self.bindings.find(layout, resources) {
+            return Ok(group);
+        }
+        let entries = resources
+            .iter()
+            .zip(0..)
+            .map(|(resource, binding)| wgpu::BindGroupEntry { binding, resource: resource.clone() })
+            .collect::<Vec<_>>();
+        let descriptor = wgpu::BindGroupDescriptor { label: None, layout, entries: &entries };
+        let group = self.scoped("binding buffers", |d| d.create_bind_group(&descriptor))?;
+        self.bindings.keep(layout, resources, &group);
+        Ok(group)
     }
 
     /// Begins recording. Mistakes in what is recorded are reported by [`Self::submit`].

@@ -91,7 +91,7 @@ impl GpuTracer {
                     *hit = scene.hit(ray, &frame, None, &nothing);
                 }
                 Some((frame, _)) if (frame.r / horizon - 1.0).abs() < TOO_NEAR => {
-                    *hit = crate::cpu::trace_ray(scene, &exact, ray);
+                    *hit = crate::scene::host_rays::trace_ray(scene, &exact, ray);
                 }
                 Some((frame, Some((constants, state)))) => {
                     starts.push(ray_start(&constants, &state));

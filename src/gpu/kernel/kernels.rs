@@ -3,10 +3,10 @@
 
 use super::compilers::{Compilers, Wanted};
 use super::key::{GROUP, KernelKey};
-use super::pipeline::{Kernel, Loops, ProvenFinite};
 use super::slots::{Slot, edge_slots};
 use crate::deferred::hold;
 use crate::error::{Error, Result};
+use crate::gpu::device::pipeline::{Kernel, Loops, ProvenFinite};
 use crate::gpu::device::wgpu_device::Device;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -4,7 +4,5 @@
 pub(in crate::gpu) mod compilers;
 pub(in crate::gpu) mod kernels;
 pub(in crate::gpu) mod key;
-pub(in crate::gpu) mod pipeline;
 pub(in crate::gpu) mod slots;
-pub(in crate::gpu) mod specialise;
 pub(in crate::gpu) mod wgsl;

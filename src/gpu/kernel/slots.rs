@@ -2,6 +2,7 @@
 //! share.
 
 use super::key::Source;
+pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 
 /// What a binding is.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -18,13 +19,6 @@ pub enum Slot {
     TextureWrite(TextureKind),
 }
 
-/// A texture as a kernel declares it.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub struct TextureKind {
-    pub format: wgpu::TextureFormat,
-    pub dimension: wgpu::TextureViewDimension,
-}
-
 /// `record_sky`, `record_meta` and `record_disk` of traced_layout.wgsl.
 pub const TRACED: [TextureKind; 3] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
@@ -39,10 +33,6 @@ pub const RADIANCE: TextureKind =
 /// Light that bloom spreads, of frames and of grids: exposed_light, finer, coarser and glare of the shaders.
 pub const LIGHT: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba16Float, dimension: wgpu::TextureViewDimension::D2 };
-
-/// What a window is filled from: 8-bit codes, whatever curve they follow.
-pub const SCREEN: TextureKind =
-    TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
 
 /// Tables of a lens: a row for each branch; and columns, a layer for each branch.
 pub const LENS_ROWS: TextureKind =

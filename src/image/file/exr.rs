@@ -1,9 +1,10 @@
 //! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, one block at a
 //! time is held, and only those are unpacked that reach the picture.
 
-use super::load::{Loaded, Pixels};
-use super::{MAX_SIDE, io_error, pixel_count, probe, zeros};
+use super::loaded::{Loaded, Pixels};
+use super::support::{io_error, pixel_count, probe, zeros};
 use crate::error::{Error, ErrorKind, Result};
+use crate::image::memory::MAX_SIDE;
 use crate::image::memory::{ImageRef, PixelFormat};
 use ::exr::block::chunk::CompressedBlock;
 use ::exr::block::reader::ChunksReader;

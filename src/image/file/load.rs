@@ -1,48 +1,13 @@
 //! Reading image files: which kind a file is, by its first bytes, and what all kinds become.
 
+use super::loaded::Loaded;
 use super::replace::without_waiting;
-use super::{about, io_error, on_own_thread, pam, png, pnm, reserve};
+use super::support::{about, io_error, on_own_thread};
+use super::{pam, png, pnm};
 use crate::error::Result;
-use crate::image::memory::PixelFormat;
 use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
-
-/// Packed pixels of a loaded file, aligned to their channel.
-#[derive(Debug)]
-pub enum Pixels {
-    Bytes(Vec<u8>),
-    Floats(Vec<f32>),
-}
-
-impl Pixels {
-    pub fn as_bytes(&self) -> &[u8] {
-        match self {
-            Self::Bytes(bytes) => bytes,
-            Self::Floats(floats) => bytemuck::cast_slice(floats),
-        }
-    }
-
-    pub(super) fn as_mut_bytes(&mut self) -> &mut [u8] {
-        match self {
-            Self::Bytes(bytes) => bytes,
-            Self::Floats(floats) => bytemuck::cast_slice_mut(floats),
-        }
-    }
-
-    pub fn as_mut_ptr(&mut self) -> *mut u8 {
-        self.as_mut_bytes().as_mut_ptr()
-    }
-}
-
-/// A file's pixels: `Rgba8Srgb` with `Bytes`, or `Rgba32F` with `Floats`.
-#[derive(Debug)]
-pub struct Loaded {
-    pub format: PixelFormat,
-    pub width: u32,
-    pub height: u32,
-    pub pixels: Pixels,
-}
 
 /// Reads a PNG, EXR or PNM file: 8-bit files as `Rgba8Srgb`, others as linear `Rgba32F` (16-bit files carry the sRGB
 /// curve, which is undone). EXR files: the largest level of the first part that has channels R, G and B, cut to the
@@ -83,21 +48,9 @@ fn decode(mut file: impl BufRead + Seek) -> Result<Loaded> {
         #[cfg(feature = "exr")]
         [0x76, 0x2f, 0x31, 0x01, ..] => super::exr::read(file),
         #[cfg(not(feature = "exr"))]
-        [0x76, 0x2f, 0x31, 0x01, ..] => Err(crate::error::Error::unsupported(super::WITHOUT_EXR)),
+        [0x76, 0x2f, 0x31, 0x01, ..] => Err(crate::error::Error::unsupported(super::support::WITHOUT_EXR)),
         [b'P', b'1'..=b'6', ..] => pnm::read(file),
         [b'P', b'7', ..] => pam::read(file),
         _ => Err(io_error("it is no PNG, EXR or PNM file")),
     }
-}
-
-/// The inverse of the sRGB curve, IEC 61966-2-1.
-pub fn srgb_to_linear(encoded: f32) -> f32 {
-    if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
-}
-
-/// The light of every 16-bit code. Errors: OUT_OF_MEMORY.
-pub(super) fn linear_codes() -> Result<Vec<f32>> {
-    let mut codes = reserve(1 << 16)?;
-    codes.extend((0..=u16::MAX).map(|code| srgb_to_linear(f32::from(code) / 65535.0)));
-    Ok(codes)
 }

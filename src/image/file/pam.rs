@@ -1,8 +1,8 @@
 //! PAM, the PNM kind with alpha, which the `image` crate reads only in versions that bring colour management along: a
 //! header of words, then samples as in PGM and PPM.
 
-use super::load::{Loaded, Pixels, linear_codes};
-use super::{io_error, pixel_count, zeros};
+use super::loaded::{Loaded, Pixels, linear_codes};
+use super::support::{io_error, pixel_count, zeros};
 use crate::error::Result;
 use crate::image::memory::PixelFormat;
 use std::io::{BufRead, Read};

@@ -1,7 +1,7 @@
 //! PNG by the `png` crate, row by row: no second copy of the picture, neither read nor written.
 
-use super::load::{Loaded, Pixels, linear_codes};
-use super::{io_error, pixel_count, probe, zeros};
+use super::loaded::{Loaded, Pixels, linear_codes};
+use super::support::{io_error, pixel_count, probe, zeros};
 use crate::error::Result;
 use crate::image::memory::{ImageRef, PixelFormat};
 use ::png::{

@@ -1,7 +1,7 @@
 //! PBM, PGM and PPM by the `image` crate; PPM is written too.
 
-use super::load::{Loaded, Pixels, linear_codes};
-use super::{io_error, pixel_count, probe, reserve, zeros};
+use super::loaded::{Loaded, Pixels, linear_codes};
+use super::support::{io_error, pixel_count, probe, reserve, zeros};
 use crate::error::Result;
 use crate::image::memory::{ImageRef, PixelFormat};
 use ::image::codecs::pnm::{PnmDecoder, PnmEncoder, PnmSubtype, SampleEncoding};

@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all: each is written in the same folder under another name, brought to the disk,
 //! then renamed.
 
-use super::io_error;
+use super::support::io_error;
 use crate::error::Result;
 use std::borrow::Cow;
 use std::fs::{self, File, Metadata, OpenOptions};

@@ -1,6 +1,7 @@
 //! Writing image files: which kind goes with a path and a format.
 
-use super::{about, on_own_thread, png, pnm, replace};
+use super::support::{about, on_own_thread};
+use super::{png, pnm, replace};
 use crate::error::{Error, Result};
 use crate::image::memory::{ImageRef, PixelFormat};
 use std::io::BufWriter;
@@ -38,7 +39,7 @@ pub fn save(image: &ImageRef<'_>, path: &Path) -> Result<()> {
         replace::with(path, |file| {
             let mut file = BufWriter::new(file);
             encode(image, kind, &mut file)?;
-            file.into_inner().map_err(super::io_error)
+            file.into_inner().map_err(super::support::io_error)
         })
     };
     on_own_thread(write).map_err(|error| about("write", path, &error))
@@ -51,6 +52,6 @@ fn encode(image: &ImageRef<'_>, kind: FileKind, file: &mut BufWriter<std::fs::Fi
         #[cfg(feature = "exr")]
         FileKind::Exr => super::exr::write(image, file),
         #[cfg(not(feature = "exr"))]
-        FileKind::Exr => Err(Error::unsupported(super::WITHOUT_EXR)),
+        FileKind::Exr => Err(Error::unsupported(super::support::WITHOUT_EXR)),
     }
 }

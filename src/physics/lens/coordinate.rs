@@ -8,6 +8,9 @@
 
 use std::f64::consts::LN_2;
 
+/// The name of the tables in errors of memory.
+pub const LENS: &str = "the tables of a lens";
+
 /// log2 of the smallest |t_hat| that is told from 0.
 pub const LEAST_OCTAVE: f64 = -24.0;
 /// That |t_hat|.

@@ -13,12 +13,10 @@ pub mod plane;
 pub mod schwarzschild;
 pub mod table;
 
+pub use coordinate::LENS;
 pub use plane::{OrbitPlane, PlaneImage, PlaneSky, Turn};
 pub use schwarzschild::{Branch, Column, Family, Resolution};
 pub use table::{Crossing, Look, SchwarzschildLens};
-
-/// Named in out-of-memory errors.
-pub const LENS: &str = "the tables of a lens";
 
 #[cfg(test)]
 mod tests;

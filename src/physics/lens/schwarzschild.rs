@@ -22,8 +22,7 @@
 //! singular for radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi
 //! oddly.
 
-use super::LENS;
-use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE};
+use super::coordinate::{Angle, Coordinate, LEAST_OCTAVE, LENS};
 use crate::allocate::{collected, with_room};
 use crate::error::Result;
 use crate::physics::geodesic::{Clock, Constants, RAIN_CLOCK_RADIUS, rain_offset};

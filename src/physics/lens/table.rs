@@ -5,8 +5,7 @@
 //! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's
 //! integral part cubic Hermite in y and Lagrange with four nodes in x.
 
-use super::LENS;
-use super::coordinate::LEAST_T_HAT;
+use super::coordinate::{LEAST_T_HAT, LENS};
 use super::schwarzschild::{Branch, Column, Family, Resolution};
 use crate::allocate::with_room;
 use crate::error::Result;

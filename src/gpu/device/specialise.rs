@@ -5,6 +5,7 @@
 
 use crate::error::{Error, Result};
 use std::collections::{HashMap, HashSet};
+use std::sync::{Arc, Mutex};
 use wgpu::naga::back::pipeline_constants::process_overrides;
 use wgpu::naga::compact::{KeepUnused, compact};
 use wgpu::naga::front::wgsl;
@@ -13,6 +14,10 @@ use wgpu::naga::{
     BinaryOperator, Block, Expression, Function, Handle, Literal, LocalVariable, Module, ShaderStage, Statement,
     SwitchCase, UnaryOperator,
 };
+
+/// The shaders of a device by their WGSL, so that pipelines which differ in constants share the reading of it. Each
+/// has a lock of its own, so that several are read at a time.
+pub(in crate::gpu) type Shaders = Mutex<HashMap<String, Arc<Mutex<Option<Arc<Parsed>>>>>>;
 
 /// WGSL that was read once, for any values of its constants.
 #[derive(Debug)]

@@ -1,17 +1,12 @@
 //! Compute pipelines from WGSL. Knows no shader.
 
 use super::specialise::Parsed;
+use super::wgpu_device::Device;
 use crate::deferred::hold;
 use crate::error::Result;
-use crate::gpu::device::wgpu_device::Device;
 use std::borrow::Cow;
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 use std::time::Instant;
-
-/// The shaders of a device by their WGSL, so that pipelines which differ in constants share the reading of it. Each
-/// has a lock of its own, so that several are read at a time.
-pub(in crate::gpu) type Shaders = Mutex<HashMap<String, Arc<Mutex<Option<Arc<Parsed>>>>>>;
 
 /// What keeps the loops of a shader finite, which drivers rely on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
