@@ -1,7 +1,8 @@
 //! BhrCamera: the struct, the helpers that aim one, and setting, getting and advancing it.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::{anywhere, on_context};
+use super::entry::anywhere;
 use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_null, read_vector, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};

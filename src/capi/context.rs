@@ -2,9 +2,12 @@
 //! is set elsewhere.
 
 use super::adapter::{self, BHR_BACKEND_AUTO, BhrAdapterInfo, BhrBackend};
-use super::entry::{anywhere, finish, guarded, in_callback, on_context, outside_callbacks};
+use super::call::on_context;
+use super::callback::in_callback;
+use super::entry::{anywhere, finish, outside_callbacks};
 use super::gate::Gate;
 use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
+use super::panic::guarded;
 use super::pointer::{Out, check_flags};
 use super::render::Callback;
 use super::status::BhrStatus;

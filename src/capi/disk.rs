@@ -1,7 +1,8 @@
 //! BhrDisk: the accretion disk.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::{anywhere, on_context};
+use super::entry::anywhere;
 use super::pointer::{Out, check_flags};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};

@@ -1,7 +1,7 @@
 //! Which effects colour the light, and the scene's time.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::on_context;
 use super::pointer::check_finite;
 use super::status::BhrStatus;
 use crate::scene::Effects;

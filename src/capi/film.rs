@@ -1,7 +1,8 @@
 //! BhrFilm: how light becomes 8-bit pixels.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::{anywhere, on_context};
+use super::entry::anywhere;
 use super::pointer::unknown;
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};

@@ -1,7 +1,7 @@
 //! The hole: mass, spin, axis, and numbers about it.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::on_context;
 use super::pointer::{Out, read_vector};
 use super::status::BhrStatus;
 use super::versioned::{OutStruct, Versioned};

@@ -1,10 +1,13 @@
 //! BhrJob: frames in the background. One `Job` with what its waits need of the context, which may be gone by then.
 
+use super::call::{break_if_internal, on_context};
+use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{self, News, break_if_internal, finish, guarded, in_callback, on_context, outside_callbacks};
+use super::entry::{self, News, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
+use super::panic::guarded;
 use super::pointer::{Out, is_null};
 use super::render::{Callback, Report};
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};

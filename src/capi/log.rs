@@ -2,7 +2,7 @@
 //! installed here, when the first context with a callback is made, and only if the process has none. Nothing is
 //! ever printed. What comes up under a lock of the process is told when that is released (`deferred`).
 
-use super::entry::{self, Callback};
+use super::callback::{InsideCallback, in_log_callback};
 use super::gate::Gate;
 use crate::deferred::{self, Outcome};
 use crate::error::Result;
@@ -80,7 +80,7 @@ impl Sink {
             return;
         }
         let Some(_open) = self.gate.enter() else { return };
-        let _inside = Callback::log();
+        let _inside = InsideCallback::log();
         // SAFETY: the host gave this function with this pointer, and the gate is open: the context still lives.
         unsafe { (self.function)(self.user.0, level as BhrLogLevel, message.as_ptr()) };
     }
@@ -166,7 +166,7 @@ struct HostLogger;
 
 impl Log for HostLogger {
     fn enabled(&self, metadata: &Metadata<'_>) -> bool {
-        metadata.level() <= ::log::max_level() && !entry::in_log_callback()
+        metadata.level() <= ::log::max_level() && !in_log_callback()
     }
 
     fn log(&self, record: &Record<'_>) {

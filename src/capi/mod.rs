@@ -4,7 +4,7 @@
 //! written for the reader of the header. Nothing here knows physics or pixels: a function checks its arguments and
 //! makes one call into `Renderer`, `Scene` or `image`.
 //!
-//! Every entry point has one shape: out-parameters are cleared ([`pointer::Out`]), then [`entry`] takes a closure,
+//! Every entry point has one shape: out-parameters are cleared ([`pointer::Out`]), then [`entry`] (or [`call`]) takes a closure,
 //! runs it under the panic guard (with a context: under its lock) and turns its `Result` into a status, a message
 //! and a log line. Structs cross the boundary by value only ([`versioned`]); no pointer of the host's ever becomes
 //! a reference, so misaligned structs and arrays are read and written correctly. (Pixels must be aligned; `image`
@@ -15,8 +15,12 @@
 // The safety contract of every function here is the same, is the header's, and is written once, in `cbindgen.toml`.
 #![allow(clippy::missing_safety_doc)]
 
+mod call;
+mod callback;
 mod entry;
 mod gate;
+mod message;
+mod panic;
 mod pointer;
 mod versioned;
 

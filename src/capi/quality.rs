@@ -1,7 +1,8 @@
 //! BhrQuality: how exactly to trace.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::{anywhere, on_context};
+use super::entry::anywhere;
 use super::pointer::{check_reserved, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};

@@ -1,8 +1,8 @@
 //! BhrRay, BhrHit: the tracer, asked directly. Arrays of the host's are packed with the struct sizes it was
 //! compiled with.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::on_context;
 use super::pointer::{Out, check_finite, is_null};
 use super::status::BhrStatus;
 use crate::allocate::{filled, with_room};

@@ -1,7 +1,7 @@
 //! BhrRegion: the part of a larger frame that an image holds.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::on_context;
 use super::pointer::check_reserved;
 use super::status::BhrStatus;
 use super::versioned::{self, Versioned};

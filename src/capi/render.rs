@@ -1,7 +1,8 @@
 //! Rendering into the host's memory, and the progress callback that goes with it.
 
+use super::call::on_context;
+use super::callback::InsideCallback;
 use super::context::BhrContext;
-use super::entry::{self, on_context};
 use super::image::{self, BHR_IMAGE_TRANSPARENT, BhrImage};
 use super::log::User;
 use super::status::BhrStatus;
@@ -39,7 +40,7 @@ impl Report {
         let Some(callback) = self.callback else {
             return true;
         };
-        let _inside = entry::Callback::progress();
+        let _inside = InsideCallback::progress();
         // SAFETY: the host gave this function with this pointer for this context's frames.
         unsafe { (callback.function)(callback.user.0, self.told) != 0 }
     }

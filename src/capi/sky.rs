@@ -1,7 +1,8 @@
 //! BhrSky: what lies at infinity.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::{anywhere, on_context};
+use super::entry::anywhere;
 use super::image::{self, BhrImage};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};

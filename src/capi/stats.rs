@@ -1,7 +1,7 @@
 //! BhrFrameStats: numbers about the last finished frame.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::on_context;
 use super::job::{self, BhrJob};
 use super::status::BhrStatus;
 use super::versioned::{OutStruct, Versioned};

@@ -1,7 +1,7 @@
 //! BhrStatus, its names, and the message of this thread's last failure. The mapping from `ErrorKind` stands here
 //! and nowhere else.
 
-use super::entry;
+use super::message::last_message;
 use crate::error::ErrorKind;
 use std::ffi::{CStr, c_char};
 
@@ -78,7 +78,7 @@ fn name(status: BhrStatus) -> &'static CStr {
 /// inside callbacks.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_error_message() -> *const c_char {
-    entry::last_message()
+    last_message()
 }
 
 /// The constant's name, such as "BHR_ERROR_DEVICE_LOST"; static, never NULL. May be called from inside callbacks.

@@ -1,8 +1,11 @@
 //! BhrSurface: rendering into a window of the host's. One `Surface`, shared with its context, which may go first.
 
+use super::call::on_context;
+use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{News, finish, guarded, in_callback, on_context, outside_callbacks};
+use super::entry::{News, finish, outside_callbacks};
 use super::log::{self, Sink};
+use super::panic::guarded;
 use super::pointer::{Out, is_null, unknown};
 use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
 use super::window::{self, BhrWindow};

@@ -1,7 +1,7 @@
 //! BhrView: what a pixel shows.
 
+use super::call::on_context;
 use super::context::BhrContext;
-use super::entry::on_context;
 use super::pointer::unknown;
 use super::status::BhrStatus;
 use crate::scene::View;

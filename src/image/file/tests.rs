@@ -1,7 +1,8 @@
 //! Saving and loading by the Rust face: round trips, names, modes, links, broken files.
 
 use super::*;
-use crate::image::{ImageMut, ImageRef, Layout};
+use crate::error::{ErrorKind, Result};
+use crate::image::{ImageMut, ImageRef, Layout, PixelFormat};
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};

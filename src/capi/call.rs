@@ -1,0 +1,94 @@
+//! Calls on a context: one at a time, with its log callback listening.
+
+use super::context::{BhrContext, State};
+use super::entry::{Success, finish, refuse_in_callback};
+use super::log;
+use super::panic::guarded;
+use super::pointer::is_null;
+use super::status::BhrStatus;
+use crate::error::{Error, ErrorKind, Result};
+use parking_lot::MutexGuard;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A call on a context: refused inside callbacks, one at a time, with the context's log callback listening. `body`
+/// gets what the lock protects. After a failure of kind `Internal`, a caught panic above all, the context refuses
+/// everything but its end.
+///
+/// # Safety
+/// `context` is NULL or came from `bhr_context_create` and is not destroyed.
+pub(super) unsafe fn on_context<T: Success>(
+    function: &str,
+    context: *const BhrContext,
+    body: impl FnOnce(&mut State) -> Result<T>,
+) -> BhrStatus {
+    if let Err(error) = refuse_in_callback() {
+        return finish::<()>(function, Err(error));
+    }
+    // SAFETY: NULL or alive, by this function's contract.
+    let Some(context) = (unsafe { context.as_ref() }) else {
+        return finish::<()>(function, Err(is_null("context")));
+    };
+    let _scope = log::Scope::enter(context.sink());
+    let mut state = context.state.lock();
+    let result = if context.broken.load(Ordering::Relaxed) {
+        Err(Error::internal("this context failed internally before; only bhr_context_destroy is valid"))
+    } else {
+        guarded(|| body(&mut state))
+    };
+    break_if_internal(&result, &context.broken);
+    // Whoever waits goes before a thread that calls again and again.
+    MutexGuard::unlock_fair(state);
+    finish(function, result)
+}
+
+/// After a failure of kind `Internal` its context is not to be trusted.
+pub(super) fn break_if_internal<T>(result: &Result<T>, broken: &AtomicBool) {
+    if result.as_ref().is_err_and(|error| error.kind == ErrorKind::Internal) {
+        broken.store(true, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::capi::callback::InsideCallback;
+    use crate::capi::context::tests::cpu_context;
+    use crate::capi::entry::{anywhere, outside_callbacks};
+    use crate::capi::message::tests::message;
+    use crate::capi::status::*;
+
+    #[test]
+    fn a_panic_becomes_internal_and_breaks_the_context() {
+        let context = cpu_context();
+        // SAFETY: the context lives.
+        let call = |body: fn(&mut State) -> Result<()>| unsafe { on_context("bhr_test", context.get(), body) };
+        assert_eq!(call(|_| Ok(())), BHR_OK);
+        assert_eq!(call(|_| Err(Error::argument("harmless"))), BHR_ERROR_INVALID_ARGUMENT);
+        assert_eq!(message(), "bhr_test: harmless");
+        assert_eq!(call(|_| Ok(())), BHR_OK);
+        assert_eq!(call(|_| panic!("deliberate")), BHR_ERROR_INTERNAL);
+        assert!(message().contains("call.rs") && message().contains("deliberate"), "{}", message());
+        assert_eq!(call(|_| Ok(())), BHR_ERROR_INTERNAL);
+    }
+
+    #[test]
+    fn calls_inside_callbacks_are_refused() {
+        let context = cpu_context();
+        let inside = InsideCallback::progress();
+        // SAFETY: the context lives.
+        let status = unsafe { on_context("bhr_test", context.get(), |_| Ok(())) };
+        assert_eq!(status, BHR_ERROR_INVALID_STATE);
+        assert_eq!(outside_callbacks("bhr_test", || Ok(())), BHR_ERROR_INVALID_STATE);
+        assert_eq!(anywhere("bhr_test", || Ok(())), BHR_OK);
+        drop(inside);
+        // SAFETY: the context lives.
+        assert_eq!(unsafe { on_context("bhr_test", context.get(), |_| Ok(())) }, BHR_OK);
+    }
+
+    #[test]
+    fn a_null_context_is_named() {
+        // SAFETY: NULL is allowed.
+        assert_eq!(unsafe { on_context("bhr_test", std::ptr::null(), |_| Ok(())) }, BHR_ERROR_INVALID_ARGUMENT);
+        assert_eq!(message(), "bhr_test: context is NULL");
+    }
+}
