@@ -1,6 +1,6 @@
 // Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of
-// packed.wgsl or screen.wgsl, and deciding.wgsl. Functions that pixels are put by in loops have no early return: Mesa
-// 22.3's shader compiler crashes on one.
+// packed.wgsl or screen.wgsl, and deciding.wgsl. Functions that loops call have no early return, as Mesa 22.3's shader
+// compiler crashes on some; but for those under an `if` over constants, which src/gpu/device/specialise.rs leaves out.
 
 // The number of the ToneMap that a kernel is made for, or FROM_FILM where it serves all and the uniform says which.
 override TONE_MAP: u32 = 1u;
@@ -69,10 +69,7 @@ fn is_agx() -> bool {
 
 // 32-bit words of a pixel.
 fn pixel_words() -> u32 {
-    if is_float() {
-        return select(2u, 4u, is_rgba32f());
-    }
-    return 1u;
+    return select(1u, select(2u, 4u, is_rgba32f()), is_float());
 }
 
 // One pixel, in the first pixel_words() of the four words.

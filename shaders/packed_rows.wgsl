@@ -15,8 +15,15 @@ var<workgroup> row_words: array<u32, 512>;
 var<private> rows_index: u32;
 
 fn keep_words(words: vec4<u32>) {
-    for (var k = 0u; k < pixel_words(); k += 1u) {
-        row_words[pixel_words() * rows_index + k] = words[k];
+    // No loop, as in packed.wgsl.
+    let first = pixel_words() * rows_index;
+    row_words[first] = words.x;
+    if is_float() {
+        row_words[first + 1u] = words.y;
+        if is_rgba32f() {
+            row_words[first + 2u] = words.z;
+            row_words[first + 3u] = words.w;
+        }
     }
 }
 

@@ -111,6 +111,12 @@ fn what_a_host_changes_next_is_made_in_the_background() {
     // One renderer each for formats and for scenes, as a software driver keeps few kernels.
     let formats = [PixelFormat::Bgra8Srgb, PixelFormat::Rgba16F, PixelFormat::Rgba32F];
     next_frames(&formats.map(|format| -> (Change, _) { (|_| (), format) }));
+    // There and back.
+    next_frames(&[
+        (|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Rgba16F),
+        (|_| (), PixelFormat::Rgba8Srgb),
+    ]);
+    next_frames(&[(|_| (), PixelFormat::Rgba16F), (|_| (), PixelFormat::Rgba8Srgb)]);
     let scenes: [Change; 3] = [CHANGES[1], CHANGES[3], |scene| scene.view = View::Order];
     next_frames(&scenes.map(|change| (change, PixelFormat::Rgba8Srgb)));
 }
@@ -144,12 +150,17 @@ fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
         let scene = &renderer.scene;
         assert!(own == any, "{format:?}, {:?}, {:?}, {:?}", scene.film.tone_map, scene.view, scene.camera.projection);
     };
-    // 8 bits with ACES, the usual film, have their own kernel in either case.
-    compare(|_| (), PixelFormat::Bgra8Srgb);
     compare(|scene| scene.film.tone_map = ToneMap::Agx, PixelFormat::Bgra8Srgb);
     compare(|scene| scene.film.tone_map = ToneMap::None, PixelFormat::Rgba8Srgb);
-    compare(|scene| scene.quality.mapped_pixels = Some(true), PixelFormat::Rgba16F);
-    compare(|_| (), PixelFormat::Rgba32F);
+    for mapped in [
+        |scene: &mut Scene| scene.quality.mapped_pixels = Some(false),
+        |scene: &mut Scene| {
+            scene.quality.mapped_pixels = Some(true);
+        },
+    ] {
+        compare(mapped, PixelFormat::Rgba16F);
+        compare(mapped, PixelFormat::Rgba32F);
+    }
     compare(|scene| scene.camera.projection = Projection::Fisheye, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.camera.projection = Projection::Equirect, PixelFormat::Rgba16F);
     compare(|scene| scene.hole.spin = 0.5, PixelFormat::Rgba8Srgb);
@@ -157,4 +168,6 @@ fn a_kernel_for_any_film_and_projection_puts_the_same_bytes() {
     compare(|scene| scene.film.bloom = 0.3, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.view = View::Redshift, PixelFormat::Rgba8Srgb);
     compare(|scene| scene.view = View::Order, PixelFormat::R32F);
+    compare(|scene| scene.quality.mapped_pixels = Some(false), PixelFormat::R32F);
+    compare(|scene| scene.camera.projection = Projection::Perspective, PixelFormat::R32F);
 }

@@ -255,21 +255,28 @@ fn tables_give_the_same_bytes() {
     }
 }
 
-/// By how many steps of their format two pictures differ in any value: codes, or last places of floats, of which all
-/// are positive.
-fn steps_apart(format: PixelFormat, a: &[u8], b: &[u8]) -> u64 {
-    let size = match format {
-        PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => 1,
-        PixelFormat::Rgba16F => 2,
-        PixelFormat::Rgba32F | PixelFormat::R32F => 4,
+/// The largest difference of two values of pictures, in codes of 8 bits, or of floats against 1 and their own size.
+fn furthest_apart(format: PixelFormat, a: &[u8], b: &[u8]) -> f64 {
+    let values = |bytes: &[u8]| -> Vec<f64> {
+        match format {
+            PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => bytes.iter().map(|code| f64::from(*code)).collect(),
+            PixelFormat::Rgba16F => {
+                let halves = bytes.chunks_exact(2).map(|half| half::f16::from_le_bytes([half[0], half[1]]));
+                halves.map(f64::from).collect()
+            }
+            PixelFormat::Rgba32F | PixelFormat::R32F => floats(bytes).into_iter().map(f64::from).collect(),
+        }
     };
-    let value = |bytes: &[u8]| bytes.iter().rev().fold(0, |value, byte| value << 8 | u64::from(*byte));
+    let (a, b) = (values(a), values(b));
     assert_eq!(a.len(), b.len());
-    a.chunks(size).zip(b.chunks(size)).map(|(a, b)| value(a).abs_diff(value(b))).max().unwrap_or(0)
+    let scale =
+        |value: f64| if format.bytes_per_pixel() == 4 && format != PixelFormat::R32F { 1.0 } else { 1.0 + value.abs() };
+    a.iter().zip(&b).map(|(a, b)| (a - b).abs() / scale(*a)).fold(0.0, f64::max)
 }
 
 /// Kernels that put pixels into the host's memory row by row, against those that pack them on the device. They are the
-/// same sums; hardware's compilers may contract them differently, a frame always takes the one or the other.
+/// same sums, and the same bytes on software drivers; hardware's compilers may contract multiplications and additions
+/// in one and not in the other (on an H200 some bytes differ).
 #[test]
 fn pixels_put_by_rows_are_the_same() {
     let set = |renderer: &mut Renderer, spin: f64, samples: u32, tables: LensTables, view: View| {
@@ -299,12 +306,12 @@ fn pixels_put_by_rows_are_the_same() {
                     renderer.scene.quality.mapped_pixels = Some(mapped);
                     picture(&mut renderer, format, size, None, false)
                 });
-                let apart = steps_apart(format, &packed, &rows);
+                let apart = furthest_apart(format, &packed, &rows);
                 let most = match format {
-                    _ if adapter.info.software => 0,
-                    PixelFormat::Rgba32F => 1 << 10,
-                    PixelFormat::R32F => 0,
-                    PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb | PixelFormat::Rgba16F => 1,
+                    _ if adapter.info.software => 0.0,
+                    PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => 1.0,
+                    PixelFormat::Rgba16F | PixelFormat::Rgba32F => 1e-3,
+                    PixelFormat::R32F => 0.0,
                 };
                 assert!(apart <= most, "{apart}: {size:?}, spin {spin}, {samples} samples, {tables:?}, {format}");
                 deferred += if tables == LensTables::Always { renderer.stats().steps } else { 0 };

@@ -46,8 +46,8 @@ pub struct Quality {
     /// choose.
     #[doc(hidden)]
     pub mapped_pixels: Option<bool>,
-    /// Whether one kernel serves all projections, formats, tone maps and views' colours but the usual ones; `None`: on
-    /// hardware. Not the host's to choose.
+    /// Whether one kernel serves all projections, pixel formats and tone maps but the usual ones; `None`: on hardware.
+    /// Not the host's to choose.
     #[doc(hidden)]
     pub shares_kernels: Option<bool>,
     /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put

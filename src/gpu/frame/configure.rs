@@ -38,7 +38,7 @@ impl GpuTracer {
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
         // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
-        // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 3 % for it
+        // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
         let film_look = FilmLook::new(&scene.film, scene.view, request.format, target);

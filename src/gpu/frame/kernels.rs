@@ -65,7 +65,8 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     let sky = |flag| move |scene: &mut Scene| scene.sky.flags ^= flag;
     let tone_map = |tone_map| move |scene: &mut Scene| scene.film.tone_map = tone_map;
     // One of each kind is enough where one kernel serves all: films and projections but the usual ones, views.
-    let mut list = vec![changed(&spin), changed(&turbulence), changed(&bloom), changed(&tone_map(ToneMap::Agx))];
+    let mut list = vec![changed(&spin), changed(&turbulence), changed(&bloom)];
+    list.extend([ToneMap::Agx, ToneMap::Aces].map(|to| changed(&tone_map(to))));
     list.extend([Projection::Fisheye, Projection::Perspective].map(|to| changed(&projection(to))));
     list.extend([Motion::FreeFall, Motion::Static].map(|to| changed(&motion(to))));
     list.extend([View::Redshift, View::Light].map(|to| changed(&view(to))));
@@ -135,6 +136,10 @@ impl GpuTracer {
             return;
         }
         let next = neighbours(scene).into_iter().filter_map(|next| self.set_up(&next, request, target).ok());
+        // Hosts that began with another format may come to the usual one.
+        let usual = FrameRequest { format: PixelFormat::Rgba8Srgb, ..*request };
+        let usual = (target != PixelTarget::Screen).then(|| self.set_up(scene, &usual, target).ok()).flatten();
+        let next = next.chain(usual);
         let mut keys = Vec::<KernelKey>::new();
         for key in next.flat_map(|setup| setup.kernels().into_iter().rev()) {
             if !keys.contains(&key) {

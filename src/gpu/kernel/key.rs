@@ -95,13 +95,15 @@ impl FilmLook {
         Self { pixels: Some(pixels), false_colour: !shows_light, tone_map: Some(tone_map), target }
     }
 
-    /// For every format, but in windows, which have one kind, and, of light, every tone map.
+    /// The same for every tone map, and, but in windows, which have one kind of pixels, for every format. Views other
+    /// than light have no tone map.
     pub fn of_any(self) -> Self {
         let pixels = self.pixels.filter(|_| self.target == PixelTarget::Screen);
         Self { pixels, tone_map: self.false_colour.then_some(ToneMap::None), ..self }
     }
 
-    /// Whether hosts begin with such pixels: light in 8 bits by ACES, the default.
+    /// Whether hosts begin with such pixels, which have kernels of their own (`GpuTracer::set_up`): light in 8 bits by
+    /// ACES, the default.
     pub fn is_usual(self) -> bool {
         self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces)
     }
