@@ -1,0 +1,228 @@
+//! The rooms of src/ and who may use whom: every room imports from the rooms below it only, files that import each
+//! other in a circle are at most three, and no source is long or wide. What ARCHITECTURE.md says, tested.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// From the lowest to the highest; rooms of one line do not import each other.
+const ROOMS: [&[&str]; 15] = [
+    &["error"],
+    &["allocate", "deferred", "random", "thread_scope"],
+    &["physics"],
+    &["image"],
+    &["sky"],
+    &["scene"],
+    &["film"],
+    &["tracer"],
+    &["window"],
+    &["cpu", "gpu"],
+    &["tracers"],
+    &["job", "surface"],
+    &["renderer"],
+    &["capi"],
+    &["lib"],
+];
+
+/// The same within `gpu`.
+const GPU_ROOMS: [&[&str]; 6] =
+    [&["device"], &["kernel"], &["lens"], &["frame", "window"], &["gl_tracer"], &["mod"]];
+
+const LONGEST_FILE: usize = 600;
+const WIDEST_LINE: usize = 120;
+const LARGEST_CIRCLE: usize = 3;
+
+/// A module's path below the crate, such as ["gpu", "device", "texture"].
+type Module = Vec<String>;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).to_owned()
+}
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, found);
+        } else {
+            found.push(path);
+        }
+    }
+}
+
+/// The modules of the crate and their text, without comments and tests.
+fn modules() -> BTreeMap<Module, String> {
+    let source = root().join("src");
+    let mut found = Vec::new();
+    files(&source, &mut found);
+    let rust = found.into_iter().filter(|path| path.extension().is_some_and(|e| e == "rs"));
+    rust.map(|path| {
+        let place = path.strip_prefix(&source).unwrap().with_extension("");
+        let mut module = place.iter().map(|part| part.to_str().unwrap().to_owned()).collect::<Module>();
+        if matches!(module.last().map(String::as_str), Some("mod" | "lib")) {
+            module.pop();
+        }
+        let text = fs::read_to_string(&path).unwrap();
+        let code = text.split("#[cfg(test)]\nmod ").next().unwrap();
+        // A visibility imports nothing.
+        let code = code.replace("pub(in crate::gpu)", "pub").replace("pub(crate)", "pub");
+        (module, code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n"))
+    })
+    .collect()
+}
+
+/// `a::{b, c::{d, e}}` to `a::b`, `a::c::d`, `a::c::e`.
+fn expanded(tree: &str) -> Vec<String> {
+    let Some((head, rest)) = tree.split_once('{') else { return vec![tree.to_owned()] };
+    let (mut depth, mut item, mut items) = (0, String::new(), Vec::new());
+    for c in rest[..rest.rfind('}').unwrap()].chars() {
+        match c {
+            ',' if depth == 0 => items.push(std::mem::take(&mut item)),
+            _ => {
+                depth += i32::from(c == '{') - i32::from(c == '}');
+                item.push(c);
+            }
+        }
+    }
+    items.push(item);
+    items.iter().filter(|item| !item.is_empty()).flat_map(|item| expanded(&format!("{head}{item}"))).collect()
+}
+
+/// What a module imports: the paths behind its `use`, and whether they are exported. Inline modules lie in their file.
+fn imports(code: &str) -> Vec<(String, bool)> {
+    let mut found = Vec::new();
+    for (at, _) in code.match_indices("use ") {
+        let before = &code[code[..at].rfind('\n').map_or(0, |n| n + 1)..at];
+        let exported = before.trim_start().starts_with("pub");
+        let indented = before.starts_with(' ');
+        if !(before.trim().is_empty() || exported) {
+            continue;
+        }
+        let end = code[at..].find(';').map_or(code.len(), |n| at + n);
+        let tree = code[at + 4..end].replace(" as ", "@").split_whitespace().collect::<String>();
+        if !(indented && tree.starts_with("super")) {
+            found.extend(expanded(&tree).into_iter().map(|path| (path, exported)));
+        }
+    }
+    for (at, _) in code.match_indices("crate::") {
+        let path = code[at..].split(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).next().unwrap();
+        found.push((path.trim_end_matches(':').to_owned(), false));
+    }
+    found
+}
+
+/// The module of this crate in which what `path`, written in `from`, names is defined.
+fn resolved(all: &BTreeMap<Module, String>, from: &Module, path: &str, depth: u32) -> Option<Module> {
+    let mut parts = path.split("::").map(|part| part.split('@').next().unwrap()).peekable();
+    let mut module = match *parts.peek()? {
+        "crate" => Vec::new(),
+        "self" | "super" => from.clone(),
+        first => {
+            let child = [from.as_slice(), &[first.to_owned()]].concat();
+            return all.contains_key(&child).then(|| resolved(all, from, &format!("self::{path}"), depth)).flatten();
+        }
+    };
+    while matches!(parts.peek(), Some(&"crate" | &"self" | &"super")) {
+        if parts.next() == Some("super") {
+            module.pop();
+        }
+    }
+    while let Some(part) = parts.peek() {
+        let child = [module.as_slice(), &[(*part).to_owned()]].concat();
+        if !all.contains_key(&child) {
+            break;
+        }
+        module = child;
+        parts.next();
+    }
+    // A name that the module has from another one.
+    if let Some(name) = parts.next().filter(|_| depth < 4) {
+        for (export, _) in imports(&all[&module]).into_iter().filter(|(_, exported)| *exported) {
+            let shown = export.rsplit("::").next().unwrap().rsplit('@').next().unwrap().to_owned();
+            if shown == name
+                && let Some(home) = resolved(all, &module, &export, depth + 1)
+            {
+                return Some(home);
+            }
+        }
+    }
+    Some(module)
+}
+
+/// Who imports from whom.
+fn arrows() -> BTreeMap<Module, BTreeSet<Module>> {
+    let all = modules();
+    let of = |module: &Module, code: &str| {
+        let targets = imports(code).into_iter().filter_map(|(path, _)| resolved(&all, module, &path, 0));
+        targets.filter(|target| target != module).collect()
+    };
+    all.iter().map(|(module, code)| (module.clone(), of(module, code))).collect()
+}
+
+fn height(rooms: &[&[&str]], room: &str) -> usize {
+    rooms.iter().position(|line| line.contains(&room)).unwrap_or_else(|| panic!("room {room} is not in the list"))
+}
+
+#[test]
+fn rooms_import_downward() {
+    let mut upward = Vec::new();
+    let room = |module: &Module, level: usize| module.get(level).map_or("lib", String::as_str).to_owned();
+    let inner = |module: &Module| module.get(1).map_or("mod", String::as_str).to_owned();
+    for (from, targets) in arrows() {
+        for to in targets.iter().filter(|to| !to.is_empty()) {
+            let (a, b) = (room(&from, 0), room(to, 0));
+            let outer = a != b && height(&ROOMS, &b) >= height(&ROOMS, &a);
+            let (c, d) = (inner(&from), inner(to));
+            let within = a == "gpu" && b == "gpu" && c != d && height(&GPU_ROOMS, &d) >= height(&GPU_ROOMS, &c);
+            if outer || within {
+                upward.push(format!("{} -> {}", from.join("::"), to.join("::")));
+            }
+        }
+    }
+    assert!(upward.is_empty(), "{upward:#?}");
+}
+
+#[test]
+fn circles_of_files_are_small() {
+    let arrows = arrows();
+    let reached = |from: &Module| {
+        let (mut seen, mut left) = (BTreeSet::new(), vec![from.clone()]);
+        while let Some(module) = left.pop() {
+            left.extend(arrows[&module].iter().filter(|next| seen.insert((*next).clone())).cloned());
+        }
+        seen
+    };
+    let all = arrows.keys().map(|module| (module, reached(module))).collect::<BTreeMap<_, _>>();
+    for (module, reach) in &all {
+        let circle = reach.iter().filter(|other| all[other].contains(*module)).collect::<Vec<_>>();
+        assert!(circle.len() <= LARGEST_CIRCLE, "{circle:?}");
+    }
+}
+
+/// Copies of old files, and files of other programs' formats.
+const AS_THEY_ARE: [&str; 3] = ["tests/abi", "tests/golden", "src/sky/data"];
+
+#[test]
+fn no_source_is_long_or_wide() {
+    let mut wrong = Vec::new();
+    for folder in ["benches", "examples-c", "include", "shaders", "src", "tests"] {
+        let mut found = Vec::new();
+        files(&root().join(folder), &mut found);
+        for path in found {
+            let name = path.strip_prefix(root()).unwrap();
+            let source = path.extension().is_some_and(|e| ["rs", "wgsl", "c", "h"].iter().any(|s| e == *s));
+            if !source || AS_THEY_ARE.iter().any(|kept| name.starts_with(kept)) {
+                continue;
+            }
+            let text = fs::read_to_string(&path).unwrap();
+            let lines = text.lines().count();
+            // The header is one file because hosts read it so.
+            if lines > LONGEST_FILE && !name.starts_with("include") {
+                wrong.push(format!("{} has {lines} lines", name.display()));
+            }
+            let wide = text.lines().zip(1..).filter(|(line, _)| line.chars().count() > WIDEST_LINE);
+            wrong.extend(wide.map(|(_, number)| format!("{}:{number} is wide", name.display())));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
