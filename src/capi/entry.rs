@@ -17,20 +17,20 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, Once, OnceLock, PoisonError};
 use std::thread::LocalKey;
 
-/// Room for a message with two longest paths in it.
+/// The room for a message: two paths of the longest kind fit into it.
 const MESSAGE_BYTES: usize = 10_000;
 
 thread_local! {
-    /// Ends with a NUL. In place, so that no memory is needed to say that there is none, and a pointer that a host
-    /// kept too long shows a later message, not freed memory. (Nor does it need a destructor, which is memory as
-    /// well.)
+    /// The message, which ends with a NUL. It is stored in place, so that saying that there is no memory needs none,
+    /// and a pointer that a host kept too long shows a later message, not freed memory. (It needs no destructor either,
+    /// which would take memory as well.)
     static MESSAGE: RefCell<[u8; MESSAGE_BYTES]> = const { RefCell::new([0; MESSAGE_BYTES]) };
     static CALLS: Cell<u32> = const { Cell::new(0) };
     static CALLBACKS: Cell<u32> = const { Cell::new(0) };
     static LOG_CALLBACKS: Cell<u32> = const { Cell::new(0) };
 }
 
-/// What a body that succeeds says.
+/// The value of a body that succeeds.
 pub(super) trait Success {
     fn status(self) -> BhrStatus;
 }
@@ -41,7 +41,7 @@ impl Success for () {
     }
 }
 
-/// A success with news, or without: a status >= 0.
+/// The status of a success, >= 0: with news, or without.
 pub(super) struct News(pub BhrStatus);
 
 impl Success for News {
@@ -86,7 +86,7 @@ pub(super) unsafe fn on_context<T: Success>(
         guarded(|| body(&mut state))
     };
     break_if_internal(&result, &context.broken);
-    // Whoever waits goes before a thread that calls again and again.
+    // Threads that wait for the lock go first: one that calls again and again would otherwise keep them out.
     MutexGuard::unlock_fair(state);
     finish(function, result)
 }
@@ -105,7 +105,7 @@ pub(super) fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
         HOOK.call_once(silence_panics);
     }
     let _call = Depth::enter(&CALLS);
-    // Unwind safe: whoever could see what the panic left half done is refused from then on.
+    // This is unwind safe: whoever could see what the panic left half done is refused from then on.
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
         // Dropping an unknown payload may panic again.
         std::mem::forget(payload);
@@ -120,7 +120,7 @@ pub(super) fn finish<T: Success>(function: &str, result: Result<T>) -> BhrStatus
         Ok(success) => return success.status(),
         Err(error) => error,
     };
-    // `allocate` says nothing where there is no memory to say it in.
+    // `allocate` leaves the message empty where there is no memory for one.
     let message = if error.message.is_empty() { "no memory is left" } else { &error.message };
     ::log::error!(target: "bhr", "{function}: {message}");
     keep_message(format_args!("{function}: {message}"));
@@ -128,22 +128,22 @@ pub(super) fn finish<T: Success>(function: &str, result: Result<T>) -> BhrStatus
 }
 
 fn keep_message(message: std::fmt::Arguments<'_>) {
-    // A thread that is ending has no message any more.
+    // A thread that is ending has no place for a message any more.
     let _ = MESSAGE.try_with(|kept| {
         let mut kept = kept.borrow_mut();
         let mut rest = &mut kept[..MESSAGE_BYTES - 1];
-        // What does not fit is left out.
+        // The part that does not fit is left out.
         let _ = rest.write_fmt(message);
         let written = MESSAGE_BYTES - 1 - rest.len();
         let text = &mut kept[..written];
         text.iter_mut().filter(|byte| **byte == 0).for_each(|byte| *byte = b' ');
-        // No half of a character.
+        // The message is not cut inside a character.
         let length = std::str::from_utf8(text).map_or_else(|cut| cut.valid_up_to(), str::len);
         kept[length] = 0;
     });
 }
 
-/// Never NULL.
+/// This thread's message; never NULL.
 pub(super) fn last_message() -> *const c_char {
     MESSAGE.try_with(|kept| kept.as_ptr().cast_const().cast()).unwrap_or(c"".as_ptr())
 }
@@ -167,7 +167,7 @@ fn count(counter: &'static LocalKey<Cell<u32>>) -> u32 {
     counter.try_with(Cell::get).unwrap_or(0)
 }
 
-/// Adds one to a counter of this thread while it lives.
+/// Adds one to a counter of this thread for as long as it lives.
 struct Depth(&'static LocalKey<Cell<u32>>);
 
 impl Depth {
@@ -183,7 +183,7 @@ impl Drop for Depth {
     }
 }
 
-/// While it lives, this thread is inside a callback of the host's.
+/// This thread is inside a callback of the host's for as long as this value lives.
 pub(super) struct Callback {
     _any: Depth,
     _log: Option<Depth>,
@@ -207,13 +207,13 @@ fn last_panic() -> std::sync::MutexGuard<'static, Option<String>> {
 
 type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Sync + Send>;
 
-/// The hook that was there.
+/// The panic hook that was installed before this one.
 static BEFORE: OnceLock<Hook> = OnceLock::new();
 
 /// Rust's default hook prints. Panics inside a call, and on the tracers' threads (named "bhr.."), are noted
 /// instead; any other panic in the process goes where it went before.
 fn silence_panics() {
-    // Not captured, as a closure that holds nothing takes no memory.
+    // The closure does not capture the old hook: a closure that holds nothing takes no memory.
     BEFORE.get_or_init(std::panic::take_hook);
     std::panic::set_hook(Box::new(|info| {
         let ours = count(&CALLS) > 0 || std::thread::current().name().is_some_and(|name| name.starts_with("bhr"));
@@ -221,7 +221,7 @@ fn silence_panics() {
             Some(before) if !ours => before(info),
             _ => {
                 let text = describe(info);
-                // On a thread for GL it must not unwind: this does not return there, and does nothing elsewhere.
+                // A thread for GL must not unwind: this call does not return there, and does nothing on other threads.
                 gpu::park(&text);
                 *last_panic() = Some(text);
             }
