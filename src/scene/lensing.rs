@@ -5,7 +5,7 @@ use super::{Method, Scene, View};
 use crate::physics::lens::critical;
 use crate::physics::observer::LocalFrame;
 
-/// Where tables are used; anything but `Auto` is for tests.
+/// The frames in which tables are used; anything but `Auto` is for tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LensTables {
     /// In frames large enough to pay for them.

@@ -1,5 +1,5 @@
-//! What to draw, as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot
-//! of it. May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
+//! The scene as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
+//! May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
 
 pub mod camera;
 pub mod disk;
@@ -31,8 +31,8 @@ pub use sky::Sky;
 use crate::sky::{SkyMap, StarIndex};
 use std::sync::Arc;
 
-/// Which relativistic effects colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored.
-/// g = g_gravity g_doppler, split at the local static observer (ZAMO) of emitter and camera.
+/// The relativistic effects that colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored. The redshift g
+/// = g_gravity g_doppler is split at the local static observer (ZAMO) of emitter and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects(pub u32);
 
@@ -62,7 +62,7 @@ impl Effects {
     }
 }
 
-/// What a pixel shows (`BHR_VIEW_*`).
+/// The quantity that a pixel shows (`BHR_VIEW_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum View {
@@ -87,7 +87,7 @@ pub struct Scene {
     /// `None`: no disk.
     pub disk: Option<Disk>,
     pub sky: Sky,
-    /// What `Sky::MAP` shows; `None`: nothing.
+    /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
     pub film: Film,
     pub effects: Effects,
