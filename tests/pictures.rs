@@ -99,7 +99,7 @@ fn scenes() -> Vec<NamedScene> {
     list
 }
 
-/// Of the turbulent scenes, pixels that change by more than a few steps.
+/// The turbulent scenes: pixels must change by more than a few steps.
 #[test]
 fn turbulence_shows_its_seed_and_its_time() {
     let size = [192, 108];
@@ -111,7 +111,7 @@ fn turbulence_shows_its_seed_and_its_time() {
         ("delay", |r| r.scene.effects.0 ^= Effects::LIGHT_DELAY),
     ];
     for (name, set) in scenes().into_iter().filter(|(name, _)| name.starts_with("turbulent")) {
-        // From there the disk is a narrow band.
+        // Seen from there the disk is a narrow band.
         let least = if name.contains("horizon") { 100 } else { 1000 };
         for (tracer, mut renderer) in both() {
             for (what, change) in changes {
@@ -255,8 +255,8 @@ fn tables_give_the_same_bytes() {
     }
 }
 
-/// By how many steps of their format two pictures differ in any value: codes, or last places of floats, of which all
-/// are positive.
+/// The most steps of their format by which two pictures differ in any value: codes, or last places of floats, of which
+/// all are positive.
 fn steps_apart(format: PixelFormat, a: &[u8], b: &[u8]) -> u64 {
     let size = match format {
         PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => 1,
