@@ -1,7 +1,35 @@
 /* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
  *
- * Made by cbindgen from the Rust sources in src/capi; do not edit. A program needs nothing else to read: make a
- * context (bhr_context_create), set mass, spin and camera, render into memory of your own (bhr_render_image).
+ * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing
+ * else: make a context, set the hole and the camera, and render into memory of your own.
+ *
+ * Example
+ *   #include "bhr.h"
+ *
+ *   static uint8_t pixels[360][640][4];
+ *
+ *   int main(void)
+ *   {
+ *       BhrContext *context;
+ *       BhrCamera camera;
+ *       BhrImage image;
+ *       if (bhr_context_create(BHR_ABI_VERSION, NULL, &context) < 0)
+ *           return 1; // bhr_error_message() says why, here and below
+ *       bhr_set_spin(context, 0.9);
+ *       bhr_camera_init(&camera, sizeof camera);
+ *       bhr_camera_orbit(&camera, 20.0, 0.0, 0.1); // distance, azimuth, elevation
+ *       bhr_set_camera(context, &camera);
+ *       bhr_image_init(&image, sizeof image); // RGBA8_SRGB, rows without gaps
+ *       image.width = 640;
+ *       image.height = 360;
+ *       image.pixels = pixels;
+ *       image.byte_size = sizeof pixels;
+ *       BhrStatus status = bhr_render_image(context, &image);
+ *       if (status == BHR_OK)
+ *           status = bhr_image_save(&image, "hole.png");
+ *       bhr_context_destroy(context);
+ *       return status == BHR_OK ? 0 : 1;
+ *   }
  *
  * Units
  *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild
@@ -80,10 +108,7 @@ extern "C" {
 
 /* ---- version ---- */
 
-/**
- * This header's major version. Before 1.0 a greater minor version may add functions and grow structs; it removes
- * nothing within one BHR_ABI_VERSION.
- */
+/** This header's major version. Before 1.0 minor versions add and grow, and remove nothing. */
 #define BHR_VERSION_MAJOR 0
 
 /** This header's minor version. */
@@ -106,58 +131,30 @@ const char *bhr_version_string(void);
 
 /* ---- status, messages ---- */
 
-/** What a call returns: 0 success, > 0 success with news, < 0 error. */
+/**
+ * The result of a call: 0 is success, above 0 success with news, below 0 an error. bhr_error_message has the details.
+ */
 typedef int32_t BhrStatus;
 
-/** Success. */
-#define BHR_OK 0
-
-/** bhr_job_wait: the job was still running when the timeout ran out. */
-#define BHR_NOT_READY 1
-
-/** bhr_render_surface: the window is 0 x 0 or hidden, or is being resized; nothing was presented. */
-#define BHR_FRAME_SKIPPED 2
-
-/**
- * An argument is NULL, not finite, out of its range, or an unknown constant; the message names it, its value and
- * the limit.
- */
-#define BHR_ERROR_INVALID_ARGUMENT (0 - 1)
-
-/** Wrong order, a combination that cannot be, or a call from inside a callback. */
-#define BHR_ERROR_INVALID_STATE (0 - 2)
-
-/** The program was compiled against a header of another BHR_ABI_VERSION. */
-#define BHR_ERROR_INCOMPATIBLE_ABI (0 - 3)
-
-/** Valid, but not on this adapter, platform or build. */
-#define BHR_ERROR_UNSUPPORTED (0 - 4)
-
-/** No adapter of the kind asked for exists. */
-#define BHR_ERROR_NO_ADAPTER (0 - 5)
-
-/** Host or device memory ran out. */
-#define BHR_ERROR_OUT_OF_MEMORY (0 - 6)
-
-/** The progress callback, or bhr_job_cancel, stopped the work. */
-#define BHR_ERROR_CANCELLED (0 - 7)
-
-/** The window behind a surface is gone, or its context was recovered: destroy the surface. */
-#define BHR_ERROR_SURFACE_LOST (0 - 8)
-
-/** The GPU's device is gone; bhr_context_recover brings the context back. */
-#define BHR_ERROR_DEVICE_LOST (0 - 9)
-
-/** A file could not be read or written. */
-#define BHR_ERROR_IO (0 - 10)
-
-/** A bug in bhr was caught; only destroy calls are valid on this context, its jobs and surfaces from now on. */
-#define BHR_ERROR_INTERNAL (0 - 99)
+#define BHR_OK 0                           /**< Success. */
+#define BHR_NOT_READY 1                    /**< bhr_job_wait: the job was still running when the timeout ran out. */
+#define BHR_FRAME_SKIPPED 2                /**< bhr_render_surface: the window is hidden or 0 x 0; nothing presented. */
+#define BHR_ERROR_INVALID_ARGUMENT (0 - 1) /**< An argument is NULL, not finite, out of its range, or unknown. */
+#define BHR_ERROR_INVALID_STATE (0 - 2)    /**< Wrong order, an impossible combination, or inside a callback. */
+#define BHR_ERROR_INCOMPATIBLE_ABI (0 - 3) /**< The program was compiled for another BHR_ABI_VERSION. */
+#define BHR_ERROR_UNSUPPORTED (0 - 4)      /**< Valid, but not on this adapter, platform or build. */
+#define BHR_ERROR_NO_ADAPTER (0 - 5)       /**< No adapter of the kind asked for exists. */
+#define BHR_ERROR_OUT_OF_MEMORY (0 - 6)    /**< Host or device memory ran out. */
+#define BHR_ERROR_CANCELLED (0 - 7)        /**< The progress callback, or bhr_job_cancel, stopped the work. */
+#define BHR_ERROR_SURFACE_LOST (0 - 8)     /**< A window is gone or its context recovered: destroy the surface. */
+#define BHR_ERROR_DEVICE_LOST (0 - 9)      /**< The GPU device is gone: call bhr_context_recover. */
+#define BHR_ERROR_IO (0 - 10)              /**< A file could not be read or written. */
+#define BHR_ERROR_INTERNAL (0 - 99)        /**< A bug in bhr was caught; only destroy calls are valid now. */
 
 /**
- * What this thread's last failed call says about it: the function, the argument, its value and the limit. Never
- * NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from
- * inside callbacks.
+ * The message of the last call that failed on this thread: the function, the argument, its value and the limit. Never
+ * NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from inside
+ * callbacks.
  */
 const char *bhr_error_message(void);
 
@@ -166,8 +163,15 @@ const char *bhr_status_name(BhrStatus status);
 
 /* ---- log ---- */
 
-/** How much a log callback hears: messages of this level and those more severe. */
+/** How much a log callback is told: messages of this level and of the more severe ones. */
 typedef int32_t BhrLogLevel;
+
+#define BHR_LOG_OFF 0   /**< Nothing. */
+#define BHR_LOG_ERROR 1 /**< Every failed call, and errors of the graphics stack. */
+#define BHR_LOG_WARN 2  /**< Also trouble that failed no call, such as an adapter passed over. The default. */
+#define BHR_LOG_INFO 3  /**< Also the adapter that was chosen, and why. */
+#define BHR_LOG_DEBUG 4 /**< Also what the graphics stack (wgpu) reports about itself. */
+#define BHR_LOG_TRACE 5 /**< Everything: slow. */
 
 /**
  * Gets bhr's messages and those of the graphics stack under it, one per call, without a line end. message lives for
@@ -179,39 +183,42 @@ typedef int32_t BhrLogLevel;
  */
 typedef void (*BhrLogFn)(void *user, BhrLogLevel level, const char *message);
 
-/** Nothing. */
-#define BHR_LOG_OFF 0
-
-/** Every failed call, and errors of the graphics stack. */
-#define BHR_LOG_ERROR 1
-
-/** Also what went wrong without failing a call, such as an adapter passed over. The default. */
-#define BHR_LOG_WARN 2
-
-/** Also the adapter that was chosen, and why. */
-#define BHR_LOG_INFO 3
-
-/** Also what the graphics stack (wgpu) reports about itself. */
-#define BHR_LOG_DEBUG 4
-
-/** Everything: slow. */
-#define BHR_LOG_TRACE 5
-
 /* ---- adapters ---- */
 
-/** BhrAdapterInfo.flags: a GPU with memory of its own. */
-#define BHR_ADAPTER_DISCRETE 1u
+#define BHR_ADAPTER_DISCRETE 1u /**< BhrAdapterInfo.flags: a GPU with memory of its own. */
+#define BHR_ADAPTER_SOFTWARE 2u /**< BhrAdapterInfo.flags: a software driver, or the CPU tracer. */
 
-/** BhrAdapterInfo.flags: a software driver, or the CPU tracer. */
-#define BHR_ADAPTER_SOFTWARE 2u
-
-/** The interface to an adapter. */
+/**
+ * The interface to an adapter.
+ *
+ * BHR_BACKEND_AUTO takes the best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches;
+ * else a software driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which
+ * needs seconds for its first frame, is never chosen.
+ *
+ * BHR_BACKEND_GL reaches OpenGL and OpenGL ES through EGL or WGL, hardware or software. A thread of the library makes
+ * all its GL calls, and ends with the context: a GL context that is current on one of the host's threads stays
+ * current. With Mesa, bhr's GL context uses EGL's surfaceless display. A process has only one of these, and bhr never
+ * terminates it. If the host does (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until
+ * bhr_context_recover; a bhr_context_create or bhr_context_recover that is running meanwhile returns
+ * BHR_ERROR_NO_ADAPTER. The host may call eglTerminate while a call or a job of one context is running, but not while
+ * calls or jobs of several contexts on this backend are: EGL may give the handle of a context that has ended to
+ * another one. Each time, some 10 MiB and a sleeping thread for each context may stay behind until the process ends,
+ * because a context that has lost its display cannot be closed.
+ */
 typedef int32_t BhrBackend;
+
+#define BHR_BACKEND_AUTO 0   /**< The best one there is, in the order above. */
+#define BHR_BACKEND_CPU 1    /**< The built-in double-precision CPU tracer: needs no driver. */
+#define BHR_BACKEND_VULKAN 2 /**< Vulkan. */
+#define BHR_BACKEND_METAL 3  /**< Metal. */
+#define BHR_BACKEND_D3D12 4  /**< Direct3D 12. */
+#define BHR_BACKEND_GL 5     /**< OpenGL or OpenGL ES. */
 
 /** One adapter. */
 typedef struct BhrAdapterInfo {
     /** sizeof(BhrAdapterInfo), set by the caller. */
     uint32_t struct_size;
+    /** BHR_BACKEND_*, never AUTO. */
     BhrBackend backend;
     /** BHR_ADAPTER_* bits. */
     uint32_t flags;
@@ -219,7 +226,7 @@ typedef struct BhrAdapterInfo {
     uint32_t vendor_id;
     /** PCI id of the device; 0 for the CPU tracer. */
     uint32_t device_id;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
     /** UTF-8, cut where it is longer. */
     char name[256];
@@ -228,54 +235,32 @@ typedef struct BhrAdapterInfo {
 } BhrAdapterInfo;
 
 /**
- * The best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches; else a software
- * driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which needs seconds for
- * its first frame, is never chosen.
- */
-#define BHR_BACKEND_AUTO 0
-
-/** The built-in double-precision CPU tracer: needs no driver. */
-#define BHR_BACKEND_CPU 1
-
-/** Vulkan. */
-#define BHR_BACKEND_VULKAN 2
-
-/** Metal. */
-#define BHR_BACKEND_METAL 3
-
-/** Direct3D 12. */
-#define BHR_BACKEND_D3D12 4
-
-/**
- * OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
- * with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
- * uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
- * (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover; a
- * bhr_context_create or bhr_context_recover that is running meanwhile returns BHR_ERROR_NO_ADAPTER. It may do so while
- * a call or a job of one context is running, but not while several contexts on this backend have some: EGL may give
- * the handle of a context that has ended to another one. Each time, some 10 MiB and a sleeping thread for each context
- * may stay behind until the process ends, because a context that has lost its display cannot be closed.
- */
-#define BHR_BACKEND_GL 5
-
-/**
- * How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than GL are
- * looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors:
- * INVALID_ARGUMENT for NULL.
+ * Counts the adapters of this machine: at least 1, because the CPU tracer is always there, and always last. Adapters
+ * other than GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks.
+ * Errors: INVALID_ARGUMENT for NULL.
  */
 BhrStatus bhr_adapter_count(uint32_t *out_count);
 
 /**
- * The adapter at index: GPUs first, then software drivers, the CPU tracer last. BHR_BACKEND_AUTO need not take the
- * first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong struct_size, or an index
- * not below bhr_adapter_count.
+ * Fills in info for the adapter at index: GPUs come first, then software drivers, the CPU tracer last.
+ * BHR_BACKEND_AUTO need not take the first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a
+ * wrong struct_size, or an index not below bhr_adapter_count.
  */
 BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
 
 /* ---- windows of the host ---- */
 
-/** Which kind a BhrWindow is of. Fields that the kind does not name are ignored. */
+/** The kind of a BhrWindow. It decides which fields are read; the others are ignored. */
 typedef int32_t BhrWindowKind;
+
+#define BHR_WINDOW_XLIB 1        /**< X11 through Xlib: display = Display *, id = Window. */
+#define BHR_WINDOW_XCB 2         /**< X11 through XCB: display = xcb_connection_t *, id = xcb_window_t. */
+#define BHR_WINDOW_WAYLAND 3     /**< Wayland: display = wl_display *, handle = wl_surface *. */
+#define BHR_WINDOW_WIN32 4       /**< Windows: handle = HWND, aux = HINSTANCE or NULL. */
+#define BHR_WINDOW_APPKIT 5      /**< macOS: handle = NSView *. */
+#define BHR_WINDOW_UIKIT 6       /**< iOS: handle = UIView *. */
+#define BHR_WINDOW_METAL_LAYER 7 /**< macOS, iOS: handle = CAMetalLayer *. */
+#define BHR_WINDOW_ANDROID 8     /**< Android: handle = ANativeWindow *. */
 
 /**
  * A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
@@ -287,59 +272,35 @@ typedef struct BhrWindow {
     uint32_t struct_size;
     /** BHR_WINDOW_*. */
     BhrWindowKind kind;
-    /** As the kind says. */
+    /** The connection to the display, where the kind has one. */
     void *display;
-    /** As the kind says. */
+    /** The window, view, layer or surface, where the kind has a pointer to it. */
     void *handle;
-    /** As the kind says. */
+    /** A second pointer, for Windows only. */
     void *aux;
-    /** As the kind says: the id of an X11 window. */
+    /** X11: the id of the window. */
     uint64_t id;
     /** X11: the id of the window's visual; may be 0. */
     uint64_t visual_id;
     /** X11: the number of the window's screen; may be 0. */
     int32_t screen;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
 } BhrWindow;
 
-/** X11 through Xlib: display = Display *, id = Window. */
-#define BHR_WINDOW_XLIB 1
-
-/** X11 through XCB: display = xcb_connection_t *, id = xcb_window_t. */
-#define BHR_WINDOW_XCB 2
-
-/** Wayland: display = wl_display *, handle = wl_surface *. */
-#define BHR_WINDOW_WAYLAND 3
-
-/** Windows: handle = HWND, aux = HINSTANCE or NULL. */
-#define BHR_WINDOW_WIN32 4
-
-/** macOS: handle = NSView *. */
-#define BHR_WINDOW_APPKIT 5
-
-/** iOS: handle = UIView *. */
-#define BHR_WINDOW_UIKIT 6
-
-/** macOS, iOS: handle = CAMetalLayer *. */
-#define BHR_WINDOW_METAL_LAYER 7
-
-/** Android: handle = ANativeWindow *. */
-#define BHR_WINDOW_ANDROID 8
-
 /* ---- context ---- */
-
-/**
- * BhrContextOptions.flags: the driver's validation layers, where installed (OpenGL has none), check bhr and report to
- * the log. Slow.
- */
-#define BHR_CONTEXT_VALIDATION 1u
 
 /**
  * A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
  * wait for each other.
  */
 typedef struct BhrContext BhrContext;
+
+/**
+ * BhrContextOptions.flags: the driver's validation layers check bhr and report to the log. Slow. Ignored where they
+ * are not installed, and by OpenGL, which has none.
+ */
+#define BHR_CONTEXT_VALIDATION 1u
 
 /** How to make a context. Fill in with bhr_context_options_init first. */
 typedef struct BhrContextOptions {
@@ -356,16 +317,16 @@ typedef struct BhrContextOptions {
     int32_t adapter_index;
     /** Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use. */
     uint32_t cpu_threads;
-    /** What log_fn hears. Default BHR_LOG_WARN. */
+    /** The messages that log_fn is told: this level and the more severe ones. Default BHR_LOG_WARN. */
     BhrLogLevel log_level;
     /** NULL (default): silent. */
     BhrLogFn log_fn;
     /** Handed to log_fn. */
     void *log_user;
     /**
-     * A window that the adapter must be able to present to; looked at during the call only. With AUTO adapters
-     * that cannot are passed over; the CPU tracer, whose frames reach windows in other ways, always serves. NULL
-     * (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
+     * A window that the adapter must be able to present to; it is looked at during the call only. With AUTO, adapters
+     * that cannot are passed over; the CPU tracer always qualifies, because its frames reach windows in other ways.
+     * NULL (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
      * present.
      */
     const BhrWindow *compatible_window;
@@ -388,7 +349,7 @@ BhrStatus bhr_context_create(uint32_t abi_version,
                              const BhrContextOptions *options,
                              BhrContext **out_context);
 
-/** What the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
+/** Fills in info for the adapter that the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
 BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 
 /**
@@ -401,46 +362,15 @@ BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 BhrStatus bhr_context_recover(BhrContext *context);
 
 /**
- * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then frees
- * it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its
- * jobs must still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other
- * thread may begin a call on it any more. From inside a callback it does nothing, as the context is in use:
- * bhr_error_message then says so.
+ * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a
+ * second for pipelines that are being compiled, then frees it. Its surfaces end too, but both they and its jobs must
+ * still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
+ * begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
+ * then says so.
  */
 void bhr_context_destroy(BhrContext *context);
 
 /* ---- the black hole ---- */
-
-/** Numbers about the hole and the camera's observer. Lengths in scene units; NaN where not defined. */
-typedef struct BhrHoleInfo {
-    /** sizeof(BhrHoleInfo), set by the caller. */
-    uint32_t struct_size;
-    /** 0. */
-    uint32_t reserved;
-    /** r+ = M + sqrt(M^2 - a^2). */
-    double horizon_radius;
-    /** 2 M. */
-    double ergosphere_equatorial_radius;
-    /** Equatorial circular photon orbit towards +ph. */
-    double photon_orbit_prograde;
-    /** The one towards -ph. */
-    double photon_orbit_retrograde;
-    /** Innermost stable circular orbit of matter towards +ph. */
-    double isco_prograde;
-    /** That of matter towards -ph. */
-    double isco_retrograde;
-    /** Spin 0: 3 sqrt(3) M; NaN with spin. */
-    double critical_impact_parameter;
-    /**
-     * Spin 0: angular radius of the shadow as the camera's observer sees it, radians (Synge 1966, with
-     * aberration); NaN with spin.
-     */
-    double shadow_angular_radius;
-    /** Boyer-Lindquist r of the camera. */
-    double camera_radius;
-    /** d tau / d t of the camera's observer. */
-    double camera_time_rate;
-} BhrHoleInfo;
 
 /**
  * Sets the mass M in scene lengths (G = c = 1; the Schwarzschild radius is 2 M): finite, > 0. Default 1.
@@ -454,15 +384,42 @@ BhrStatus bhr_set_spin(BhrContext *context, double spin);
 /**
  * Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. Errors:
  * INVALID_ARGUMENT.
- *
  */
 BhrStatus bhr_set_axis(BhrContext *context, const double axis[3]);
 
-/**
- * The mass, spin and axis (unit) as they are set. Errors: INVALID_ARGUMENT for NULL.
- *
- */
+/** Reads the mass, the spin and the axis (a unit vector) as they are set. Errors: INVALID_ARGUMENT for NULL. */
 BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_spin, double out_axis[3]);
+
+/** Numbers about the hole and the camera's observer. Lengths are in scene units; what is not defined is NaN. */
+typedef struct BhrHoleInfo {
+    /** sizeof(BhrHoleInfo), set by the caller. */
+    uint32_t struct_size;
+    /** Reserved: 0. */
+    uint32_t reserved;
+    /** r+ = M + sqrt(M^2 - a^2). */
+    double horizon_radius;
+    /** 2 M, at every spin. */
+    double ergosphere_equatorial_radius;
+    /** Equatorial circular photon orbit towards +ph. */
+    double photon_orbit_prograde;
+    /** Equatorial circular photon orbit towards -ph. */
+    double photon_orbit_retrograde;
+    /** Innermost stable circular orbit of matter towards +ph. */
+    double isco_prograde;
+    /** Innermost stable circular orbit of matter towards -ph. */
+    double isco_retrograde;
+    /** Spin 0: 3 sqrt(3) M; NaN with spin. */
+    double critical_impact_parameter;
+    /**
+     * Spin 0: angular radius of the shadow as the camera's observer sees it, radians (Synge 1966, with
+     * aberration); NaN with spin.
+     */
+    double shadow_angular_radius;
+    /** Boyer-Lindquist r of the camera. */
+    double camera_radius;
+    /** d tau / d t, the rate of the clock of the camera's observer. */
+    double camera_time_rate;
+} BhrHoleInfo;
 
 /**
  * Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
@@ -471,16 +428,14 @@ BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_
 BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
 
 /**
- * The metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph), signature - +
- * + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
- *
+ * Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph),
+ * signature - + + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
  */
 BhrStatus bhr_metric_at(const BhrContext *context, const double position[3], double out_metric[16]);
 
 /**
- * The Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist (t,
- * r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
- *
+ * Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist
+ * (t, r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
  */
 BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
 
@@ -489,11 +444,44 @@ BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3]
 /** The lens. Camera axes: right = forward x up, then up = right x forward. */
 typedef int32_t BhrProjection;
 
+/** A flat picture; fov_y in (0, pi). */
+#define BHR_PROJECTION_PERSPECTIVE 0
+
 /**
- * How the camera's observer moves. What the hole forbids at the camera's place is INVALID_STATE when a frame or
- * rays are asked for.
+ * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
+ * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
+ * 0 in a TRANSPARENT image, NaN in views, rays without direction.
+ */
+#define BHR_PROJECTION_FISHEYE 1
+
+/**
+ * All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude towards
+ * up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the
+ * poles, where pixels are far narrower than high, the light of single stars is not exact.
+ */
+#define BHR_PROJECTION_EQUIRECT 2
+
+/**
+ * Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face it
+ * is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way sees, not
+ * its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a
+ * frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
+ * corners up to a quarter is lost.
+ */
+#define BHR_PROJECTION_CUBE 3
+
+/**
+ * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
+ * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
+ * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
+ * circular geodesic, in the equatorial plane only.
  */
 typedef int32_t BhrMotion;
+
+#define BHR_MOTION_STATIC 0    /**< At rest; with spin, the zero angular momentum observer (ZAMO). */
+#define BHR_MOTION_FREE_FALL 1 /**< Falls radially from rest at infinity. */
+#define BHR_MOTION_ORBIT 2     /**< On a circular orbit towards +ph. */
+#define BHR_MOTION_VELOCITY 3  /**< Moves with BhrCamera.velocity. */
 
 /** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
 typedef struct BhrCamera {
@@ -514,7 +502,7 @@ typedef struct BhrCamera {
     double fov_y;
     /** BHR_MOTION_*. Default STATIC. */
     BhrMotion motion;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
     /**
      * For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
@@ -522,46 +510,6 @@ typedef struct BhrCamera {
      */
     double velocity[3];
 } BhrCamera;
-
-/** A flat picture; fov_y in (0, pi). */
-#define BHR_PROJECTION_PERSPECTIVE 0
-
-/**
- * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
- * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
- * 0 in a TRANSPARENT image, NaN in views, rays without direction.
- */
-#define BHR_PROJECTION_FISHEYE 1
-
-/**
- * 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is
- * ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels
- * are far narrower than high, the light of single stars is not exact.
- */
-#define BHR_PROJECTION_EQUIRECT 2
-
-/**
- * 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
- * forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
- * ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
- * Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
- */
-#define BHR_PROJECTION_CUBE 3
-
-/** At rest; the zero angular momentum observer (ZAMO) when the hole spins. */
-#define BHR_MOTION_STATIC 0
-
-/** Radially from rest at infinity; inside a spin-0 horizon too. */
-#define BHR_MOTION_FREE_FALL 1
-
-/**
- * Circular, along +ph. Spin 0: with beta = 1 / sqrt(r / M - 2), r > 3 M, at any latitude. With spin: the circular
- * geodesic, in the equatorial plane only.
- */
-#define BHR_MOTION_ORBIT 2
-
-/** With BhrCamera.velocity. */
-#define BHR_MOTION_VELOCITY 3
 
 /**
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
@@ -573,7 +521,6 @@ BhrStatus bhr_camera_init(BhrCamera *camera, size_t struct_size);
  * Sets position, forward (towards target) and up of a camera; touches no context. Any thread, inside callbacks
  * too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, numbers not finite, position (0,
  * 0, 0) or equal to target, up zero or along the line of sight.
- *
  */
 BhrStatus bhr_camera_look_at(BhrCamera *camera,
                              const double position[3],
@@ -599,12 +546,13 @@ BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
 /**
- * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
- * stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
- * *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
- * fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as
- * at bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was.
- * Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion cannot be; UNSUPPORTED for VELOCITY.
+ * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a STATIC
+ * one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
+ * it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time,
+ * and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from outside to inside (M
+ * = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time. On failure the camera
+ * stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible;
+ * UNSUPPORTED for VELOCITY.
  */
 BhrStatus bhr_camera_advance(const BhrContext *context,
                              BhrCamera *camera,
@@ -613,8 +561,7 @@ BhrStatus bhr_camera_advance(const BhrContext *context,
 
 /* ---- accretion disk ---- */
 
-/** BhrDisk.flags: the matter orbits towards -ph. */
-#define BHR_DISK_RETROGRADE 1u
+#define BHR_DISK_RETROGRADE 1u /**< BhrDisk.flags: the matter orbits towards -ph. */
 
 /**
  * A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux. Radii in
@@ -636,12 +583,12 @@ typedef struct BhrDisk {
     /** 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
     double brightness;
     /**
-     * Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns
-     * about the smooth disk, and is carried along by bhr_set_time. A pattern lives for 120 M, and every 60 M a new
-     * one begins: they fade in and out, two at a time.
+     * Contrast of the structure that orbits with the matter, from 0, smooth (default), to 1. It makes the disk lighter
+     * and darker by turns, and bhr_set_time carries it along. A pattern lives for 120 M, and every 60 M a new one
+     * begins: two at a time fade in and out.
      */
     double turbulence;
-    /** Another one gives another turbulence, the same one always the same. Default 0. */
+    /** Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0. */
     uint64_t seed;
 } BhrDisk;
 
@@ -658,16 +605,34 @@ BhrStatus bhr_disk_init(BhrDisk *disk, size_t struct_size);
 BhrStatus bhr_set_disk(BhrContext *context, const BhrDisk *disk);
 
 /**
- * The disk as it is set. *out_present is 1 with a disk, else 0, and then disk gets the defaults. Errors:
- * INVALID_ARGUMENT for NULL or a wrong struct_size.
+ * Reads the disk as it is set. *out_present becomes 1 with a disk; without one it becomes 0, and disk gets the
+ * defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
  */
 BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_present);
 
 /* ---- images in the host's memory ---- */
 
+/** A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest. */
+typedef int32_t BhrFormat;
+
+/** 4 bytes: red, green, blue with the sRGB curve, alpha. */
+#define BHR_FORMAT_RGBA8_SRGB 1
+
+/** 4 bytes: blue, green, red with the sRGB curve, alpha. */
+#define BHR_FORMAT_BGRA8_SRGB 2
+
+/** 4 half floats: linear radiance, Rec. 709 primaries; alpha. */
+#define BHR_FORMAT_RGBA16F 3
+
+/** 4 floats: linear radiance, Rec. 709 primaries; alpha. */
+#define BHR_FORMAT_RGBA32F 4
+
+/** 1 float: the value of a view other than BHR_VIEW_LIGHT. */
+#define BHR_FORMAT_R32F 5
+
 /**
- * BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom
- * adds light and leaves alpha: glare over the host's own picture.
+ * BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
+ * Bloom adds light and leaves alpha as it is: glare over the host's own picture.
  */
 #define BHR_IMAGE_TRANSPARENT 1u
 
@@ -677,9 +642,6 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
  * 0.2.0.
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
-
-/** A pixel's bytes in memory order. */
-typedef int32_t BhrFormat;
 
 /**
  * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
@@ -713,27 +675,9 @@ typedef struct BhrImage {
     uint64_t byte_size;
     /** BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only. */
     uint32_t flags;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
 } BhrImage;
-
-/** 4 bytes: red, green, blue with the sRGB curve, alpha. */
-#define BHR_FORMAT_RGBA8_SRGB 1
-
-/** 4 bytes: blue, green, red with the sRGB curve, alpha. */
-#define BHR_FORMAT_BGRA8_SRGB 2
-
-/**
- * 4 half floats, linear, Rec. 709 primaries. A radiance of 1 is the luminance of the default disk's hottest ring
- * at rest.
- */
-#define BHR_FORMAT_RGBA16F 3
-
-/** 4 floats, as above. */
-#define BHR_FORMAT_RGBA32F 4
-
-/** 1 float: views other than BHR_VIEW_LIGHT. */
-#define BHR_FORMAT_R32F 5
 
 /**
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
@@ -782,16 +726,16 @@ BhrStatus bhr_image_release(BhrImage *image);
 #define BHR_SKY_STARS 1u
 
 /**
- * BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards
- * the Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS
- * the real ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and
- * 110 MB of device memory.
+ * BhrSky.flags: a random star field of a million stars to V = 11, with the real sky's numbers in each magnitude, its
+ * crowding towards the Milky Way, and its colours. The same seed gives the same stars on every machine. Together with
+ * STARS it adds the stars that are fainter than the catalogue's (V > 8). It is made when it is first drawn, within
+ * about a second, and takes 110 MB of device memory.
  */
 #define BHR_SKY_PROCEDURAL 2u
 
 /**
- * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s): true to
- * about a degree, eight times as bright next to the stars as it is to the eye.
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s). It is true to
+ * about a degree, and next to the stars eight times as bright as the eye sees it.
  */
 #define BHR_SKY_MILKY_WAY 4u
 
@@ -806,7 +750,7 @@ BhrStatus bhr_image_release(BhrImage *image);
  */
 #define BHR_SKY_GRID 16u
 
-/** What lies at infinity. */
+/** The sky: everything that lies at infinity. */
 typedef struct BhrSky {
     /** sizeof(BhrSky). */
     uint32_t struct_size;
@@ -862,10 +806,14 @@ BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 /** The curve from light to pixels. */
 typedef int32_t BhrToneMap;
 
+#define BHR_TONE_MAP_NONE 0 /**< No curve: light above 1 is clipped. */
+#define BHR_TONE_MAP_ACES 1 /**< A filmic curve after ACES. */
+#define BHR_TONE_MAP_AGX 2  /**< The AgX curve. */
+
 /**
- * Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
- * tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone
- * map, the sRGB curve, dithering.
+ * How light becomes pixels. It applies to 8-bit formats and windows only, because float formats hold linear radiance;
+ * and to BHR_VIEW_LIGHT only, because the other views show values. In this order: exposure, bloom, tone map, the sRGB
+ * curve, dithering.
  */
 typedef struct BhrFilm {
     /** sizeof(BhrFilm). */
@@ -889,15 +837,6 @@ typedef struct BhrFilm {
     double bloom;
 } BhrFilm;
 
-/** Clips at 1. */
-#define BHR_TONE_MAP_NONE 0
-
-/** A filmic curve after ACES. */
-#define BHR_TONE_MAP_ACES 1
-
-/** AgX. */
-#define BHR_TONE_MAP_AGX 2
-
 /**
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
@@ -912,30 +851,17 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 
 /* ---- relativistic effects, time ---- */
 
-/**
- * Frequency shift by motion colours the light. The redshift g = g_gravity g_doppler is split at the local static
- * observer (ZAMO) of emitter and camera.
- */
-#define BHR_EFFECT_DOPPLER_SHIFT 1u
-
-/** Gravitational redshift colours the light. */
-#define BHR_EFFECT_GRAVITY_SHIFT 2u
-
-/** Intensity follows g^3 (I_nu), g^4 (bolometric). */
-#define BHR_EFFECT_BEAMING 4u
+#define BHR_EFFECT_DOPPLER_SHIFT 1u /**< The frequency shift by motion colours the light. */
+#define BHR_EFFECT_GRAVITY_SHIFT 2u /**< The gravitational redshift colours the light. */
+#define BHR_EFFECT_BEAMING 4u       /**< The intensity follows g^3 (I_nu), g^4 (bolometric). */
+#define BHR_EFFECT_LIGHT_DELAY 8u   /**< The moving disk is seen at its retarded time. */
+#define BHR_EFFECT_ALL 4294967295u  /**< All effects, as a new context has them. */
 
 /**
- * The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all
- * of the disk is seen as it is at the t that bhr_set_time gives.
- */
-#define BHR_EFFECT_LIGHT_DELAY 8u
-
-/** All effects, as a new context has them. */
-#define BHR_EFFECT_ALL 4294967295u
-
-/**
- * Sets which effects colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
- * Lensing itself stays. Errors: INVALID_ARGUMENT for NULL.
+ * Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL. Lensing
+ * itself cannot be switched off. The redshift g = g_gravity g_doppler is split at the local static observers (ZAMO) of
+ * emitter and camera. LIGHT_DELAY shows in a turbulent disk only, from inside a spin-0 horizon too; without it, all of
+ * the disk is seen as it is at the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
  */
 BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 
@@ -950,11 +876,38 @@ BhrStatus bhr_set_time(BhrContext *context, double time);
 /* ---- quality ---- */
 
 /**
- * How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here:
- * of the look direction that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 +
- * conditioning).
+ * How light is followed. Frames by different methods differ by less than these errors:
+ *
+ * | method                     | rays are                                | look direction | radius, redshift |
+ * |----------------------------|-----------------------------------------|----------------|------------------|
+ * | ADAPTIVE, double precision | integrated with error control           | 1e-8 rad       | 1e-8, relative   |
+ * | ADAPTIVE, single precision | integrated with error control           | 2e-6 rad       | 2e-6             |
+ * | RK4 with the default step  | integrated in fixed steps, fourth order | 2e-5 rad       | 2e-5             |
+ * | AUTO                       | looked up in tables where that pays     | 5e-6 rad       | 1e-5             |
+ *
+ * An error of the look direction is how far the ray of a sky direction is off; each error is divided by (1 +
+ * conditioning), as rays near the edge of the shadow magnify every rounding. The CPU tracer works in double precision,
+ * GPUs in single.
+ *
+ * AUTO, the fastest, makes tables of the lens that the hole is for the camera's observer. They are made anew when the
+ * observer moves, but not when the view turns or zooms, and they serve under these conditions:
+ *
+ * |                              | spin 0                       | with spin                                    |
+ * |------------------------------|------------------------------|----------------------------------------------|
+ * | samples in a frame, at least | 4096                         | 500000 on a GPU, 140000 on the CPU           |
+ * | nearest observer             | 2.0005 M; in FREE_FALL 0.9 M | 1.03 retrograde photon orbits (3.1 to 4.1 M) |
+ * | farthest observer            | 1e6 M                        | 1e5 M                                        |
+ * | max_disk_order, at most      | 15                           | 15; beyond 1e4 M 11                          |
+ * | ... of a turbulent disk      | 15                           | 3; beyond 1e4 M 2                            |
+ *
+ * Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays and
+ * BHR_VIEW_METRIC.
  */
 typedef int32_t BhrMethod;
+
+#define BHR_METHOD_AUTO 0     /**< Looked up in tables where that pays, else integrated. The fastest. */
+#define BHR_METHOD_RK4 1      /**< Every ray integrated by fixed-step fourth-order Runge-Kutta. */
+#define BHR_METHOD_ADAPTIVE 2 /**< Every ray integrated by embedded Runge-Kutta with error control. */
 
 /** How exactly to trace. */
 typedef struct BhrQuality {
@@ -963,41 +916,29 @@ typedef struct BhrQuality {
     /** BHR_METHOD_*. Default AUTO. */
     BhrMethod method;
     /**
-     * 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the
-     * pixel's centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than
-     * BHR_VIEW_LIGHT take one. Where an edge of the disk, a steep change or the edge of the shadow runs through the
-     * pixel, each sample is the mean of 4 or 32 rays over a pixel's area; BhrFrameStats does not count those.
+     * Samples of each pixel, 1 (default) .. 256. More than one are drawn from, and so weighted by, a quadratic
+     * B-spline 3 pixels wide about the pixel's centre. (CUBE: they lie evenly in the pixel, because another part of
+     * the sky begins across a face's border.) Views other than BHR_VIEW_LIGHT take one. Where an edge of the disk, a
+     * steep change or the edge of the shadow runs through the pixel, each sample is the mean of 4 or 32 rays over a
+     * pixel's area; BhrFrameStats does not count those.
      */
     uint32_t samples_per_pixel;
-    /** Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
+    /** Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED. */
     uint32_t max_steps;
-    /** RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0: the default, 0.1. */
+    /** RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0 means the default, 0.1. */
     double step;
-    /** ADAPTIVE: relative, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers stop at their own. */
+    /**
+     * ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0 means the default, 1e-10. Single-precision tracers use their
+     * own.
+     */
     double tolerance;
-    /** Images of the disk to follow: 0 the direct one only .. 15. Default 3. */
+    /** Images of the disk to follow, 0 (the direct one only) .. 15. Default 3. */
     uint32_t max_disk_order;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
     /** Windows: traced size / window size, 0.1 .. 1. Default 1. */
     double render_scale;
 } BhrQuality;
-
-/**
- * The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye
- * moves (not when the view turns or zooms): with spin in frames of 500000 samples or more on a GPU, 140000 on the
- * CPU, for eyes between 1.03 retrograde photon orbits (3.1 to 4.1 M) and 1e5 M, and max_disk_order to 15 (farther
- * than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M,
- * falling from 0.9 M, to 1e6 M. Elsewhere, and for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is
- * integrated.
- */
-#define BHR_METHOD_AUTO 0
-
-/** Fixed-step fourth-order Runge-Kutta, every ray by itself: 2e-5 with the default step. */
-#define BHR_METHOD_RK4 1
-
-/** Embedded Runge-Kutta with error control, every ray by itself: 1e-8 in double precision, 2e-6 in single. */
-#define BHR_METHOD_ADAPTIVE 2
 
 /**
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
@@ -1014,15 +955,16 @@ BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *quality);
 /* ---- what a pixel shows ---- */
 
 /**
- * What a pixel shows. 8-bit formats and windows: false colour, without film. R32F: the value, NaN where there is
- * none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is INVALID_ARGUMENT. A
- * backend may not have every view: then rendering is UNSUPPORTED.
+ * The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its
+ * value, NaN where there is none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is
+ * INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED.
  *
- * The colours of values, for a host's legend: s goes from 0 to 1 over the range that each view states, and stays at 0
- * and 1 beyond it. Sequential map: CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78 s, from
- * dark blue over purple, red and orange to light yellow. Diverging map: m = |2 s - 1|, L = 95 - 57 m, (a, b) = (52.00,
- * 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, and light grey between them. White of Rec. 709,
- * encoded as sRGB; equal steps of s differ by equal steps of colour and of lightness. NaN: grey, (128, 128, 128).
+ * For a host's legend, the colours of values: s goes from 0 to 1 over the range that each view states, and stays at 0
+ * and 1 beyond it. The sequential map is CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78
+ * s: from dark blue over purple, red and orange to light yellow. The diverging map, with m = |2 s - 1|, is L = 95 - 57
+ * m and (a, b) = (52.00, 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, with light grey between them.
+ * The white is that of Rec. 709, and colours are encoded as sRGB. Equal steps of s are equal steps of colour and of
+ * lightness. NaN is grey, (128, 128, 128).
  */
 typedef int32_t BhrView;
 
@@ -1030,27 +972,27 @@ typedef int32_t BhrView;
 #define BHR_VIEW_LIGHT 0
 
 /**
- * g of the first crossing within the disk's radii, else the sky's redshift; NaN captured without such a crossing.
- * Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is shifted, blue above 1, red
- * below.
+ * The redshift g of the first crossing within the disk's radii, else that of the sky; NaN where the ray is captured
+ * without such a crossing. Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is
+ * shifted, blue above 1, red below.
  */
 #define BHR_VIEW_REDSHIFT 1
 
 /**
- * 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential map, s = (order + 2) / 5:
- * order 3 and above are one colour.
+ * The number of the image, 0, 1, 2 .., of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential
+ * map, s = (order + 2) / 5: order 3 and above are one colour.
  */
 #define BHR_VIEW_ORDER 2
 
 /**
- * Angle between look direction and sky direction, radians; NaN captured. Sequential map, s = 1 + log2(angle / pi) / 6:
- * angles from pi / 64 to pi.
+ * The angle between look direction and sky direction, radians; NaN where the ray is captured. Sequential map, s = 1 +
+ * log2(angle / pi) / 6: angles from pi / 64 to pi.
  */
 #define BHR_VIEW_DEFLECTION 3
 
 /**
- * Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO). Sequential map, s =
- * log2(steps / 8) / 6: 8 .. 512 steps.
+ * The integration steps of the pixel's ray; 0 where it was looked up (BHR_METHOD_AUTO). Sequential map, s = log2(steps
+ * / 8) / 6: 8 .. 512 steps.
  */
 #define BHR_VIEW_STEPS 4
 
@@ -1066,8 +1008,8 @@ BhrStatus bhr_set_view(BhrContext *context, BhrView view);
 /* ---- parts of a larger frame ---- */
 
 /**
- * The image is this part of a larger frame: tiles, dome walls, render farms. Tiles joined give the same bytes as
- * the frame.
+ * The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined have
+ * the same bytes as the frame.
  */
 typedef struct BhrRegion {
     /** sizeof(BhrRegion). */
@@ -1080,7 +1022,7 @@ typedef struct BhrRegion {
     uint32_t x;
     /** Row of the image's top pixels in the frame, < full_height. */
     uint32_t y;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
 } BhrRegion;
 
@@ -1095,15 +1037,15 @@ BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 /* ---- rendering into memory ---- */
 
 /**
- * Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
- * the frame is complete and the answer is ignored. Runs inside a bhr_ call only, on the calling thread. It must not
- * throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
+ * Is told how much of a frame is done: fraction grows from 0 to 1. It returns 0 to cancel, anything else to go on; at
+ * 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread. It must
+ * not throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
  */
 typedef int32_t (*BhrProgressFn)(void *user, double fraction);
 
 /**
- * Sets what bhr_render_image and bhr_prepare report to, and the jobs that are begun from now on, inside
- * bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
+ * Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are begun
+ * from now on. fn NULL: none (default). Errors: INVALID_ARGUMENT for a NULL context.
  */
 BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
 
@@ -1124,13 +1066,15 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
  * the background, at low priority: those of the default scene from bhr_context_create on, those of changes while
  * frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
  *
- * target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
- * RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: frames in windows
- * of 1920 x 1080 only, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
+ * target is an image as bhr_render_image would be given it; its pixels and byte_size are not looked at, and may be 0.
+ * For RGBA8_SRGB without BHR_IMAGE_TRANSPARENT, frames in windows of that size are prepared too. NULL: only frames in
+ * windows of 1920 x 1080, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
  * BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
- * must be 6 times as wide as high). On a GPU it renders one frame that is thrown away, that bhr_frame_stats does not
- * count and that the progress callback may cancel. It waits for a job that is being rendered. Any thread, not inside
- * callbacks. Errors: as bhr_render_image. Since 0.2.0.
+ * must be 6 times as wide as high).
+ *
+ * On a GPU it renders one frame that is thrown away. bhr_frame_stats does not count that frame, and the progress
+ * callback may cancel it. The call waits for a job that is being rendered. Any thread, not inside callbacks. Errors:
+ * as bhr_render_image. Since 0.2.0.
  */
 BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
 
@@ -1187,14 +1131,9 @@ typedef struct BhrSurface BhrSurface;
 /** How frames reach the screen. */
 typedef int32_t BhrPresentMode;
 
-/** At the display's rate, never torn: a frame waits for the display. Every window has it. */
-#define BHR_PRESENT_VSYNC 0
-
-/** At once; may tear. */
-#define BHR_PRESENT_IMMEDIATE 1
-
-/** The newest frame at the display's rate, never torn; frames that are not the newest any more are dropped. */
-#define BHR_PRESENT_MAILBOX 2
+#define BHR_PRESENT_VSYNC 0     /**< Never torn: a frame waits for the display. Every window has this mode. */
+#define BHR_PRESENT_IMMEDIATE 1 /**< Frames are shown at once, and may tear. */
+#define BHR_PRESENT_MAILBOX 2   /**< Never torn: the newest frame at the display's rate; older ones are dropped. */
 
 /**
  * Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
@@ -1255,20 +1194,17 @@ void bhr_surface_destroy(BhrSurface *surface);
 
 /* ---- rays: the same tracer, asked directly ---- */
 
-/** Crossings that a BhrHit lists. */
-#define BHR_MAX_CROSSINGS 4
-
 /**
- * A ray, followed backward from the eye. Within one BHR_ABI_VERSION it does not grow: some calls that fill it in are
- * told no size.
+ * A ray, followed backward in time from an observer. It does not grow within one BHR_ABI_VERSION, because some calls
+ * that fill it in are not told its size.
  */
 typedef struct BhrRay {
     /** Scene axes and lengths. */
     double position[3];
     /**
-     * Where the eye looks, opposite to the photon's momentum; any non-zero length. Components as the conventions
-     * say: along the frame of the local static observer (ZAMO), inside a spin-0 horizon of the observer falling
-     * from rest at infinity.
+     * The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components
+     * are along the frame that the conventions above give: the local static observer's (ZAMO), inside a spin-0 horizon
+     * the frame of the observer falling from rest at infinity.
      */
     double direction[3];
     /**
@@ -1278,8 +1214,7 @@ typedef struct BhrRay {
     double frequency_ratio;
 } BhrRay;
 
-/** What became of a ray. */
-typedef int32_t BhrFate;
+#define BHR_MAX_CROSSINGS 4 /**< Crossings that a BhrHit lists. */
 
 /** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
 typedef struct BhrCrossing {
@@ -1289,11 +1224,22 @@ typedef struct BhrCrossing {
     double azimuth;
     /** g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
     double redshift;
-    /** Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon. */
+    /** Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon. */
     double delay;
 } BhrCrossing;
 
-/** What a ray met. It may grow at its end: bhr_trace_rays is told hit_size. */
+/** How a ray ends. */
+typedef int32_t BhrFate;
+
+#define BHR_FATE_CAPTURED 0   /**< The ray ends at the horizon. */
+#define BHR_FATE_ESCAPED 1    /**< The ray reaches the sky. */
+#define BHR_FATE_UNRESOLVED 2 /**< BhrQuality.max_steps ran out. */
+#define BHR_FATE_INVALID 3    /**< The ray is not valid: not finite, direction zero, or no frame at its place. */
+
+/**
+ * The end of a ray, and its crossings of the equatorial plane. It may grow at its end: bhr_trace_rays is told
+ * hit_size.
+ */
 typedef struct BhrHit {
     /** BHR_FATE_*. */
     BhrFate fate;
@@ -1303,27 +1249,15 @@ typedef struct BhrHit {
     double sky_direction[3];
     /** nu(camera) / nu(at infinity); NaN unless escaped. */
     double sky_redshift;
-    /** Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN. */
+    /** Spin 0: the orbit angle from the observer to infinity, or to the horizon, radians; with spin NaN. */
     double swept_angle;
     /** Integration steps. */
     uint32_t steps;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
     /** In order along the ray; 0 beyond crossing_count. */
     BhrCrossing crossings[BHR_MAX_CROSSINGS];
 } BhrHit;
-
-/** It ends at the horizon. */
-#define BHR_FATE_CAPTURED 0
-
-/** It reaches the sky. */
-#define BHR_FATE_ESCAPED 1
-
-/** BhrQuality.max_steps ran out. */
-#define BHR_FATE_UNRESOLVED 2
-
-/** This ray's input is not valid: not finite, zero direction, no frame there. */
-#define BHR_FATE_INVALID 3
 
 /**
  * The rays of a width x height frame (with a region: of the image that is this part of it), row by row, through the
@@ -1348,13 +1282,13 @@ BhrStatus bhr_camera_ray(const BhrContext *context,
                          BhrRay *out_ray);
 
 /**
- * Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
- * equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
- * flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
- * error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
- * least 56 and 184, those of the first version; both arrays are packed. A longer ray must be 0 beyond what this
- * library knows, a longer hit becomes so. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below
- * the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+ * Traces count rays on the context's backend. The scene's disk does not matter: crossings are those of the bare
+ * equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter turns as the
+ * disk's flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
+ * an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at least
+ * 56 and 184, the sizes of the first version; both arrays are packed. A ray that is longer than this library's must be
+ * 0 beyond it; a longer hit is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or
+ * a size below the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
  */
 BhrStatus bhr_trace_rays(BhrContext *context,
                          const BhrRay *rays,
@@ -1364,12 +1298,12 @@ BhrStatus bhr_trace_rays(BhrContext *context,
                          size_t hit_size);
 
 /**
- * The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
- * room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
- * number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the
- * eye's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double
- * precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity < 2, or a ray that is not
- * valid; UNSUPPORTED inside a spinning hole's horizon.
+ * Fills in the curve that a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) for each point.
+ * out_points has room for 4 capacity doubles. *out_count becomes the number of points: 2 or more, at most capacity,
+ * never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that escapes, at
+ * ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out.
+ * The curve is traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL,
+ * capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
  */
 BhrStatus bhr_trace_path(BhrContext *context,
                          const BhrRay *ray,
@@ -1383,7 +1317,7 @@ BhrStatus bhr_trace_path(BhrContext *context,
 typedef struct BhrFrameStats {
     /** sizeof(BhrFrameStats), set by the caller. */
     uint32_t struct_size;
-    /** 0. */
+    /** Reserved: 0. */
     uint32_t reserved;
     /** Counts the finished frames of a context from 1: images, jobs and windows. */
     uint64_t frame_index;
@@ -1391,11 +1325,11 @@ typedef struct BhrFrameStats {
     uint64_t rays;
     /** Integration steps of all rays; rays that were looked up take none. */
     uint64_t steps;
-    /** From the call's begin to its end; of a job: from bhr_render_image_async until it was done. */
+    /** From the call's beginning to its end; for a job, from bhr_render_image_async until it was done. */
     uint64_t cpu_ns;
-    /** Time on the GPU; 0: the adapter has no timestamps, or traces on the CPU. */
+    /** Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
     uint64_t gpu_ns;
-    /** Copying pixels from the GPU's memory to the host's, without the wait for the GPU. */
+    /** Time to copy pixels from the GPU's memory to the host's, without the wait for the GPU. */
     uint64_t readback_ns;
     /** Device memory that the context holds. */
     uint64_t device_bytes;

@@ -15,7 +15,7 @@ struct Frame {
     e_phi: vec4<f32>,
     // u, sin theta, cos theta of the eye, and the lapse (rain: sqrt(2 u)).
     place: vec4<f32>,
-    // omega, q, sqrt(Sg), sqrt(Sg D) of numerics.md's start values.
+    // omega, q, sqrt(Sg), sqrt(Sg D) of docs/numerics.md's start values.
     zamo: vec4<f32>,
     // a, r+, r-, ISCO of the disk's matter: negative for matter towards -ph.
     hole: vec4<f32>,

@@ -1,6 +1,6 @@
-//! What a thread does once it holds no lock of the process any more. A host's callback may wait for another thread's
-//! call, so none may run under a lock that such a call may need: bhr's own, wgpu's, a driver's. What is logged under
-//! them waits here until the outermost [`Holding`] ends. Knows neither locks nor messages.
+//! Work that a thread does once it holds no lock of the process any more. A host's callback may wait for another
+//! thread's call, so none may run under a lock that such a call may need: bhr's own, wgpu's, a driver's. Messages that
+//! are logged under them wait here until the outermost [`Holding`] ends. Knows neither locks nor messages.
 
 use std::cell::{Cell, RefCell};
 
@@ -21,7 +21,7 @@ struct Waiting {
 /// It belongs to the thread.
 pub struct Holding(std::marker::PhantomData<*const ()>);
 
-/// What became of work that was handed in.
+/// The fate of work that was handed in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// It has run, or will when the outermost [`Holding`] ends.

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-/// What went wrong, in the classes that a host can act on. Each is one `BHR_ERROR_*` of the C API.
+/// The kinds of errors that a host can act on. Each is one `BHR_ERROR_*` of the C API.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// An argument is outside its documented range.

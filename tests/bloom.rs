@@ -148,8 +148,8 @@ fn a_region_has_no_bloom() {
     }
 }
 
-/// Of pictures so dark that 8-bit codes are linear in light (below 0.0031), and codes right on average, thanks to the
-/// dither.
+/// The pictures are so dark that 8-bit codes are linear in light (below 0.0031), and codes are right on average, thanks
+/// to the dither.
 #[test]
 fn no_light_is_lost_on_its_way_to_pixels() {
     let size = [640, 360];

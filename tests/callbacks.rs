@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, OnceLock, mpsc};
 use std::thread::{ThreadId, current};
 use std::time::Duration;
 
-/// What a callback saw: its messages, and what calls back in returned.
+/// A callback's record: its messages, and what calls back into the library returned.
 #[derive(Default)]
 struct Heard {
     context: usize,

@@ -44,7 +44,7 @@ const PROJECTIONS: [(Projection, [u32; 2]); 4] = [
 fn set(renderer: &mut Renderer, projection: Projection, (spin, tables): (f64, LensTables)) {
     renderer.scene = Scene::default();
     renderer.scene.camera = camera(projection);
-    // Of the sky the part with the smallest detail.
+    // Stars are the part of the sky with the smallest detail.
     renderer.scene.sky.flags = Sky::STARS;
     if projection == Projection::Perspective {
         renderer.scene.camera.fov_y = 2.0;
@@ -59,7 +59,7 @@ fn faces(axes: DMat3) -> [(DVec3, DVec3); 6] {
     [(right, up), (-right, up), (up, -forward), (-up, forward), (forward, up), (-forward, up)]
 }
 
-/// Of a frame of six faces, `side` pixels wide, the `i`th; `words` floats to a pixel.
+/// The `i`th face of a frame of six, each `side` pixels wide; `words` floats to a pixel.
 fn face(frame: &[f32], i: usize, side: usize, words: usize) -> Vec<f32> {
     let rows = frame.chunks_exact(6 * side * words);
     rows.flat_map(|row| &row[i * side * words..][..side * words]).copied().collect()
@@ -100,7 +100,7 @@ fn faces_of_the_cube_are_perspective_views() {
                     }
                 }
                 println!("{tracer}, {way:?}, {view:?}: {wrong} of {} pixels differ", 6 * SIDE * SIDE);
-                // In f32 a look turned by rounding may cross an edge.
+                // A look direction in f32 that rounding turns may cross an edge.
                 let allowed = if tracer == "cpu" { 0 } else { 6 * side * side / 1000 };
                 assert!(wrong <= allowed, "{tracer}, {way:?}, {view:?}: {wrong} pixels differ");
             }
@@ -253,7 +253,7 @@ fn looks_in_single_precision() {
         let distances = cpu.iter().zip(&gpu).map(|(a, b)| a.direction.distance(b.direction));
         let worst = distances.fold(0.0, f64::max);
         println!("{projection:?}: {worst:.1e}");
-        // Of the perspective view, as measured, 6e-7.
+        // For the perspective view 6e-7 was measured.
         assert!(worst < 1e-6, "{projection:?}: {worst:e}");
     }
 }
@@ -265,7 +265,7 @@ fn outside_the_circle_there_is_nothing() {
     for (tracer, mut renderer) in both() {
         for way in TWO_WAYS {
             set(&mut renderer, Projection::Fisheye, way);
-            // Of a translucent disk, the sky and the hole in all directions.
+            // The picture has a translucent disk, the sky and the hole in all directions.
             renderer.scene.camera.fov_y = TAU;
             renderer.scene.sky = Sky::default();
             for transparent in [false, true] {
@@ -376,7 +376,7 @@ fn a_cube_of_another_shape_is_refused() {
         let error = renderer.render(&mut image, false, None, &mut |_| true).unwrap_err();
         assert!(error.message.contains("60 x 11") && error.message.contains("66"), "{error}");
         assert!(pixels.iter().all(|byte| *byte == 7), "a refused frame was written");
-        // Of a region the full frame counts.
+        // The shape of the full frame counts, not that of the region.
         let region = Region { full_width: 120, full_height: 20, x: 37, y: 3 };
         picture(&mut renderer, PixelFormat::Rgba8Srgb, [60, 11], Some(region), false);
         assert!(renderer.scene.camera_ray(60, 11, None, 0.5, 0.5).is_err());

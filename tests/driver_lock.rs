@@ -1,5 +1,5 @@
-//! What begins or ends the use of a driver happens under the process's one lock, whoever does it last. Alone in its
-//! process, as it listens to wgpu's log. Without a Vulkan adapter this fails.
+//! Everything that begins or ends the use of a driver happens under the process's one lock, whoever does it last. The
+//! test is alone in its process, as it listens to wgpu's log. Without a Vulkan adapter it fails.
 
 use bhr::gpu::{GpuTracer, Search, adapters, driver_lock};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
@@ -15,7 +15,7 @@ const ALONE: [&str; 6] = [
     "Global::drop",
     FIRST_PIPELINE,
 ];
-/// Of a device.
+/// The message of a device's first pipeline.
 const FIRST_PIPELINE: &str = "Device::create_compute_pipeline";
 
 /// Messages of [`ALONE`], and whether their thread held the lock.

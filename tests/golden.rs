@@ -15,7 +15,7 @@ use std::f64::consts::PI;
 struct Bars {
     /// Worst error of directions, radii and redshifts.
     worst: f64,
-    /// The same for 99 % of a set.
+    /// Worst error of the best 99 % of a set.
     most: f64,
     azimuth: f64,
     /// Fates of rays nearer to the critical curve are not judged.
@@ -195,7 +195,7 @@ fn rays_of(mut renderer: Renderer, bars: &Bars, file: &str) {
     redshifts.assert("crossing g", bars.worst, bars.most);
 }
 
-/// What a tracer found for a pixel of a golden picture.
+/// The image that a tracer found for a pixel of a golden picture.
 struct Seen {
     escaped: bool,
     steps: u32,
@@ -298,7 +298,7 @@ fn picture(mut renderer: Renderer, bars: &Bars, kind: &str, through: Through, fl
     };
     let all_seen = through.see(&mut renderer, width as u32, height as u32);
 
-    // As asked for; and pixels that are integrated although tables were asked for.
+    // The first are the pixels made as asked for, the second those that are integrated although tables were asked for.
     let mut errors: [PictureErrors; 2] = Default::default();
     let mut wrong = 0;
     // The stretch of the lens, from the neighbours in the reference, stands for the conditioning.
@@ -364,7 +364,7 @@ fn picture(mut renderer: Renderer, bars: &Bars, kind: &str, through: Through, fl
     }
 }
 
-/// What a picture's pixels are wrong by.
+/// The errors of a picture's pixels.
 #[derive(Default)]
 struct PictureErrors {
     directions: Errors,

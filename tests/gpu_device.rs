@@ -493,7 +493,7 @@ fn a_device_may_end_at_any_moment_of_a_round_trip() {
     }
 }
 
-/// The same of frames.
+/// A device may end at any moment of a frame, too.
 #[test]
 fn a_device_may_end_at_any_moment_of_a_frame() {
     let request = FrameRequest {

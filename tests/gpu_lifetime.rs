@@ -21,7 +21,7 @@ fn resident() -> u64 {
     line.split_whitespace().nth(1).unwrap().parse().unwrap()
 }
 
-/// What one context does to its device.
+/// The life of a device under one context.
 fn open_use_close() -> Duration {
     let start = Instant::now();
     let found = adapters(Search::Auto, false);
@@ -54,7 +54,7 @@ fn two_hundred_devices_leave_no_memory_behind() {
     // Measured on lavapipe: 0 to 240 KiB, whatever the count.
     assert!(grown < 8 << 10, "180 devices left {grown} KiB");
 
-    // The same with the drivers loaded anew each time.
+    // The drivers are loaded anew each time.
     let before = resident();
     for _ in 0..20 {
         forget_drivers();
@@ -65,7 +65,7 @@ fn two_hundred_devices_leave_no_memory_behind() {
     assert!(grown < 8 << 10, "starting the drivers 20 times left {grown} KiB");
 }
 
-/// What the heap holds, KiB. (Not the resident memory: what others have given back would hide growth there.)
+/// Memory that the heap has handed out, KiB. (Resident memory would hide growth in what was given back before.)
 fn allocated() -> u64 {
     // SAFETY: takes no argument and keeps nothing.
     let heap = unsafe { libc::mallinfo2() };

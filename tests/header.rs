@@ -3,8 +3,9 @@
 
 mod c_header;
 
-use c_header::{HEADER, compiler, functions, root, run, scratch};
+use c_header::{HEADER, compiler, functions, library, root, run, scratch};
 use std::path::Path;
+use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
 const SECTIONS: [(&str, &str); 21] = [
@@ -53,6 +54,9 @@ const CLOSING: &str = "
 #endif
 ";
 
+/// The longest line of the header.
+const MAX_LINE: usize = 120;
+
 /// With BHR_UPDATE_HEADER set, this is the command that brings include/bhr.h up to date.
 #[test]
 fn the_committed_header_is_the_generated_one() {
@@ -61,10 +65,13 @@ fn the_committed_header_is_the_generated_one() {
         std::fs::write(&committed, &generated).unwrap();
     }
     let text = std::fs::read_to_string(&committed).unwrap_or_default();
+    for (number, line) in (1..).zip(text.lines()) {
+        assert!(line.chars().count() <= MAX_LINE, "include/bhr.h:{number} has more than {MAX_LINE} columns: {line}");
+    }
     assert!(
         text == generated,
         "include/bhr.h is not what the sources say; bring it up to date with\n\
-         BHR_UPDATE_HEADER=1 cargo test --test header committed"
+         BHR_UPDATE_HEADER=1 cargo test --profile checked --locked --test header committed"
     );
 }
 
@@ -114,6 +121,27 @@ fn cpp_programs_link_to_the_plain_names() {
     assert_eq!(wanted, names);
 }
 
+/// The program in the preface is the first one that a host developer copies.
+#[test]
+fn the_example_in_the_preface_compiles_links_and_runs() {
+    let header = generate();
+    let (_, example) = header.split_once("\n * Example\n").expect("the preface has an example");
+    let (example, _) = example.split_once("\n *\n * Units\n").expect("Units follow the example");
+    let program: String = example.lines().map(|line| format!("{}\n", line.trim_start_matches(" *"))).collect();
+    let folder = scratch("header_example");
+    let (source, binary) = (folder.join("example.c"), folder.join("example"));
+    std::fs::write(&source, program).unwrap();
+    let library = library();
+    let mut command = compiler(false);
+    command.args(["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I"]).arg(root().join("include"));
+    command.arg(&source).arg(&library).arg(format!("-Wl,-rpath,{}", library.parent().unwrap().display()));
+    run(command.arg("-o").arg(&binary));
+    let picture = folder.join("hole.png");
+    let _ = std::fs::remove_file(&picture);
+    run(Command::new(&binary).current_dir(&folder));
+    assert!(std::fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
+}
+
 /// Mach-O puts an underscore before every C name.
 fn plain(name: &str) -> String {
     if cfg!(target_vendor = "apple") { name.trim_start_matches('_').into() } else { name.into() }
@@ -127,29 +155,79 @@ fn generate() -> String {
     let mut header = format!("{}\n{OPENING}", preface.trim());
     for (file, title) in SECTIONS {
         let path = root().join("src/capi").join(file).with_extension("rs");
-        header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, &config).trim());
+        header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, &config));
     }
     header + CLOSING
 }
 
-/// What one source file adds. Types of other sections are named without being known, which is all that C needs.
+/// The declarations of one source file, in that file's order. Types of other sections are named without being known,
+/// which is all that C needs.
 fn section(path: &Path, config: &cbindgen::Config) -> String {
     let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(path).generate();
     let mut text = Vec::new();
     bindings.unwrap_or_else(|error| panic!("{}: {error}", path.display())).write(&mut text);
-    tidy(&String::from_utf8(text).unwrap())
+    let text = tidy(&String::from_utf8(text).unwrap());
+    let mut blocks: Vec<&str> = text.trim().split("\n\n").map(str::trim).filter(|block| !block.is_empty()).collect();
+    // cbindgen puts constants after the types; in the sources each one stands where a reader wants it.
+    let order = public_items(&std::fs::read_to_string(path).unwrap());
+    blocks.sort_by_key(|block| {
+        let name = declared(block);
+        let place = order.iter().position(|item| item == name);
+        place.unwrap_or_else(|| panic!("{}: no public item declares {name:?}:\n{block}", path.display()))
+    });
+    in_tables(&blocks)
 }
 
-/// Comments of one line on one line, and structs by their typedef, which every struct has.
+/// The names of a source file's public items, in order.
+fn public_items(source: &str) -> Vec<String> {
+    let kinds = ["pub const ", "pub type ", "pub struct ", "pub unsafe extern \"C\" fn ", "pub extern \"C\" fn "];
+    let names = source.lines().filter_map(|line| kinds.iter().find_map(|kind| line.strip_prefix(kind)));
+    names.map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap().to_owned()).collect()
+}
+
+/// The name that a declaration with its comment introduces.
+fn declared(block: &str) -> &str {
+    let code = if block.starts_with("/**") { block.split_once("*/\n").unwrap().1 } else { block };
+    let is_name = |c: char| c.is_alphanumeric() || c == '_';
+    let first = |text: &'_ str| text.find(|c| !is_name(c)).unwrap_or(text.len());
+    let after = |start: &str| code.find(start).map(|at| &code[at + start.len()..]).map(|text| &text[..first(text)]);
+    let opaque_or_struct = || after("typedef struct ");
+    let alias = || code.strip_prefix("typedef ")?.strip_suffix(';')?.rsplit(' ').next();
+    let function = || code[..code.find('(')?].rsplit([' ', '*']).next();
+    after("#define ").or_else(opaque_or_struct).or_else(|| after("(*")).or_else(alias).or_else(function).unwrap()
+}
+
+/// The blocks of a section, one blank line between them. Constants that follow each other make a table, with their
+/// comments beside them, if each comment fits on its line.
+fn in_tables(blocks: &[&str]) -> String {
+    let is_constant = |block: &&str| block.contains("#define ");
+    let groups = blocks.chunk_by(|a, b| is_constant(a) && is_constant(b));
+    groups.map(|group| table(group).unwrap_or_else(|| group.join("\n\n"))).collect::<Vec<_>>().join("\n\n")
+}
+
+/// Constants with short comments, one per line; `None` when `group` is something else.
+fn table(group: &[&str]) -> Option<String> {
+    let rows = group.iter().map(|block| block.strip_prefix("/** ")?.split_once(" */\n#define "));
+    let rows = rows.collect::<Option<Vec<_>>>()?;
+    let width = rows.iter().map(|(_, code)| code.len()).max()?;
+    let line = |(comment, code): &(&str, &str)| format!("#define {code:<width$} /**< {comment} */");
+    let lines: Vec<_> = rows.iter().map(line).collect();
+    lines.iter().all(|line| line.len() <= MAX_LINE && !line.contains('\n')).then(|| lines.join("\n"))
+}
+
+/// Comments of one line on one line, no empty line at the end of a comment, and structs by their typedef, which every
+/// struct has.
 fn tidy(text: &str) -> String {
     let text = text.replace("typedef struct Bhr", "typedef-Bhr").replace("struct Bhr", "Bhr");
-    let text = text.replace("typedef-Bhr", "typedef struct Bhr");
+    let text = text.replace("typedef-Bhr", "typedef struct Bhr").replace("\n *\n */", "\n */");
     let lines: Vec<&str> = text.lines().collect();
     let mut tidied = String::new();
     let mut rest = lines.as_slice();
     while let [first, after @ ..] = rest {
         rest = match after {
-            [line, end, after @ ..] if first.trim() == "/**" && end.trim() == "*/" => {
+            [line, end, after @ ..]
+                if first.trim() == "/**" && end.trim() == "*/" && line.len() + "* /".len() <= MAX_LINE =>
+            {
                 let comment = line.trim().trim_start_matches("* ");
                 tidied += &format!("{}{comment} */\n", first.replace("/**", "/** "));
                 after

@@ -124,7 +124,7 @@ fn what_a_host_changes_next_is_made_in_the_background() {
 /// Demands that frames after these changes to a first frame in RGBA8 wait for no pipeline.
 fn next_frames(changes: &[(Change, PixelFormat)]) {
     let mut renderer = renderer();
-    // As on hardware.
+    // These are the settings for hardware.
     let quality = &mut renderer.scene.quality;
     (quality.anticipates, quality.shares_kernels) = (Some(true), Some(true));
     render(&mut renderer, PixelFormat::Rgba8Srgb);

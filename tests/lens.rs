@@ -34,7 +34,7 @@ fn both() -> [Renderer; 2] {
     [cpu, gpu]
 }
 
-/// What a look direction truly sees.
+/// The true image in a look direction.
 #[derive(Clone)]
 struct Sight {
     fate: Fate,
@@ -42,7 +42,7 @@ struct Sight {
     sky_redshift: f64,
     /// |b / b_c - 1|; NaN with spin.
     from_critical: f64,
-    /// Of the plane, wherever; the disk's orders only.
+    /// Crossings of the plane at any radius, of the disk's orders only.
     crossings: Vec<(PlaneCrossing, f64)>,
 }
 
@@ -104,7 +104,7 @@ impl<'a> Truth<'a> {
         }
     }
 
-    /// Of every pixel.
+    /// The true rays of all pixels.
     fn rays(&self) -> Vec<TrueRay> {
         let pixels = self.lens.mapping.width as usize * self.lens.mapping.height as usize;
         let ray = |i| {
@@ -168,7 +168,7 @@ fn around(look: DVec3) -> (DVec3, DVec3) {
 struct Conditioning {
     /// Stretch of the lens.
     sky: f64,
-    /// Of its logarithm.
+    /// Conditioning of the logarithm of the redshift.
     sky_redshift: f64,
     /// For each crossing; 0 far from the disk.
     ln_r: Vec<f64>,
@@ -501,7 +501,7 @@ fn footprints_agree_with_differences() {
     let (width, height) = (24, 16);
     let mut renderers = both();
     let mut random = Random(29);
-    // By tracer, and whether the record was looked up or integrated.
+    // The footprints by tracer, and by whether the record was looked up or integrated.
     let mut found: [[Footprints; 2]; 2] = Default::default();
     for index in 0..count_from("BHR_LENS_OBSERVERS", 60) {
         let mut scene = random_eye(&mut random, index);
@@ -615,11 +615,11 @@ impl Footprints {
     }
 }
 
-/// What a record may be wrong by from sample to sample of a scan line: in the components of the sky direction (`sky_path`) divided by the stretch,
-/// rad,
-/// and in ln r of a crossing divided by (1 + conditioning). A few roundings of f32, which differ from one sample to the next, make second
-/// differences; a seam is a step that stays, and shows in the means of `WINDOW` samples on either side, where rounding averages out:
-/// 0.005 pixel of a 3840 x 2160 frame, 2.4e-6 rad, is one and a half times the bar.
+/// The error that a record may have from sample to sample of a scan line: in the components of the sky direction
+/// (`sky_path`) divided by the stretch, rad, and in ln r of a crossing divided by (1 + conditioning). A few roundings
+/// of f32, which differ from one sample to the next, make second differences; a seam is a step that stays, and shows in
+/// the means of `WINDOW` samples on either side, where rounding averages out: 0.005 pixel of a 3840 x 2160 frame,
+/// 2.4e-6 rad, is one and a half times the bar.
 const ROUNDING_BAR: f64 = 5e-6;
 const STEP_BAR: f64 = 1.6e-6;
 const WINDOW: usize = 32;
@@ -627,7 +627,7 @@ const WINDOW: usize = 32;
 /// Samples of a scan line.
 const SAMPLES: u32 = 2048;
 
-/// What the samples of a scan line are wrong by; `None` where there is nothing to compare.
+/// The errors of the samples of a scan line; `None` where there is nothing to compare.
 type Wrong = Vec<Option<DVec3>>;
 
 /// The largest component of `measure` of every run of `length` samples that are all there, and the run's middle.
@@ -728,7 +728,7 @@ impl Seams {
 fn no_seam() {
     let mut renderers = both();
     let mut random = Random(37);
-    // By tracer, and whether the line was looked up (partly, at least) or integrated.
+    // The lines by tracer, and by whether they were looked up (partly, at least) or integrated.
     let mut found: [[Seams; 2]; 2] = Default::default();
     for index in 0..count_from("BHR_LENS_OBSERVERS", 60) / 5 {
         let mut scene = random_eye(&mut random, index);
@@ -768,7 +768,7 @@ fn sky_path(rays: &[TrueRay], i: usize) -> Option<DMat3> {
 }
 
 impl Frame<'_> {
-    /// What the samples are wrong by: sky directions, and ln r of the crossings of each order.
+    /// The errors of the samples: of sky directions, and of ln r of the crossings of each order.
     fn wrong(&self, rays: &[TrueRay], records: &[Record]) -> Vec<Wrong> {
         let orders = self.truth.settings.max_crossings;
         let mut all = vec![vec![None; rays.len()]; 1 + orders];

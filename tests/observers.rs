@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 const CRITICAL: f64 = 5.196_152_422_706_632;
 
-/// In units of M; all but the first inside the horizon.
+/// Radii of the falling observer, M; all but the first inside the horizon.
 const RADII: [f64; 6] = [2.5, 1.5, 0.5, 0.1, 0.01, 1e-6];
 
 /// An observer who falls from rest at infinity, and sees all directions.
@@ -70,7 +70,7 @@ fn swept(r: f64, b: f64) -> f64 {
     (0..=INTERVALS).map(|i| weight(i) * slope(i)).sum::<f64>() * step / 3.0
 }
 
-/// What an observer who falls sees at look direction `n`.
+/// The image that an observer who falls sees at look direction `n`.
 struct Seen {
     /// The impact parameter as a share of the critical one; infinite where no light comes from.
     share: f64,
@@ -79,7 +79,7 @@ struct Seen {
     swept: f64,
     /// Change of the sky direction by a change of the look towards or away from the hole, at least 1.
     stretch: f64,
-    /// The same of the redshift, relative: (1 + |dE / d(psi)|) / E.
+    /// The stretch of the redshift, relative: (1 + |dE / d(psi)|) / E.
     shift_stretch: f64,
 }
 
@@ -144,7 +144,7 @@ fn the_sky_of_a_fall_is_an_independent_integrals() {
     }
 }
 
-/// The same of pixels: traced, and where there are tables for such eyes looked up.
+/// Pixels show that sky as well: traced, and where there are tables for such eyes looked up.
 #[test]
 fn pictures_of_a_fall_show_that_sky() {
     let size = [64, 32];
@@ -210,7 +210,7 @@ fn the_shadow_of_a_fall_has_the_closed_forms_size() {
             renderer.scene = Scene { camera: falling(r), disk: None, sky: Sky::black(), ..Scene::default() };
             let told = renderer.scene.hole_info().unwrap().shadow_angular_radius;
             assert!((told - theory).abs() < 1e-9, "r {r}: {told}, {theory}");
-            // By single rays: the last that is captured.
+            // The edge by single rays: the last that is captured.
             let inward = -renderer.scene.camera.position.normalize();
             let side = inward.any_orthonormal_vector();
             let mut range = [0.0, PI];
@@ -224,7 +224,7 @@ fn the_shadow_of_a_fall_has_the_closed_forms_size() {
             }
             let error = range[0] - theory;
             let bar = if tracer == "cpu" { 1e-10 } else { 1e-6 };
-            // By the solid angle of a picture's dark pixels: 2 pi (1 - cos psi).
+            // The edge by the solid angle of a picture's dark pixels: 2 pi (1 - cos psi).
             renderer.scene.camera = falling(r);
             // Each pixel by its centre's ray alone.
             renderer.scene.quality.refines = false;

@@ -145,8 +145,7 @@ fn recovers(backend: BhrBackend) {
             assert_eq!(context.order(&mut vec![0; BYTES]).unwrap_err(), BHR_ERROR_DEVICE_LOST);
         }
         let frames = context.frames();
-        // What needs no device goes on.
-        // SAFETY: the context lives.
+        // Calls that need no device go on.
         unsafe {
             assert_eq!(bhr_set_spin(context.0, 0.1), BHR_OK);
             assert_eq!(bhr_set_spin(context.0, 0.6), BHR_OK);

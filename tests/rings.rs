@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 
 const FULL: [u32; 2] = [640, 360];
 const FOV_Y: f64 = PI / 3.0;
-/// Of the frames that pixels are held against: 64 pixels, each with its own rays, for one.
+/// How much finer the frames are that pixels are held against: 64 of their pixels, each with its own rays, for one.
 const FINER: u32 = 8;
 
 fn both() -> [(&'static str, Renderer); 2] {
@@ -40,7 +40,7 @@ fn window(renderer: &mut Renderer, side: u32) -> Window {
     finer_window(renderer, side, 1)
 }
 
-/// The same as means over `finer` x `finer` pixels of a finer frame.
+/// The window as means over `finer` x `finer` pixels of a finer frame.
 fn finer_window(renderer: &mut Renderer, side: u32, finer: u32) -> Window {
     let origin = FULL.map(|full| (full - side) / 2 * finer);
     let region = Region { full_width: FULL[0] * finer, full_height: FULL[1] * finer, x: origin[0], y: origin[1] };
@@ -60,12 +60,12 @@ fn finer_window(renderer: &mut Renderer, side: u32, finer: u32) -> Window {
     Window { side, light }
 }
 
-/// What crossings of orders above `above` up to `most` add.
+/// The light that crossings of orders above `above` up to `most` add.
 fn ring(renderer: &mut Renderer, side: u32, above: u32, most: u32) -> Window {
     finer_ring(renderer, side, above, most, 1)
 }
 
-/// As `finer_window`.
+/// The light of `ring` as means over pixels of a finer frame, as in `finer_window`.
 fn finer_ring(renderer: &mut Renderer, side: u32, above: u32, most: u32, finer: u32) -> Window {
     let mut with_orders = |most| {
         renderer.scene.quality.max_disk_order = most;
@@ -127,7 +127,7 @@ fn rings_have_no_gaps_and_as_much_light_as_many_rays_find() {
     }
 }
 
-/// What the GPU shows in a finer frame.
+/// The window as the GPU shows it in a finer frame.
 fn of_many_rays(tracers: &mut [(&str, Renderer); 2], scene: Scene, show: impl Fn(&mut Renderer) -> Window) -> Window {
     let [_, (_, gpu)] = tracers;
     gpu.scene = scene;
@@ -143,7 +143,7 @@ fn turn(camera: &Camera, pixels: f64) -> Camera {
 
 #[test]
 fn rings_are_steady_while_the_camera_turns() {
-    // From far the shadow is 3 pixels wide: all light counts, as its rings are no more than a thousandth.
+    // The eye is so far that the shadow is 3 pixels wide: all light counts, as its rings are no more than a thousandth.
     let tiny = [(0.0, 1000.0, 40), (0.9, 1000.0, 40)];
     // The CPU's pictures are the GPU's (tests/pictures.rs): over one pixel.
     for ((tracer, mut renderer), steps) in both().into_iter().zip([17, 64]) {

@@ -25,8 +25,7 @@ const ROOMS: [&[&str]; 15] = [
 ];
 
 /// The same within `gpu`.
-const GPU_ROOMS: [&[&str]; 6] =
-    [&["device"], &["kernel"], &["lens"], &["frame", "window"], &["gl_tracer"], &["mod"]];
+const GPU_ROOMS: [&[&str]; 6] = [&["device"], &["kernel"], &["lens"], &["frame", "window"], &["gl_tracer"], &["mod"]];
 
 const LONGEST_FILE: usize = 600;
 const WIDEST_LINE: usize = 120;

@@ -61,7 +61,7 @@ impl Screen {
         (self.forward + self.right * p.x - self.up * p.y).normalize()
     }
 
-    /// Of the pixel at a place.
+    /// The solid angle of the pixel at a place.
     fn solid_angle(&self, place: DVec2) -> f64 {
         self.direction(place).dot(self.forward).powi(3) / (self.scale * self.scale)
     }
@@ -96,7 +96,7 @@ impl Light {
         self.pixels.iter().enumerate().map(|(i, light)| light * weight(centre(i, self.screen.size))).sum()
     }
 
-    /// Of the pixels within `reach` of a place in x and in y.
+    /// The light of the pixels within `reach` of a place in x and in y.
     fn near(&self, place: DVec2, reach: i64) -> f64 {
         let [width, height] = self.screen.size.map(i64::from);
         let (x, y) = (place.x.floor() as i64, place.y.floor() as i64);
@@ -110,7 +110,7 @@ impl Light {
     }
 }
 
-/// Of pixel `i`.
+/// The centre of pixel `i`.
 fn centre(i: usize, size: [u32; 2]) -> DVec2 {
     let width = size[0] as usize;
     DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5)
@@ -235,7 +235,8 @@ impl Lensed {
         f64::from(StarIndex::new([self.star].into_iter()).unwrap().stars[0][3])
     }
 
-    /// By what the eye's frequency shift, 1 / sqrt(1 - 2 / r), brightens a blackbody of the star's temperature.
+    /// The factor by which the eye's frequency shift, 1 / sqrt(1 - 2 / r), brightens a blackbody of the star's
+    /// temperature.
     fn gain(&self) -> f64 {
         let g = 1.0 / (1.0 - 2.0 / EYE).sqrt();
         let temperature = self.star.temperature();

@@ -9,11 +9,28 @@ use crate::tracer::{AdapterInfo, Backend};
 use crate::tracers;
 use std::ffi::c_char;
 
+/// BhrAdapterInfo.flags: a GPU with memory of its own.
+pub const BHR_ADAPTER_DISCRETE: u32 = 1u32;
+/// BhrAdapterInfo.flags: a software driver, or the CPU tracer.
+pub const BHR_ADAPTER_SOFTWARE: u32 = 2u32;
+
 /// The interface to an adapter.
+///
+/// BHR_BACKEND_AUTO takes the best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches;
+/// else a software driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which
+/// needs seconds for its first frame, is never chosen.
+///
+/// BHR_BACKEND_GL reaches OpenGL and OpenGL ES through EGL or WGL, hardware or software. A thread of the library makes
+/// all its GL calls, and ends with the context: a GL context that is current on one of the host's threads stays
+/// current. With Mesa, bhr's GL context uses EGL's surfaceless display. A process has only one of these, and bhr never
+/// terminates it. If the host does (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until
+/// bhr_context_recover; a bhr_context_create or bhr_context_recover that is running meanwhile returns
+/// BHR_ERROR_NO_ADAPTER. The host may call eglTerminate while a call or a job of one context is running, but not while
+/// calls or jobs of several contexts on this backend are: EGL may give the handle of a context that has ended to
+/// another one. Each time, some 10 MiB and a sleeping thread for each context may stay behind until the process ends,
+/// because a context that has lost its display cannot be closed.
 pub type BhrBackend = i32;
-/// The best GPU that Vulkan, Metal or Direct3D 12 reaches; else a GPU that only OpenGL reaches; else a software
-/// driver for Vulkan (Mesa's lavapipe) or Direct3D 12; else the CPU tracer. Software OpenGL, which needs seconds for
-/// its first frame, is never chosen.
+/// The best one there is, in the order above.
 pub const BHR_BACKEND_AUTO: BhrBackend = 0;
 /// The built-in double-precision CPU tracer: needs no driver.
 pub const BHR_BACKEND_CPU: BhrBackend = 1;
@@ -23,20 +40,8 @@ pub const BHR_BACKEND_VULKAN: BhrBackend = 2;
 pub const BHR_BACKEND_METAL: BhrBackend = 3;
 /// Direct3D 12.
 pub const BHR_BACKEND_D3D12: BhrBackend = 4;
-/// OpenGL or OpenGL ES, through EGL or WGL, hardware or software. A thread of the library makes all calls, and ends
-/// with the context: whatever GL context is current on a thread of the host's stays so. With Mesa, its GL context
-/// uses EGL's surfaceless display, of which a process has only one. bhr never terminates it. If the host does
-/// (eglTerminate), all contexts on this backend return BHR_ERROR_DEVICE_LOST until bhr_context_recover; a
-/// bhr_context_create or bhr_context_recover that is running meanwhile returns BHR_ERROR_NO_ADAPTER. It may do so while
-/// a call or a job of one context is running, but not while several contexts on this backend have some: EGL may give
-/// the handle of a context that has ended to another one. Each time, some 10 MiB and a sleeping thread for each context
-/// may stay behind until the process ends, because a context that has lost its display cannot be closed.
+/// OpenGL or OpenGL ES.
 pub const BHR_BACKEND_GL: BhrBackend = 5;
-
-/// BhrAdapterInfo.flags: a GPU with memory of its own.
-pub const BHR_ADAPTER_DISCRETE: u32 = 1u32;
-/// BhrAdapterInfo.flags: a software driver, or the CPU tracer.
-pub const BHR_ADAPTER_SOFTWARE: u32 = 2u32;
 
 const TEXT: usize = 256;
 
@@ -46,6 +51,7 @@ const TEXT: usize = 256;
 pub struct BhrAdapterInfo {
     /// sizeof(BhrAdapterInfo), set by the caller.
     pub struct_size: u32,
+    /// BHR_BACKEND_*, never AUTO.
     pub backend: BhrBackend,
     /// BHR_ADAPTER_* bits.
     pub flags: u32,
@@ -53,7 +59,7 @@ pub struct BhrAdapterInfo {
     pub vendor_id: u32,
     /// PCI id of the device; 0 for the CPU tracer.
     pub device_id: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
     /// UTF-8, cut where it is longer.
     pub name: [c_char; 256],
@@ -105,7 +111,8 @@ fn fixed_text(text: &str) -> [c_char; TEXT] {
     fixed
 }
 
-/// `None`: AUTO. Errors: INVALID_ARGUMENT for a backend that the header does not list.
+/// The backend that a constant stands for; `None` for AUTO. Errors: INVALID_ARGUMENT for a backend that the header does
+/// not list.
 pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
     Ok(Some(match value {
         BHR_BACKEND_AUTO => return Ok(None),
@@ -118,9 +125,9 @@ pub(super) fn backend(value: BhrBackend) -> Result<Option<Backend>> {
     }))
 }
 
-/// How many adapters this machine has: at least 1, the CPU tracer, which is the last one. Adapters other than GL are
-/// looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks. Errors:
-/// INVALID_ARGUMENT for NULL.
+/// Counts the adapters of this machine: at least 1, because the CPU tracer is always there, and always last. Adapters
+/// other than GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks.
+/// Errors: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -132,9 +139,9 @@ pub unsafe extern "C" fn bhr_adapter_count(out_count: *mut u32) -> BhrStatus {
     })
 }
 
-/// The adapter at index: GPUs first, then software drivers, the CPU tracer last. BHR_BACKEND_AUTO need not take the
-/// first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a wrong struct_size, or an index
-/// not below bhr_adapter_count.
+/// Fills in info for the adapter at index: GPUs come first, then software drivers, the CPU tracer last.
+/// BHR_BACKEND_AUTO need not take the first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a
+/// wrong struct_size, or an index not below bhr_adapter_count.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_adapter_info(index: u32, info: *mut BhrAdapterInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

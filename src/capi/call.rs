@@ -36,7 +36,7 @@ pub(super) unsafe fn on_context<T: Success>(
         guarded(|| body(&mut state))
     };
     break_if_internal(&result, &context.broken);
-    // Whoever waits goes before a thread that calls again and again.
+    // Threads that wait for the lock go first: one that calls again and again would otherwise keep them out.
     MutexGuard::unlock_fair(state);
     finish(function, result)
 }

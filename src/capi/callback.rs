@@ -22,7 +22,7 @@ pub(super) fn count(counter: &'static LocalKey<Cell<u32>>) -> u32 {
     counter.try_with(Cell::get).unwrap_or(0)
 }
 
-/// Adds one to a counter of this thread while it lives.
+/// Adds one to a counter of this thread for as long as it lives.
 pub(super) struct Depth(&'static LocalKey<Cell<u32>>);
 
 impl Depth {
@@ -38,7 +38,7 @@ impl Drop for Depth {
     }
 }
 
-/// While it lives, this thread is inside a callback of the host's.
+/// This thread is inside a callback of the host's for as long as this value lives.
 pub(super) struct InsideCallback {
     _any: Depth,
     _log: Option<Depth>,

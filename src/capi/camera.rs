@@ -18,27 +18,29 @@ pub const BHR_PROJECTION_PERSPECTIVE: BhrProjection = 0;
 /// fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
 /// 0 in a TRANSPARENT image, NaN in views, rays without direction.
 pub const BHR_PROJECTION_FISHEYE: BhrProjection = 1;
-/// 360 x 180 degrees, evenly: longitude from forward (middle) to the right, latitude towards up (top); fov_y is
-/// ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the poles, where pixels
-/// are far narrower than high, the light of single stars is not exact.
+/// All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude towards
+/// up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the
+/// poles, where pixels are far narrower than high, the light of single stars is not exact.
 pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
-/// 6 faces side by side: right left up down front back; image up is up, on the up face backward, on the down face
-/// forward. Each is what a 90 degree PERSPECTIVE camera that looks that way sees, not its mirror image; fov_y is
-/// ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a frame or rays are asked for.
-/// Stars keep their light across the borders of faces; within two pixels of the cube's corners up to a quarter is lost.
+/// Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face it
+/// is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way sees, not
+/// its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a
+/// frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
+/// corners up to a quarter is lost.
 pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
 
-/// How the camera's observer moves. What the hole forbids at the camera's place is INVALID_STATE when a frame or
-/// rays are asked for.
+/// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
+/// or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
+/// circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
+/// circular geodesic, in the equatorial plane only.
 pub type BhrMotion = i32;
-/// At rest; the zero angular momentum observer (ZAMO) when the hole spins.
+/// At rest; with spin, the zero angular momentum observer (ZAMO).
 pub const BHR_MOTION_STATIC: BhrMotion = 0;
-/// Radially from rest at infinity; inside a spin-0 horizon too.
+/// Falls radially from rest at infinity.
 pub const BHR_MOTION_FREE_FALL: BhrMotion = 1;
-/// Circular, along +ph. Spin 0: with beta = 1 / sqrt(r / M - 2), r > 3 M, at any latitude. With spin: the circular
-/// geodesic, in the equatorial plane only.
+/// On a circular orbit towards +ph.
 pub const BHR_MOTION_ORBIT: BhrMotion = 2;
-/// With BhrCamera.velocity.
+/// Moves with BhrCamera.velocity.
 pub const BHR_MOTION_VELOCITY: BhrMotion = 3;
 
 /// The camera: an observer with a lens. Positions and axes in scene axes and lengths.
@@ -60,7 +62,7 @@ pub struct BhrCamera {
     pub fov_y: f64,
     /// BHR_MOTION_*. Default STATIC.
     pub motion: BhrMotion,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
     /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
     /// direction given at position. Default 0.
@@ -235,12 +237,13 @@ pub unsafe extern "C" fn bhr_get_camera(context: *const BhrContext, camera: *mut
     }
 }
 
-/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): STATIC
-/// stays; FREE_FALL falls; ORBIT orbits, its axes carried along. The context's own camera stays.
-/// *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time, and a
-/// fall through a spin-0 horizon is seamless. Outside that is the chart's t; from outside to inside, M = 1 and H as
-/// at bhr_set_time, proper_time + H(r at the begin); inside, proper_time. On failure the camera stays as it was.
-/// Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion cannot be; UNSUPPORTED for VELOCITY.
+/// Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a STATIC
+/// one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
+/// it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time,
+/// and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from outside to inside (M
+/// = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time. On failure the camera
+/// stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible;
+/// UNSUPPORTED for VELOCITY.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_camera_advance(
     context: *const BhrContext,

@@ -30,13 +30,13 @@ pub struct BhrContext {
     pub(super) state: Mutex<State>,
     /// A call, or a job, failed internally.
     pub(super) broken: Arc<AtomicBool>,
-    /// What progress callbacks of jobs pass, which may outlive the context.
+    /// The gate that progress callbacks of jobs pass through; jobs may outlive the context.
     pub(super) progress_gate: Arc<Gate>,
-    /// After `state`, so that a renderer's last words are still heard.
+    /// Dropped after `state`, so that a renderer's last messages are still heard.
     log: Option<Registered>,
 }
 
-/// What the lock of a context protects.
+/// The part of a context that its lock protects.
 pub(super) struct State {
     pub renderer: Renderer,
     /// `None`: images are whole frames.
@@ -56,8 +56,8 @@ impl BhrContext {
     }
 }
 
-/// BhrContextOptions.flags: the driver's validation layers, where installed (OpenGL has none), check bhr and report to
-/// the log. Slow.
+/// BhrContextOptions.flags: the driver's validation layers check bhr and report to the log. Slow. Ignored where they
+/// are not installed, and by OpenGL, which has none.
 pub const BHR_CONTEXT_VALIDATION: u32 = 1u32;
 
 /// How to make a context. Fill in with bhr_context_options_init first.
@@ -75,15 +75,15 @@ pub struct BhrContextOptions {
     pub adapter_index: i32,
     /// Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use.
     pub cpu_threads: u32,
-    /// What log_fn hears. Default BHR_LOG_WARN.
+    /// The messages that log_fn is told: this level and the more severe ones. Default BHR_LOG_WARN.
     pub log_level: BhrLogLevel,
     /// NULL (default): silent.
     pub log_fn: BhrLogFn,
     /// Handed to log_fn.
     pub log_user: *mut c_void,
-    /// A window that the adapter must be able to present to; looked at during the call only. With AUTO adapters
-    /// that cannot are passed over; the CPU tracer, whose frames reach windows in other ways, always serves. NULL
-    /// (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
+    /// A window that the adapter must be able to present to; it is looked at during the call only. With AUTO, adapters
+    /// that cannot are passed over; the CPU tracer always qualifies, because its frames reach windows in other ways.
+    /// NULL (default): any adapter; where it cannot present, surfaces work all the same, more slowly. GL adapters never
     /// present.
     pub compatible_window: *const BhrWindow,
 }
@@ -206,7 +206,7 @@ fn create(options: RendererOptions, log: Option<Registered>) -> Result<Box<BhrCo
     Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), log }))
 }
 
-/// What the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// Fills in info for the adapter that the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *mut BhrAdapterInfo) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -234,11 +234,11 @@ pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
     unsafe { on_context("lose_device", context, |state| state.renderer.lose_device()) }
 }
 
-/// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), then frees
-/// it; pipelines that are being compiled are waited for, up to a second. Its surfaces end too, but both they and its
-/// jobs must still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other
-/// thread may begin a call on it any more. From inside a callback it does nothing, as the context is in use:
-/// bhr_error_message then says so.
+/// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a
+/// second for pipelines that are being compiled, then frees it. Its surfaces end too, but both they and its jobs must
+/// still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
+/// begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
+/// then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";

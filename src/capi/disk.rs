@@ -31,11 +31,11 @@ pub struct BhrDisk {
     pub opacity: f64,
     /// 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1.
     pub brightness: f64,
-    /// Contrast of the structure that orbits with the matter, 0 smooth (default) .. 1. It is light and dark by turns
-    /// about the smooth disk, and is carried along by bhr_set_time. A pattern lives for 120 M, and every 60 M a new
-    /// one begins: they fade in and out, two at a time.
+    /// Contrast of the structure that orbits with the matter, from 0, smooth (default), to 1. It makes the disk lighter
+    /// and darker by turns, and bhr_set_time carries it along. A pattern lives for 120 M, and every 60 M a new one
+    /// begins: two at a time fade in and out.
     pub turbulence: f64,
-    /// Another one gives another turbulence, the same one always the same. Default 0.
+    /// Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0.
     pub seed: u64,
 }
 
@@ -108,8 +108,8 @@ pub unsafe extern "C" fn bhr_set_disk(context: *mut BhrContext, disk: *const Bhr
     }
 }
 
-/// The disk as it is set. *out_present is 1 with a disk, else 0, and then disk gets the defaults. Errors:
-/// INVALID_ARGUMENT for NULL or a wrong struct_size.
+/// Reads the disk as it is set. *out_present becomes 1 with a disk; without one it becomes 0, and disk gets the
+/// defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_disk(
     context: *const BhrContext,

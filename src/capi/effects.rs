@@ -1,4 +1,4 @@
-//! Which effects colour the light, and the scene's time.
+//! BHR_EFFECT_*, the relativistic effects that colour the light, and the scene's time.
 
 use super::call::on_context;
 use super::context::BhrContext;
@@ -6,15 +6,13 @@ use super::pointer::check_finite;
 use super::status::BhrStatus;
 use crate::scene::Effects;
 
-/// Frequency shift by motion colours the light. The redshift g = g_gravity g_doppler is split at the local static
-/// observer (ZAMO) of emitter and camera.
+/// The frequency shift by motion colours the light.
 pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
-/// Gravitational redshift colours the light.
+/// The gravitational redshift colours the light.
 pub const BHR_EFFECT_GRAVITY_SHIFT: u32 = 2u32;
-/// Intensity follows g^3 (I_nu), g^4 (bolometric).
+/// The intensity follows g^3 (I_nu), g^4 (bolometric).
 pub const BHR_EFFECT_BEAMING: u32 = 4u32;
-/// The moving disk is seen at its retarded time (turbulence only), from inside a spin-0 horizon too. Without it, all
-/// of the disk is seen as it is at the t that bhr_set_time gives.
+/// The moving disk is seen at its retarded time.
 pub const BHR_EFFECT_LIGHT_DELAY: u32 = 8u32;
 /// All effects, as a new context has them.
 pub const BHR_EFFECT_ALL: u32 = 0xffff_ffffu32;
@@ -27,8 +25,10 @@ const _: () = assert!(
         && BHR_EFFECT_ALL == Effects::ALL
 );
 
-/// Sets which effects colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL.
-/// Lensing itself stays. Errors: INVALID_ARGUMENT for NULL.
+/// Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL. Lensing
+/// itself cannot be switched off. The redshift g = g_gravity g_doppler is split at the local static observers (ZAMO) of
+/// emitter and camera. LIGHT_DELAY shows in a turbulent disk only, from inside a spin-0 horizon too; without it, all of
+/// the disk is seen as it is at the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

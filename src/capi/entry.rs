@@ -7,7 +7,7 @@ use super::panic::guarded;
 use super::status::{self, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
 
-/// What a body that succeeds says.
+/// The value of a body that succeeds.
 pub(super) trait Success {
     fn status(self) -> BhrStatus;
 }
@@ -18,7 +18,7 @@ impl Success for () {
     }
 }
 
-/// A success with news, or without: a status >= 0.
+/// The status of a success, >= 0: with news, or without.
 pub(super) struct News(pub BhrStatus);
 
 impl Success for News {
@@ -43,7 +43,7 @@ pub(super) fn finish<T: Success>(function: &str, result: Result<T>) -> BhrStatus
         Ok(success) => return success.status(),
         Err(error) => error,
     };
-    // `allocate` says nothing where there is no memory to say it in.
+    // `allocate` leaves the message empty where there is no memory for one.
     let message = if error.message.is_empty() { "no memory is left" } else { &error.message };
     ::log::error!(target: "bhr", "{function}: {message}");
     keep_message(format_args!("{function}: {message}"));

@@ -11,16 +11,16 @@ use crate::scene::{Film, ToneMap};
 
 /// The curve from light to pixels.
 pub type BhrToneMap = i32;
-/// Clips at 1.
+/// No curve: light above 1 is clipped.
 pub const BHR_TONE_MAP_NONE: BhrToneMap = 0;
 /// A filmic curve after ACES.
 pub const BHR_TONE_MAP_ACES: BhrToneMap = 1;
-/// AgX.
+/// The AgX curve.
 pub const BHR_TONE_MAP_AGX: BhrToneMap = 2;
 
-/// Applies to 8-bit formats and windows only: float formats hold linear radiance, untouched by exposure, bloom and
-/// tone map; and to BHR_VIEW_LIGHT: other views are neither exposed nor blurred. In this order: exposure, bloom, tone
-/// map, the sRGB curve, dithering.
+/// How light becomes pixels. It applies to 8-bit formats and windows only, because float formats hold linear radiance;
+/// and to BHR_VIEW_LIGHT only, because the other views show values. In this order: exposure, bloom, tone map, the sRGB
+/// curve, dithering.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrFilm {

@@ -15,7 +15,7 @@ struct State {
     running: u32,
 }
 
-/// While it lives, a callback runs.
+/// A callback is running for as long as this value lives.
 pub(super) struct Inside<'a>(&'a Gate);
 
 impl Gate {
@@ -24,7 +24,7 @@ impl Gate {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// `None` when it is closed.
+    /// Lets a callback in; `None` when the gate is closed.
     pub fn enter(&self) -> Option<Inside<'_>> {
         let mut state = self.lock();
         if state.closed {

@@ -48,7 +48,7 @@ pub unsafe extern "C" fn bhr_set_axis(context: *mut BhrContext, axis: *const f64
     }
 }
 
-/// The mass, spin and axis (unit) as they are set. Errors: INVALID_ARGUMENT for NULL.
+/// Reads the mass, the spin and the axis (a unit vector) as they are set. Errors: INVALID_ARGUMENT for NULL.
 ///
 /// cbindgen:ptrs-as-arrays=[[out_axis;3]]
 #[unsafe(no_mangle)]
@@ -75,25 +75,25 @@ pub unsafe extern "C" fn bhr_get_hole(
     }
 }
 
-/// Numbers about the hole and the camera's observer. Lengths in scene units; NaN where not defined.
+/// Numbers about the hole and the camera's observer. Lengths are in scene units; what is not defined is NaN.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrHoleInfo {
     /// sizeof(BhrHoleInfo), set by the caller.
     pub struct_size: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
     /// r+ = M + sqrt(M^2 - a^2).
     pub horizon_radius: f64,
-    /// 2 M.
+    /// 2 M, at every spin.
     pub ergosphere_equatorial_radius: f64,
     /// Equatorial circular photon orbit towards +ph.
     pub photon_orbit_prograde: f64,
-    /// The one towards -ph.
+    /// Equatorial circular photon orbit towards -ph.
     pub photon_orbit_retrograde: f64,
     /// Innermost stable circular orbit of matter towards +ph.
     pub isco_prograde: f64,
-    /// That of matter towards -ph.
+    /// Innermost stable circular orbit of matter towards -ph.
     pub isco_retrograde: f64,
     /// Spin 0: 3 sqrt(3) M; NaN with spin.
     pub critical_impact_parameter: f64,
@@ -102,7 +102,7 @@ pub struct BhrHoleInfo {
     pub shadow_angular_radius: f64,
     /// Boyer-Lindquist r of the camera.
     pub camera_radius: f64,
-    /// d tau / d t of the camera's observer.
+    /// d tau / d t, the rate of the clock of the camera's observer.
     pub camera_time_rate: f64,
 }
 
@@ -158,8 +158,8 @@ pub unsafe extern "C" fn bhr_hole_info(context: *const BhrContext, info: *mut Bh
     }
 }
 
-/// The metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph), signature - +
-/// + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
+/// Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph),
+/// signature - + + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
 ///
 /// cbindgen:ptrs-as-arrays=[[position;3], [out_metric;16]]
 #[unsafe(no_mangle)]
@@ -179,8 +179,8 @@ pub unsafe extern "C" fn bhr_metric_at(
     }
 }
 
-/// The Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist (t,
-/// r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
+/// Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist
+/// (t, r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
 ///
 /// cbindgen:ptrs-as-arrays=[[position;3], [out_gamma;64]]
 #[unsafe(no_mangle)]

@@ -13,22 +13,21 @@ use std::path::PathBuf;
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A pixel's bytes in memory order.
+/// A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest.
 pub type BhrFormat = i32;
 /// 4 bytes: red, green, blue with the sRGB curve, alpha.
 pub const BHR_FORMAT_RGBA8_SRGB: BhrFormat = 1;
 /// 4 bytes: blue, green, red with the sRGB curve, alpha.
 pub const BHR_FORMAT_BGRA8_SRGB: BhrFormat = 2;
-/// 4 half floats, linear, Rec. 709 primaries. A radiance of 1 is the luminance of the default disk's hottest ring
-/// at rest.
+/// 4 half floats: linear radiance, Rec. 709 primaries; alpha.
 pub const BHR_FORMAT_RGBA16F: BhrFormat = 3;
-/// 4 floats, as above.
+/// 4 floats: linear radiance, Rec. 709 primaries; alpha.
 pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
-/// 1 float: views other than BHR_VIEW_LIGHT.
+/// 1 float: the value of a view other than BHR_VIEW_LIGHT.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
 
-/// BhrImage.flags: premultiplied alpha = 1 - the sky's share, and the sky is left out. Without it alpha is 1. Bloom
-/// adds light and leaves alpha: glare over the host's own picture.
+/// BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
+/// Bloom adds light and leaves alpha as it is: glare over the host's own picture.
 pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 
 /// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
@@ -64,7 +63,7 @@ pub struct BhrImage {
     pub byte_size: u64,
     /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only.
     pub flags: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
 }
 

@@ -25,12 +25,12 @@ pub struct BhrJob {
     /// Closed when the context ends.
     progress_gate: Arc<Gate>,
     sink: Option<Arc<Sink>>,
-    /// The context's.
+    /// The log callback of the context.
     broken: Arc<AtomicBool>,
 }
 
 impl BhrJob {
-    /// Tells the progress callback, unless the context is gone; false: cancel.
+    /// Calls the progress callback, unless the context is gone; false means that the job is to be cancelled.
     fn tell(&self, report: &mut Report, fraction: f64) -> bool {
         self.progress_gate.enter().is_none_or(|_open| report.tell(fraction))
     }
@@ -156,6 +156,6 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
     cancel(NAME, &job);
-    // Its own failure is nobody's any more.
+    // Nobody is left to hear of the job's own failure.
     let _ = job.job.wait(None, &mut |_| true);
 }

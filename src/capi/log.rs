@@ -13,13 +13,13 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::mem::ManuallyDrop;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
-/// How much a log callback hears: messages of this level and those more severe.
+/// How much a log callback is told: messages of this level and of the more severe ones.
 pub type BhrLogLevel = i32;
 /// Nothing.
 pub const BHR_LOG_OFF: BhrLogLevel = 0;
 /// Every failed call, and errors of the graphics stack.
 pub const BHR_LOG_ERROR: BhrLogLevel = 1;
-/// Also what went wrong without failing a call, such as an adapter passed over. The default.
+/// Also trouble that failed no call, such as an adapter passed over. The default.
 pub const BHR_LOG_WARN: BhrLogLevel = 2;
 /// Also the adapter that was chosen, and why.
 pub const BHR_LOG_INFO: BhrLogLevel = 3;
@@ -124,14 +124,14 @@ fn change_sinks(change: impl FnOnce(&mut Vec<Arc<Sink>>)) {
 }
 
 thread_local! {
-    /// Of the call this thread is in: `Some(None)` is a context without a callback.
-    /// Not dropped with its thread, which has left every scope by then: a destructor would take memory in each thread.
+    /// The log callback of the call that this thread is in; `Some(None)` when its context has none. The value is not
+    /// dropped with its thread, which has left every scope by then: a destructor would take memory in each thread.
     static CURRENT: RefCell<ManuallyDrop<Option<Option<Arc<Sink>>>>> = const { RefCell::new(ManuallyDrop::new(None)) };
     /// Messages that found no room to wait in, since the note about them was ordered.
     static OMITTED: Cell<u64> = const { Cell::new(0) };
 }
 
-/// While it lives, this thread's messages go to one context's callback, if it has one, and to no other.
+/// While a `Scope` lives, this thread's messages go to one context's callback, if it has one, and to no other.
 pub(super) struct Scope {
     before: Option<Option<Arc<Sink>>>,
 }
@@ -155,7 +155,7 @@ fn scope_of_caller() -> ThreadScope {
     Arc::new(move || Box::new(Scope { before: change_current(sink.clone()) }))
 }
 
-/// What was there before.
+/// The callback that was in force before this scope began.
 fn change_current(sink: Option<Option<Arc<Sink>>>) -> Option<Option<Arc<Sink>>> {
     // No thread-local left: the thread is ending, and nothing can be logged from it any more.
     let replaced = CURRENT.try_with(|current| current.replace(ManuallyDrop::new(sink)));
@@ -218,8 +218,8 @@ fn is_own(record: &Record<'_>) -> bool {
     record.target() == "bhr" || record.target().starts_with("bhr::")
 }
 
-/// What the graphics stack calls info, every buffer and pipeline, is detail to a host: below warnings it counts one
-/// level less.
+/// The graphics stack logs every buffer and pipeline as info. To a host that is detail, so its messages below warnings
+/// count one level less.
 fn host_level(record: &Record<'_>) -> Level {
     match record.level() {
         Level::Info if !is_own(record) => Level::Debug,
@@ -304,7 +304,7 @@ mod tests {
         for _ in 0..20 {
             ::log::info!("long {}", "!".repeat(1 << 20));
         }
-        // Kept for whom they were meant, whatever the thread does next.
+        // Deferred messages stay with the callbacks that they were meant for, whatever the thread does next.
         drop(scope);
         drop(alone);
         assert_eq!(said(&heard, "long").len(), 15);

@@ -13,7 +13,7 @@ pub(super) fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
         HOOK.call_once(silence_panics);
     }
     let _call = Depth::enter(&CALLS);
-    // Unwind safe: whoever could see what the panic left half done is refused from then on.
+    // This is unwind safe: whoever could see what the panic left half done is refused from then on.
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|payload| {
         // Dropping an unknown payload may panic again.
         std::mem::forget(payload);
@@ -30,13 +30,13 @@ fn last_panic() -> std::sync::MutexGuard<'static, Option<String>> {
 
 type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Sync + Send>;
 
-/// The hook that was there.
+/// The panic hook that was installed before this one.
 static BEFORE: OnceLock<Hook> = OnceLock::new();
 
 /// Rust's default hook prints. Panics inside a call, and on the tracers' threads (named "bhr.."), are noted
 /// instead; any other panic in the process goes where it went before.
 fn silence_panics() {
-    // Not captured, as a closure that holds nothing takes no memory.
+    // The closure does not capture the old hook: a closure that holds nothing takes no memory.
     BEFORE.get_or_init(std::panic::take_hook);
     std::panic::set_hook(Box::new(|info| {
         let ours = count(&CALLS) > 0 || std::thread::current().name().is_some_and(|name| name.starts_with("bhr"));
@@ -44,7 +44,7 @@ fn silence_panics() {
             Some(before) if !ours => before(info),
             _ => {
                 let text = describe(info);
-                // On a thread for GL it must not unwind: this does not return there, and does nothing elsewhere.
+                // A thread for GL must not unwind: this call does not return there, and does nothing on other threads.
                 gpu::park(&text);
                 *last_panic() = Some(text);
             }

@@ -9,20 +9,38 @@ use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::{LensTables, Method, Quality};
 
-/// How light is followed. Pixels of the same frame by different methods differ by less than the errors stated here:
-/// of the look direction that a sky direction belongs to, and of radii and redshifts, relative, each divided by (1 +
-/// conditioning).
+/// How light is followed. Frames by different methods differ by less than these errors:
+///
+/// | method                     | rays are                                | look direction | radius, redshift |
+/// |----------------------------|-----------------------------------------|----------------|------------------|
+/// | ADAPTIVE, double precision | integrated with error control           | 1e-8 rad       | 1e-8, relative   |
+/// | ADAPTIVE, single precision | integrated with error control           | 2e-6 rad       | 2e-6             |
+/// | RK4 with the default step  | integrated in fixed steps, fourth order | 2e-5 rad       | 2e-5             |
+/// | AUTO                       | looked up in tables where that pays     | 5e-6 rad       | 1e-5             |
+///
+/// An error of the look direction is how far the ray of a sky direction is off; each error is divided by (1 +
+/// conditioning), as rays near the edge of the shadow magnify every rounding. The CPU tracer works in double precision,
+/// GPUs in single.
+///
+/// AUTO, the fastest, makes tables of the lens that the hole is for the camera's observer. They are made anew when the
+/// observer moves, but not when the view turns or zooms, and they serve under these conditions:
+///
+/// |                              | spin 0                       | with spin                                    |
+/// |------------------------------|------------------------------|----------------------------------------------|
+/// | samples in a frame, at least | 4096                         | 500000 on a GPU, 140000 on the CPU           |
+/// | nearest observer             | 2.0005 M; in FREE_FALL 0.9 M | 1.03 retrograde photon orbits (3.1 to 4.1 M) |
+/// | farthest observer            | 1e6 M                        | 1e5 M                                        |
+/// | max_disk_order, at most      | 15                           | 15; beyond 1e4 M 11                          |
+/// | ... of a turbulent disk      | 15                           | 3; beyond 1e4 M 2                            |
+///
+/// Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays and
+/// BHR_VIEW_METRIC.
 pub type BhrMethod = i32;
-/// The fastest: 5e-6 rad, 1e-5. A frame's rays are looked up in tables of the eye's lens, which are made when the eye
-/// moves (not when the view turns or zooms): with spin in frames of 500000 samples or more on a GPU, 140000 on the
-/// CPU, for eyes between 1.03 retrograde photon orbits (3.1 to 4.1 M) and 1e5 M, and max_disk_order to 15 (farther
-/// than 1e4 M: 11), of a turbulent disk to 3 (2); without spin in frames of 4096 or more, for eyes from 2.0005 M,
-/// falling from 0.9 M, to 1e6 M. Elsewhere, and for bhr_trace_rays and BHR_VIEW_METRIC always, every ray is
-/// integrated.
+/// Looked up in tables where that pays, else integrated. The fastest.
 pub const BHR_METHOD_AUTO: BhrMethod = 0;
-/// Fixed-step fourth-order Runge-Kutta, every ray by itself: 2e-5 with the default step.
+/// Every ray integrated by fixed-step fourth-order Runge-Kutta.
 pub const BHR_METHOD_RK4: BhrMethod = 1;
-/// Embedded Runge-Kutta with error control, every ray by itself: 1e-8 in double precision, 2e-6 in single.
+/// Every ray integrated by embedded Runge-Kutta with error control.
 pub const BHR_METHOD_ADAPTIVE: BhrMethod = 2;
 
 /// How exactly to trace.
@@ -33,20 +51,22 @@ pub struct BhrQuality {
     pub struct_size: u32,
     /// BHR_METHOD_*. Default AUTO.
     pub method: BhrMethod,
-    /// 1 (default) .. 256. Several are drawn from, and so weighed by, a quadratic B-spline 3 pixels wide about the
-    /// pixel's centre (CUBE: lie evenly in the pixel, as across a face's border is another sky). Views other than
-    /// BHR_VIEW_LIGHT take one. Where an edge of the disk, a steep change or the edge of the shadow runs through the
-    /// pixel, each sample is the mean of 4 or 32 rays over a pixel's area; BhrFrameStats does not count those.
+    /// Samples of each pixel, 1 (default) .. 256. More than one are drawn from, and so weighted by, a quadratic
+    /// B-spline 3 pixels wide about the pixel's centre. (CUBE: they lie evenly in the pixel, because another part of
+    /// the sky begins across a face's border.) Views other than BHR_VIEW_LIGHT take one. Where an edge of the disk, a
+    /// steep change or the edge of the shadow runs through the pixel, each sample is the mean of 4 or 32 rays over a
+    /// pixel's area; BhrFrameStats does not count those.
     pub samples_per_pixel: u32,
-    /// Per integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
+    /// Steps of an integrated ray, 16 .. 100000. Default 2000. A ray that needs more is BHR_FATE_UNRESOLVED.
     pub max_steps: u32,
-    /// RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0: the default, 0.1.
+    /// RK4: the step in sigma = S tau (Mino time scaled to the ray), 1e-3 .. 0.5; 0 means the default, 0.1.
     pub step: f64,
-    /// ADAPTIVE: relative, 1e-14 .. 1e-3; 0: the default, 1e-10. Single-precision tracers stop at their own.
+    /// ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0 means the default, 1e-10. Single-precision tracers use their
+    /// own.
     pub tolerance: f64,
-    /// Images of the disk to follow: 0 the direct one only .. 15. Default 3.
+    /// Images of the disk to follow, 0 (the direct one only) .. 15. Default 3.
     pub max_disk_order: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
     /// Windows: traced size / window size, 0.1 .. 1. Default 1.
     pub render_scale: f64,

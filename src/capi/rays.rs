@@ -13,16 +13,16 @@ use crate::scene::{Crossing, Hit, MAX_CROSSINGS, Ray};
 use bytemuck::{Pod, Zeroable};
 use std::mem::size_of;
 
-/// A ray, followed backward from the eye. Within one BHR_ABI_VERSION it does not grow: some calls that fill it in are
-/// told no size.
+/// A ray, followed backward in time from an observer. It does not grow within one BHR_ABI_VERSION, because some calls
+/// that fill it in are not told its size.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrRay {
     /// Scene axes and lengths.
     pub position: [f64; 3],
-    /// Where the eye looks, opposite to the photon's momentum; any non-zero length. Components as the conventions
-    /// say: along the frame of the local static observer (ZAMO), inside a spin-0 horizon of the observer falling
-    /// from rest at infinity.
+    /// The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components
+    /// are along the frame that the conventions above give: the local static observer's (ZAMO), inside a spin-0 horizon
+    /// the frame of the observer falling from rest at infinity.
     pub direction: [f64; 3],
     /// nu(camera) / nu(observer of the local frame), > 0; 1 for an observer at rest in it. Multiplies every
     /// redshift of the hit.
@@ -44,22 +44,23 @@ pub struct BhrCrossing {
     pub azimuth: f64,
     /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
     pub redshift: f64,
-    /// Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon.
+    /// Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon.
     pub delay: f64,
 }
 
-/// What became of a ray.
+/// How a ray ends.
 pub type BhrFate = i32;
-/// It ends at the horizon.
+/// The ray ends at the horizon.
 pub const BHR_FATE_CAPTURED: BhrFate = 0;
-/// It reaches the sky.
+/// The ray reaches the sky.
 pub const BHR_FATE_ESCAPED: BhrFate = 1;
 /// BhrQuality.max_steps ran out.
 pub const BHR_FATE_UNRESOLVED: BhrFate = 2;
-/// This ray's input is not valid: not finite, zero direction, no frame there.
+/// The ray is not valid: not finite, direction zero, or no frame at its place.
 pub const BHR_FATE_INVALID: BhrFate = 3;
 
-/// What a ray met. It may grow at its end: bhr_trace_rays is told hit_size.
+/// The end of a ray, and its crossings of the equatorial plane. It may grow at its end: bhr_trace_rays is told
+/// hit_size.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrHit {
@@ -71,11 +72,11 @@ pub struct BhrHit {
     pub sky_direction: [f64; 3],
     /// nu(camera) / nu(at infinity); NaN unless escaped.
     pub sky_redshift: f64,
-    /// Spin 0: orbit angle from the eye to infinity, or to the horizon, radians; with spin NaN.
+    /// Spin 0: the orbit angle from the observer to infinity, or to the horizon, radians; with spin NaN.
     pub swept_angle: f64,
     /// Integration steps.
     pub steps: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
     /// In order along the ray; 0 beyond crossing_count.
     pub crossings: [BhrCrossing; BHR_MAX_CROSSINGS],
@@ -194,10 +195,10 @@ pub unsafe extern "C" fn bhr_camera_ray(
     }
 }
 
-/// Rays that are copied and traced at a time: bounds the library's own memory.
+/// The number of rays that are copied and traced at a time; it bounds the library's own memory.
 const CHUNK: usize = 65_536;
 
-/// Larger than the structs will ever be.
+/// A size that the structs will never reach.
 const MAX_ELEMENT: usize = 16 * 1024;
 
 // Neither may grow: `bhr_camera_rays` and others fill a BhrRay in without being told its size, and a BhrHit holds
@@ -249,7 +250,7 @@ impl Array {
         }
     }
 
-    /// As much of the hit as the host's element holds; what it holds beyond that becomes zero.
+    /// Writes as much of the hit as the host's element holds; the rest of a longer element becomes zero.
     ///
     /// # Safety
     /// `index` is less than the count, and the host's array is writable.
@@ -259,7 +260,7 @@ impl Array {
     }
 
     /// # Safety
-    /// As `write_hit`.
+    /// `index` is less than the count, and the host's array is writable.
     unsafe fn write(self, index: usize, value: &[u8]) {
         let known = value.len().min(self.element);
         // SAFETY: this function's contract; `known` is no longer than the element or the value.
@@ -295,13 +296,13 @@ unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: us
     Ok(())
 }
 
-/// Traces count rays on the context's backend. Whatever the scene's disk is: crossings are those of the bare
-/// equatorial plane, down to r+ (1 + 1e-5), the first BHR_MAX_CROSSINGS of them; their emitter turns as the disk's
-/// flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not an
-/// error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at
-/// least 56 and 184, those of the first version; both arrays are packed. A longer ray must be 0 beyond what this
-/// library knows, a longer hit becomes so. count 0 does nothing. Errors: INVALID_ARGUMENT for NULL or a size below
-/// the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
+/// Traces count rays on the context's backend. The scene's disk does not matter: crossings are those of the bare
+/// equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter turns as the
+/// disk's flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
+/// an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at least
+/// 56 and 184, the sizes of the first version; both arrays are packed. A ray that is longer than this library's must be
+/// 0 beyond it; a longer hit is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or
+/// a size below the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_rays(
     context: *mut BhrContext,
@@ -325,12 +326,12 @@ pub unsafe extern "C" fn bhr_trace_rays(
     }
 }
 
-/// The curve a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) per point; out_points has
-/// room for 4 capacity doubles. At most capacity points, 2 or more, the last one its end; *out_count becomes their
-/// number; never more than 65536. The end is just outside the horizon, or, for a ray that escapes, at ten times the
-/// eye's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out. Traced in double
-/// precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL, capacity < 2, or a ray that is not
-/// valid; UNSUPPORTED inside a spinning hole's horizon.
+/// Fills in the curve that a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) for each point.
+/// out_points has room for 4 capacity doubles. *out_count becomes the number of points: 2 or more, at most capacity,
+/// never more than 65536. The last point is the curve's end: just outside the horizon, or, for a ray that escapes, at
+/// ten times the observer's radius, but at least 1000 M; a ray that needs more than max_steps ends where they ran out.
+/// The curve is traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL,
+/// capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_trace_path(
     context: *mut BhrContext,

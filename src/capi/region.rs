@@ -8,8 +8,8 @@ use super::versioned::{self, Versioned};
 use crate::error::{Error, Result};
 use crate::scene::Region;
 
-/// The image is this part of a larger frame: tiles, dome walls, render farms. Tiles joined give the same bytes as
-/// the frame.
+/// The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined have
+/// the same bytes as the frame.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrRegion {
@@ -23,7 +23,7 @@ pub struct BhrRegion {
     pub x: u32,
     /// Row of the image's top pixels in the frame, < full_height.
     pub y: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
 }
 

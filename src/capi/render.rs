@@ -9,9 +9,9 @@ use super::status::BhrStatus;
 use crate::error::{Error, ErrorKind};
 use std::ffi::c_void;
 
-/// Hears how much of a frame is done: fraction grows from 0 to 1. Returns 0 to cancel, anything else to go on; at 1
-/// the frame is complete and the answer is ignored. Runs inside a bhr_ call only, on the calling thread. It must not
-/// throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
+/// Is told how much of a frame is done: fraction grows from 0 to 1. It returns 0 to cancel, anything else to go on; at
+/// 1 the frame is complete and the answer is ignored. It runs inside a bhr_ call only, on the calling thread. It must
+/// not throw, unwind or longjmp; calls on a context from inside it return BHR_ERROR_INVALID_STATE.
 pub type BhrProgressFn = Option<unsafe extern "C" fn(user: *mut c_void, fraction: f64) -> i32>;
 
 /// The host's progress callback with its argument.
@@ -21,7 +21,7 @@ pub(super) struct Callback {
     user: User,
 }
 
-/// What one frame tells the callback: never less than before, never outside 0 .. 1.
+/// Tells the callback of one frame's progress: never less than before, never outside 0 .. 1.
 pub(super) struct Report {
     callback: Option<Callback>,
     told: f64,
@@ -53,8 +53,8 @@ impl Report {
     }
 }
 
-/// Sets what bhr_render_image and bhr_prepare report to, and the jobs that are begun from now on, inside
-/// bhr_job_wait; fn NULL: nothing (default). Errors: INVALID_ARGUMENT for a NULL context.
+/// Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are begun
+/// from now on. fn NULL: none (default). Errors: INVALID_ARGUMENT for a NULL context.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_progress(
     context: *mut BhrContext,
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
     }
 }
 
-/// Size of the window that bhr_prepare thinks of without a target.
+/// The size of the windows that bhr_prepare prepares for when it has no target.
 const WINDOW: [u32; 2] = [1920, 1080];
 
 /// Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
@@ -111,13 +111,15 @@ const WINDOW: [u32; 2] = [1920, 1080];
 /// the background, at low priority: those of the default scene from bhr_context_create on, those of changes while
 /// frames are rendered, on GPUs other than software drivers. With BHR_BACKEND_GL nothing is made in the background.
 ///
-/// target: an image as bhr_render_image would be given; its pixels and byte_size are not looked at, and may be 0. For
-/// RGBA8_SRGB without BHR_IMAGE_TRANSPARENT frames in windows of that size are prepared too. NULL: frames in windows
-/// of 1920 x 1080 only, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
+/// target is an image as bhr_render_image would be given it; its pixels and byte_size are not looked at, and may be 0.
+/// For RGBA8_SRGB without BHR_IMAGE_TRANSPARENT, frames in windows of that size are prepared too. NULL: only frames in
+/// windows of 1920 x 1080, whatever region is set. Frames in windows are prepared as bhr_render_surface traces them: at
 /// BhrQuality.render_scale times the window's size, and a CUBE's as large as the window holds it (an image of a CUBE
-/// must be 6 times as wide as high). On a GPU it renders one frame that is thrown away, that bhr_frame_stats does not
-/// count and that the progress callback may cancel. It waits for a job that is being rendered. Any thread, not inside
-/// callbacks. Errors: as bhr_render_image. Since 0.2.0.
+/// must be 6 times as wide as high).
+///
+/// On a GPU it renders one frame that is thrown away. bhr_frame_stats does not count that frame, and the progress
+/// callback may cancel it. The call waits for a job that is being rendered. Any thread, not inside callbacks. Errors:
+/// as bhr_render_image. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_prepare(context: *mut BhrContext, target: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -1,4 +1,4 @@
-//! BhrSky: what lies at infinity.
+//! BhrSky: the stars, the Milky Way, a map and a grid at infinity.
 
 use super::call::on_context;
 use super::context::BhrContext;
@@ -14,13 +14,13 @@ use std::sync::Arc;
 
 /// BhrSky.flags: the real sky, from the embedded star catalogue.
 pub const BHR_SKY_STARS: u32 = 1u32;
-/// BhrSky.flags: a random star field: a million stars to V = 11, as many of each magnitude, as much crowded towards
-/// the Milky Way and of such colours as in the real sky; the same ones for the same seed on every machine. With STARS
-/// the real ones, and random ones that are fainter (V > 8). Made when it is first drawn, within about a second and
-/// 110 MB of device memory.
+/// BhrSky.flags: a random star field of a million stars to V = 11, with the real sky's numbers in each magnitude, its
+/// crowding towards the Milky Way, and its colours. The same seed gives the same stars on every machine. Together with
+/// STARS it adds the stars that are fainter than the catalogue's (V > 8). It is made when it is first drawn, within
+/// about a second, and takes 110 MB of device memory.
 pub const BHR_SKY_PROCEDURAL: u32 = 2u32;
-/// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s): true to
-/// about a degree, eight times as bright next to the stars as it is to the eye.
+/// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s). It is true to
+/// about a degree, and next to the stars eight times as bright as the eye sees it.
 pub const BHR_SKY_MILKY_WAY: u32 = 4u32;
 /// BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one.
 pub const BHR_SKY_MAP: u32 = 8u32;
@@ -30,7 +30,7 @@ pub const BHR_SKY_MAP: u32 = 8u32;
 /// less than 10 pixels apart they fade into an even tint.
 pub const BHR_SKY_GRID: u32 = 16u32;
 
-/// What lies at infinity.
+/// The sky: everything that lies at infinity.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrSky {

@@ -14,7 +14,7 @@ use crate::tracer::FrameStats;
 pub struct BhrFrameStats {
     /// sizeof(BhrFrameStats), set by the caller.
     pub struct_size: u32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
     /// Counts the finished frames of a context from 1: images, jobs and windows.
     pub frame_index: u64,
@@ -22,11 +22,11 @@ pub struct BhrFrameStats {
     pub rays: u64,
     /// Integration steps of all rays; rays that were looked up take none.
     pub steps: u64,
-    /// From the call's begin to its end; of a job: from bhr_render_image_async until it was done.
+    /// From the call's beginning to its end; for a job, from bhr_render_image_async until it was done.
     pub cpu_ns: u64,
-    /// Time on the GPU; 0: the adapter has no timestamps, or traces on the CPU.
+    /// Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU.
     pub gpu_ns: u64,
-    /// Copying pixels from the GPU's memory to the host's, without the wait for the GPU.
+    /// Time to copy pixels from the GPU's memory to the host's, without the wait for the GPU.
     pub readback_ns: u64,
     /// Device memory that the context holds.
     pub device_bytes: u64,

@@ -5,20 +5,19 @@ use super::message::last_message;
 use crate::error::ErrorKind;
 use std::ffi::{CStr, c_char};
 
-/// What a call returns: 0 success, > 0 success with news, < 0 error.
+/// The result of a call: 0 is success, above 0 success with news, below 0 an error. bhr_error_message has the details.
 pub type BhrStatus = i32;
 /// Success.
 pub const BHR_OK: BhrStatus = 0;
 /// bhr_job_wait: the job was still running when the timeout ran out.
 pub const BHR_NOT_READY: BhrStatus = 1;
-/// bhr_render_surface: the window is 0 x 0 or hidden, or is being resized; nothing was presented.
+/// bhr_render_surface: the window is hidden or 0 x 0; nothing presented.
 pub const BHR_FRAME_SKIPPED: BhrStatus = 2;
-/// An argument is NULL, not finite, out of its range, or an unknown constant; the message names it, its value and
-/// the limit.
+/// An argument is NULL, not finite, out of its range, or unknown.
 pub const BHR_ERROR_INVALID_ARGUMENT: BhrStatus = 0 - 1;
-/// Wrong order, a combination that cannot be, or a call from inside a callback.
+/// Wrong order, an impossible combination, or inside a callback.
 pub const BHR_ERROR_INVALID_STATE: BhrStatus = 0 - 2;
-/// The program was compiled against a header of another BHR_ABI_VERSION.
+/// The program was compiled for another BHR_ABI_VERSION.
 pub const BHR_ERROR_INCOMPATIBLE_ABI: BhrStatus = 0 - 3;
 /// Valid, but not on this adapter, platform or build.
 pub const BHR_ERROR_UNSUPPORTED: BhrStatus = 0 - 4;
@@ -28,13 +27,13 @@ pub const BHR_ERROR_NO_ADAPTER: BhrStatus = 0 - 5;
 pub const BHR_ERROR_OUT_OF_MEMORY: BhrStatus = 0 - 6;
 /// The progress callback, or bhr_job_cancel, stopped the work.
 pub const BHR_ERROR_CANCELLED: BhrStatus = 0 - 7;
-/// The window behind a surface is gone, or its context was recovered: destroy the surface.
+/// A window is gone or its context recovered: destroy the surface.
 pub const BHR_ERROR_SURFACE_LOST: BhrStatus = 0 - 8;
-/// The GPU's device is gone; bhr_context_recover brings the context back.
+/// The GPU device is gone: call bhr_context_recover.
 pub const BHR_ERROR_DEVICE_LOST: BhrStatus = 0 - 9;
 /// A file could not be read or written.
 pub const BHR_ERROR_IO: BhrStatus = 0 - 10;
-/// A bug in bhr was caught; only destroy calls are valid on this context, its jobs and surfaces from now on.
+/// A bug in bhr was caught; only destroy calls are valid now.
 pub const BHR_ERROR_INTERNAL: BhrStatus = 0 - 99;
 
 pub(super) fn of(kind: ErrorKind) -> BhrStatus {
@@ -73,9 +72,9 @@ fn name(status: BhrStatus) -> &'static CStr {
     }
 }
 
-/// What this thread's last failed call says about it: the function, the argument, its value and the limit. Never
-/// NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from
-/// inside callbacks.
+/// The message of the last call that failed on this thread: the function, the argument, its value and the limit. Never
+/// NULL; "" when no call has failed. Valid until this thread's next failing call, or its end. May be called from inside
+/// callbacks.
 #[unsafe(no_mangle)]
 pub extern "C" fn bhr_error_message() -> *const c_char {
     last_message()

@@ -24,11 +24,11 @@ pub struct BhrSurface {
 
 /// How frames reach the screen.
 pub type BhrPresentMode = i32;
-/// At the display's rate, never torn: a frame waits for the display. Every window has it.
+/// Never torn: a frame waits for the display. Every window has this mode.
 pub const BHR_PRESENT_VSYNC: BhrPresentMode = 0;
-/// At once; may tear.
+/// Frames are shown at once, and may tear.
 pub const BHR_PRESENT_IMMEDIATE: BhrPresentMode = 1;
-/// The newest frame at the display's rate, never torn; frames that are not the newest any more are dropped.
+/// Never torn: the newest frame at the display's rate; older ones are dropped.
 pub const BHR_PRESENT_MAILBOX: BhrPresentMode = 2;
 
 fn present_mode(mode: BhrPresentMode) -> Result<PresentMode> {
@@ -40,7 +40,7 @@ fn present_mode(mode: BhrPresentMode) -> Result<PresentMode> {
     })
 }
 
-/// 0 x 0 is a minimised window.
+/// Checks the size of a surface; 0 x 0 is a minimised window.
 fn check_size(width: u32, height: u32) -> Result<[u32; 2]> {
     if width <= MAX_SIDE && height <= MAX_SIDE {
         return Ok([width, height]);

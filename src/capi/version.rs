@@ -3,8 +3,7 @@
 
 use std::ffi::c_char;
 
-/// This header's major version. Before 1.0 a greater minor version may add functions and grow structs; it removes
-/// nothing within one BHR_ABI_VERSION.
+/// This header's major version. Before 1.0 minor versions add and grow, and remove nothing.
 pub const BHR_VERSION_MAJOR: u32 = 0;
 /// This header's minor version.
 pub const BHR_VERSION_MINOR: u32 = 2;

@@ -1,6 +1,6 @@
-//! Structs that may grow: they begin with `struct_size`, the size the host was compiled with. The rule in the
-//! header's preface is implemented here, and nowhere else. Copies in and out; never a reference into the host's
-//! memory.
+//! Structs that may grow: they begin with `struct_size`, the size the host was compiled with. The rule in the header's
+//! preface is implemented here, and nowhere else. Structs are copied in and out; no reference into the host's memory is
+//! ever made.
 
 use super::pointer::is_null;
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ const MAX_SIZE: usize = 16 * 1024;
 /// # Safety
 /// `repr(C)`, its first field is `struct_size: u32`, it has no padding, and every bit pattern is a value of it.
 pub(super) unsafe trait Versioned: Copy {
-    /// As in the header.
+    /// The struct's name in the header.
     const NAME: &'static str;
     /// Its size in the first release that had it, then its size in each later release in which it had grown; the last
     /// one is today's. Numbers, not `size_of`: hosts compiled back then go on saying them. Append only.
@@ -167,7 +167,7 @@ mod tests {
     use super::*;
     use crate::error::ErrorKind;
 
-    /// As if a struct of 12 bytes had grown to 16.
+    /// A struct that had 12 bytes and has grown to 16.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Grown {
@@ -236,7 +236,7 @@ mod tests {
         assert!(unsafe { init(words.as_mut_ptr().cast::<Grown>(), "grown", usize::MAX) }.is_err());
     }
 
-    /// As if a real struct had grown, in a release that is not made yet, by fields whose defaults are not 0.
+    /// Stands for a real struct that has grown, in a later release, by fields whose defaults are not 0.
     #[repr(C)]
     #[derive(Clone, Copy)]
     struct Later<T> {
@@ -266,7 +266,7 @@ mod tests {
         assert!(full > first && align_of::<T>() <= align_of::<u64>());
         let defaults = Later::<T>::defaults();
         for size in first..=full {
-            // 8 bytes behind the host's struct are somebody else's.
+            // The 8 bytes behind the host's struct belong to somebody else.
             let mut words = vec![u64::from_ne_bytes([0xa5; 8]); (full + 8).div_ceil(8)];
             let pointer = words.as_mut_ptr().cast::<Later<T>>();
             let host = || {

@@ -1,4 +1,4 @@
-//! BhrView: what a pixel shows.
+//! BhrView: the quantity that pixels show.
 
 use super::call::on_context;
 use super::context::BhrContext;
@@ -6,30 +6,31 @@ use super::pointer::unknown;
 use super::status::BhrStatus;
 use crate::scene::View;
 
-/// What a pixel shows. 8-bit formats and windows: false colour, without film. R32F: the value, NaN where there is
-/// none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is INVALID_ARGUMENT. A
-/// backend may not have every view: then rendering is UNSUPPORTED.
+/// The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its
+/// value, NaN where there is none. RGBA16F and RGBA32F hold LIGHT only, R32F every view but LIGHT: else rendering is
+/// INVALID_ARGUMENT. A backend may lack a view: then rendering is UNSUPPORTED.
 ///
-/// The colours of values, for a host's legend: s goes from 0 to 1 over the range that each view states, and stays at 0
-/// and 1 beyond it. Sequential map: CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78 s, from
-/// dark blue over purple, red and orange to light yellow. Diverging map: m = |2 s - 1|, L = 95 - 57 m, (a, b) = (52.00,
-/// 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, and light grey between them. White of Rec. 709,
-/// encoded as sRGB; equal steps of s differ by equal steps of colour and of lightness. NaN: grey, (128, 128, 128).
+/// For a host's legend, the colours of values: s goes from 0 to 1 over the range that each view states, and stays at 0
+/// and 1 beyond it. The sequential map is CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78
+/// s: from dark blue over purple, red and orange to light yellow. The diverging map, with m = |2 s - 1|, is L = 95 - 57
+/// m and (a, b) = (52.00, 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, with light grey between them.
+/// The white is that of Rec. 709, and colours are encoded as sRGB. Equal steps of s are equal steps of colour and of
+/// lightness. NaN is grey, (128, 128, 128).
 pub type BhrView = i32;
 /// The picture. The default.
 pub const BHR_VIEW_LIGHT: BhrView = 0;
-/// g of the first crossing within the disk's radii, else the sky's redshift; NaN captured without such a crossing.
-/// Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is shifted, blue above 1, red
-/// below.
+/// The redshift g of the first crossing within the disk's radii, else that of the sky; NaN where the ray is captured
+/// without such a crossing. Diverging map, s = 1/2 + ln(g) / (2 ln 3): g = 1/3 .. 3, light grey where nothing is
+/// shifted, blue above 1, red below.
 pub const BHR_VIEW_REDSHIFT: BhrView = 1;
-/// 0, 1, 2 .. of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential map, s = (order + 2) / 5:
-/// order 3 and above are one colour.
+/// The number of the image, 0, 1, 2 .., of the first crossing within the disk's radii; -1 sky; -2 captured. Sequential
+/// map, s = (order + 2) / 5: order 3 and above are one colour.
 pub const BHR_VIEW_ORDER: BhrView = 2;
-/// Angle between look direction and sky direction, radians; NaN captured. Sequential map, s = 1 + log2(angle / pi) / 6:
-/// angles from pi / 64 to pi.
+/// The angle between look direction and sky direction, radians; NaN where the ray is captured. Sequential map, s = 1 +
+/// log2(angle / pi) / 6: angles from pi / 64 to pi.
 pub const BHR_VIEW_DEFLECTION: BhrView = 3;
-/// Integration steps of the pixel's ray; 0 where its ray was looked up (BHR_METHOD_AUTO). Sequential map, s =
-/// log2(steps / 8) / 6: 8 .. 512 steps.
+/// The integration steps of the pixel's ray; 0 where it was looked up (BHR_METHOD_AUTO). Sequential map, s = log2(steps
+/// / 8) / 6: 8 .. 512 steps.
 pub const BHR_VIEW_STEPS: BhrView = 4;
 /// -g_tt = 1 - 2 M / r at the first crossing of the equatorial plane; NaN without one. Sequential map, s = 1 - sqrt(1 -
 /// value): 0, the static limit, and less are its dark end; 1, infinity, its light one.

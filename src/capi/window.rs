@@ -1,5 +1,5 @@
-//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Read and checked; nothing behind
-//! its pointers.
+//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Its fields are read and checked here;
+//! nothing behind its pointers is touched.
 
 use super::pointer::{check_reserved, unknown};
 use super::versioned::{self, POINTER, Versioned};
@@ -9,7 +9,7 @@ use std::ffi::c_void;
 use std::num::{NonZeroIsize, NonZeroU32};
 use std::ptr::{NonNull, null_mut};
 
-/// Which kind a BhrWindow is of. Fields that the kind does not name are ignored.
+/// The kind of a BhrWindow. It decides which fields are read; the others are ignored.
 pub type BhrWindowKind = i32;
 /// X11 through Xlib: display = Display *, id = Window.
 pub const BHR_WINDOW_XLIB: BhrWindowKind = 1;
@@ -38,19 +38,19 @@ pub struct BhrWindow {
     pub struct_size: u32,
     /// BHR_WINDOW_*.
     pub kind: BhrWindowKind,
-    /// As the kind says.
+    /// The connection to the display, where the kind has one.
     pub display: *mut c_void,
-    /// As the kind says.
+    /// The window, view, layer or surface, where the kind has a pointer to it.
     pub handle: *mut c_void,
-    /// As the kind says.
+    /// A second pointer, for Windows only.
     pub aux: *mut c_void,
-    /// As the kind says: the id of an X11 window.
+    /// X11: the id of the window.
     pub id: u64,
     /// X11: the id of the window's visual; may be 0.
     pub visual_id: u64,
     /// X11: the number of the window's screen; may be 0.
     pub screen: i32,
-    /// 0.
+    /// Reserved: 0.
     pub reserved: u32,
 }
 

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 /// Bytes of a whole frame's light; a frame with bloom that needs more is traced twice instead.
 const LIGHT_MEMORY: u64 = 192 << 20;
-/// Named in out-of-memory errors.
+/// The name of this memory in out-of-memory errors.
 const LIGHT: &str = "the light of a tile";
 /// Bytes of a pixel's light.
 const LIGHT_BYTES: u64 = size_of::<[f32; 4]>() as u64;
@@ -25,7 +25,7 @@ pub struct Delivery<'a, 'b, 'c> {
     /// Parts of the frame's work.
     done: u64,
     total: u64,
-    /// Of all rays so far.
+    /// The steps of all rays so far.
     pub steps: u64,
 }
 
@@ -39,7 +39,7 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         Self { pool, frame, sink, progress, done: 0, total: 0, steps: 0 }
     }
 
-    /// Without bloom. Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
+    /// Delivers a frame without bloom. Errors: those of the sink; CANCELLED; OUT_OF_MEMORY.
     pub fn plain(&mut self, tiles: &[Tile]) -> Result<()> {
         self.total = tiles.len() as u64 * u64::from(self.frame.samples);
         for tile in tiles {
@@ -50,8 +50,8 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         Ok(())
     }
 
-    /// With bloom. `keep`: whether light is kept; `None`: as its size allows. Errors: those of the sink; CANCELLED;
-    /// OUT_OF_MEMORY.
+    /// Delivers a frame with bloom. `keep`: whether light is kept; `None`: as its size allows. Errors: those of the
+    /// sink; CANCELLED; OUT_OF_MEMORY.
     pub fn with_glare(&mut self, tiles: &[Tile], bloom: &Bloom, keep: Option<bool>) -> Result<()> {
         let [width, height] = bloom.frame.map(|side| side as usize);
         let keep = keep.unwrap_or((width * height) as u64 * LIGHT_BYTES <= LIGHT_MEMORY);

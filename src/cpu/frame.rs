@@ -25,7 +25,7 @@ use std::sync::Arc;
 const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
-/// What makes a frame's records.
+/// The maker of a frame's records.
 pub enum Source<'a> {
     Traced(Recorder<'a>),
     LookedUp(LookedUp<'a>),
@@ -36,7 +36,7 @@ pub struct Frame<'a> {
     lens: &'a Lens,
     source: Source<'a>,
     shader: Shader<'a>,
-    /// Of pixels with edges; `None`: values of views are not to be averaged.
+    /// Refines pixels with edges; `None` where values of views are shown, which are not to be averaged.
     refiner: Option<Refiner<'a>>,
     pub film: FilmParams,
     request: &'a FrameRequest,
@@ -108,7 +108,7 @@ fn tiles(request: &FrameRequest, steps: u64) -> Result<Vec<Tile>> {
 }
 
 impl<'a> Frame<'a> {
-    /// On the current pool. Errors: OUT_OF_MEMORY.
+    /// Renders on the current pool. Errors: OUT_OF_MEMORY.
     fn new(
         scene: &'a Scene,
         lens: &'a Lens,
@@ -138,7 +138,7 @@ impl<'a> Frame<'a> {
         })
     }
 
-    /// Of a ray, on average; looking one up takes as long as one.
+    /// The steps of a ray on average; looking one up takes as long as one.
     fn expected_steps(&self, scene: &Scene) -> u64 {
         match self.source {
             Source::Traced(_) => scene.expected_steps(),
@@ -189,7 +189,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// `Frame::with_records`, of which see, by tracing.
+/// Does the work of `Frame::with_records` by tracing.
 fn trace_records<T: Send>(
     recorder: &Recorder<'_>,
     tile: Tile,
@@ -201,7 +201,7 @@ fn trace_records<T: Send>(
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
     let stride = width as usize;
-    // In one piece: rows made and freed by many threads leave their allocators in shreds.
+    // The records are one allocation: rows that many threads make and free would leave their allocators in shreds.
     let mut records = filled(stride * height as usize, Record::captured(), "the records of a tile's rays")?;
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
         for (record, column) in records.iter_mut().zip(0..) {
@@ -225,7 +225,7 @@ fn trace_records<T: Send>(
     Ok(records.iter().map(|record| u64::from(record.steps)).sum())
 }
 
-/// The same by looking up: each record is used as it is made.
+/// Does the work of `Frame::with_records` by looking up: each record is used as it is made.
 fn look_records_up<T: Send>(
     lookup: &LookedUp<'_>,
     tile: Tile,

@@ -34,7 +34,7 @@ pub struct LensCache {
     kerr: Option<(KerrKey, KerrLens)>,
 }
 
-/// What tables of a spinning hole depend on.
+/// Everything that the tables of a spinning hole depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct KerrKey {
     spin: f64,
@@ -76,7 +76,7 @@ impl LensCache {
     fn kerr(&mut self, frame: &LocalFrame, wanted: Crossings) -> Result<Option<&KerrLens>> {
         let key = KerrKey { spin: frame.a, r: frame.r, e_r: frame.e_r, wanted };
         if !self.kerr.as_ref().is_some_and(|(held, _)| *held == key) {
-            // The old ones go first: they are large.
+            // The old tables go first, because they are large.
             self.kerr = None;
             self.kerr = build_kerr(frame, wanted)?.map(|lens| (key, lens));
         }
@@ -84,7 +84,7 @@ impl LensCache {
     }
 }
 
-/// What a frame of `scene` asks of tables.
+/// The contents that a frame of `scene` asks of tables.
 fn wanted(scene: &Scene) -> Crossings {
     let orders = scene.pixel_settings().max_crossings;
     match scene.disk_u() {
@@ -135,7 +135,7 @@ fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Result<Option<Sc
     SchwarzschildLens::from_columns(family, escaping, captured)
 }
 
-/// What looks the records of a frame up.
+/// Looks the records of a frame up.
 pub struct LookedUp<'a> {
     recorder: Recorder<'a>,
     tables: Tables<'a>,
@@ -163,12 +163,13 @@ impl<'a> LookedUp<'a> {
         self.find(x, y, record, |_| self.traced(x, y));
     }
 
-    /// The same of one of many samples of a pixel: footprints that the tables do not hold are unknown.
+    /// Makes `record` that of one of many samples of a pixel: footprints that the tables do not hold stay unknown.
     pub fn sample(&self, x: f64, y: f64, record: &mut Record) {
         self.find(x, y, record, |found| found.unwrap_or_else(|| self.recorder.trace(x, y)));
     }
 
-    /// `rest`: what becomes of a ray that the tables do not hold; given its record, if some footprints are known.
+    /// `rest` makes the record of a ray that the tables do not hold; it is given that record, if some footprints are
+    /// known.
     fn find(&self, x: f64, y: f64, record: &mut Record, rest: impl Fn(Option<Record>) -> Record) {
         record.clear();
         let seen = self.see(x, y);
@@ -191,7 +192,7 @@ impl<'a> LookedUp<'a> {
         }
     }
 
-    /// By tracing the pixel and its neighbours.
+    /// Makes the record by tracing the pixel and its neighbours.
     fn traced(&self, x: f64, y: f64) -> Record {
         let trace = |dx, dy| self.recorder.trace(x + dx, y + dy);
         let [left, right, above, below] = [trace(-1.0, 0.0), trace(1.0, 0.0), trace(0.0, -1.0), trace(0.0, 1.0)];
@@ -199,7 +200,8 @@ impl<'a> LookedUp<'a> {
         Neighbours::of(&self.recorder.lens.mapping, x, [&left, &right, &above, &below]).complete(&here)
     }
 
-    /// By tracing the pixel; footprints, which need not be as exact, from the table. And whether all are known.
+    /// Makes the record by tracing the pixel; its footprints, which need not be as exact, come from the table. The
+    /// result says whether all are known.
     fn traced_once(&self, x: f64, y: f64, found: &kerr::Seen, seen: &Seen) -> (Record, bool) {
         let mut record = self.recorder.trace(x, y);
         let steps = seen.changes.map(|change| found.place.step(change));
@@ -223,7 +225,7 @@ impl<'a> LookedUp<'a> {
         (record, complete)
     }
 
-    /// With spin.
+    /// Looks a record up in the tables of a spinning hole.
     fn look_in_grid(&self, found: &kerr::Seen, seen: &Seen, record: &mut Record) {
         let steps = seen.changes.map(|change| found.place.step(change));
         let mut on_edge = false;
@@ -265,7 +267,7 @@ impl<'a> LookedUp<'a> {
         Seen { n, changes: changes.map(|change| lens.observer.look_change((n, ratio), change)), ratio }
     }
 
-    /// Spin 0.
+    /// Looks a record up in the tables of a spin-0 lens.
     fn look_in_plane(&self, lens: &SchwarzschildLens, seen: &Seen, record: &mut Record) {
         let frame = &self.recorder.lens.observer.frame;
         let look = lens.look(seen.n);
@@ -393,7 +395,7 @@ mod tests {
         azimuth: f64,
         delay: f64,
         crossings: usize,
-        /// Of the footprints, relative to their own size.
+        /// The errors of the footprints, relative to their own size.
         sky_footprint: f64,
         place_footprint: f64,
         footprints: usize,
@@ -549,7 +551,7 @@ mod tests {
         }
     }
 
-    /// Tables are always those of the frame at hand.
+    /// The tables are always those of the frame at hand.
     #[test]
     fn tables_follow_what_they_depend_on() {
         let mut scene = scene(0.9, 30.0, 80.0, 60.0, Motion::Static);

@@ -24,11 +24,11 @@ pub struct CpuTracer {
     adapter: AdapterInfo,
     pool: rayon::ThreadPool,
     lenses: Box<LensCache>,
-    /// Of the last frame: holds them from frame to frame.
+    /// The tables of the last frame, kept from frame to frame.
     stars: Option<Arc<StarIndex>>,
 }
 
-/// What the CPU tracer is listed as.
+/// The adapter as which the CPU tracer is listed.
 pub fn adapter_info() -> AdapterInfo {
     AdapterInfo {
         backend: Backend::Cpu,

@@ -11,7 +11,7 @@ use crate::scene::refine::{Edge, is_steep};
 use crate::scene::turbulence::Place;
 use glam::DVec3;
 
-/// What traces the records of a frame.
+/// Traces the records of a frame.
 pub struct Recorder<'a> {
     pub lens: &'a Lens,
     pub(super) settings: Settings,
@@ -32,8 +32,8 @@ impl<'a> Recorder<'a> {
         Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
     }
 
-    /// Which gives crossings of the whole plane, unless there is no disk, and goes on behind those that would hide the
-    /// rest.
+    /// A recorder that gives crossings of the whole plane, unless there is no disk, and goes on behind those that would
+    /// hide the rest.
     pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
         let mut recorder = Self::new(scene, lens);
         recorder.settings.opaque_u = None;
@@ -80,7 +80,7 @@ impl<'a> Recorder<'a> {
 }
 
 impl<'a> Neighbours<'a> {
-    /// Of the position at x: left, right, above, below.
+    /// The neighbours of the position at x: left, right, above, below.
     pub fn of(mapping: &Mapping, x: f64, [left, right, above, below]: [&'a Record; 4]) -> Self {
         Self {
             left: mapping.same_face(x, x - 1.0).then_some(left),

@@ -11,7 +11,7 @@ use crate::scene::record::{Record, UNKNOWN_PLACE};
 use crate::scene::refine::{CURVE_SAMPLES, Crossings, Edge, curve_place, quarter_place};
 use glam::DVec3;
 
-/// What refines the pixels of a frame.
+/// Refines the pixels of a frame.
 pub struct Refiner<'a> {
     /// Gives crossings of the whole plane; nothing is hidden in it.
     plane: Source<'a>,
@@ -40,7 +40,8 @@ impl<'a> Refiner<'a> {
         Some(smooth.unwrap_or_else(|| self.counted_light(shader, source, here, at)))
     }
 
-    /// From the cover of few samples' cells. `None`: what they show cannot change evenly from one to the next.
+    /// The light from how much the disk covers the cells of a few samples. `None`: what the samples show cannot change
+    /// evenly from one to the next.
     fn smooth_light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
         let mut records = places.map(|place| sample(&self.plane, here, place));
@@ -61,7 +62,7 @@ impl<'a> Refiner<'a> {
         Some(mean(records.iter().zip(places).map(|(record, [x, y])| shader.shade_record(record, x, y))))
     }
 
-    /// From many samples, as they fall.
+    /// The light from many samples, each counted as it falls.
     fn counted_light(&self, shader: &Shader<'_>, source: &Source<'_>, here: &Record, at: [f64; 2]) -> [f64; 4] {
         let across = self.lens.across(self.shadow, at);
         mean((0..CURVE_SAMPLES).map(|index| {
@@ -95,7 +96,7 @@ impl<'a> Refiner<'a> {
     }
 }
 
-/// Of a sample at `place`, 0 .. 1, of the pixel about `at`.
+/// The position of a sample at `place`, 0 .. 1, in the pixel about `at`.
 fn place_about(at: [f64; 2], place: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| at[i] + place[i] - 0.5)
 }

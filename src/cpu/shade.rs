@@ -1,5 +1,5 @@
-//! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and
-//! `shaders/disk.wgsl`. How the records were made it does not know.
+//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and
+//! `shaders/disk.wgsl`. Does not know how the records were made.
 
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
@@ -21,7 +21,7 @@ struct Shift {
     beaming: f64,
 }
 
-/// What shading needs of a scene.
+/// The part of a scene that shading needs.
 pub struct Shader<'a> {
     scene: &'a Scene,
     lens: &'a Lens,
@@ -60,7 +60,8 @@ impl<'a> Shader<'a> {
         })
     }
 
-    /// Of the record at (x, y): light and alpha, or the view's value first; nothing where the projection shows nothing.
+    /// The pixel of the record at (x, y): light and alpha, or the view's value first; nothing where the projection
+    /// shows nothing.
     pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
         match (self.scene.view, self.lens.mapping.has_look(x, y)) {
             (View::Light, true) => self.pixel_light(here),
@@ -150,7 +151,7 @@ impl<'a> Shader<'a> {
         if self.grid { under_grid(light, d, dx, dy) } else { light }
     }
 
-    /// What BHR_VIEW_* shows of the record at (x, y); NaN where there is nothing.
+    /// The value that the view shows of the record at (x, y); NaN where there is none.
     fn view_value(&self, here: &Record, x: f64, y: f64) -> f64 {
         let first = here.crossings.first();
         match (self.scene.view, here.fate) {

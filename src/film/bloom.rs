@@ -1,7 +1,8 @@
-//! Bloom: the glare that scattered light makes around what is bright. Which share of a frame's light goes how far, the
-//! grids that spread it, and the CPU's way of doing so; `shaders/bloom*.wgsl` and `src/gpu/bloom.rs` do the same with
-//! these numbers. Works on exposed light ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows
-//! nothing of how it was made, or of pixels of 8 bits.
+//! Bloom: the glare that scattered light makes around bright things. This file says which share of a frame's light goes
+//! how far, makes the grids that spread it, and spreads it on the CPU; `shaders/bloom*.wgsl` and `src/gpu/bloom.rs` do
+//! the same with these numbers. Works on exposed light
+//! ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how that light was made, or of
+//! 8-bit pixels.
 //!
 //! What it shows: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
 //! (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height. These are the
@@ -26,68 +27,68 @@ use crate::image::PixelFormat;
 use crate::scene::{Film, Scene, View};
 use rayon::prelude::*;
 
-/// s of `bloom` 1.
+/// The share s that `bloom` = 1 scatters.
 const MOST_SCATTERED: f64 = 0.4;
 /// r0, r1 and the radius of the cut, in frame heights.
 const CORE: f64 = 1.0 / 180.0;
 const DEGREE: f64 = 1.0 / 28.0;
 const CUT: f64 = 0.25;
-/// The widest level's sigma, in frame heights, at most.
+/// The greatest sigma of the widest level, in frame heights.
 const WIDEST: f64 = 1.0 / 3.0;
-/// Cells of the finest grid at most.
+/// The most cells of the finest grid.
 const MOST_CELLS: u64 = 1 << 21;
-/// Cells along a side of it at most: what textures of small devices hold.
+/// The most cells along a side of the finest grid, so that textures of small devices hold it.
 const MOST_SIDE: u64 = 4000;
-/// Grids at most: twice as wide each, from a pixel's size to the largest frame's.
+/// The most grids: each is twice as wide as the one before, from a pixel's size to the largest frame's.
 pub const MOST_LEVELS: usize = 20;
 /// Cells at each far edge of a grid that may cover less than the others.
 pub const TAIL: usize = 4;
-/// What the six nearest cells of a finer grid give of their light: the B-spline of degree 4.
+/// The shares of their light that the six nearest cells of a finer grid give: the B-spline of degree 4.
 const SPLINE: [f64; 6] = [1.0 / 16.0, 5.0 / 16.0, 10.0 / 16.0, 10.0 / 16.0, 5.0 / 16.0, 1.0 / 16.0];
 
-/// Named in out-of-memory errors.
+/// The name of this memory in out-of-memory errors.
 const GRIDS: &str = "the grids of bloom";
 
 /// How a frame's light is spread.
 #[derive(Clone, Debug)]
 pub struct Bloom {
-    /// In pixels.
+    /// Size of the frame in pixels.
     pub frame: [u32; 2],
     /// Pixels along each side of a cell of the finest grid; even.
     pub factor: u32,
-    /// Of each pixel's light what stays in it.
+    /// The share of a pixel's light that stays in it.
     pub direct: f32,
-    /// From the finest on; at least one.
+    /// The levels from the finest on; at least one.
     pub levels: Vec<Level>,
 }
 
 /// A grid over the frame.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// In cells; the last ones may reach beyond the frame.
+    /// Size in cells; the last ones may reach beyond the frame.
     pub size: [u32; 2],
-    /// Of all light what spreads by this level.
+    /// The share of all light that spreads by this level.
     pub weight: f32,
-    /// How cells take from the finer grid, or the frame, in x and in y.
+    /// The shares that cells take from the finer grid, or the frame, in x and in y.
     taps: [Taps; 2],
 }
 
-/// What the cells of a row take from a finer one.
+/// The light that the cells of a row take from a finer row.
 #[derive(Clone, Debug)]
 struct Taps {
     /// Finer cells across a cell.
     step: usize,
-    /// Of each cell its taps' shares, those outside 0: sum 1.
+    /// The shares of each cell's taps, which sum to 1; those outside are 0.
     shares: Vec<f32>,
-    /// Taps of a cell.
+    /// The number of taps of a cell.
     each: usize,
-    /// How much of each cell is there, 1 for all of it.
+    /// The part of each cell that lies in the frame, 1 for all of it.
     coverage: Vec<f64>,
 }
 
 impl Taps {
-    /// `fine`: the coverage of the finer row. `kernel`: what a cell gets of the finer ones about it, even in number.
-    /// Errors: OUT_OF_MEMORY.
+    /// `fine` is the coverage of the finer row, `kernel` the shares that a cell gets of the finer ones about it, even
+    /// in number. Errors: OUT_OF_MEMORY.
     fn new(fine: &[f64], step: usize, kernel: &[f64]) -> Result<Self> {
         let (each, cells) = (kernel.len(), fine.len().div_ceil(step));
         let margin = (each - step) / 2;
@@ -116,7 +117,7 @@ impl Taps {
         Ok(taps)
     }
 
-    /// Of a cell: the first finer cell it takes from, and their shares; none lies outside `fine` cells.
+    /// The first finer cell that a cell takes from, and their shares; none lies outside `fine` cells.
     fn of(&self, cell: usize, fine: usize) -> (usize, &[f32]) {
         let shares = &self.shares[cell * self.each..(cell + 1) * self.each];
         let margin = (self.each - self.step) / 2;
@@ -128,7 +129,7 @@ impl Taps {
     }
 }
 
-/// What a pixel shares out to the finest cells about it: linearly by its distance from their centres.
+/// The shares that a pixel gives to the finest cells about it: linear in its distance from their centres.
 fn tent(factor: u32) -> Result<Vec<f64>> {
     let f = f64::from(factor);
     collected((0..2 * factor).map(|tap| (f64::from(tap) + 0.5).min(2.0 * f - f64::from(tap) - 0.5) / f), GRIDS)
@@ -141,7 +142,7 @@ fn sigma(factor: u32, index: usize) -> f64 {
     (2.0 * ((2.0 * f2 + 1.0) / 12.0 + f2 * 5.0 / 12.0 * (4.0_f64.powi(index as i32) - 1.0))).sqrt()
 }
 
-/// Of the light that K spreads, the density at Gaussians of `sigma` (in frame heights) by ln sigma, not normalised.
+/// The density, by ln sigma and not normalised, of the light that K spreads at Gaussians of `sigma` (in frame heights).
 fn density(sigma: f64) -> f64 {
     let t = 0.5 * (CORE / sigma).powi(2);
     // Gamma(3/2) = sqrt(pi) / 2, Gamma(1) = 1; a Gaussian of r0^2 / t has the integral pi r0^2 / t, and dt = 2 t d(ln
@@ -176,12 +177,12 @@ impl Bloom {
         film.bloom > 0.0 && view == View::Light && format.is_8bit()
     }
 
-    /// Of a whole frame; `None`: it has none. Errors: OUT_OF_MEMORY.
+    /// The bloom of a whole frame; `None`: it has none. Errors: OUT_OF_MEMORY.
     pub fn new(scene: &Scene, format: PixelFormat, frame: [u32; 2]) -> Result<Option<Self>> {
         Self::is_shown(&scene.film, scene.view, format).then(|| Self::of(scene.film.bloom, frame)).transpose()
     }
 
-    /// For `bloom` in [0, 1] and a frame of at least one pixel. Errors: OUT_OF_MEMORY.
+    /// Makes the grids for `bloom` in [0, 1] and a frame of at least one pixel. Errors: OUT_OF_MEMORY.
     pub fn of(bloom: f64, frame: [u32; 2]) -> Result<Self> {
         let cells = |factor: u32| frame.map(|side| u64::from(side.div_ceil(factor)));
         let mut factor = 2;
@@ -221,7 +222,7 @@ impl Bloom {
     }
 }
 
-/// Between what there is and the next level; `None`: what there is cannot be coarser.
+/// The taps from the coarsest level so far to the next one; `None`: it cannot be coarser.
 fn next_taps(levels: &[Level], frame: [u32; 2], factor: u32) -> Result<Option<[Taps; 2]>> {
     let [x, y] = match levels.last() {
         None => {
@@ -239,7 +240,7 @@ impl Level {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// How much there is of the last cells of a row and of a column, the very last one last.
+    /// The part that lies in the frame of the last cells of a row and of a column, the very last one last.
     pub fn tails(&self) -> [[f32; TAIL]; 2] {
         self.taps.each_ref().map(|taps| {
             let mut tail = [1.0; TAIL];
@@ -336,7 +337,7 @@ fn within((first, shares): (usize, &[f32]), begin: usize, size: usize) -> (usize
 }
 
 impl Bloom {
-    /// What level `index` and those above it spread, on its grid: its own light times its weight, and theirs.
+    /// The light that level `index` and those above it spread, on its grid: its own light times its weight, and theirs.
     fn joined(&self, index: usize, mut own: Vec<[f32; 4]>, above: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let (Some(level), Some(coarser)) = (self.levels.get(index), self.levels.get(index + 1)) else { return own };
         let factor = self.weight_above(index + 1);
@@ -392,8 +393,8 @@ impl Glare<'_> {
     }
 }
 
-/// The two cells between whose centres pixel `i` lies, and what of their light it gets; at the border both are the
-/// same.
+/// The two cells between whose centres pixel `i` lies, and the shares of their light that it gets; at the border both
+/// are the same.
 fn between_cells(i: u32, factor: u32, cells: u32) -> ([usize; 2], [f32; 2]) {
     let (own, place) = (i / factor, i % factor);
     let before = place < factor / 2;
@@ -433,7 +434,7 @@ mod tests {
         field.iter().map(|v| f64::from(v[0])).sum()
     }
 
-    /// One bright pixel and what it gives the others: the field without what is left in the pixel.
+    /// One bright pixel and the light that it gives the others: the field without the light that is left in the pixel.
     fn point(bloom: &Bloom, [x, y]: [u32; 2]) -> Field {
         let mut light = black(bloom.frame);
         let at = (y * bloom.frame[0] + x) as usize;

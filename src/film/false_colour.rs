@@ -5,10 +5,10 @@
 use super::srgb_encode;
 use crate::scene::View;
 
-/// What a value that is NaN looks like: a grey that no map comes near.
+/// The colour of a value that is NaN: a grey that no map comes near.
 pub const NO_VALUE: [f32; 3] = [0.5; 3];
 
-/// How far along its map the value of a view is, before the `ends` of the map are put to 0 and 1.
+/// The place of a view's value along its map, before the `ends` of the map are put to 0 and 1.
 fn scaled(view: View, value: f32) -> f32 {
     match view {
         View::Redshift | View::Deflection | View::Steps => value.max(LEAST).log2(),
@@ -18,7 +18,7 @@ fn scaled(view: View, value: f32) -> f32 {
     }
 }
 
-/// A logarithm's argument; what is less has the first colour by far.
+/// The least argument of a logarithm; smaller values have the first colour by far.
 const LEAST: f32 = 1e-9;
 
 /// The values of a view that become the first and the last colour; what lies beyond takes those colours.

@@ -12,7 +12,7 @@ use crate::scene::{Film, ToneMap, View};
 use arrayvec::ArrayVec;
 use tone_map::MAX_SCENE_LIGHT;
 
-/// What film needs to know of a frame: the uniform `film` of the shader, 32 bytes.
+/// The properties of a frame that film needs: the uniform `film` of the shader, 32 bytes.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct FilmParams {
@@ -49,7 +49,7 @@ impl FilmParams {
         }
     }
 
-    /// Of a frame with bloom, whose light is exposed before it spreads: what develops the sum.
+    /// The parameters for the sum of a frame with bloom, whose light was exposed before it spread.
     pub fn of_exposed(self) -> Self {
         Self { exposure: 1.0, ..self }
     }

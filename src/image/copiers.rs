@@ -30,7 +30,7 @@ impl Default for Copiers {
 }
 
 impl Copiers {
-    /// With fewer than two threads the caller's copies alone.
+    /// Makes copiers of so many threads; with fewer than two, the caller's thread copies alone.
     pub fn new(threads: usize) -> Self {
         Self { threads, pool: OnceLock::new() }
     }

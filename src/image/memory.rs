@@ -25,7 +25,7 @@ pub enum PixelFormat {
     R32F = 5,
 }
 
-/// As in `BHR_FORMAT_*`.
+/// The name in `BHR_FORMAT_*`.
 impl std::fmt::Display for PixelFormat {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -52,7 +52,7 @@ impl PixelFormat {
         self.channel_bytes() == 1
     }
 
-    /// Of one channel; pixels and rows are aligned to it.
+    /// Bytes of one channel; pixels and rows are aligned to it.
     pub fn channel_bytes(self) -> usize {
         match self {
             Self::Rgba8Srgb | Self::Bgra8Srgb => 1,
@@ -80,7 +80,7 @@ impl Layout {
         Self { format, width, height, row_stride: 0 }
     }
 
-    /// Of one row's pixels.
+    /// Bytes of one row's pixels.
     fn row_bytes(&self) -> u64 {
         u64::from(self.width) * self.format.bytes_per_pixel() as u64
     }
@@ -119,8 +119,8 @@ impl Layout {
         }
     }
 
-    /// As `check`, where the bottom row comes first in memory: `BHR_IMAGE_BOTTOM_UP`. Errors: those, or a negative
-    /// stride.
+    /// Checks as `check` does, for a picture whose bottom row comes first in memory: `BHR_IMAGE_BOTTOM_UP`. Errors:
+    /// those of `check`, or a negative stride.
     pub fn check_bottom_up(&self) -> Result<(usize, isize)> {
         let given = self.row_stride;
         if given < 0 {
@@ -133,7 +133,7 @@ impl Layout {
     }
 }
 
-/// Which row of a picture begins at the pixels that a host names.
+/// The row of a picture that begins at the pixels that a host names.
 enum FirstRow {
     /// `row_stride` leads to the next row down; where it is negative, the pixels are the block's last row.
     Top,
@@ -186,14 +186,14 @@ impl Rows {
         }
         match first_row {
             FirstRow::Top => Ok(Self { format, width, height, stride, top_left: pixels }),
-            // In range: the last row, which is the top one, lies in the address space.
+            // The address is in range: the last row, which is the top one, lies in the address space.
             FirstRow::Bottom => {
                 Ok(Self { format, width, height, stride: -stride, top_left: pixels.wrapping_add(to_last) })
             }
         }
     }
 
-    /// Of a whole block. Errors: as `new`.
+    /// The rows of a whole block. Errors: as `new`.
     fn of_block(layout: Layout, begin: *mut u8, byte_size: usize) -> Result<Self> {
         let (_, stride) = layout.check()?;
         let lead = if stride < 0 { (layout.height as usize - 1) * stride.unsigned_abs() } else { 0 };
@@ -207,7 +207,7 @@ impl Rows {
 
     /// Where row `y` begins; `None` past the last.
     fn row(&self, y: u32) -> Option<*mut u8> {
-        // In range: `Rows::new` saw that every row lies in the address space.
+        // The address is in range: `Rows::new` saw that every row lies in the address space.
         (y < self.height).then(|| self.top_left.wrapping_offset(y as isize * self.stride))
     }
 }
@@ -264,7 +264,7 @@ impl<'a> ImageRef<'a> {
 pub struct ImageMut<'a> {
     rows: Rows,
     touched: bool,
-    /// Who helps to write large tiles.
+    /// The threads that help to write large tiles.
     copiers: Option<Arc<Copiers>>,
     memory: PhantomData<&'a mut [u8]>,
 }
@@ -272,11 +272,11 @@ pub struct ImageMut<'a> {
 /// A tile that lies inside an image, on its way into it.
 struct Copying<'t> {
     rows: Rows,
-    /// Of the tile's left column in the image, bytes.
+    /// Bytes from the image's left edge to the tile's left column.
     left: usize,
-    /// Of the tile's first row in the image.
+    /// The row of the image that is the tile's first.
     top: u32,
-    /// Of a row of the tile.
+    /// Bytes of a row of the tile.
     row_bytes: usize,
     pixels: &'t [u8],
     bytes_per_row: usize,
@@ -325,10 +325,11 @@ impl<'a> ImageMut<'a> {
         Self::begin(Rows::new(layout, FirstRow::Top, pixels, byte_size))
     }
 
-    /// With the bottom row first in memory: `BHR_IMAGE_BOTTOM_UP`. Errors: as `from_raw`, or a negative stride.
+    /// An image with the bottom row first in memory: `BHR_IMAGE_BOTTOM_UP`. Errors: as `from_raw`, or a negative
+    /// stride.
     ///
     /// # Safety
-    /// As `from_raw`, but that `pixels` is the bottom-left pixel, where the block begins.
+    /// The contract is that of `from_raw`, except that `pixels` is the bottom-left pixel, where the block begins.
     pub unsafe fn from_raw_bottom_up(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
         Self::begin(Rows::new(layout, FirstRow::Bottom, pixels, byte_size))
     }
@@ -359,7 +360,7 @@ impl<'a> ImageMut<'a> {
         self.copiers = Some(copiers);
     }
 
-    /// The same pixels, to read.
+    /// The same pixels, for reading.
     pub fn as_image_ref(&self) -> ImageRef<'_> {
         ImageRef { rows: self.rows, memory: PhantomData }
     }

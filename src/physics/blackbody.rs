@@ -29,7 +29,7 @@ pub fn radiance_xyz(temperature: f64) -> [f64; 3] {
     if temperature > 0.0 { reduced_xyz(1.0 / temperature).map(|v| v * temperature) } else { [0.0; 3] }
 }
 
-/// The same light in linear Rec. 709; components outside the gamut are negative. Its luminance is the Y of
+/// The light of `radiance_xyz` in linear Rec. 709; components outside the gamut are negative. Its luminance is the Y of
 /// `radiance_xyz`.
 pub fn linear_rgb(temperature: f64) -> [f64; 3] {
     xyz_to_rgb(radiance_xyz(temperature))
@@ -143,7 +143,7 @@ impl BlackbodyTable {
     /// ln Y of a blackbody as the table has it, Y as in `radiance_xyz`: the `log_reference` of the functions below.
     /// `temperature` in K, taken into [MIN_TEMPERATURE, MAX_TEMPERATURE].
     pub fn ln_luminance(&self, temperature: f64) -> f64 {
-        // NaN goes to the lower end too.
+        // NaN also becomes the lower end.
         let taken = if temperature > MIN_TEMPERATURE { temperature.min(MAX_TEMPERATURE) } else { MIN_TEMPERATURE };
         self.blackbody_lookup(taken)[3] + taken.ln()
     }
@@ -166,13 +166,13 @@ impl BlackbodyTable {
     /// equal to g: `blackbody_rgb(g T)`.
     pub fn shifted_blackbody(&self, temperature: f64, log_reference: f64, g_colour: f64, g_beaming: f64) -> [f64; 3] {
         let observed = temperature * g_colour;
-        // As a positive condition: false for NaN.
+        // The condition is positive so that it is false for NaN.
         if observed >= MIN_TEMPERATURE && g_beaming > 0.0 {
             let taken = observed.min(MAX_TEMPERATURE);
             let [r, g, b, ln_slope] = self.blackbody_lookup(taken);
             let beaming = (g_beaming / g_colour).min(MAX_BEAMING);
             let gain = (beaming * beaming) * (beaming * beaming);
-            // In this order no product is 0 times infinity, in f32 either.
+            // The factors are multiplied in this order so that no product is 0 times infinity, in f32 either.
             let luminance = (ln_slope - log_reference).min(MAX_LN_RATIO).exp() * gain * taken;
             into_gamut([r, g, b]).map(|v| v * luminance.min(MAX_RATIO))
         } else {

@@ -88,7 +88,7 @@ impl TemperatureProfile {
 mod tests {
     use super::*;
 
-    /// numerics.md: a, r_max, f_max, checked against the defining integral to 2e-28.
+    /// The table of docs/numerics.md: a, r_max, f_max, checked against the defining integral to 2e-28.
     #[test]
     fn maximum_for_six_spins() {
         let table = [

@@ -17,7 +17,7 @@
 use super::orbit::{horizon_inner, horizon_outer};
 use glam::DVec3;
 
-/// Which time `State::delay` integrates.
+/// The time that `State::delay` integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
     /// Boyer-Lindquist (Schwarzschild) t, for eyes outside the horizon.
@@ -34,7 +34,8 @@ pub const RAIN_CLOCK_RADIUS: f64 = 3.0;
 /// H, rain time less t outside the horizon, M: dH/dr = sqrt(2/r) / (1 - 2/r), so that
 ///
 /// ```text
-/// H = 2 sqrt(2 r) + 2 ln((sqrt r - sqrt 2) / (sqrt r + sqrt 2)) = 4 / w + 2 ln(D / (1 + w)^2),   w = sqrt(2 u),   D = 1 - 2 u
+/// H = 2 sqrt(2 r) + 2 ln((sqrt r - sqrt 2) / (sqrt r + sqrt 2))
+///   = 4 / w + 2 ln(D / (1 + w)^2),   w = sqrt(2 u),   D = 1 - 2 u
 /// ```
 ///
 /// (Gullstrand 1922; Martel & Poisson 2001, eq. 2.5). `d` is D: beside the horizon the caller knows it better than `u`

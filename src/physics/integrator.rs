@@ -183,8 +183,8 @@ pub fn dormand_prince_step(c: &Constants, s: &State, h: f64) -> (State, f64) {
     (end, error_norm(c, &end, &from_vector(&error)))
 }
 
-/// What an error in each component does to directions (rad) and radii (relative); delay is left out: where it is ill
-/// conditioned, beside the horizon, the step limit holds it.
+/// The effect of an error in each component on directions (rad) and radii (relative). The delay is left out: where it
+/// is ill conditioned, beside the horizon, the step limit holds it.
 fn error_norm(c: &Constants, s: &State, error: &State) -> f64 {
     // At the far end of a ray an error in u moves the escape: 1e-3 keeps that in proportion with the direction.
     let u_scale = s.u.abs() + 1e-3;

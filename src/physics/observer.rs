@@ -19,7 +19,7 @@ const SMALLEST_UNIT_ENERGY: f64 = 1e-4;
 pub struct LocalFrame {
     pub a: f64,
     pub r: f64,
-    /// Of the polar angle, as ratios of coordinates: exactly 0 in the plane and on the axis.
+    /// Sine and cosine of the polar angle, as ratios of coordinates: exactly 0 in the plane and on the axis.
     pub sin: f64,
     pub cos: f64,
     /// Euclidean unit vectors of spherical coordinates at the place. On the axis the azimuth is 0.
@@ -150,7 +150,7 @@ impl LocalFrame {
         if self.rain { self.start_rain(n) } else { Some(self.start_zamo(n)) }
     }
 
-    /// numerics.md, 'Start values': outside the ergosphere no difference of nearly equal numbers appears.
+    /// The start values of docs/numerics.md: outside the ergosphere no difference of nearly equal numbers appears.
     fn start_zamo(&self, n: DVec3) -> (Constants, State) {
         let (a, u) = (self.a, 1.0 / self.r);
         let (s, c, p) = (self.sin, self.cos, -n);
@@ -177,7 +177,8 @@ impl LocalFrame {
         (constants, state)
     }
 
-    /// The same in the tetrad e_T = d_T - beta d_r, e_r = d_r, e_th = d_th / r, e_ph = d_ph / (r s), beta = sqrt(2 u).
+    /// The start values in the rain tetrad e_T = d_T - beta d_r, e_r = d_r, e_th = d_th / r, e_ph = d_ph / (r s), beta
+    /// = sqrt(2 u).
     fn start_rain(&self, n: DVec3) -> Option<(Constants, State)> {
         let u = 1.0 / self.r;
         let beta = (2.0 * u).sqrt();

@@ -34,7 +34,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The exact way: everything down to the horizon.
+    /// The exact settings: everything down to the horizon is traced.
     pub fn exact(a: f64) -> Self {
         Self {
             method: Method::Nystrom,
@@ -63,7 +63,7 @@ pub enum Fate {
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneCrossing {
     pub u: f64,
-    /// In (-pi, pi].
+    /// Azimuth in the chart, in (-pi, pi].
     pub azimuth: f64,
     /// `Constants::retardation`; 0 unless asked for.
     pub delay: f64,
@@ -71,7 +71,7 @@ pub struct PlaneCrossing {
     pub order: u32,
 }
 
-/// What became of a ray.
+/// The end of a ray.
 #[derive(Clone, Debug)]
 pub struct RayTrace {
     pub fate: Fate,
@@ -116,7 +116,8 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     let h_most = if adaptive { 0.5 / c.scale } else { h_wish };
     for count in 1..=settings.max_steps {
         let limit = step_limit(c, &state, settings.step);
-        // Inside, the limit is all: steps in sigma of rays that are nearly radial would take no end of u.
+        // Inside the horizon the step limit alone decides: steps in sigma would change u of nearly radial rays without
+        // end.
         let inside = state.u >= u_plus;
         let h = match (inside, adaptive) {
             (true, false) => limit,
@@ -139,7 +140,7 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
         if next.u <= 0.0 {
             return (End::Escaped, count);
         }
-        // The state, not a change of side: the step rule stops short of the horizon.
+        // Capture is told from the state, not from a change of side: the step rule stops short of the horizon.
         if next.du > 0.0 && (next.u >= settings.capture_u || u_plus - next.u < 1e-6 * u_plus) {
             return (End::Captured, count);
         }
@@ -149,7 +150,7 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     (End::OutOfSteps, settings.max_steps)
 }
 
-/// What rounding leaves of a sigma of order 1.
+/// Below this a sigma of order 1 is rounding.
 const ROUNDING: f64 = 1e-15;
 
 /// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method
@@ -237,7 +238,7 @@ fn find_crossing(c: &Constants, eye: &State, s: &Settings, segment: &Segment, or
     let (from, to, h) = (segment.from, segment.to, segment.h);
     let guess = h * Quintic::of_n_z(c, from, to, h).root();
     let (state, _) = land(c, s, from, guess, ROUNDING, |s| (s.n.z, s.dn.z));
-    // Outside the horizon, by the contract's margin, and this side of infinity.
+    // The ray is outside the horizon, by the contract's margin, and on this side of infinity.
     let outermost = 1.0 / (c.r_plus * (1.0 + 1e-5));
     if !(state.u > 0.0 && state.u <= outermost) {
         return None;

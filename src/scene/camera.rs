@@ -1,5 +1,5 @@
-//! The camera: an observer with a lens. Checks only itself; what the hole forbids is found when a frame is asked for
-//! (`frame::Observer`).
+//! The camera: an observer with a lens. It checks only itself; a motion that the hole does not allow is found when a
+//! frame is asked for (`scene::observer`).
 
 use super::hole::unit;
 use crate::error::{Error, Result};
@@ -23,7 +23,7 @@ pub enum Motion {
     FreeFall = 1,
     /// Along +phi on a circle.
     Orbit = 2,
-    /// `Camera::velocity`.
+    /// Moves with `Camera::velocity`.
     Velocity = 3,
 }
 

@@ -9,8 +9,8 @@ use super::sky::Sky;
 use crate::sky::{SkyMap, StarIndex};
 use std::sync::Arc;
 
-/// Which relativistic effects colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored.
-/// g = g_gravity g_doppler, split at the local static observer (ZAMO) of emitter and camera.
+/// The relativistic effects that colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored. The redshift g
+/// = g_gravity g_doppler is split at the local static observer (ZAMO) of emitter and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effects(pub u32);
 
@@ -40,7 +40,7 @@ impl Effects {
     }
 }
 
-/// What a pixel shows (`BHR_VIEW_*`).
+/// The quantity that a pixel shows (`BHR_VIEW_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum View {
@@ -65,7 +65,7 @@ pub struct Scene {
     /// `None`: no disk.
     pub disk: Option<Disk>,
     pub sky: Sky,
-    /// What `Sky::MAP` shows; `None`: nothing.
+    /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
     pub film: Film,
     pub effects: Effects,

@@ -50,14 +50,15 @@ impl Region {
     }
 }
 
-/// Where about its pixel sample `index` of `count` lies, the pixel being 0 .. 1 each way: the centre for one sample,
-/// else by the filter that a picture is reconstructed with, so that all samples weigh the same (importance sampling of
-/// the filter: M. Ernst, M. Stamminger, G. Greiner, IEEE Ray Tracing 2006). The same for every pixel and machine.
+/// The place in its pixel, 0 .. 1 each way, of sample `index` of `count`: the centre for one sample, else drawn by the
+/// filter that a picture is reconstructed with, so that all samples weigh the same (importance sampling of the filter:
+/// M. Ernst, M. Stamminger, G. Greiner, IEEE Ray Tracing 2006). It is the same for every pixel and machine.
 ///
 /// The filter is the quadratic B-spline, 3 pixels wide, sigma 1/2. A box, which a pixel is, lets through 30 % of what
-/// repeats every 4/3 pixels, which then shows as a pattern 4 pixels long; the spline 3 %, and 26 % of the finest
-/// detail that pixels can show (box: 64 %). Filters that keep more of it have negative lobes, which make dark rings
-/// around stars and the photon ring. Of CUBE it is the box: across a border of its faces lies another part of the sky.
+/// repeats every 4/3 pixels, which then shows as a pattern 4 pixels long; the spline lets through 3 %, and 26 % of the
+/// finest detail that pixels can show (box: 64 %). Filters that keep more of it have negative lobes, which make dark
+/// rings around stars and the photon ring. CUBE uses the box, because another part of the sky begins across a border of
+/// its faces.
 pub fn sample_offset(index: u32, count: u32, projection: Projection) -> [f64; 2] {
     let place = lattice(index, count);
     if projection == Projection::Cube { place } else { place.map(|share| 0.5 + spline_quantile(share)) }
@@ -73,7 +74,7 @@ pub fn lattice(index: u32, count: u32) -> [f64; 2] {
     [(i + 0.5) / n, (i * golden + turn).rem_euclid(1.0)]
 }
 
-/// Where the integral of the quadratic B-spline from -3/2 on is `share`, 0 .. 1.
+/// The x up to which the integral of the quadratic B-spline from -3/2 on is `share`, 0 .. 1.
 fn spline_quantile(share: f64) -> f64 {
     let from_middle = share - 0.5;
     if from_middle.abs() > 1.0 / 3.0 {
@@ -107,7 +108,7 @@ mod tests {
                 let variance = at.iter().map(|v| v * v).sum::<f64>() / f64::from(count);
                 assert!(mean.abs() < 1e-9, "{count}: mean {mean}");
                 assert!(at.iter().all(|v| v.abs() < 1.5), "{count}: {at:?}");
-                // Of few samples the tails' are missing.
+                // A few samples lack the tails.
                 let off = 1.5 / f64::from(count);
                 assert!((variance - 0.25).abs() < off, "{count}: variance {variance} in {c}");
             }

@@ -49,8 +49,8 @@ impl Hole {
         })
     }
 
-    /// Takes vectors in scene axes to the hole's chart, whose +z is the spin axis: the inverse of the shortest rotation from
-    /// +z to the axis, about +x for -z (bhr.h, Conventions).
+    /// Takes vectors in scene axes to the hole's chart, whose +z is the spin axis: the inverse of the shortest rotation
+    /// from +z to the axis, about +x for -z (bhr.h, Coordinates).
     pub fn scene_to_chart(&self) -> DMat3 {
         if self.axis == DVec3::Z {
             return DMat3::IDENTITY;

@@ -1,5 +1,5 @@
-//! What to draw, as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot
-//! of it. May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
+//! The scene as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
+//! May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
 
 pub mod camera;
 mod content;

@@ -6,17 +6,17 @@ use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A projection onto a frame. Every position has a point, which continues the projection outside the frame; where the
-/// projection shows something is for `has_look` to say.
+/// A projection onto a frame. Every position has a point, which continues the projection outside the frame; `has_look`
+/// says where the projection shows something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mapping {
     pub projection: Projection,
-    /// Of the full frame, pixels.
+    /// Size of the full frame in pixels.
     pub width: f64,
     pub height: f64,
     /// Halves of the perspective image plane's sides at distance 1; else 1.
     pub plane: DVec2,
-    /// Of a pixel in the middle of the frame (of a cube's faces as if one filled its side), radians.
+    /// Angle of a pixel in the middle of the frame (of a cube's faces as if one filled its side), radians.
     pub pixel_angle: f64,
 }
 

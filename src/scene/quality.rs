@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 
-/// Where tables are used; anything but `Auto` is for tests.
+/// The frames in which tables are used; anything but `Auto` is for tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LensTables {
     /// In frames large enough to pay for them.

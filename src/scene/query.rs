@@ -21,7 +21,7 @@ pub struct HoleInfo {
     pub ergosphere_equatorial_radius: f64,
     pub photon_orbit_prograde: f64,
     pub photon_orbit_retrograde: f64,
-    /// Of matter moving towards +ph, -ph.
+    /// ISCOs of matter that moves towards +ph and -ph.
     pub isco_prograde: f64,
     pub isco_retrograde: f64,
     /// Spin 0: 3 sqrt(3) M.

@@ -1,4 +1,4 @@
-//! Rays and what becomes of them, in scene units, as a host asks for them directly. Field by field as in `bhr.h`.
+//! Rays and their ends, in scene units, as a host asks for them directly. Field by field as in `bhr.h`.
 
 use glam::DVec3;
 
@@ -9,8 +9,8 @@ pub const MAX_CROSSINGS: usize = 4;
 pub struct Ray {
     /// Scene axes and lengths.
     pub position: DVec3,
-    /// Where the eye looks, opposite to the photon's momentum; components along the local frame, placed on the
-    /// Euclidean unit vectors of spherical coordinates (bhr.h, Conventions), scene axes.
+    /// The direction in which the eye looks, opposite to the photon's momentum. Components are along the local frame,
+    /// placed on the Euclidean unit vectors of spherical coordinates (bhr.h, Coordinates), in scene axes.
     pub direction: DVec3,
     /// nu(camera) / nu(observer of the local frame), > 0.
     pub frequency_ratio: f64,

@@ -24,7 +24,7 @@ pub struct DiskCrossing {
     pub share: f64,
 }
 
-/// What became of a pixel's ray. Directions in the chart.
+/// The end of a pixel's ray. Directions are in the chart.
 #[derive(Clone, Debug)]
 pub struct Record {
     pub fate: Fate,
@@ -43,7 +43,7 @@ pub struct Record {
     pub plane_u: f64,
     /// Orders of crossings inside the disk's inner edge, a bit each.
     pub inside: u16,
-    /// What runs through the pixel.
+    /// The edge that runs through the pixel.
     pub edge: Edge,
     pub crossings: ArrayVec<DiskCrossing, CROSSINGS_KEPT>,
 }
@@ -84,5 +84,5 @@ impl Record {
 
 /// A footprint that nothing is known of: only the mean sky can stand for it.
 pub const UNKNOWN_DIRECTION: DVec3 = DVec3::splat(1e30);
-/// The same of a crossing.
+/// A footprint of a crossing that nothing is known of.
 pub const UNKNOWN_PLACE: Place = Place { ln_r: 1e30, azimuth: 0.0, delay: 0.0 };

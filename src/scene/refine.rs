@@ -4,14 +4,16 @@
 //! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, and misses rings
 //! thinner than the pixel. Two kinds of pixels get more rays:
 //!
-//! - An edge of the disk ([`Edge::Disk`]): u of a crossing changes evenly there, so a few rays tell it all over the pixel, and with it
-//!   the share of each ray's cell in which it lies between the disk's radii. That share of the disk's opacity is composed as usual.
-//! - The critical curve ([`Edge::Curve`]), which images of higher orders approach by e^-pi each (Ohanian 1987, Am. J. Phys. 55, 428),
-//!   so that those of order 2 and more share a pixel with it: many rays, which count as they fall where u does not change evenly.
+//! - An edge of the disk ([`Edge::Disk`]): u of a crossing changes evenly there, so a few rays tell it all over the
+//!   pixel, and with it the share of each ray's cell in which it lies between the disk's radii. That share of the
+//!   disk's opacity is composed as usual.
+//! - The critical curve ([`Edge::Curve`]), which images of higher orders approach by e^-pi each (Ohanian 1987, Am. J.
+//!   Phys. 55, 428), so that those of order 2 and more share a pixel with it: many rays, which count as they fall where
+//!   u does not change evenly.
 
 use super::frame::lattice;
 
-/// What runs through a pixel.
+/// The kind of edge that runs through a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Edge {
     #[default]
@@ -23,19 +25,21 @@ pub enum Edge {
     Curve,
 }
 
-/// Samples of a pixel of either kind. The many also serve pixels on the disk where u does not change evenly.
+/// The number of samples of a pixel of either kind. The many also serve pixels on the disk where u does not change
+/// evenly.
 pub const EDGE_SAMPLES: u32 = 4;
 pub const CURVE_SAMPLES: u32 = 32;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
 const EDGE_REACH: f64 = 0.75;
-/// Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
+/// The relative change of u from pixel to pixel above which the disk's mean light in the pixel is not that at its
+/// centre.
 const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
 const CURVE_REACH: f64 = 0.85;
 const RINGS_REACH: f64 = 3.0;
-/// Between the samples of a pixel of `EDGE_SAMPLES`: what u may change, of the disk's own range of it, and still count
-/// as even; and of the direct image, relative to u, as there the light itself may not change evenly.
+/// The change of u between the samples of a pixel of `EDGE_SAMPLES` that still counts as even: as a share of the disk's
+/// own range of u, and for the direct image relative to u, because there the light itself may not change evenly.
 const EVEN_CHANGE: f64 = 0.5;
 const DIRECT_CHANGE: f64 = 0.25;
 
@@ -58,8 +62,8 @@ pub fn is_steep(u: f64, change: f64) -> bool {
     change > STEEP_CHANGE * u
 }
 
-/// Of a looked-up pixel `curve` pixels from the critical curve that nothing hides; `rings`: there is a disk, whose
-/// rings lie outside the curve as the pixel does.
+/// The edge of a looked-up pixel that lies `curve` pixels from the critical curve and that nothing hides; `rings`:
+/// there is a disk, whose rings lie outside the curve as the pixel does.
 pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
     match () {
         () if curve < CURVE_REACH => Edge::Curve,
@@ -68,18 +72,18 @@ pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
     }
 }
 
-/// Where in its pixel the middle of quarter `index` lies, 0 .. 1.
+/// The place in its pixel, 0 .. 1, of the middle of quarter `index`.
 pub fn quarter_place(index: u32) -> [f64; 2] {
     [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side))
 }
 
-/// Where in its pixel sample `index` of `CURVE_SAMPLES` lies, 0 .. 1: the strips between samples at right angles to
-/// `across` are of equal area, so that of a thin ring at right angles to it each pixel gets the same share of its
-/// samples; along the strips steps of the golden ratio.
+/// The place in its pixel, 0 .. 1, of sample `index` of `CURVE_SAMPLES`: the strips between samples at right angles to
+/// `across` are of equal area, so that each pixel gets the same share of its samples of a thin ring at right angles to
+/// it; along the strips samples follow steps of the golden ratio.
 pub fn curve_place(index: u32, across: [f64; 2]) -> [f64; 2] {
     let [share, along] = lattice(index, CURVE_SAMPLES);
     let length = across[0].hypot(across[1]);
-    // Less is rounding, at the shadow's very centre.
+    // A smaller length is rounding, at the very centre of the shadow.
     let normal = if length > 1e-15 { across.map(|c| c / length) } else { [1.0, 0.0] };
     let tangent = [-normal[1], normal[0]];
     let foot = normal.map(|c| c * level_of_share(share, normal));
@@ -205,7 +209,7 @@ mod tests {
         }
     }
 
-    /// Of half-planes in all directions the samples tell the area, and the best across the curve.
+    /// Half-planes in all directions: the samples tell the area, and best across the curve.
     #[test]
     fn samples_across_the_curve_are_even_in_all_directions() {
         for turn in 0..36 {

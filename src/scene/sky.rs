@@ -1,4 +1,4 @@
-//! What lies at infinity, as the host states it. The stars themselves are in `crate::sky`.
+//! The sky at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
 use super::{Scene, View};
 use crate::error::{Error, Result};
@@ -16,7 +16,7 @@ pub struct Sky {
     pub map_brightness: f64,
     /// Unit quaternion: sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole) -> scene axes.
     pub orientation: DQuat,
-    /// Of the procedural stars: any. Default 0.
+    /// Seed of the procedural stars: any number. Default 0.
     pub seed: u64,
 }
 

@@ -1,5 +1,5 @@
-//! A host's ray and quality in the terms of `physics::trace`, and a trace's result in the host's: what both tracers
-//! share.
+//! A host's ray and quality in the terms of `physics::trace`, and the result of a trace in the host's terms. Both
+//! tracers use it.
 
 use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
@@ -15,12 +15,12 @@ use std::sync::Arc;
 /// Step in sigma of the Nystrom method for rays that a host asks for, in f64: errors, divided by (1 + conditioning),
 /// of 1e-11.
 pub const RAY_STEP: f64 = 0.025;
-/// The same for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7 for crossing radii, at most
-/// 1e-5; a pixel of a 3840 x 2160 frame is 5e-4 wide.
+/// Step in sigma of the Nystrom method for pixels, in f64 and f32: measured 3e-7 for 99 % of sky directions and 7e-7
+/// for crossing radii, at most 1e-5; a pixel of a 3840 x 2160 frame is 5e-4 wide.
 pub const PIXEL_STEP: f64 = 0.25;
 
 impl Quality {
-    /// For rays of the f64 tracer.
+    /// The settings of the f64 tracer for rays that a host asks for.
     pub fn ray_settings(&self, spin: f64) -> Settings {
         let (method, step) = match self.method {
             Method::Auto => (integrator::Method::Nystrom, RAY_STEP),
@@ -41,7 +41,7 @@ impl Quality {
 }
 
 impl Scene {
-    /// For pixels of the f64 tracer.
+    /// The settings of the f64 tracer for pixels.
     pub fn pixel_settings(&self) -> Settings {
         let mut settings = self.quality.ray_settings(self.hole.spin);
         if self.quality.method == Method::Auto {

@@ -1,6 +1,6 @@
-//! Structure of the disk: what its turbulence makes of the brightness, where and when. The pattern, its motion and the
-//! split of the scene's time; both tracers use it, and `shaders/turbulence.wgsl` mirrors `brightness`. Knows no
-//! colours and no rays.
+//! Structure of the disk: the factor by which its turbulence changes the brightness at a place and a time. The pattern,
+//! its motion and the split of the scene's time are here; both tracers use them, and `shaders/turbulence.wgsl` mirrors
+//! `brightness`. Knows no colours and no rays.
 //!
 //! Octaves of gradient noise (Perlin 2002) in (ln r, azimuth fixed to the matter) multiply: factor = prod (1 + t a_i
 //! n_i), with n_i independent, of mean 0, within [-1, 1]. So the mean is 1 whatever octaves are filtered away, the
@@ -18,23 +18,24 @@ use crate::physics::observer::LocalFrame;
 use crate::random::mix;
 use std::f64::consts::{PI, TAU};
 
-/// Of a generation, M: at its brightest (half of it) it is sheared 6 : 1 at r = 6 and 1 : 1 at r = 20. Much longer,
-/// and the inner disk would be rings; much shorter, and nothing could be seen to go round there (92 M at r = 6).
+/// The lifetime of a generation, M: at its brightest (half of it) it is sheared 6 : 1 at r = 6 and 1 : 1 at r = 20.
+/// Were it much longer, the inner disk would be rings; were it much shorter, nothing could be seen to go round there
+/// (92 M at r = 6).
 const LIFETIME: f64 = 120.0;
 /// Cells of the coarsest octave: around the disk (whole, so that there is no seam), and in an e-fold of the radius,
 /// where 5 / 2 pi would make them square. The next octave has twice as many.
 const CELLS_AROUND: u32 = 5;
 const CELLS_PER_E_FOLD: f64 = 2.5;
-/// a_i.
+/// The amplitudes a_i of the octaves.
 const AMPLITUDES: [f64; 4] = [0.8, 0.7, 0.6, 0.5];
 /// Gradient noise has a standard deviation of about 0.2; more than doubled, hardly any of it is cut off at 1.
 const GAIN: f64 = 2.2;
 
-/// Where and when the light of a crossing left, or the change of it from pixel to pixel.
+/// The place and time at which the light of a crossing left, or the change of both from pixel to pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     pub ln_r: f64,
-    /// Chart.
+    /// Azimuth in the chart.
     pub azimuth: f64,
     /// M (`Constants::retardation`); 0 where light is not delayed.
     pub delay: f64,
@@ -58,7 +59,7 @@ pub struct Turbulence {
 }
 
 impl Scene {
-    /// `None` where none is seen.
+    /// The turbulence of a scene; `None` where none is seen.
     pub fn turbulence(&self) -> Option<Turbulence> {
         let disk = self.disk.filter(|d| d.turbulence > 0.0 && self.view == View::Light)?;
         self.disk_u()?;
@@ -95,8 +96,8 @@ fn clock_advance(eye: &LocalFrame) -> f64 {
 }
 
 impl Turbulence {
-    /// What the disk's radiance is multiplied by: mean 1, within 0 .. prod (1 + a_i) = 7.4. `per_pixel`: change of
-    /// `at` to the next pixel in x and in y; octaves whose cells are narrower than that fade out.
+    /// The factor on the disk's radiance: mean 1, within 0 .. prod (1 + a_i) = 7.4. `per_pixel`: change of `at` to the
+    /// next pixel in x and in y; octaves whose cells are narrower than that fade out.
     pub fn brightness(&self, at: Place, per_pixel: [Place; 2]) -> f64 {
         let since = self.age + (self.reference_delay - at.delay);
         let births = (since / (0.5 * LIFETIME)).floor();

@@ -1,4 +1,4 @@
-//! Which stars a sky shows, and their index: one for the whole process, made when it is first asked for and shared
+//! The stars that a sky shows, and their index: one for the whole process, made when it is first asked for and shared
 //! while anybody holds it.
 
 use super::catalogue;

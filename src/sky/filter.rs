@@ -1,5 +1,5 @@
 //! The light of a sky map in a pixel, filtered over the pixel's patch of sky, and what frequency shifts make of it.
-//! The same in both tracers: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no
+//! Both tracers filter alike: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no
 //! holes.
 //!
 //! The patch is taken for an ellipse, whose axes are the singular values of the pixel's derivatives. Trilinear taps,
@@ -36,7 +36,7 @@ const TINY_LIGHT: f64 = 1e-9;
 /// A line of taps.
 struct Taps {
     level: f64,
-    /// From each to the next; 0 along with a `spread` of 0.
+    /// The step from each tap to the next; 0 along with a `spread` of 0.
     step: DVec3,
     /// Length of the line, in steps.
     spread: f64,
@@ -65,7 +65,7 @@ impl SkyMap {
     fn taps(&self, d: DVec3, dx: DVec3, dy: DVec3) -> Taps {
         let last = self.levels().len() as f64 - 1.0;
         let stretch2 = dx.length_squared() + dy.length_squared();
-        // As a positive condition: false for NaN.
+        // The condition is positive so that it is false for NaN.
         let known = stretch2 < WHOLE_SKY;
         if !known {
             return Taps { level: last, step: DVec3::ZERO, spread: 0.0 };
@@ -80,7 +80,8 @@ impl SkyMap {
         let major = (0.5 * stretch2 + half_split).sqrt().max(TINY_AXIS);
         let minor = ((ax * by - ay * bx).abs() / major).max(major / (1.0 + MAX_SPREAD * MAX_SPREAD).sqrt());
         let ratio = major / minor;
-        // Of the major axis, by the half-angle formula that does not cancel; any for a circle, which has no spread.
+        // The direction of the major axis, by the half-angle formula that does not cancel; any direction for a circle,
+        // which has no spread.
         let (x, y) = match half_difference >= 0.0 {
             true => (half_split + half_difference, cross),
             false => (cross, half_split - half_difference),

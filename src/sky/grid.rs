@@ -50,7 +50,7 @@ fn lines(coordinate: f64, change: f64, spacing: f64) -> Lines {
 pub fn under_grid(light: [f64; 3], d: DVec3, dx: DVec3, dy: DVec3) -> [f64; 3] {
     let unknown = Lines { coverage: GRID_TINT, origin: 0.0 };
     let stretch2 = dx.length_squared() + dy.length_squared();
-    // As a positive condition: false for NaN.
+    // The condition is positive so that it is false for NaN.
     let families = if stretch2 < GRID_WHOLE_SKY {
         // cos(declination), with the poles kept off.
         let rho = d.x.hypot(d.y).max(1e-6);
@@ -129,7 +129,7 @@ mod tests {
         let tint = under_grid([0.0; 3], DVec3::X, DVec3::splat(1e30), DVec3::splat(1e30));
         let wanted = GRID_COLOUR.map(|c| c * (1.0 - (1.0 - GRID_TINT) * (1.0 - GRID_TINT)));
         assert!((0..3).all(|c| (tint[c] - wanted[c]).abs() < 1e-12), "{tint:?}");
-        // As coverage of both families.
+        // The tint is the coverage of both families.
         let dense = under_grid([0.0; 3], towards(7.0, 50.0), DVec3::Y * 1.0, DVec3::Z * 1.0);
         assert!((0..3).all(|c| (dense[c] - wanted[c]).abs() < 1e-12), "{dense:?}");
         let light = [1e9, 0.0, 3.0];

@@ -143,7 +143,7 @@ impl StarIndex {
         StarField::catalogue()
     }
 
-    /// Of any stars. Errors: OUT_OF_MEMORY.
+    /// The index of any stars. Errors: OUT_OF_MEMORY.
     pub fn new(stars: impl Iterator<Item = Star>) -> Result<Self> {
         let mut stars = collected(stars, STARS)?;
         // Neighbours in the sky become neighbours in memory.
@@ -231,7 +231,7 @@ impl StarIndex {
         self.star_lists.get(begin..begin + length).unwrap_or(&[])
     }
 
-    /// Of a star in a list: flux, temperature (K), its ln Y.
+    /// Flux, temperature (K) and ln Y of a star in a list.
     pub fn kind_of(&self, listed: [f32; 4]) -> [f64; 3] {
         match self.stars.as_chunks().0.get(listed[3] as usize) {
             Some([star, kind]) => [star[3], kind[0], kind[1]].map(f64::from),
@@ -296,7 +296,7 @@ fn sort_by_cell(stars: &mut [Star]) -> Result<()> {
     let mut order = collected(keys, STARS)?;
     order.sort_unstable();
     for place in 0..stars.len() {
-        // Who belongs here may have been swapped away, to where its own place's star went.
+        // The star that belongs here may have been swapped away, to where the star of its own place went.
         let mut from = order[place].1 as usize;
         while from < place {
             from = order[from].1 as usize;
@@ -339,7 +339,7 @@ type MeanSkySums = [(f64, f64); MEAN_SKY_PARTS];
 /// `StarIndex::mean_sky`. A part's 1 / T is the mean of its stars', weighted by light: to first order the shifted
 /// spectra, whose exponents are in 1 / T, then sum to the part's.
 fn mean_skies(stars: &[Star]) -> Vec<MeanSky> {
-    // Of the stars that a level leaves out and the one before it does not.
+    // The sums of the stars that a level leaves out and the level before it does not.
     let mut sums = [MeanSkySums::default(); FAINTEST.len()];
     let mut flux_limits = [f32::INFINITY; FAINTEST.len()];
     for star in stars {
@@ -514,7 +514,7 @@ mod tests {
         }
     }
 
-    /// What a level lists and what its mean sky holds is all there is.
+    /// The stars that a level lists and those in its mean sky are together all the light.
     #[test]
     fn every_level_has_the_light_of_all_stars() {
         every_level_has_the_light_of(&StarIndex::shared().expect("an index"));

@@ -35,7 +35,7 @@ pub struct Level {
     pub texels: Vec<u32>,
 }
 
-/// What a level is made from: its size, and what writes a row of it as linear Rec. 709 light.
+/// The source of a level: its size, and the function that writes a row of it as linear Rec. 709 light.
 struct Source<'a> {
     size: [u32; 2],
     row: &'a RowReader<'a>,
@@ -51,8 +51,8 @@ impl std::fmt::Debug for SkyMap {
 }
 
 impl SkyMap {
-    /// Of the host's picture, which is read before this returns; alpha does not count. Errors: INVALID_ARGUMENT for
-    /// R32F; OUT_OF_MEMORY.
+    /// The map of the host's picture, which is read before this returns; alpha does not count. Errors: INVALID_ARGUMENT
+    /// for R32F; OUT_OF_MEMORY.
     pub fn new(image: &ImageRef<'_>) -> Result<Self> {
         let size = [image.width(), image.height()];
         let eight_bit = |order: [usize; 3]| {
@@ -84,7 +84,7 @@ impl SkyMap {
         }
     }
 
-    /// Of `size`, not 0, and its rows. Errors: OUT_OF_MEMORY.
+    /// The map of a picture of `size`, not 0, and its rows. Errors: OUT_OF_MEMORY.
     pub fn of_rows(size: [u32; 2], row: &RowReader<'_>) -> Result<Self> {
         let tall = size[0].saturating_mul(4).max(TALL);
         let height = size[1].min(MAX_MAP_SIZE[1]).min(tall);
@@ -144,7 +144,7 @@ impl Level {
     }
 }
 
-/// What making a row takes.
+/// The memory that making a row takes.
 struct Scratch {
     /// A row of the source.
     read: Vec<[f32; 3]>,
@@ -249,7 +249,7 @@ impl Scratch {
                 Ok(x) => (1.0, x - width),
                 Err(_) => (-1.0, x.wrapping_add_unsigned(width) as usize),
             };
-            // In bounds, as no more than a turn is averaged; a row is not longer than its sums.
+            // The indices are in bounds, as no more than a turn is averaged; a row is not longer than its sums.
             let (Some(up_to), Some(light)) = (up_to.get(column), row.get(column)) else { return sum };
             std::array::from_fn::<f64, 3, _>(|c| up_to[c] + share * light[c] + turn * sum[c])
         };
@@ -278,9 +278,9 @@ fn blur_width([width, height]: [u32; 2], y: u32) -> f64 {
 /// Largest number that RGB9E5 holds: 511 / 512 2^16.
 const MAX_LIGHT: f32 = 65408.0;
 
-/// What can be stored: NaN and negative light become 0, infinite light the largest.
+/// The light that can be stored: NaN and negative light become 0, infinite light the largest.
 fn limited(v: f32) -> f32 {
-    // As a positive condition: false for NaN.
+    // The condition is positive so that it is false for NaN.
     if v > 0.0 { v.min(MAX_LIGHT) } else { 0.0 }
 }
 
@@ -323,7 +323,7 @@ mod tests {
         SkyMap::of_rows(size, &|y, out| (0..).zip(out).for_each(|(x, out)| *out = pattern(x, y))).unwrap()
     }
 
-    /// Of a level: light times solid angle, over 4 pi.
+    /// The light of a level times solid angle, over 4 pi.
     fn mean(level: &Level) -> [f64; 3] {
         let mut sum = [0.0; 3];
         let step = PI / f64::from(level.size[1]);

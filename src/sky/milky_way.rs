@@ -77,8 +77,8 @@ struct MilkyWay {
     brightest: f64,
 }
 
-/// What all texels of a column share: the picture's columns that it lies between, where, and cosine and sine of the
-/// right ascension.
+/// Numbers that all texels of a column share: the picture's columns that it lies between, where, and cosine and sine of
+/// the right ascension.
 struct Column {
     between: [u32; 2],
     share: f64,
@@ -194,7 +194,7 @@ fn value_noise(at: DVec3, key: u32) -> f64 {
     let low = at.as_uvec3();
     let t = at - low.as_dvec3();
     let s = t * t * (DVec3::splat(3.0) - 2.0 * t);
-    // Of a lattice point; odd numbers without a common pattern, so that each point has another.
+    // The key of a lattice point: the factors are odd and have no common pattern, so that each point has another key.
     let point = |x: u32, y: u32, z: u32| {
         x.wrapping_mul(0x9e37_79b1).wrapping_add(y.wrapping_mul(0x85eb_ca77)).wrapping_add(z.wrapping_mul(0xc2b2_ae3d))
     };

@@ -8,7 +8,7 @@ use crate::error::Result;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
-/// In a field; the faintest of them have V = 11.07.
+/// The number of stars in a field; the faintest of them have V = 11.07.
 pub const PROCEDURAL_STARS: u32 = 1_000_000;
 
 /// Stars of the whole sky that are not fainter than V = 0, 1, 2 ..: to 8 the embedded catalogue's, then by Allen 1973,
@@ -48,7 +48,7 @@ pub fn stars(seed: u64) -> Result<impl Iterator<Item = Star>> {
     }))
 }
 
-/// In [0, 1), a multiple of 2^-53.
+/// A random number in [0, 1), a multiple of 2^-53.
 fn unit(random: &mut Pcg32) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
 }
@@ -62,7 +62,7 @@ fn magnitude(brighter: f64) -> f64 {
     (1e3 * exact.max(BRIGHTEST)).round() * 1e-3
 }
 
-/// By operations that every machine rounds alike.
+/// A random direction, by operations that every machine rounds alike.
 fn direction(magnitude: f64, random: &mut Pcg32) -> glam::DVec3 {
     let crowds = magnitude > catalogue::FAINTEST || unit(random) < CROWDING_OF_BRIGHT;
     // The share of stars nearer to the plane, with its side of the plane for a sign.

@@ -134,7 +134,7 @@ mod tests {
     use crate::sky::catalogue::Star;
     use crate::sky::index::STAR_REFERENCE_RADIANCE;
 
-    /// Of wide fields of view.
+    /// The least patch of wide fields of view.
     const LEAST: f64 = LEAST_PATCH.1;
 
     fn luminance(rgb: [f64; 3]) -> f64 {
@@ -173,7 +173,7 @@ mod tests {
     fn a_stars_light_does_not_depend_on_its_place_between_pixels() {
         let scale = 2.0 * 30.0_f64.to_radians().tan() / 720.0;
         let flux = STAR_REFERENCE_RADIANCE * scale * scale;
-        // In a cube side, on an edge, in a corner.
+        // Places inside a cube's side, on an edge, and in a corner.
         for place in [DVec3::new(1.0, 0.3, -0.2), DVec3::new(1.0, 1.0, 0.1), DVec3::splat(-1.0)] {
             let place = place.normalize();
             let index = single(place, 0.0);

@@ -172,7 +172,7 @@ static void numbers_about_the_frame(BhrContext *context) {
     CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_frame_stats(context, &stats));
 }
 
-/* What waits for a later version is there, says so, and takes no host down. */
+/* Functions for a later version are there, say so, and take no host down. */
 static void later_functions(BhrContext *context) {
     Watch       watch;
     BhrSurface *surface = (BhrSurface *)&watch;

@@ -301,7 +301,7 @@ static void cube(Watch *watch, BhrContext *context) {
         const double *b = rays[2 * 6 * SIDE + (i + 1) * SIDE + 2].direction;
         CHECK(fabs(a[0] + b[0]) + fabs(a[1] + b[1]) + fabs(a[2] + b[2]) < 1e-12, "faces %d and %d are not opposite", i, i + 1);
     }
-    /* Of a region the full frame counts, and what is left of it may have any shape. */
+    /* The full frame of a region counts; the part that the image holds may have any shape. */
     BhrRegion region = {.struct_size = sizeof region, .full_width = 12 * SIDE, .full_height = 2 * SIDE, .x = 7, .y = 3};
     CHECK_OK(bhr_set_region(context, &region));
     CHECK_OK(bhr_render_image(context, &image));

@@ -179,7 +179,7 @@ static void camera_numbers(Watch *watch, BhrContext *context) {
         camera.fov_y = bad_fov[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "fov_y", bhr_set_camera(context, &camera));
     }
-    /* Of a fisheye the whole sphere is the limit; the others have no such angle. */
+    /* A fisheye may show the whole sphere; the other projections have no such limit. */
     static const double bad_circle[] = {0.0, -0.5, 2.0 * PI + 1e-9, 7.0, NAN, INFINITY};
     for (size_t i = 0; i < COUNT_OF(bad_circle); i++) {
         BhrCamera camera = default_camera();

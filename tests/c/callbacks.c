@@ -80,7 +80,7 @@ static void progress_from_inside(BhrContext *context) {
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_progress(NULL, on_progress, &progress));
 }
 
-/* What became of the pixels of a cancelled frame. */
+/* The pixels of a cancelled frame: how many are finished, untouched, or neither. */
 typedef struct Outcome {
     size_t finished, untouched, other;
 } Outcome;

@@ -20,8 +20,8 @@ BhrBackend  check_begin(int argc, char **argv); /* exits with 2 when there is no
 int         check_end(void);                    /* prints the count; the exit status of main */
 BhrContext *check_context(BhrBackend backend);  /* a new one, silent; ends the program when there is none */
 
-/* What check_context does to the sky: with CHECK_WITHOUT_MILKY_WAY in the environment no Milky Way, which takes valgrind long to make in
- * every program anew. */
+/* The sky of check_context. With CHECK_WITHOUT_MILKY_WAY in the environment it has no Milky Way, which takes
+ * valgrind long to make in every program anew. */
 void check_set_sky(BhrContext *context);
 
 /* ---- checks: the condition, then a printf message that says what was seen. Any thread may check. ---- */
@@ -32,7 +32,7 @@ void check_set_sky(BhrContext *context);
  * separated by |, or is any sentence when words is "". */
 #define CHECK_FAILS(expected, words, call) \
     (check_mark_message(), check_fails((call), (expected), (words), __FILE__, __LINE__, #call))
-/* The same, and the watched context is as it was: its getters and a small frame. */
+/* CHECK_FAILS, and the watched context is as it was: its getters and a small frame. */
 #define CHECK_REFUSED(watch, expected, words, call)     \
     (CHECK_FAILS(expected, words, call),                \
      check_unchanged((watch), __FILE__, __LINE__, #call))

@@ -1,6 +1,6 @@
-/* delays.c -- times about a hole without spin: the delay of BhrCrossing and the t of bhr_trace_path, against the orbit
- * equation (Darwin 1959), integrated here: u'' = 3 u^2 - u and dt = d phi / (b u^2 (1 - 2 u)), by RK4 in the angle swept
- * about the hole; and the scene time of a fall through the horizon, against Gullstrand's. M = 1. */
+/* delays.c -- times about a hole without spin: the delay of BhrCrossing and the t of bhr_trace_path, against the
+ * orbit equation (Darwin 1959), integrated here: u'' = 3 u^2 - u and dt = d phi / (b u^2 (1 - 2 u)), by RK4 in the
+ * angle swept about the hole; and the scene time of a fall through the horizon, against Gullstrand's. M = 1. */
 #include "check.h"
 
 #include <math.h>
@@ -132,7 +132,7 @@ static void path(BhrContext *context, const Look *look) {
         swept += further;
         const double r = sqrt(dot(points[i], points[i])), wanted = MASS / light.u;
         const double scale = r - points[i][3];
-        /* In a radian a ray that leads away goes r / (b u). */
+        /* Per radian, a ray that leads away goes r / (b u) far. */
         const double conditioning = 1.0 / (b * light.u);
         worst = fmax(worst, fabs(points[i][3] + MASS * light.time) / scale / (1.0 + conditioning));
         worst = fmax(worst, fabs(r - wanted) / scale / (1.0 + conditioning));

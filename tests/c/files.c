@@ -211,7 +211,7 @@ static void open_file(const BhrImage *image) {
     CHECK_OK(bhr_image_save(image, "open.png"));
 }
 
-/* What a program may not write by opening a file it may not replace either. Where it is not root, a program has no
+/* A file that a program may not open for writing it may not replace either. Where it is not root, a program has no
  * files of another user. */
 static void other_users(void) {
     static unsigned char pixels[WIDTH * HEIGHT * 4];

@@ -1,6 +1,6 @@
 #include <stdlib.h>
-/* film.c -- what film does to pixels: 8-bit images are exposed, bloom, and are mapped; float images are left alone; bloom needs
- * the whole frame. Numbers out of range are in bad_scene.c. */
+/* film.c -- the film: 8-bit images are exposed, bloom, and are mapped; float images are left alone; bloom needs the
+ * whole frame. Numbers out of range are in bad_scene.c. */
 #include "check.h"
 
 #include <string.h>

@@ -277,7 +277,7 @@ static void prepared_cubes(BhrContext *context) {
     CHECK_OK(bhr_set_camera(context, &usual));
 }
 
-/* What was prepared is rendered as it would have been, and no frame is counted. */
+/* A frame that was prepared is rendered as it would have been without, and no frame is counted. */
 static void prepared(BhrContext *context, BhrBackend backend) {
     BhrFrameStats before, after;
     BhrContext   *other = check_context(backend);

@@ -1,6 +1,6 @@
-/* jobs.c -- frames in the background: every job shows the scene as it was when the job was begun, whatever is set, waited
- * for, cancelled or destroyed meanwhile and in whatever order; waits end in time; progress is heard by the waiter; a target is
- * left alone once its job is gone; jobs outlive their context.
+/* jobs.c -- frames in the background: every job shows the scene as it was when the job was begun, whatever is set,
+ * waited for, cancelled or destroyed meanwhile and in whatever order; waits end in time; progress is heard by the
+ * waiter; a target is left alone once its job is gone; jobs outlive their context.
  *
  * A second argument "small" leaves out what takes long, for valgrind. */
 #define _POSIX_C_SOURCE 200809L
@@ -429,7 +429,7 @@ static void progress_cancels(BhrContext *context) {
 
 /* ---- targets ---- */
 
-/* What became of a frame that was stopped, against the whole one: `finished`, `untouched` or other pixels. */
+/* The pixels of a frame that was stopped, against the whole one: `finished`, `untouched` or `other`. */
 typedef struct Outcome {
     size_t finished, untouched, other;
 } Outcome;

@@ -15,8 +15,8 @@
 #define MAX_GROWTH_ON_CPU (2 << 20)       /* bytes over all measured cycles */
 #define MAX_GROWTH_OF_DRIVER (32 << 10)   /* bytes a cycle; lavapipe (Mesa 22.3): nothing measured */
 
-/* Bytes that the process has taken from the heap and not given back; 0 where the C library does not say. Not the resident
- * memory: of that the heap keeps tens of megabytes, or gives them back, as its last pieces happen to lie. */
+/* Bytes that the process has taken from the heap and not given back; 0 where the C library does not say. Not the
+ * resident memory: of that the heap keeps tens of megabytes, or gives them back, as its last pieces happen to lie. */
 static long held_bytes(void) {
 #ifdef __GLIBC__
     const struct mallinfo2 heap = mallinfo2();

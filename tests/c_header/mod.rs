@@ -1,4 +1,4 @@
-//! What the tests of the C header share: reading a header's declarations and running the C compiler.
+//! Shared by the tests of the C header: reading a header's declarations and running the C compiler.
 
 #![allow(dead_code)]
 

@@ -53,7 +53,7 @@ fn address_space() -> u64 {
     pages.split(' ').next().unwrap().parse::<u64>().unwrap() * 4096
 }
 
-/// From now on this process gets `more` bytes at the most.
+/// Limits this process to `more` bytes from now on.
 fn limit_memory(more: u64) {
     let mut limit = libc::rlimit { rlim_cur: 0, rlim_max: 0 };
     // SAFETY: `limit` is writable, then readable.
@@ -100,7 +100,7 @@ fn valid_files_of_every_kind_are_read() {
     }
 }
 
-/// In lines or tiles, compressed as it may be, the same picture.
+/// Files in lines or tiles, with any compression, hold the same picture.
 #[cfg(feature = "exr")]
 #[test]
 fn lossless_exr_files_hold_the_same_picture() {
@@ -241,7 +241,7 @@ fn child_reads_faulty_files() {
     let mut slowest = (Duration::ZERO, 0);
     for i in 0..count {
         let bytes = hostile::faulty(&seeds, &mut random);
-        // What is there when this process dies is the file that killed it.
+        // The file is left there if this process dies: it is the one that killed it.
         let begin = Instant::now();
         match folder.load(&bytes) {
             Ok(loaded) => {

@@ -84,7 +84,7 @@ pub fn png_header(width: u32, height: u32, depth: u8, color: u8, interlaced: boo
 
 pub fn png() -> Vec<Seed> {
     const SIZE: [usize; 2] = [11, 7];
-    /// Of Adam7: the first column and row of a pass, and the steps.
+    /// The passes of Adam7: the first column and row, and the steps.
     const PASSES: [[usize; 4]; 7] =
         [[0, 0, 8, 8], [4, 0, 8, 8], [0, 4, 4, 8], [2, 0, 4, 4], [0, 2, 2, 4], [1, 0, 2, 2], [0, 1, 1, 2]];
     let mut seeds = Vec::new();

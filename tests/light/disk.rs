@@ -108,7 +108,7 @@ fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
             renderer.scene.hole.spin = spin;
             renderer.scene.disk = Some(disk);
             renderer.scene.camera = camera(25.0, 75.0, 40.0);
-            // Of the pixel's own ray.
+            // The light is that of the pixel's own ray.
             renderer.scene.quality.refines = false;
             let light = light(&mut renderer, size, whole(size));
             let shifts = view(&mut renderer, View::Redshift, size, whole(size));

@@ -97,9 +97,9 @@ fn light_left_when_advanced_time_says() {
     }
 }
 
-/// What turbulence multiplies each pixel by; NaN off the disk.
+/// The factor of turbulence on each pixel; NaN off the disk.
 fn pattern(renderer: &mut Renderer) -> Vec<f64> {
-    // As edges move by, more pixels get more rays: another matter than time.
+    // Refinement is off: more pixels would get more rays as edges move by, which has nothing to do with time.
     renderer.scene.quality.refines = false;
     let [smooth, seen] = [0.0, 1.0].map(|turbulence| {
         renderer.scene.disk.as_mut().unwrap().turbulence = turbulence;

@@ -73,7 +73,7 @@ fn view(renderer: &mut Renderer, view: View, size: [u32; 2], region: Region) -> 
     values
 }
 
-/// What the tracer itself says of the rays through the pixels' centres.
+/// The hits of the rays through the pixels' centres, by the tracer itself.
 fn hits(renderer: &mut Renderer, size: [u32; 2], region: Region) -> Vec<Hit> {
     let mut rays = vec![Ray::default(); (size[0] * size[1]) as usize];
     renderer.scene.camera_rays(size[0], size[1], Some(region), &mut |i, ray| rays[i] = ray).unwrap();

@@ -28,7 +28,7 @@ fn luminances(renderer: &mut Renderer) -> Vec<f64> {
     light(renderer, SIZE, whole(SIZE)).into_iter().map(luminance).collect()
 }
 
-/// What turbulence multiplies each pixel by at a time; NaN off the disk.
+/// The factor of turbulence on each pixel at a time; NaN off the disk.
 fn pattern(renderer: &mut Renderer, time: f64, smooth: &[f64]) -> Vec<f64> {
     renderer.scene.time = time;
     luminances(renderer).into_iter().zip(smooth).map(|(v, s)| if *s > 1e-3 { v / s } else { f64::NAN }).collect()
@@ -68,7 +68,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count
 }
 
-/// Of the light of whole frames, over many generations.
+/// The mean is that of the light of whole frames, over many generations.
 #[test]
 fn brightness_is_kept_on_average() {
     let mut renderer = face_on(false);

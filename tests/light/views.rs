@@ -18,8 +18,8 @@ const DISK: Disk = Disk {
     seed: 0,
 };
 
-/// What a view should show of a ray that became `hit`. `look`: the observer's own, not aberrated. `isco`: of the
-/// disk's matter.
+/// The value that a view should show of a ray that became `hit`. `look`: the observer's own direction, not aberrated.
+/// `isco`: that of the disk's matter.
 fn expected(view: View, hit: &Hit, look: DVec3, isco: f64) -> f64 {
     let listed = &hit.crossings[..hit.crossing_count as usize];
     let on_disk = listed.iter().position(|x| x.radius >= isco && x.radius <= DISK.outer_radius);

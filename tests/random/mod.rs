@@ -1,4 +1,4 @@
-//! What the tests with random scenes share: numbers that are the same in every run. Knows directions, no scenes.
+//! Numbers for tests with random scenes, the same in every run. Knows directions, no scenes.
 
 #![allow(dead_code)]
 
@@ -8,7 +8,7 @@ use glam::DVec3;
 pub struct Random(pub u64);
 
 impl Random {
-    /// In [0, 1).
+    /// The next number, in [0, 1).
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 53) as f64

@@ -1,5 +1,5 @@
-/* bad_window.c -- whatever a host passes for a window, and in whatever state it calls, it gets a status and a message that
- * names the value and the limit; nothing breaks, and the next good call works.
+/* bad_window.c -- whatever a host passes for a window, and in whatever state it calls, it gets a status and a message
+ * that names the value and the limit; nothing breaks, and the next good call works.
  *
  *     bad_window BACKEND xlib|xcb      environment: DISPLAY, and OTHER_DISPLAY, another X server */
 #define _POSIX_C_SOURCE 200809L
@@ -150,7 +150,7 @@ static void absent(const Scene *scene) {
     }
     window.id = other.id;
     refuse(scene, &window, BHR_ERROR_INVALID_ARGUMENT, "window");
-    /* With its own display it is a good one, although it is not DISPLAY's. */
+    /* A window with its own display is a good one, although that display is not DISPLAY. */
     BhrSurface *surface = check_surface(scene->context, &other, SMALL, SMALL, BHR_PRESENT_VSYNC);
     CHECK_OK(bhr_render_surface(scene->context, surface));
     bhr_surface_destroy(surface);
@@ -225,8 +225,8 @@ static void modes(const Scene *scene, const Host *host) {
     bhr_surface_destroy(surface);
 }
 
-/* A window that is itself larger than the device's images: said, or shown where the host's memory is the way; and no more
- * once it is small again. */
+/* A window that is itself larger than the device's images: said, or shown where the host's memory is the way; and no
+ * more once it is small again. */
 static void large_window(const Scene *scene) {
     Host        host = host_open(scene->kind, NULL, WIDTH, HEIGHT);
     BhrSurface *surface = check_surface(scene->context, &host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC);
@@ -270,7 +270,7 @@ static void two_surfaces(const Scene *scene, const Host *host) {
     bhr_context_destroy(other);
 }
 
-/* The same window by another road: the other library, and a server's name spelt otherwise. */
+/* The window is named in another way: by the other library, and with the server's name spelt otherwise. */
 static void two_roads(const Scene *scene, const Host *host) {
     char       *name = malloc(strlen(getenv("DISPLAY")) + 3);
     BhrSurface *surface = check_surface(scene->context, host, WIDTH, HEIGHT, BHR_PRESENT_VSYNC), *second = NULL;

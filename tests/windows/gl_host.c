@@ -54,7 +54,7 @@ static void load(void *function, const char *library, const char *name) {
 #define EGL(function, name) load(&(function), "libEGL.so.1", (name))
 #define GL(function, name) load(&(function), "libGL.so.1", (name)) /* libglvnd's, which serves every current context */
 
-/* What GLX and EGL call current on this thread. */
+/* The state that GLX and EGL call current on this thread. */
 typedef struct Current {
     void *glx_context, *glx_drawable, *glx_display;
     void *egl_context, *egl_display, *egl_draw, *egl_read;
@@ -183,7 +183,7 @@ static HostGl open_gl(void) {
     return host;
 }
 
-/* Another colour each time, so that it cannot be an old one. */
+/* The colour is another one each time, so that it cannot be an old one. */
 static void check_draws(const char *after) {
     static unsigned char shade;
     static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;

@@ -1,6 +1,6 @@
-/* growth.c -- thousands of frames of a moving camera, into a window and into memory by jobs, and many windows: after a warm-up the process
- * holds no more memory (to MAX_GROWTH), descriptors or threads than before. A device's driver counts, too: software drivers
- * once leaked with every submission (shaders/deciding.wgsl).
+/* growth.c -- thousands of frames of a moving camera, into a window and into memory by jobs, and many windows: after a
+ * warm-up the process holds no more memory (to MAX_GROWTH), descriptors or threads than before. A device's driver
+ * counts, too: software drivers once leaked with every submission (shaders/deciding.wgsl).
  *
  *     growth BACKEND xlib|xcb [FRAMES [JOBS]] */
 #define _POSIX_C_SOURCE 200809L
@@ -70,8 +70,8 @@ static void check_growth(Holding before, const char *what, int frames) {
 
 /* ---- frames ---- */
 
-/* Another place at every frame, round the hole and in and out, without spin and with it by turns: nothing that one frame has
- * made serves the next. */
+/* Moves the camera to another place at every frame, round the hole and in and out, without spin and with it by
+ * turns: nothing that one frame has made serves the next. */
 static void move_camera(BhrContext *context, int frame) {
     BhrCamera camera;
     CHECK_OK(bhr_camera_init(&camera, sizeof camera));

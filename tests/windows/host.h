@@ -1,8 +1,8 @@
 /* host.h -- a host's X11 window for the tests of surfaces, by Xlib or by XCB, and what a person would see in it. Knows
  * bhr's image and window structs only; tests nothing by itself, but ends the program when there is no X server.
  *
- * What is seen is read through a connection of its own, as another program would, so that it can be asked for whatever has
- * become of the host's. */
+ * What is seen is read through a connection of its own, as another program would, so that it can be asked for
+ * whatever has become of the host's. */
 #ifndef BHR_HOST_H
 #define BHR_HOST_H
 
@@ -35,8 +35,8 @@ Host host_screen(void); /* all of DISPLAY's: to look at only */
 int host_exists(uint32_t id); /* DISPLAY's server has a window of this number */
 /* The window's width x height pixels as RGBA; 0 when it has no such part, or is gone. */
 int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *rgba);
-/* Looks at the window until it shows these pixels, to `tolerance` 8-bit steps of each channel, for some seconds at most.
- * The largest difference of the last look; 999 when there was nothing to look at. */
+/* Looks at the window until it shows these pixels, to `tolerance` 8-bit steps of each channel, for some seconds at
+ * most. The largest difference of the last look; 999 when there was nothing to look at. */
 int host_difference(const Host *host, uint32_t width, uint32_t height, const unsigned char *rgba, int tolerance);
 
 void   pause_ms(long ms);

@@ -1,6 +1,7 @@
-/* orders.c -- context, surface, job, window and the window system's connection end in every order there is, 120, or in every
- * second one, each with frames under way; after each end, what is left still answers as the header says. Nothing may break, and the log stays
- * silent but for the failures of calls that fail: with "validation", the driver's validation layers speak there too.
+/* orders.c -- context, surface, job, window and the window system's connection end in every order there is, 120, or in
+ * every second one, each with frames under way; after each end, what is left still answers as the header says. Nothing
+ * may break, and the log stays silent but for the failures of calls that fail: with "validation", the driver's
+ * validation layers speak there too.
  *
  *     orders BACKEND xlib|xcb|glfw [even|odd] [validation]
  *
@@ -27,8 +28,8 @@ static int half = -1; /* of the orders: 0 or 1, -1 for all */
 
 /* ---- the log ---- */
 
-/* Debian 12's layers (1.3.239) do not know WGSL, which naga names as the language of its shaders: no complaint about what
- * bhr does. */
+/* Debian 12's layers (1.3.239) do not know WGSL, which naga names as the language of its shaders: no complaint about
+ * what bhr does. */
 static const char KNOWN[] = "Invalid source language operand";
 
 static void on_log(void *user, BhrLogLevel level, const char *message) {
@@ -206,7 +207,8 @@ static int run_orders(int order[ENDS], int first, BhrBackend backend, BhrWindowK
     static int found;
     int        count = first == ENDS;
     if (first == ENDS) {
-        /* Two neighbours end with the same two: of a pair one in turn, so that in both halves each of them is last at times. */
+        /* Two neighbours end with the same two: of a pair one in turn, so that in both halves each of them is last
+         * at times. */
         const int which = found++;
         if ((which + which / 2) % 2 != 1 - half) {
             run_order(order, backend, kind);

@@ -1,6 +1,7 @@
-/* show.c -- what a window shows is what bhr_render_image gives of the same scene and size, in every way that frames get
- * there: `direct` (by the device that traces), `uploaded` (traced by the CPU, presented by a device), `memory` (no driver at
- * all). Through ten sizes, with and without word from the host that they have changed; minimised; in every present mode.
+/* show.c -- a window shows what bhr_render_image gives of the same scene and size, in every way that frames get there:
+ * `direct` (by the device that traces), `uploaded` (traced by the CPU, presented by a device), `memory` (no driver at
+ * all). The test goes through ten sizes, with and without word from the host that they have changed; minimised; in
+ * every present mode.
  *
  *     show BACKEND xlib|xcb direct|uploaded|memory */
 #include "host.h"
@@ -292,7 +293,8 @@ static void hidden(BhrContext *context, const Host *host) {
     bhr_surface_destroy(surface);
 }
 
-/* A context that was asked for this window presents to it; one that opens its device anew without need loses its surface. */
+/* A context that was asked for this window presents to it; one that opens its device anew without need loses its
+ * surface. */
 static void compatible(BhrBackend backend, const Host *host) {
     const BhrWindow window = host_window(host);
     BhrContext     *context = open_context(backend, &window);

@@ -1,10 +1,11 @@
-/* wayland.c -- frames into windows of Wayland, made by SDL2: in each way that they can get there, through ten sizes, in every
- * present mode, from other threads. The compositor, whose screen of WIDTH x HEIGHT is the top left of DISPLAY's, shows what
- * bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate and never hangs:
- * not in a hidden window, not in one that is gone. Wrong handles and states have their status.
+/* wayland.c -- frames into windows of Wayland, made by SDL2: in each way that they can get there, through ten sizes, in
+ * every present mode, from other threads. The compositor, whose screen of WIDTH x HEIGHT is the top left of DISPLAY's,
+ * shows what bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate
+ * and never hangs: not in a hidden window, not in one that is gone. Wrong handles and states have their status.
  *
  *     wayland BACKEND direct|uploaded|memory
- *         environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY, COMPOSITOR (its process, which is stopped a while) */
+ *         environment: WAYLAND_DISPLAY, SDL_VIDEODRIVER=wayland, DISPLAY, COMPOSITOR (its process, which is stopped a
+ *         while) */
 #define _POSIX_C_SOURCE 200809L
 
 #include "host.h"

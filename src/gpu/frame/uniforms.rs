@@ -70,7 +70,7 @@ fn four(x: f64, y: f64, z: f64, w: f64) -> Vec4 {
     with(DVec3::new(x, y, z), w)
 }
 
-/// omega, q, sqrt(Sg), sqrt(Sg D) of the start values (numerics.md); 0 in the rain frame, which has its own.
+/// omega, q, sqrt(Sg), sqrt(Sg D) of the start values (docs/numerics.md); 0 in the rain frame, which has its own.
 fn zamo(frame: &LocalFrame) -> Vec4 {
     if frame.rain {
         return Vec4::ZERO;

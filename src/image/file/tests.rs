@@ -234,7 +234,7 @@ fn pam_comments_may_be_in_any_encoding() {
     assert_eq!(load(&folder.file("a.pam")).unwrap().pixels.as_bytes(), [7, 7, 7, 255]);
 }
 
-/// What a process of this number left when it was killed, before this one.
+/// A process of the same number may have left temporary files when it was killed.
 #[test]
 fn left_over_temporary_files_are_passed_over() {
     let folder = Folder::new("left-over");
@@ -268,7 +268,8 @@ fn an_older_file_keeps_its_mode() {
     }
 }
 
-/// In another folder, by relative and absolute paths, through several links, and where nothing is yet.
+/// Links lead to another folder, by relative and absolute paths, through several links, and to places where nothing is
+/// yet.
 #[cfg(unix)]
 #[test]
 fn the_target_of_a_link_is_written() {
@@ -318,7 +319,8 @@ fn data_windows_are_placed_in_display_windows() {
     for channels in [&["A", "B", "G", "R"][..], &["B", "G", "R"]] {
         let list = channels.iter().map(|name| ChannelDescription::new(*name, SampleType::F32, false)).collect();
         let display = IntegerBounds::new(Vec2(10, -5), Vec2(4, 3));
-        // From one column left of the display window to its second column, and from its second row to below.
+        // The data window reaches from one column left of the display window to its second column, and from its second
+        // row to below.
         let place = LayerAttributes { layer_position: Vec2(9, -4), ..Default::default() };
         let header = Header::new("a".into(), Vec2(3, 5), list)
             .with_attributes(place)

@@ -36,7 +36,7 @@ pub struct Angle {
     pub tan_half: f64,
     pub sin_half: f64,
     pub cos_half: f64,
-    /// Of psi; past a pole of the sphere the sine is negative.
+    /// Sine and cosine of psi; past a pole of the sphere the sine is negative.
     pub sin: f64,
     pub cos: f64,
     /// cos((psi + psi_c) / 2).

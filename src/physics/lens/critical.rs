@@ -21,14 +21,14 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Nodes of the table over chi in [0, 2 pi).
 pub const CRITICAL_NODES: usize = 512;
 
-/// Eyes from this many radii of the retrograde photon orbit: no spherical photon orbit reaches them, so that every
-/// captured ray starts inward, and the curve stays away from the directions with n_r = 0.
+/// The nearest eye, in radii of the retrograde photon orbit. No spherical photon orbit reaches farther eyes, so that
+/// every captured ray starts inward, and the curve stays away from the directions with n_r = 0.
 pub const NEAREST_EYE: f64 = 1.03;
 
 /// Farthest eye, in M.
 pub const FARTHEST_EYE: f64 = 1e5;
 
-/// Most evaluations of the potential for one node; four to six are usual.
+/// The most evaluations of the potential for one node; four to six are usual.
 const MAX_EVALUATIONS: usize = 40;
 
 /// Whether an eye at `frame` has such a curve: outside the photon region, not too far, not falling in the rain frame.
@@ -61,7 +61,8 @@ pub fn potential_minimum(c: &Constants) -> f64 {
     u.min(horizon)
 }
 
-/// > 0: an inward ray with these constants falls in; < 0: it turns; its size measures how far it is from the critical one.
+/// Above 0 an inward ray with these constants falls in, below 0 it turns; the size measures how far the ray is from the
+/// critical one.
 pub fn capture_margin(c: &Constants) -> f64 {
     radial_potential(c, potential_minimum(c))
 }
@@ -192,7 +193,7 @@ impl CriticalCurve {
         self.k * cos + self.radial(chi) * sin
     }
 
-    /// The same with psi by `t` = tan(psi / 2).
+    /// The same direction with psi given by `t` = tan(psi / 2).
     fn direction_by_tangent(&self, t: f64, chi: f64) -> DVec3 {
         let inverse = 1.0 / (1.0 + t * t);
         self.k * ((1.0 - t * t) * inverse) + self.radial(chi) * (2.0 * t * inverse)

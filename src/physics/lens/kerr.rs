@@ -26,47 +26,52 @@ use arrayvec::ArrayVec;
 use glam::{DVec3, Vec3Swizzles, Vec4};
 use std::f64::consts::{LN_2, TAU};
 
-/// Rays with |t^| below 2^-`CORE_OCTAVES` are to be integrated: so close to the curve a direction in f32 says little.
+/// Rays with |t^| below 2^-`CORE_OCTAVES` are to be integrated: a direction in f32 is not exact enough so close to the
+/// curve.
 pub const CORE_OCTAVES: usize = 10;
-/// Rows below the first row of cells in use, and above the row of the axis: what the error estimate's stencil reaches.
+/// Rows below the first row of cells in use, and above the row of the axis, for the stencil of the error estimate.
 const ROWS_BELOW: usize = 2;
 const ROWS_ABOVE: usize = 3;
-/// Step in sigma: some 1e-7 for a whole ray, typically much less: what f32 resolves.
+/// The step in sigma. It gives some 1e-7 for a whole ray, typically much less; f32 resolves no more.
 const STEP: f64 = 0.25;
-/// Of crossings and ends, in sigma.
+/// The error in sigma to which crossings and ends are found.
 const SLACK: f64 = 1e-8;
-/// Sigma for which a ray is followed beyond infinity: longer than one step of the table takes a crossing.
+/// The length in sigma for which a ray is followed beyond infinity: longer than one step of the table takes a crossing.
 const BEYOND_INFINITY: f64 = 1.0;
-/// More than any ray of the grid needs.
+/// A bound on the steps of a ray, which no ray of the grid reaches.
 const MAX_STEPS: usize = 2000;
-/// Eyes nearer than this, in M, have the finer outer branch; it has few octaves then.
+/// Eyes nearer than this, in M, get the finer outer branch, which has few octaves for them.
 const NEAR_EYE: f64 = 15.0;
-/// Least epsilon of `Columns`: what lies within this angle of the plane of an eye yet nearer to it is to be integrated.
+/// The least epsilon of `Columns`. An eye yet nearer to the plane has the same columns; the directions within this
+/// angle of the plane are then integrated.
 const NARROWEST_LAYER: f64 = 0.03;
-/// Share of the nodes that gather in the layers of `Columns`.
+/// The share of the nodes that gather in the layers of `Columns`.
 const LAYER_SHARE: f64 = 0.5;
 /// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without
 /// one.
 const INWARD: f64 = 1.5;
-/// U of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
+/// The U that marks a missing crossing: positive where the ray is captured before, negative where it has passed
+/// infinity.
 pub const NO_CROSSING: f64 = 1e3;
-/// Most numbers in one node.
+/// The most numbers in one node.
 pub const CHANNELS_MOST: usize = SKY + PER_CROSSING * CROSSINGS_KEPT;
 const SKY: usize = 3;
 const PER_CROSSING: usize = 4;
 const PER_QUAD: usize = 4;
-/// Bit of a cell's flags: rays in it are to be integrated. Bits 0 .. 15: a crossing of that order may hit the disk.
+/// A bit of a cell's flags: all rays in it are to be integrated. Bits 0 .. 15: a crossing of that order may hit the
+/// disk.
 pub const DIRECT: u32 = 1 << 31;
-/// Another: so they are for their crossings; the sky may be interpolated.
+/// A bit of a cell's flags: the crossings of its rays are to be integrated, while the sky may be interpolated.
 pub const POOR_CROSSINGS: u32 = 1 << 30;
-/// Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings.
+/// The error that a cell may have: for the sky in rad of look direction, for crossings relative to 1 + conditioning.
 pub const TOLERANCE: f64 = 1e-6;
-/// The same for azimuths, rad, and delays, relative to the orbital time: they move a pattern along its orbit.
+/// The error that a cell may have in azimuths, rad, and in delays, relative to the orbital time: it moves a pattern
+/// along its orbit.
 pub const PATTERN_TOLERANCE: f64 = 1e-5;
 
 pub type Node = ArrayVec<f64, CHANNELS_MOST>;
 
-/// Most fours of numbers in one node.
+/// The most fours of numbers in one node.
 const QUADS_MOST: usize = 1 + CROSSINGS_KEPT;
 
 /// A node as tables hold it.
@@ -83,21 +88,21 @@ pub enum Branch {
 /// Spacing of the nodes.
 #[derive(Clone, Copy, Debug)]
 pub struct Resolution {
-    /// Over chi in [0, 2 pi); at least 8.
+    /// Nodes over chi in [0, 2 pi); at least 8.
     pub chi_nodes: usize,
-    /// Of |t^|, in the outer and the inner branch.
+    /// Nodes per octave of |t^|, in the outer and the inner branch.
     pub nodes_per_octave: [usize; 2],
 }
 
 impl Resolution {
-    /// What keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1, which
-    /// matters inside the shadow, and behind an eye near the disk.
+    /// The spacing that keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1,
+    /// which matters inside the shadow, and behind an eye near the disk.
     pub fn for_eye(frame: &LocalFrame) -> Self {
         Self { chi_nodes: 512, nodes_per_octave: [if frame.r < NEAR_EYE { 32 } else { 16 }, 32] }
     }
 }
 
-/// Which crossings of the equatorial plane are asked for.
+/// The crossings of the equatorial plane that are asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossings {
     /// Orders 0 .. `orders`, at most `CROSSINGS_KEPT`; 0: the sky alone.
@@ -159,12 +164,12 @@ pub struct Grid {
     frame: LocalFrame,
     curve: CriticalCurve,
     columns: Columns,
-    /// Of every column: the unit vector from the centre towards chi, and T.
+    /// The unit vector from the centre towards chi, and T, of every column.
     spokes: Vec<(DVec3, f64)>,
-    /// Outer, inner; so `rows`.
+    /// The nodes per octave of the outer and the inner branch; `rows` in the same order.
     nodes_per_octave: [f64; 2],
     wanted: Crossings,
-    /// Where drag and delay end.
+    /// The 1/r at which drag and delay end.
     capture_u: f64,
     rows: [usize; 2],
 }
@@ -405,7 +410,7 @@ impl<'a> NodeRay<'a> {
     fn follow(&mut self, c: &Constants, start: &State) {
         let settings = Settings { step: STEP, delay: self.wanted.pattern, ..Settings::exact(c.a) };
         let mut state = *start;
-        // As in `trace`: a start in the plane is no crossing.
+        // As in `trace`, a start in the plane is no crossing.
         let mut side = if start.n.z != 0.0 { start.n.z } else { start.dn.z };
         let mut beyond = 0.0;
         for _ in 0..MAX_STEPS {
@@ -428,7 +433,7 @@ impl<'a> NodeRay<'a> {
             if next.u <= 0.0 {
                 beyond += h * c.scale;
             }
-            // Inside, the ray is captured however it goes on.
+            // Beyond the horizon the ray is captured, however it goes on.
             let captured = next.u >= INWARD * self.capture_u || (inside && next.du < 0.0);
             let complete = (self.sky.is_some() || inside) && self.crossings.len() >= self.wanted.orders;
             if complete || captured || beyond > BEYOND_INFINITY {
@@ -471,11 +476,11 @@ struct CellAngles {
     critical: f64,
 }
 
-/// What a cell's crossing of one order can do.
+/// How a crossing of one order is to be had in a cell.
 enum Hit {
     No,
     Possible,
-    /// Possible, and not to be interpolated.
+    /// The crossing may occur, and is not to be interpolated.
     Poor,
 }
 
@@ -517,7 +522,7 @@ impl Patch<'_> {
         row.max(column)
     }
 
-    /// The same of the vector of some channels.
+    /// The change per rad of look direction of the vector that some channels make up.
     fn vector_stretch(&self, channels: std::ops::Range<usize>) -> f64 {
         let change = |k, a: (usize, usize), b: (usize, usize)| self.value(k, a.0, a.1) - self.value(k, b.0, b.1);
         self.stretch(|a, b| channels.clone().map(|k| change(k, a, b).powi(2)).sum::<f64>().sqrt())
@@ -526,7 +531,7 @@ impl Patch<'_> {
     fn sky_is_good(&self) -> bool {
         let escaped = (0..6).all(|i| (0..6).all(|j| (0..SKY).any(|k| self.value(k, i, j) != 0.0)));
         let error = (0..SKY).map(|k| self.error(k).powi(2)).sum::<f64>().sqrt();
-        // Written so that NaN is not good.
+        // The comparison is written so that NaN does not pass for good.
         escaped && error <= TOLERANCE * self.vector_stretch(0..SKY).max(1.0)
     }
 
@@ -685,7 +690,7 @@ impl Grid {
         std::iter::once(sky).chain(crossings.chunks(PER_QUAD)).map(quad).take(QUADS_MOST).collect()
     }
 
-    /// What is seen at `place`, from the cell's flags and rows of packed nodes. `None`: to be integrated.
+    /// The image at `place`, from the cell's flags and rows of packed nodes. `None`: the ray is to be integrated.
     pub fn see<'a>(&'a self, place: Place, flags: u32, rows: [&'a [Vec4]; 4]) -> Option<Seen<'a>> {
         if flags & DIRECT != 0 || rows.iter().any(|row| row.len() < 4 * self.quads()) {
             return None;
@@ -737,7 +742,7 @@ impl Seen<'_> {
         self.grid.nodes_per_octave[self.place.branch as usize] / (LN_2 * rows) * (0.5 * (t + 1.0 / t))
     }
 
-    /// False: only a ray's integration tells its crossings well enough.
+    /// False where only integration tells the crossings of the ray well enough.
     pub fn crossings_are_good(&self) -> bool {
         self.flags & POOR_CROSSINGS == 0
     }
@@ -789,8 +794,8 @@ impl Seen<'_> {
 #[derive(Clone, Debug)]
 pub struct KerrLens {
     grid: Grid,
-    /// By branch: rows of packed nodes, from the last column over all of them to the first two again, so that every
-    /// cell's lie side by side.
+    /// The two branches: rows of packed nodes, from the last column over all of them to the first two again, so that
+    /// every cell's nodes lie side by side.
     nodes: [Vec<Vec4>; 2],
     flags: [Vec<u32>; 2],
 }
@@ -813,8 +818,8 @@ impl KerrLens {
         Some(Self::assemble(grid, packed, flags))
     }
 
-    /// From what the caller computed for outer and inner branch: `Grid::packed_row` of all rows and `Grid::flag_row`
-    /// of all `Grid::cell_rows`, in order.
+    /// Builds the table from what the caller computed for the outer and the inner branch: `Grid::packed_row` of all
+    /// rows and `Grid::flag_row` of all `Grid::cell_rows`, in order.
     pub fn assemble(grid: Grid, nodes: [Vec<Vec4>; 2], flags: [Vec<u32>; 2]) -> Self {
         Self { grid, nodes, flags }
     }
@@ -829,7 +834,7 @@ impl KerrLens {
         index.and_then(|index| self.flags[branch as usize].get(index).copied()).unwrap_or(DIRECT)
     }
 
-    /// What is seen along the unit look direction `n` (components of the local frame). `None`: the ray is to be
+    /// The image along the unit look direction `n` (components of the local frame). `None`: the ray is to be
     /// integrated.
     pub fn look(&self, n: DVec3) -> Option<Seen<'_>> {
         let place = self.grid.locate(n)?;

@@ -61,7 +61,7 @@ impl Lazy {
     }
 }
 
-/// Which part of the sky a test ray was aimed at.
+/// The part of the sky that a test ray was aimed at.
 #[derive(Clone, Copy, PartialEq)]
 enum Aim {
     /// log-uniform distance from the curve.

@@ -8,7 +8,7 @@ use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::PI;
 
-/// Of sin psi_c: nearer than this to straight outwards the ratio sin(swept) / sin psi is taken for its limit.
+/// Below this sin psi_c, close to straight outwards, the ratio sin(swept) / sin psi is taken for its limit.
 const RADIAL: f64 = 1e-3;
 
 /// The plane of one ray.
@@ -19,7 +19,7 @@ pub struct OrbitPlane {
     pub tangent: DVec3,
     /// sin psi T, as long as the look direction's part across e_r.
     across: DVec3,
-    /// Of the eye's polar angle: exactly 0 in the plane.
+    /// Cosine of the eye's polar angle: exactly 0 in the plane.
     cos_theta: f64,
 }
 
@@ -45,7 +45,7 @@ pub struct PlaneSky {
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneImage {
     pub u: f64,
-    /// In (-pi, pi].
+    /// Azimuth in the chart, in (-pi, pi].
     pub azimuth: f64,
     /// Time since light left there, M; 0 if the table has no delays.
     pub delay: f64,

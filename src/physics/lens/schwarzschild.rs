@@ -1,4 +1,4 @@
-//! The light rays of one eye at spin 0, integrated one by one (`Family::column`): what a lens table holds of each.
+//! The light rays of one eye at spin 0, integrated one by one (`Family::column`), as a lens table holds them.
 //! Each ray is independent of the others. Knows neither threads nor how the tables are interpolated.
 //!
 //! In the ray's plane, with phi the angle swept from the eye and primes for d/dphi: u'' = -u + 3 u^2, u = 1/r. The eye
@@ -56,7 +56,7 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// As good as f32 resolves: errors over (1 + conditioning) below 4e-7 in the swept angle and 1e-7 in u.
+    /// The finest that f32 resolves: errors over (1 + conditioning) below 4e-7 in the swept angle and 1e-7 in u.
     pub const SINGLE: Self = Self { nodes_per_octave: 8, intervals: 32, step: 0.2 };
 }
 
@@ -92,7 +92,7 @@ pub struct Family {
     e_eye: f64,
 }
 
-/// What a table holds of one ray. x is the node coordinate along the branch, y = phi / swept in [0, 1].
+/// The part of a table that holds one ray. x is the node coordinate along the branch, y = phi / swept in [0, 1].
 #[derive(Clone, Debug)]
 pub struct Column {
     /// The angle swept to the ray's end, and its slope by x; odd about the poles of the sky.
@@ -295,7 +295,7 @@ impl Family {
         let Some(length) = ray.length(start, end, self.resolution.step) else { return Ok(None) };
         let points = self.points(&ray, start, length)?;
         let Some(last) = points.last() else { return Ok(None) };
-        // By u(length(x); x) = end.
+        // The slope of length(x) follows from u(length(x); x) = end.
         let length_x = -last.w / last.du(&ray);
         Ok(Some(Column {
             swept: [ray.kappa * length, ray.kappa_x * length + ray.kappa * length_x],

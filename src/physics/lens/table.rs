@@ -43,7 +43,7 @@ pub struct Look<'a> {
     pub escaped: bool,
     /// Place on the table's axis (`Coordinate::t_hat`): > 0 escapes.
     pub t_hat: f64,
-    /// Of psi, the angle from the inward radius.
+    /// Sine and cosine of psi, the angle from the inward radius.
     pub sin: f64,
     pub cos: f64,
     /// Impact parameter, M.
