@@ -2,9 +2,6 @@
 //! camera turns; their places; tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the
 //! tests fail.
 
-mod frames;
-mod random;
-
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{LUMINANCE, radiance_xyz};
 use bhr::renderer::Renderer;
@@ -13,15 +10,15 @@ use bhr::sky::StarIndex;
 use bhr::sky::catalogue::{self, Star};
 use bhr::sky::galaxy::GALACTIC_POLE;
 use bhr::sky::procedural;
-use frames::{cpu, differing, floats, gpu, picture, tiled};
+use crate::frames::{cpu, differing, floats, gpu, picture, tiled};
 use glam::{DQuat, DVec2, DVec3};
-use random::Random;
+use crate::random::Random;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 /// Renderers of the sky alone, seen by an eye at rest.
 fn both() -> [(&'static str, Renderer); 2] {
-    frames::both().map(|(name, mut renderer)| {
+    crate::frames::both().map(|(name, mut renderer)| {
         renderer.scene.disk = None;
         renderer.scene.sky.flags = Sky::STARS;
         (name, renderer)
@@ -347,7 +344,7 @@ fn a_field_has_the_flux_that_the_lens_equation_gives() {
 
 // ---- steadiness ----
 
-/// Frames of the CPU and of the GPU that the camera turns for; the pictures are the same (tests/pictures.rs).
+/// Frames of the CPU and of the GPU that the camera turns for; the pictures are the same (tests/tracers/pictures.rs).
 const TURNS: [usize; 2] = [17, 64];
 
 /// Calls `see` with the light of each of `frames`, the camera turning by a sixteenth of a pixel from one to the next.

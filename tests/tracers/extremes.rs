@@ -1,15 +1,13 @@
 //! Random scenes at the ends of every range: no NaN where a number is promised, no endless loop, no lost device, on
 //! both tracers.
 
-mod random;
-
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::physics::trace;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::record::Record;
 use bhr::scene::{Camera, Fate, Hit, LensTables, Method, Motion, Projection, Ray};
 use glam::DVec3;
-use random::{Random, count_from};
+use crate::random::{Random, count_from};
 
 fn both() -> [Renderer; 2] {
     let cpu = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();

@@ -145,7 +145,7 @@ fn turn(camera: &Camera, pixels: f64) -> Camera {
 fn rings_are_steady_while_the_camera_turns() {
     // From far the shadow is 3 pixels wide: all light counts, as its rings are no more than a thousandth.
     let tiny = [(0.0, 1000.0, 40), (0.9, 1000.0, 40)];
-    // The CPU's pictures are the GPU's (tests/pictures.rs): over one pixel.
+    // The CPU's pictures are the GPU's (tests/tracers/pictures.rs): over one pixel.
     for ((tracer, mut renderer), steps) in both().into_iter().zip([17, 64]) {
         for (spin, distance, side) in EYES.into_iter().chain(tiny) {
             renderer.scene = scene(spin, distance, 20.0, 0.3);

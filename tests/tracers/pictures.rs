@@ -1,14 +1,12 @@
 //! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against
 //! theory. The GPU is whatever adapter comes first; without one the tests fail.
 
-mod frames;
-
 use bhr::gpu::{Device, Search, adapters};
 use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::{Camera, Effects, KerrWorth, LensTables, Lensing, Motion, Region, Sky, View};
-use frames::{both, cpu, differing, floats, gpu, picture, tiled};
+use crate::frames::{both, cpu, differing, floats, gpu, picture, tiled};
 use glam::DVec3;
 use serde_json::Value;
 

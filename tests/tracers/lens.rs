@@ -3,8 +3,6 @@
 //! integrates every ray itself, it is held to the same bars. The GPU is whatever adapter comes first; without one the
 //! tests fail.
 
-mod random;
-
 use bhr::physics::geodesic::wrap_angle;
 use bhr::physics::observer::Observer;
 use bhr::physics::orbit::{horizon_outer, photon_orbit, redshift};
@@ -15,7 +13,7 @@ use bhr::scene::observer::Lens;
 use bhr::scene::record::Record;
 use bhr::scene::{Camera, LensTables, Motion, Region, Scene};
 use glam::{DMat3, DVec3};
-use random::{Random, count_from};
+use crate::random::{Random, count_from};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
