@@ -2,6 +2,8 @@
 //! camera turns; their places; tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the
 //! tests fail.
 
+use crate::frames::{cpu, differing, floats, gpu, new_gpu, picture, tiled};
+use crate::random::Random;
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{LUMINANCE, radiance_xyz};
 use bhr::renderer::Renderer;
@@ -10,14 +12,12 @@ use bhr::sky::StarIndex;
 use bhr::sky::catalogue::{self, Star};
 use bhr::sky::galaxy::GALACTIC_POLE;
 use bhr::sky::procedural;
-use crate::frames::{cpu, differing, floats, gpu, picture, tiled};
 use glam::{DQuat, DVec2, DVec3};
-use crate::random::Random;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 /// Renderers of the sky alone, seen by an eye at rest.
-fn both() -> [(&'static str, Renderer); 2] {
+fn both() -> [(&'static str, crate::frames::Lent); 2] {
     crate::frames::both().map(|(name, mut renderer)| {
         renderer.scene.disk = None;
         renderer.scene.sky.flags = Sky::STARS;
@@ -549,7 +549,7 @@ fn procedural_light_is_that_of_all_its_stars() {
 
 #[test]
 fn a_4k_frame_of_a_procedural_sky_stays_within_its_memory() {
-    let mut renderer = gpu();
+    let mut renderer = new_gpu();
     renderer.scene.sky.flags = Sky::STARS | Sky::PROCEDURAL;
     picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160], None, false);
     let bytes = renderer.stats().device_bytes;
