@@ -136,7 +136,7 @@ fn child_reads_bombs() {
         let kinds = [ErrorKind::Io, ErrorKind::OutOfMemory, ErrorKind::Unsupported];
         assert!(kinds.contains(&error.kind), "{}: {error}", bomb.name);
         assert!(bomb.words.iter().any(|words| error.message.contains(words)), "{}: {error}", bomb.name);
-        assert!(begin.elapsed() < Duration::from_secs(10), "{}: {:?}", bomb.name, begin.elapsed());
+        assert!(begin.elapsed() < Duration::from_secs(60), "{}: {:?}", bomb.name, begin.elapsed());
     }
 }
 
