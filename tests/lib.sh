@@ -119,7 +119,8 @@ under_valgrind() {
         --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }
 
-# count NAME STATUS SECONDS FILE: one test's end. Says ok or FAIL and the time; shows what it printed only when it failed.
+# count NAME STATUS SECONDS FILE: one test's end. Says ok or FAIL and the time; shows what it printed only when it
+# failed.
 count() {
     if [ "$2" -eq 0 ]; then
         passed=$((passed + 1))
@@ -139,8 +140,8 @@ check() {
     count "$name" "$status" $((SECONDS - begin)) "$scratch/output"
 }
 
-# begin NAME COMMAND...: as check, but as many at a time as there are cores, for what keeps one of them busy. count_begun waits for all
-# of them and counts.
+# begin NAME COMMAND...: as check, but as many at a time as there are cores, for what keeps one of them busy.
+# count_begun waits for all of them and counts.
 begun=()
 begun_pids=()
 begin() {

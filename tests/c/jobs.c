@@ -1,9 +1,9 @@
-/* jobs.c -- frames in the background: every job shows the scene as it was when the job was begun, whatever is set, waited
- * for, cancelled or destroyed meanwhile and in whatever order; waits end in time; progress is heard by the waiter; a target is
- * left alone once its job is gone; jobs outlive their context.
+/* jobs.c -- frames in the background: every job shows the scene as it was when the job was begun, whatever is set,
+ * waited for, cancelled or destroyed meanwhile and in whatever order; waits end in time; progress is heard by the
+ * waiter; a target is left alone once its job is gone; jobs outlive their context.
  *
- * A second argument is for valgrind: "small" leaves out what takes long there, "brief" all but the callbacks and the ends
- * of jobs that are under way. */
+ * A second argument is for valgrind: "small" leaves out what takes long there, "brief" all but the callbacks and the
+ * ends of jobs that are under way. */
 #define _POSIX_C_SOURCE 200809L
 
 #include "check.h"

@@ -1,5 +1,5 @@
-//! The library's outside: the header, the contract and releases before this one, the symbols, and the notices of what is
-//! linked. Traces nothing; needs a C and a C++ compiler.
+//! The library's outside: the header, the contract and releases before this one, the symbols, and the notices of what
+//! is linked. Traces nothing; needs a C and a C++ compiler.
 
 mod abi;
 mod c_header;

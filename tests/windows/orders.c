@@ -1,11 +1,12 @@
-/* orders.c -- context, surface, job, window and the window system's connection end in every order there is, 120, each with
- * frames under way; after each end, what is left still answers as the header says. Nothing may break, and the log stays
- * silent but for the failures of calls that fail: with "validation", the driver's validation layers speak there too.
+/* orders.c -- context, surface, job, window and the window system's connection end in every order there is, 120, each
+ * with frames under way; after each end, what is left still answers as the header says. Nothing may break, and the log
+ * stays silent but for the failures of calls that fail: with "validation", the driver's validation layers speak there
+ * too.
  *
  *     orders BACKEND xlib|xcb|glfw [steps] [validation]
  *
- * steps: only as many of the orders as have every step, which is one of the five and what else is still there when it ends;
- * there are 80. glfw: the connection is the library's, ended by glfwTerminate. */
+ * steps: only as many of the orders as have every step. A step is one of the five and what else is still there when it
+ * ends; there are 80. glfw: the connection is the library's, ended by glfwTerminate. */
 #include "host.h"
 
 #define GLFW_INCLUDE_NONE
@@ -27,8 +28,8 @@ static int use_glfw, use_validation, messages;
 
 /* ---- the log ---- */
 
-/* Debian 12's layers (1.3.239) do not know WGSL, which naga names as the language of its shaders: no complaint about what
- * bhr does. */
+/* Debian 12's layers (1.3.239) do not know WGSL, which naga names as the language of its shaders: no complaint about
+ * what bhr does. */
 static const char KNOWN[] = "Invalid source language operand";
 
 static void on_log(void *user, BhrLogLevel level, const char *message) {
