@@ -13,6 +13,16 @@ case ${CARGO_TARGET_DIR:-} in
 esac
 export CARGO_TARGET_DIR=$target
 
+# Whether long soaks run: tests/run all.
+runs_all() { [ "${BHR_TESTS_ALL:-}" = 1 ]; }
+
+# The library that C programs and examples link. It is the one that cargo builds for the Rust tests, optimised, with
+# every check on and with symbols, so that nothing has to be built twice; with the long soaks it is the release
+# library, as hosts link it, and the checked one serves valgrind.
+checked_library=$target/checked/deps/libbhr.so
+library=$checked_library
+! runs_all || library=$target/release/libbhr.so
+
 passed=0
 failed=0
 
@@ -80,26 +90,37 @@ cmake_builds() {
     for line in "CMAKE_HOME_DIRECTORY:INTERNAL=$root/examples-c" "CMAKE_CACHEFILE_DIR:INTERNAL=$examples"; do
         [ ! -f "$cache" ] || grep -qxF -e "$line" -- "$cache" || rm -rf -- "$examples"
     done
-    cmake -S "$root/examples-c" -B "$examples" -DBHR_ROOT="$root" -DCMAKE_BUILD_TYPE=Release &&
-        cmake --build "$examples"
+    cmake -S "$root/examples-c" -B "$examples" -DBHR_ROOT="$root" -DBHR_LIBRARY="$library" -DCMAKE_BUILD_TYPE=Release &&
+        cmake --build "$examples" --parallel 2
 }
 
-# The library with every check on and with symbols, for valgrind: the one that cargo builds for the Rust tests, not another one without what
-# only those need.
-checked_library=$target/checked/deps/libbhr.so
-build_checked_library() {
-    cargo test --profile checked --no-run --test symbols --locked --manifest-path "$root/Cargo.toml"
+# Builds the libraries that the C tests and examples need. cargo test makes the checked one: cargo build would make
+# another, without the features of dependencies that only tests need, and compile those dependencies once more for it.
+build_library() {
+    own_target_folder || return 1
+    cargo test --profile checked --no-run --test reference --locked --manifest-path "$root/Cargo.toml" || return 1
+    ! runs_all || cargo build --release --lib --locked --manifest-path "$root/Cargo.toml"
 }
 
-# under_valgrind COMMAND...: of the CPU backend, in the checked library, which has symbols; for at most $seconds. Without
-# drivers: their own leaks and unknown instructions are not the library's. LD_LIBRARY_PATH goes before a runpath.
+# compile_c PROGRAM SOURCES AND FLAGS...: a C program that links $library. The runpath, unlike an rpath, comes after
+# LD_LIBRARY_PATH.
+compile_c() {
+    local program=$1
+    shift
+    cc -std=c99 -g -O1 -Wall -Wextra -Wpedantic -Werror -pthread -I "$root/include" "$@" -o "$program" \
+        -L "${library%/*}" -lbhr -lm -Xlinker --enable-new-dtags -Xlinker -rpath -Xlinker "${library%/*}"
+}
+
+# under_valgrind COMMAND...: the CPU backend of the checked library, which has symbols, for at most $seconds. Drivers
+# are hidden, as their own leaks and unknown instructions are not the library's.
 under_valgrind() {
     CHECK_WITHOUT_MILKY_WAY=1 LD_LIBRARY_PATH=${checked_library%/*} without_drivers timeout "${seconds:-600}" \
         valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite \
         --show-leak-kinds=definite --suppressions="$tests/c/valgrind.supp" --vgdb=no "$@"
 }
 
-# count NAME STATUS SECONDS FILE: one test's end. Says ok or FAIL and the time; shows what it printed only when it failed.
+# count NAME STATUS SECONDS FILE: one test's end. Says ok or FAIL and the time; shows what it printed only when it
+# failed.
 count() {
     if [ "$2" -eq 0 ]; then
         passed=$((passed + 1))
@@ -119,8 +140,8 @@ check() {
     count "$name" "$status" $((SECONDS - begin)) "$scratch/output"
 }
 
-# begin NAME COMMAND...: as check, but as many at a time as there are cores, for what keeps one of them busy. count_begun waits for all
-# of them and counts.
+# begin NAME COMMAND...: as check, but as many at a time as there are cores, for what keeps one of them busy.
+# count_begun waits for all of them and counts.
 begun=()
 begun_pids=()
 begin() {

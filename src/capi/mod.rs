@@ -1,6 +1,6 @@
 //! The C boundary: the only `extern "C"` of the crate and all code that touches a host's pointers. One file per C
-//! concept; each holds the types, constants and functions of one section of `include/bhr.h`, which `tests/header.rs`
-//! generates from them. Public items that begin with `bhr_`, `Bhr` or `BHR_` are the API, and their comments are
+//! concept; each holds the types, constants and functions of one section of `include/bhr.h`, which
+//! `tests/header/generated.rs` makes from them. Public items that begin with `bhr_`, `Bhr` or `BHR_` are the API, and their comments are
 //! written for the reader of the header. Nothing here knows physics or pixels: a function checks its arguments and
 //! makes one call into `Renderer`, `Scene` or `image`.
 //!

@@ -51,7 +51,7 @@ int main(int argc, char **argv) {
         }
         cycle(backend);
     }
-    if (cycles >= 100) {
+    if (cycles > WARM_UP) {
         const long after = held_bytes();
         const long bound =
             backend == BHR_BACKEND_CPU ? MAX_GROWTH_ON_CPU : MAX_GROWTH_OF_DRIVER * (long)(cycles - WARM_UP);

@@ -136,7 +136,7 @@ fn child_reads_bombs() {
         let kinds = [ErrorKind::Io, ErrorKind::OutOfMemory, ErrorKind::Unsupported];
         assert!(kinds.contains(&error.kind), "{}: {error}", bomb.name);
         assert!(bomb.words.iter().any(|words| error.message.contains(words)), "{}: {error}", bomb.name);
-        assert!(begin.elapsed() < Duration::from_secs(10), "{}: {:?}", bomb.name, begin.elapsed());
+        assert!(begin.elapsed() < Duration::from_secs(60), "{}: {:?}", bomb.name, begin.elapsed());
     }
 }
 
@@ -212,7 +212,7 @@ fn blocks_past_the_display_window_are_not_read() {
 #[cfg(feature = "exr")]
 #[test]
 fn a_large_map_with_unused_channels_is_read() {
-    let all = std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1");
+    let all = random::runs_all();
     let size = if all { [16384, 8192] } else { [2048, 1024] };
     let file = seeds::exr_file(vec![part_with_more(size, 8, exr::compression::Compression::RLE)]);
     let begin = Instant::now();
@@ -228,7 +228,7 @@ fn a_large_map_with_unused_channels_is_read() {
 #[ignore = "run by the tests below, in a process of its own"]
 fn child_reads_faulty_files() {
     let kind = std::env::var("BHR_FILES_KIND").unwrap();
-    let count = count_from("BHR_FILES_COUNT", 1000);
+    let count = count_from("BHR_FILES_COUNT", 1000, 1000);
     let seeds = seeds(&kind);
     let folder = Folder::new();
     static PLACES: Mutex<BTreeSet<String>> = Mutex::new(BTreeSet::new());
@@ -236,7 +236,7 @@ fn child_reads_faulty_files() {
         PLACES.lock().unwrap().extend(info.location().map(ToString::to_string));
     }));
     limit_memory(CHILD_BYTES);
-    let mut random = Random(count_from("BHR_FILES_SEED", 1) as u64);
+    let mut random = Random(count_from("BHR_FILES_SEED", 1, 1) as u64);
     let (mut read, mut panics) = (0, 0);
     let mut slowest = (Duration::ZERO, 0);
     for i in 0..count {
@@ -266,7 +266,7 @@ fn child_reads_faulty_files() {
 }
 
 fn faulty_files(kind: &str) {
-    let all = std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1");
+    let all = random::runs_all();
     let count = if all { 100_000 } else { 5_000 };
     let environment = [("BHR_FILES_KIND", kind.to_owned()), ("BHR_FILES_COUNT", count.to_string())];
     let out = child("child_reads_faulty_files", &environment);

@@ -1,21 +1,67 @@
-//! Frames for tests: a renderer of each kind, and the bytes of what it renders.
+//! Frames for tests: a renderer of each kind, and the bytes of what it renders. Renderers on the GPU are lent from a
+//! pool, as each of them compiles its kernels, which takes lavapipe longer than most tests' frames.
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::Region;
+use bhr::scene::{Region, Scene};
+use std::ops::{Deref, DerefMut};
+use std::sync::{Mutex, PoisonError};
 
-pub fn cpu() -> Renderer {
-    Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap()
+/// Renderers on the GPU that no test has now.
+static POOL: Mutex<Vec<Renderer>> = Mutex::new(Vec::new());
+
+/// A renderer that a test has to itself, with the default scene. One on the GPU is the next test's after that, and
+/// keeps its kernels and tables; unless the test fails, or asked for a new one.
+pub struct Lent {
+    renderer: Option<Renderer>,
+    again: bool,
 }
 
-/// Whatever adapter comes first; without one tests fail.
-pub fn gpu() -> Renderer {
+impl Deref for Lent {
+    type Target = Renderer;
+
+    fn deref(&self) -> &Renderer {
+        self.renderer.as_ref().expect("until it is dropped")
+    }
+}
+
+impl DerefMut for Lent {
+    fn deref_mut(&mut self) -> &mut Renderer {
+        self.renderer.as_mut().expect("until it is dropped")
+    }
+}
+
+impl Drop for Lent {
+    fn drop(&mut self) {
+        let Some(mut renderer) = self.renderer.take() else { return };
+        if self.again && !std::thread::panicking() {
+            renderer.scene = Scene::default();
+            POOL.lock().unwrap_or_else(PoisonError::into_inner).push(renderer);
+        }
+    }
+}
+
+pub fn cpu() -> Lent {
+    let options = RendererOptions { backend: Some(Backend::Cpu), ..Default::default() };
+    Lent { renderer: Some(Renderer::new(options).unwrap()), again: false }
+}
+
+/// On whatever adapter comes first; without one tests fail.
+pub fn gpu() -> Lent {
+    let idle = POOL.lock().unwrap_or_else(PoisonError::into_inner).pop();
+    let mut lent = idle.map_or_else(new_gpu, |renderer| Lent { renderer: Some(renderer), again: true });
+    lent.again = true;
+    lent
+}
+
+/// The same, never used before nor after: for what a renderer holds, or for how several compare.
+pub fn new_gpu() -> Lent {
     let renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    renderer
+    Lent { renderer: Some(renderer), again: false }
 }
 
-pub fn both() -> [(&'static str, Renderer); 2] {
+pub fn both() -> [(&'static str, Lent); 2] {
     [("cpu", cpu()), ("gpu", gpu())]
 }
 

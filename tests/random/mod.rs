@@ -35,7 +35,13 @@ impl Random {
     }
 }
 
-/// The count that the environment variable `name` asks for, else `default`.
-pub fn count_from(name: &str, default: usize) -> usize {
+/// The count that the environment variable `name` asks for; else `all` in `tests/run all`, and `everyday` otherwise.
+pub fn count_from(name: &str, everyday: usize, all: usize) -> usize {
+    let default = if runs_all() { all } else { everyday };
     std::env::var(name).map_or(default, |text| text.parse().unwrap_or_else(|e| panic!("{name}={text}: {e}")))
+}
+
+/// Whether long soaks run: `tests/run all`.
+pub fn runs_all() -> bool {
+    std::env::var("BHR_TESTS_ALL").is_ok_and(|value| value == "1")
 }

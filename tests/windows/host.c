@@ -9,7 +9,7 @@
 #include <string.h>
 #include <time.h>
 
-#define PATIENCE 10.0 /* seconds until a window must show what was presented: lavapipe presents on threads of its own */
+#define PATIENCE 60.0 /* seconds until a window must show what was presented: lavapipe presents on threads of its own */
 
 void pause_ms(long ms) {
     const struct timespec time = {ms / 1000, ms % 1000 * 1000000};

@@ -3,8 +3,8 @@
 # $render_frame, the programs; $scratch, a folder.
 # shellcheck shell=bash
 
-panel_start=60  # seconds for a first picture, on a slow machine
-panel_action=20 # seconds for what follows on an input
+panel_start=120  # seconds for a first picture, on a slow machine
+panel_action=60 # seconds for what follows on an input
 
 # panel_open OPTIONS...: starts the program, what it says going to $panel_log, and waits for its first picture.
 panel_open() {

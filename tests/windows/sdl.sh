@@ -94,7 +94,7 @@ sdl_follows_sizes() {
             [ "$(identify -format '%wx%h' "$scratch/sdl.png")" = "$size" ] || { identify "$scratch/sdl.png"; return 1; }
     done
     xdotool windowunmap "$sdl_window_id" && sleep 0.5 && xdotool windowmap "$sdl_window_id" && sleep 0.5 &&
-        sdl_until 20 sdl_shows "$scratch/sdl-before.png" 200 || return 1
+        sdl_until 60 sdl_shows "$scratch/sdl-before.png" 200 || return 1
     xdotool mousemove --window "$sdl_window_id" 100 60 mousedown 1 && sleep 0.2 || return 1
     for size in 1 2 3 4 5; do
         xdotool mousemove_relative 30 9 && sleep 0.1
@@ -107,9 +107,9 @@ sdl_follows_sizes() {
 sdl_on_x11() {
     sdl_starts || return 1
     sdl_open x11 --size 480x270 --frames 3 --screenshot "$scratch/sdl-held.png" --hold 60 || return 1
-    sdl_until 60 sdl_says '^holding' && sdl_until 10 sdl_find && sdl_until 20 sdl_shows_held 480x270+0+0 && sdl_close ||
+    sdl_until 60 sdl_says '^holding' && sdl_until 60 sdl_find && sdl_until 60 sdl_shows_held 480x270+0+0 && sdl_close ||
         return 1
-    sdl_open x11 --size 320x180 && sdl_until 30 sdl_find && sleep 1 && sdl_follows_sizes && sdl_close
+    sdl_open x11 --size 320x180 && sdl_until 60 sdl_find && sleep 1 && sdl_follows_sizes && sdl_close
 }
 
 # sdl_weston_begin WIDTH HEIGHT: a compositor in a window of the X server, whose shell gives every window all of its
@@ -122,8 +122,8 @@ sdl_weston_begin() {
     sdl_pid=$sdl_weston
     trap sdl_end EXIT
     : >"$scratch/sdl.log"
-    sdl_until 30 test -S "$XDG_RUNTIME_DIR/$WAYLAND_DISPLAY" &&
-        sdl_until 10 sdl_find_weston || { cat -- "$scratch/sdl-weston.log"; return 1; }
+    sdl_until 60 test -S "$XDG_RUNTIME_DIR/$WAYLAND_DISPLAY" &&
+        sdl_until 60 sdl_find_weston || { cat -- "$scratch/sdl-weston.log"; return 1; }
 }
 sdl_find_weston() {
     sdl_window_id=$(sed -n 's/.*x11 output .* window id \([0-9]*\)$/\1/p' "$scratch/sdl-weston.log") &&
@@ -139,5 +139,5 @@ sdl_on_wayland() {
     sdl_until 60 sdl_says '^holding' && sdl_says '^frames 20$' || return 1
     [ "$(identify -format '%wx%h' "$scratch/sdl-held.png")" = 640x400 ] || { identify "$scratch/sdl-held.png"; return 1; }
     # The compositor may not be done with the last frame.
-    sdl_until 20 sdl_shows_held 600x360+0+0 && sdl_close
+    sdl_until 60 sdl_shows_held 600x360+0+0 && sdl_close
 }

@@ -33,7 +33,7 @@ viewer_open() {
     (cd -- "$viewer_folder" && exec "$viewer" "$@") >"$viewer_log" 2>&1 &
     viewer_pid=$!
     trap 'viewer_end' EXIT # check runs every test in a subshell
-    viewer_until 30 viewer_window_of "$viewer_pid" || { cat -- "$viewer_log"; return 1; }
+    viewer_until 60 viewer_window_of "$viewer_pid" || { cat -- "$viewer_log"; return 1; }
     viewer_window=$(viewer_window_of "$viewer_pid" | tail -n 1)
     viewer_until 60 viewer_title_says 'M 1' && xdotool mousemove --window "$viewer_window" 100 60
 }
@@ -105,15 +105,15 @@ viewer_takes_keys() {
     for key in Right x x 3 v v v v v v n n n m p space period slash t g bracketleft Up k i l l h; do
         xdotool key "$key" && sleep 0.1
     done
-    viewer_until 30 viewer_says '^  Esc *quit' || return 1
+    viewer_until 60 viewer_says '^  Esc *quit' || return 1
     local words
     for words in 'spin 0.800' 'disk off' 'disk on' 'beaming off' 'view: metric' 'camera: freefall' 'camera: orbit' \
         'camera: static' 'mass 1.1' 'time stands still' '6 M of the' '-6 M of the' 'turbulence of the disk 0.90' \
         'tone map: agx' 'field of view 38.2' 'exposure +0.75' 'stars off' 'method: rk4' 'quality as it is set'; do
         viewer_says "$words" || { echo "it did not say: $words"; cat -- "$viewer_log"; return 1; }
     done
-    xdotool key BackSpace && viewer_until 20 viewer_says 'back to the beginning' &&
-        viewer_until 30 viewer_title_says 'a +0.700' && viewer_close
+    xdotool key BackSpace && viewer_until 60 viewer_says 'back to the beginning' &&
+        viewer_until 60 viewer_title_says 'a +0.700' && viewer_close
 }
 
 # Dragging turns the picture, the wheel brings the hole nearer, W flies on to it.
@@ -125,11 +125,11 @@ viewer_takes_mouse() {
     for step in 1 2 3 4 5 6; do
         xdotool mousemove_relative -- 8 6 && sleep 0.1
     done
-    xdotool mouseup 1 && viewer_until 20 viewer_has_turned || return 1
-    viewer_until 10 viewer_title_says 'r 34 M' || return 1
-    xdotool click 4 click 4 click 4 && viewer_until 20 viewer_title_says 'r 20.* M' || { viewer_title; return 1; }
+    xdotool mouseup 1 && viewer_until 60 viewer_has_turned || return 1
+    viewer_until 60 viewer_title_says 'r 34 M' || return 1
+    xdotool click 4 click 4 click 4 && viewer_until 60 viewer_title_says 'r 20.* M' || { viewer_title; return 1; }
     xdotool key f keydown w && sleep 2 && xdotool keyup w &&
-        viewer_until 20 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' || { viewer_title; return 1; }
+        viewer_until 60 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' || { viewer_title; return 1; }
     viewer_close
 }
 
@@ -175,7 +175,7 @@ viewer_resizes() {
         }
     done
     xdotool mousemove --window "$viewer_window" 100 60 key space
-    viewer_until 30 viewer_shows_picture && viewer_close && ! viewer_says 'cannot'
+    viewer_until 60 viewer_shows_picture && viewer_close && ! viewer_says 'cannot'
 }
 viewer_shows_picture() { viewer_grab "$scratch/shown.png" && [ "$(viewer_colours "$scratch/shown.png")" -gt 200 ]; }
 
@@ -189,8 +189,8 @@ viewer_screenshot_equals_window() {
 # F12: numbered pictures of the window's size, none overwritten.
 viewer_saves_pictures() {
     viewer_open --size 320x180 && printf 'kept' >"$viewer_folder/viewer-0001.png" || return 1
-    xdotool key F12 && viewer_until 30 viewer_says 'saved: viewer-0002.png' &&
-        xdotool key F12 && viewer_until 30 viewer_says 'saved: viewer-0003.png' && viewer_close &&
+    xdotool key F12 && viewer_until 60 viewer_says 'saved: viewer-0002.png' &&
+        xdotool key F12 && viewer_until 60 viewer_says 'saved: viewer-0003.png' && viewer_close &&
         [ "$(cat -- "$viewer_folder/viewer-0001.png")" = kept ] &&
         [ "$(identify -format '%wx%h' "$viewer_folder/viewer-0003.png")" = 320x180 ]
 }
@@ -201,7 +201,7 @@ viewer_records() {
     xdotool key r && viewer_until 60 test -e "$viewer_folder/viewer-film-01/frame-000004.png" &&
         xdotool windowsize "$viewer_window" 200 100 &&
         viewer_until 60 test -e "$viewer_folder/viewer-film-01/frame-000008.png" &&
-        xdotool key r && viewer_until 30 viewer_says '^recorded' && viewer_close || return 1
+        xdotool key r && viewer_until 60 viewer_says '^recorded' && viewer_close || return 1
     local files=("$viewer_folder"/viewer-film-01/frame-*.png)
     viewer_says "^recorded ${#files[@]} frames in viewer-film-01" &&
         [ "$(identify -format '%wx%h\n' "${files[@]}" | sort -u)" = 160x90 ] &&

@@ -25,7 +25,7 @@
 #define ROUNDS 10
 #define PACED 40          /* frames that are timed */
 #define HIGHEST_RATE 120. /* frames a second; the compositor's screen has 60, and its timers are coarse */
-#define LONGEST 2.        /* seconds of a call that waits for the compositor: one, and what a busy machine adds */
+#define LONGEST 6.        /* seconds of a call that waits for the compositor: one, and what a busy machine adds */
 
 static char said[4096]; /* by the log at level INFO */
 static int  warnings;

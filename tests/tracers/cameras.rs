@@ -2,14 +2,11 @@
 //! perspective ones that look the same way, the GPU's pictures against the CPU's, tiles against the whole, and what
 //! lies outside a fisheye's circle.
 
-#[allow(dead_code, reason = "shared with tests that need more of it")]
-mod frames;
-
+use crate::frames::{both, differing, floats, picture, tiled};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, LensTables, Projection, Ray, Region, Scene, Sky, View};
 use bhr::sky::catalogue;
-use frames::{both, differing, floats, picture, tiled};
 use glam::{DMat3, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -1,21 +1,16 @@
 //! Random scenes at the ends of every range: no NaN where a number is promised, no endless loop, no lost device, on
 //! both tracers.
 
-mod random;
-
+use crate::frames::Lent;
+use crate::random::{Random, count_from};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::physics::trace;
-use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::record::Record;
 use bhr::scene::{Camera, Fate, Hit, LensTables, Method, Motion, Projection, Ray};
 use glam::DVec3;
-use random::{Random, count_from};
 
-fn both() -> [Renderer; 2] {
-    let cpu = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();
-    let gpu = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(gpu.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    [cpu, gpu]
+fn both() -> [Lent; 2] {
+    crate::frames::both().map(|(_, renderer)| renderer)
 }
 
 const SPINS: [f64; 7] = [0.0, 1e-9, 0.5, 0.998, 0.999, -0.999, -1e-3];
@@ -135,7 +130,7 @@ fn frames_at_the_extremes() {
 fn table_frames_at_the_extremes() {
     let mut random = Random(13);
     let mut renderers = both();
-    for scene in 0..count_from("BHR_EXTREME_SCENES", 120) {
+    for scene in 0..count_from("BHR_EXTREME_SCENES", 60, 1000) {
         let (spin, mass) = (random.pick(&SPINS), random.pick(&MASSES));
         let spin = if random.next() < 0.3 { 0.0 } else { spin };
         let motion = random.pick(&[Motion::Static, Motion::FreeFall, Motion::Velocity]);

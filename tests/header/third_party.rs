@@ -47,7 +47,7 @@ const HEAD: &str = "\
 Third-party notices of bhr
 
 A library that is built from this repository (libbhr.so, libbhr.dylib, bhr.dll, libbhr.a) contains the works named
-here, on one platform or another, and these notices go where it goes. Made from Cargo.lock by tests/third_party.rs; do
+here, on one platform or another, and these notices go where it goes. Made from Cargo.lock by tests/header/third_party.rs; do
 not edit.
 
 It also contains the Rust standard library, in the version of the compiler that built it: Apache-2.0 OR MIT, copyright
@@ -199,7 +199,7 @@ fn the_committed_notices_name_what_is_linked() {
     assert!(
         std::fs::read_to_string(&committed).unwrap_or_default() == made,
         "THIRD-PARTY.txt is not what Cargo.lock says; bring it up to date with\n\
-         BHR_UPDATE_NOTICES=1 cargo test --test third_party notices"
+         BHR_UPDATE_NOTICES=1 cargo test --test header notices"
     );
 }
 

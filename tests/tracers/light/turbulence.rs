@@ -2,6 +2,7 @@
 //! seen.
 
 use super::{both, camera, cpu, hits, light, luminance, whole};
+use crate::frames::Lent;
 use bhr::renderer::Renderer;
 use bhr::scene::turbulence::Place;
 use bhr::scene::{Disk, Effects, Region, Sky};
@@ -15,7 +16,7 @@ fn turbulent(turbulence: f64, retrograde: bool) -> Option<Disk> {
 }
 
 /// Seen from the axis, each ring at one time: without delay.
-fn face_on(retrograde: bool) -> Renderer {
+fn face_on(retrograde: bool) -> Lent {
     let mut renderer = cpu();
     renderer.scene.sky = Sky::black();
     renderer.scene.camera = camera(2000.0, 0.0, WIDTH);

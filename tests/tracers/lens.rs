@@ -3,19 +3,17 @@
 //! integrates every ray itself, it is held to the same bars. The GPU is whatever adapter comes first; without one the
 //! tests fail.
 
-mod random;
-
+use crate::frames::Lent;
+use crate::random::{Random, count_from};
 use bhr::physics::geodesic::wrap_angle;
 use bhr::physics::observer::Observer;
 use bhr::physics::orbit::{horizon_outer, photon_orbit, redshift};
 use bhr::physics::shadow::CRITICAL_IMPACT_PARAMETER;
 use bhr::physics::trace::{Fate, PlaneCrossing, Settings, trace_look};
-use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::observer::Lens;
 use bhr::scene::record::Record;
 use bhr::scene::{Camera, LensTables, Motion, Region, Scene};
 use glam::{DMat3, DVec3};
-use random::{Random, count_from};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -27,11 +25,8 @@ const TRUE_STEP: f64 = 0.05;
 const TRACERS: [&str; 2] = ["cpu", "gpu"];
 const GPU: usize = 1;
 
-fn both() -> [Renderer; 2] {
-    let cpu = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();
-    let gpu = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(gpu.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    [cpu, gpu]
+fn both() -> [Lent; 2] {
+    crate::frames::both().map(|(_, renderer)| renderer)
 }
 
 /// The true image in a look direction.
@@ -464,7 +459,7 @@ fn records_agree_with_integration() {
     let mut renderers = both();
     let mut random = Random(23);
     let mut found: [[Comparison; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 60) {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) {
         let mut scene = random_eye(&mut random, index);
         aim(&mut scene, &mut random);
         let truth = Truth::new(&scene, width, height);
@@ -503,7 +498,7 @@ fn footprints_agree_with_differences() {
     let mut random = Random(29);
     // The footprints by tracer, and by whether the record was looked up or integrated.
     let mut found: [[Footprints; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 60) {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) {
         let mut scene = random_eye(&mut random, index);
         scene.disk.as_mut().unwrap().turbulence = 1.0;
         let edge = shadow_edge(&scene, &mut random);
@@ -730,7 +725,7 @@ fn no_seam() {
     let mut random = Random(37);
     // The lines by tracer, and by whether they were looked up (partly, at least) or integrated.
     let mut found: [[Seams; 2]; 2] = Default::default();
-    for index in 0..count_from("BHR_LENS_OBSERVERS", 60) / 5 {
+    for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) / 5 {
         let mut scene = random_eye(&mut random, index);
         for (line, (forward, right, width)) in scan_lines(&scene, &mut random).into_iter().enumerate() {
             let fov_y = 2.0 * ((0.5 * width).tan() / f64::from(SAMPLES)).atan();

@@ -1,14 +1,11 @@
 //! What falling and fast observers see, against integrals and formulas that share nothing with the tracers: the sky
 //! from inside the horizon, the shadow's size, aberration and Doppler shift at 0.999 c.
 
-#[allow(dead_code, reason = "shared with tests that need more of it")]
-mod frames;
-
+use crate::frames::{both, floats, picture};
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
 use bhr::scene::record::Record;
 use bhr::scene::{Camera, Fate, Hit, LensTables, Motion, Projection, Ray, Scene, Sky, View};
-use frames::{both, floats, picture};
 use glam::DVec3;
 use std::f64::consts::PI;
 

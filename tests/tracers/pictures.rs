@@ -1,14 +1,12 @@
 //! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against
 //! theory. The GPU is whatever adapter comes first; without one the tests fail.
 
-mod frames;
-
+use crate::frames::{both, cpu, differing, floats, gpu, new_gpu, picture, tiled};
 use bhr::gpu::{Device, Search, adapters};
 use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::{Camera, Effects, KerrWorth, LensTables, Lensing, Motion, Region, Sky, View};
-use frames::{both, cpu, differing, floats, gpu, picture, tiled};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -224,7 +222,7 @@ fn tables_give_the_same_bytes() {
         (0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
         (0.9, camera(6.0, 90.0, 90.0, Motion::Orbit)),
     ];
-    for make in [cpu, gpu] {
+    for make in [cpu, new_gpu] {
         let mut renderer = make();
         let name = renderer.adapter().name.clone();
         let show = |renderer: &mut Renderer, (spin, camera): (f64, Camera), size: [u32; 2], region: Option<Region>| {

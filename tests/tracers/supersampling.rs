@@ -1,19 +1,13 @@
 //! Several samples a pixel, on the disk's outer edge, on both tracers: they converge, the edge is as sharp as the
 //! filter, and fine structure does not alias. How samples are placed is tested in src/scene/frame.rs.
 
+use crate::frames::both;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
-use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Effects};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [160, 90];
-
-fn both() -> [(&'static str, Renderer); 2] {
-    let cpu = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();
-    let gpu = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(gpu.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    [("cpu", cpu), ("gpu", gpu)]
-}
 
 /// A disk of nearly even light, alone, seen from above: its edge is an ellipse, turned against the pixels.
 fn show_disk(renderer: &mut Renderer) {

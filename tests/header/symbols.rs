@@ -1,8 +1,6 @@
 //! The shared library exports exactly the header's functions, and stays mapped when a host closes it.
 
-mod c_header;
-
-use c_header::{HEADER, functions, library};
+use crate::c_header::{HEADER, functions, library};
 use object::Object;
 use std::collections::BTreeSet;
 

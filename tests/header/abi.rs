@@ -2,9 +2,9 @@
 //! declares is declared today: the same values, places, types and prototypes. Structs may have grown at their end,
 //! and more may have been added.
 
-mod c_header;
-
-use c_header::{HEADER, compiler, constants, functions, library, prototypes, root, run, scratch, structs, table};
+use crate::c_header::{
+    HEADER, compiler, constants, functions, library, prototypes, root, run, scratch, structs, table,
+};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::process::Command;

@@ -1,11 +1,9 @@
 //! include/bhr.h keeps the contract that programs are written against (tests/contract.h): the same names,
 //! constants, layouts and prototypes. What is compared is what a C compiler makes of the two.
 
-mod c_header;
+use crate::c_header::{HEADER, compiler, constants, functions, prototypes, root, run, scratch, structs, table};
 
-use c_header::{HEADER, compiler, constants, functions, prototypes, root, run, scratch, structs, table};
-
-const CONTRACT: &str = include_str!("contract.h");
+const CONTRACT: &str = include_str!("../contract.h");
 
 #[test]
 fn names_are_the_contracts() {

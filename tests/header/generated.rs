@@ -1,9 +1,7 @@
 //! include/bhr.h is the header that cbindgen makes from `src/capi`, one section per source file, and every dialect of C
 //! and C++ takes it without a warning.
 
-mod c_header;
-
-use c_header::{HEADER, compiler, functions, library, root, run, scratch};
+use crate::c_header::{HEADER, compiler, functions, library, root, run, scratch};
 use std::path::Path;
 use std::process::Command;
 

@@ -1,19 +1,13 @@
 //! The sky in pictures: the Milky Way, the host's map and the grid on both tracers, what the lens does to them, and
 //! where they are. The GPU is whatever adapter comes first; without one the tests fail.
 
+use crate::frames::both;
 use bhr::image::{ImageMut, ImageRef, Layout, PixelFormat};
-use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::renderer::Renderer;
 use bhr::scene::{Camera, LensTables, Motion, Projection, Sky};
 use bhr::sky::SkyMap;
 use glam::{DQuat, DVec3};
 use std::sync::Arc;
-
-fn both() -> [(&'static str, Renderer); 2] {
-    let of = |backend| Renderer::new(RendererOptions { backend, ..Default::default() }).unwrap();
-    let gpu = of(None);
-    assert_ne!(gpu.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    [("cpu", of(Some(Backend::Cpu))), ("gpu", gpu)]
-}
 
 fn picture(renderer: &mut Renderer, format: PixelFormat, size: [u32; 2], transparent: bool) -> Vec<u8> {
     let mut pixels = vec![0; (size[0] * size[1]) as usize * format.bytes_per_pixel()];

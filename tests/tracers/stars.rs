@@ -2,9 +2,8 @@
 //! camera turns; their places; tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the
 //! tests fail.
 
-mod frames;
-mod random;
-
+use crate::frames::{cpu, differing, floats, gpu, new_gpu, picture, tiled};
+use crate::random::Random;
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{LUMINANCE, radiance_xyz};
 use bhr::renderer::Renderer;
@@ -13,15 +12,13 @@ use bhr::sky::StarIndex;
 use bhr::sky::catalogue::{self, Star};
 use bhr::sky::galaxy::GALACTIC_POLE;
 use bhr::sky::procedural;
-use frames::{cpu, differing, floats, gpu, picture, tiled};
 use glam::{DQuat, DVec2, DVec3};
-use random::Random;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 /// Renderers of the sky alone, seen by an eye at rest.
-fn both() -> [(&'static str, Renderer); 2] {
-    frames::both().map(|(name, mut renderer)| {
+fn both() -> [(&'static str, crate::frames::Lent); 2] {
+    crate::frames::both().map(|(name, mut renderer)| {
         renderer.scene.disk = None;
         renderer.scene.sky.flags = Sky::STARS;
         (name, renderer)
@@ -348,7 +345,7 @@ fn a_field_has_the_flux_that_the_lens_equation_gives() {
 
 // ---- steadiness ----
 
-/// Frames of the CPU and of the GPU that the camera turns for; the pictures are the same (tests/pictures.rs).
+/// Frames of the CPU and of the GPU that the camera turns for; the pictures are the same (tests/tracers/pictures.rs).
 const TURNS: [usize; 2] = [17, 64];
 
 /// Calls `see` with the light of each of `frames`, the camera turning by a sixteenth of a pixel from one to the next.
@@ -553,7 +550,7 @@ fn procedural_light_is_that_of_all_its_stars() {
 
 #[test]
 fn a_4k_frame_of_a_procedural_sky_stays_within_its_memory() {
-    let mut renderer = gpu();
+    let mut renderer = new_gpu();
     renderer.scene.sky.flags = Sky::STARS | Sky::PROCEDURAL;
     picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160], None, false);
     let bytes = renderer.stats().device_bytes;

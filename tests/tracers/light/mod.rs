@@ -10,24 +10,15 @@ mod orbit;
 mod turbulence;
 mod views;
 
+use crate::frames::{Lent, cpu};
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
-use bhr::renderer::{Backend, Renderer, RendererOptions};
+use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Hit, Motion, Ray, Region, Sky, View};
 use glam::DVec3;
 
-fn cpu() -> Renderer {
-    Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap()
-}
-
-fn gpu() -> Renderer {
-    let renderer = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    renderer
-}
-
 /// Both tracers, their skies black.
-fn both() -> [(&'static str, Renderer); 2] {
-    let mut list = [("cpu", cpu()), ("gpu", gpu())];
+fn both() -> [(&'static str, Lent); 2] {
+    let mut list = crate::frames::both();
     list.iter_mut().for_each(|(_, renderer)| renderer.scene.sky = Sky::black());
     list
 }

@@ -1,19 +1,13 @@
 //! Bloom in pictures, on both tracers: no light lost, no tile seen, nothing changed where none was asked for. Its
 //! shape is tested in src/film/bloom.rs. The GPU is whatever adapter comes first; without one the tests fail.
 
+use crate::frames::{both, new_gpu};
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::{Camera, Region, Scene, ToneMap, View};
 
 type Change = fn(&mut Scene);
-
-fn both() -> [(&'static str, Renderer); 2] {
-    let cpu = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();
-    let gpu = Renderer::new(RendererOptions::default()).unwrap();
-    assert_ne!(gpu.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
-    [("cpu", cpu), ("gpu", gpu)]
-}
 
 fn try_picture(
     renderer: &mut Renderer,
@@ -235,7 +229,7 @@ fn the_brightest_light_stays_in_bounds() {
 #[test]
 fn a_4k_frame_takes_at_most_400_mb() {
     for spin in [0.0, 0.9] {
-        let [_, (_, mut renderer)] = both();
+        let mut renderer = new_gpu();
         (renderer.scene.hole.spin, renderer.scene.film.bloom) = (spin, 0.5);
         picture(&mut renderer, PixelFormat::Rgba8Srgb, [3840, 2160]);
         let bytes = renderer.stats().device_bytes;

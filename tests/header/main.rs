@@ -1,0 +1,9 @@
+//! The library's outside: the header, the contract and releases before this one, the symbols, and the notices of what
+//! is linked. Traces nothing; needs a C and a C++ compiler.
+
+mod abi;
+mod c_header;
+mod contract;
+mod generated;
+mod symbols;
+mod third_party;
