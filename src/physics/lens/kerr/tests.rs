@@ -1,11 +1,16 @@
 //! The Kerr lens table against tracing. Part of `kerr`, whose insides it looks at.
 
+use super::grid::*;
+use super::look::*;
 use super::*;
+use crate::physics::lens::critical::*;
 use crate::physics::metric::chart;
+use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{isco, redshift};
-use crate::physics::trace::{Fate, trace};
+use crate::physics::trace::{Fate, Settings, trace};
+use glam::{DVec3, Vec4};
 use std::collections::HashMap;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// A pixel of a frame 4096 wide that shows 90 degrees, about: what errors of directions are measured in.
 const PIXEL: f64 = 4.85e-4;
