@@ -9,16 +9,11 @@ use bhr::sky::StarIndex;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
-const SNIPPETS: [&str; 6] = [
-    include_str!("../shaders/blackbody.wgsl"),
-    include_str!("../shaders/stars.wgsl"),
-    include_str!("../shaders/film.wgsl"),
-    include_str!("../shaders/record.wgsl"),
-    include_str!("../shaders/false_colour.wgsl"),
-    include_str!("../shaders/deciding.wgsl"),
-];
-
 const BINDINGS: &str = "
+#import film/film
+#import shared/blackbody
+#import shared/frame
+#import sky/stars
 @group(0) @binding(0) var<storage, read> light_tables: array<vec4<f32>>;
 @group(0) @binding(1) var<storage, read> star_cells: array<u32>;
 @group(0) @binding(2) var<storage, read> inputs: array<vec4<f32>>;
@@ -28,7 +23,6 @@ fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 fn star_cell(i: u32) -> u32 { return star_cells[i]; }
 fn to_sky(d: vec3<f32>) -> vec3<f32> { return d; }
 fn least_patch() -> f32 { return 1e-3; }
-struct Frame { disk_u: vec2<f32> }
 var<private> frame: Frame;
 ";
 
@@ -56,7 +50,7 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    [&[BINDINGS, ENTRIES, &StarIndex::wgsl_constants()][..], &SNIPPETS].concat().concat()
+    bhr::gpu::join_wgsl(&[BINDINGS, ENTRIES].concat()).expect("WGSL that can be joined")
 }
 
 #[test]
@@ -78,7 +72,7 @@ fn constants_agree() {
         format!("const MAX_TEMPERATURE: f32 = {MAX_TEMPERATURE:?};"),
         format!("const WIEN_TEMPERATURE: f32 = {wien:.3};"),
     ] {
-        assert!(SNIPPETS[0].contains(&line), "{line}");
+        assert!(source().contains(&line), "{line}");
     }
 }
 

@@ -82,7 +82,7 @@ fn translate(shader: &str, source: &str) -> Result<usize, String> {
 
 #[test]
 fn every_shader_translates_to_every_language() {
-    let sources = bhr::gpu::shader_sources();
+    let sources = bhr::gpu::shader_sources().expect("WGSL that can be joined");
     assert!(!sources.is_empty(), "the GPU tracer has shaders");
     for (name, source) in sources {
         match translate(name, &source) {

@@ -1,6 +1,6 @@
 //! Ray records of pixels, looked up in tables of the eye's lens (`physics::lens`), and the tables themselves, built in
 //! parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them by
-//! tracing. Mirrored by `shaders/lens_schwarzschild_record.wgsl`. Knows no shading.
+//! tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
 use crate::allocate::{filled, with_room};

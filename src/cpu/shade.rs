@@ -1,5 +1,5 @@
-//! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and
-//! `shaders/disk.wgsl`. How the records were made it does not know.
+//! Ray records to linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl` and
+//! `shaders/emit/disk.wgsl`. How the records were made it does not know.
 
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;

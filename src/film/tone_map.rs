@@ -1,5 +1,5 @@
 //! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1].
-//! In f32, as `shaders/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
+//! In f32, as `shaders/film/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
 
 /// Brighter light is taken as this: far above every curve's white, and its square is finite.
 pub const MAX_SCENE_LIGHT: f32 = 65504.0;

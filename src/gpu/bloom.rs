@@ -14,7 +14,7 @@ use bytemuck::{Pod, Zeroable};
 /// Bytes of a pixel's light.
 pub const LIGHT_BYTES: u64 = 8;
 
-/// `BloomLevel` of bloom.wgsl.
+/// `BloomLevel` of bloom/level.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct LevelUniform {

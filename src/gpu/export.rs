@@ -1,4 +1,4 @@
-//! Reads the ray records that export.wgsl wrote. Knows the layout of one record, nothing of frames.
+//! Reads the ray records that records/export.wgsl wrote. Knows the layout of one record, nothing of frames.
 
 use crate::physics::trace::Fate;
 use crate::scene::record::{DiskCrossing, Record};

@@ -143,7 +143,7 @@ impl Store {
         let layouts = key.groups().iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
         let pipeline = device.compute_pipeline(&Kernel {
             label: key.entry_point(),
-            source: &[&key.wgsl()],
+            source: &[&key.wgsl()?],
             loops: LOOPS,
             entry_point: key.entry_point(),
             constants: &key.constants(),

@@ -1,5 +1,5 @@
 //! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk
-//! has changed, read by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
+//! has changed, read by lens/kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
 //! no scene.
 
 use super::kernel_key::KernelKey;
@@ -14,14 +14,14 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 use wgpu::BufferUsages as Usage;
 
-/// As in lens_kerr.wgsl; as many as nodes of the critical curve, which shares their texture.
+/// As in lens/kerr.wgsl; as many as nodes of the critical curve, which shares their texture.
 const COLUMNS: u32 = CRITICAL_NODES as u32;
 const PER_OCTAVE: usize = 16;
 /// Orders in a layer without pattern.
 const ORDERS_A_LAYER: u32 = 4;
 /// Rows are made in so many at once: an eye that moves changes their number.
 const ROWS_STEP: u32 = 64;
-/// `Deferred` of lens_kerr_record.wgsl: bytes before the pixels, and of a pixel.
+/// `Deferred` of lens/kerr_record.wgsl: bytes before the pixels, and of a pixel.
 const DEFERRED_HEAD: u64 = 68;
 const DEFERRED_PIXEL: u64 = 4;
 

@@ -1,5 +1,5 @@
 //! The tables of a spin-0 lens on the device: built by compute passes when the eye's radius has changed, read by
-//! lens_schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
+//! lens/schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
 
 use super::kernel_key::{KernelKey, LENS_GROUP};
 use super::kernels::{Kernels, Stage};
@@ -11,7 +11,7 @@ use crate::physics::shadow::shadow;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages as Usage;
 
-/// As in lens_schwarzschild.wgsl.
+/// As in lens/schwarzschild.wgsl.
 const PER_OCTAVE: f64 = 32.0;
 const OCTAVES: f64 = 22.0;
 const INTERVALS: u32 = 128;

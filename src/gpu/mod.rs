@@ -10,6 +10,7 @@ mod device;
 #[doc(hidden)]
 pub mod driver_lock;
 mod export;
+mod fragments;
 mod frame;
 mod frame_buffers;
 mod frame_kernels;
@@ -20,6 +21,7 @@ mod lens_kerr;
 mod lens_schwarzschild;
 mod loader;
 mod pipeline;
+mod preprocess;
 mod present;
 mod rays;
 mod readback;
@@ -43,6 +45,8 @@ mod wgsl;
 pub use adapter::{Adapter, Search, adapters, check_built, forget_drivers};
 pub use buffer::Buffer;
 pub use device::{Device, Loss};
+#[doc(hidden)]
+pub use fragments::join_wgsl;
 pub use frame::{BegunFrame, FrameTarget, Recording};
 #[cfg(test)]
 pub(crate) use gl_thread::GlThread;

@@ -10,7 +10,7 @@ use super::{Buffer, Device, Texture};
 use crate::error::{Error, Result};
 use crate::physics::observer::LocalFrame;
 
-/// Pixels of a row that a thread of count.wgsl sums.
+/// Pixels of a row that a thread of traced/count.wgsl sums.
 const COUNT_RUN: u32 = 8;
 /// Bytes of a texel of the record textures.
 const TEXEL: u64 = 16;

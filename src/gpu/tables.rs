@@ -1,6 +1,6 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
 //! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
-//! entries a row (shade.wgsl says why).
+//! entries a row (shade/shade.wgsl says why).
 
 use super::sky_maps::SkyMaps;
 use super::{Device, Texture};
@@ -89,13 +89,13 @@ impl Tables {
         self.sky_maps
     }
 
-    /// In the order of group 0 of shade.wgsl.
+    /// In the order of group 0 of shade/shade.wgsl.
     pub fn textures(&self) -> [&Texture; 4] {
         let [milky_way, map] = self.sky_maps.textures();
         [&self.light, &self.star_cells, milky_way, map]
     }
 
-    /// `Frame::map_sizes` of frame.wgsl.
+    /// `Frame::map_sizes` of shared/frame.wgsl.
     pub fn map_sizes(&self) -> [u32; 4] {
         self.sky_maps.sizes()
     }

@@ -1,4 +1,4 @@
-//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of frame.wgsl and pass.wgsl, field by field. The
+//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field by field. The
 //! only place where f64 becomes f32 on its way to the GPU.
 
 use crate::error::Result;

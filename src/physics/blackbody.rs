@@ -1,6 +1,6 @@
 //! Thermal light as the eye sees it: Planck's law through the CIE 1931 observer to linear Rec. 709 colour, the table
 //! of it that both tracers read, and the one rule by which a redshift changes it. Knows nothing of disks, stars or
-//! film. `shaders/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.
+//! film. `shaders/shared/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.
 
 use super::cie1931::{COLOUR_MATCHING, FIRST_WAVELENGTH, WAVELENGTH_STEP};
 use std::sync::OnceLock;

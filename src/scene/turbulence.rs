@@ -1,5 +1,5 @@
 //! Structure of the disk: what its turbulence makes of the brightness, where and when. The pattern, its motion and the
-//! split of the scene's time; both tracers use it, and `shaders/turbulence.wgsl` mirrors `brightness`. Knows no
+//! split of the scene's time; both tracers use it, and `shaders/emit/turbulence.wgsl` mirrors `brightness`. Knows no
 //! colours and no rays.
 //!
 //! Octaves of gradient noise (Perlin 2002) in (ln r, azimuth fixed to the matter) multiply: factor = prod (1 + t a_i
@@ -267,7 +267,7 @@ mod tests {
     /// The numbers written into the WGSL are those here.
     #[test]
     fn constants_agree() {
-        let wgsl = include_str!("../../shaders/turbulence.wgsl");
+        let wgsl = include_str!("../../shaders/emit/turbulence.wgsl");
         let [a, b, c, d] = AMPLITUDES;
         for line in [
             format!("const LIFETIME: f32 = {LIFETIME:?};"),

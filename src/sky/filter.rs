@@ -1,5 +1,5 @@
 //! The light of a sky map in a pixel, filtered over the pixel's patch of sky, and what frequency shifts make of it.
-//! The same in both tracers: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no
+//! The same in both tracers: `shaders/sky/map.wgsl` has the functions under the same names. Knows no cameras and no
 //! holes.
 //!
 //! The patch is taken for an ellipse, whose axes are the singular values of the pixel's derivatives. Trilinear taps,

@@ -1,5 +1,5 @@
 //! The coordinate grid of the sky axes: lines of constant width on the screen, laid over the sky. The same in both
-//! tracers (`shaders/sky_grid.wgsl`). Knows no cameras and no holes.
+//! tracers (`shaders/sky/grid.wgsl`). Knows no cameras and no holes.
 //!
 //! Right ascension every 15 degrees (an hour), from declination +-75 degrees to the poles every 90; declination every
 //! 15. How far a pixel is from a line it knows from the coordinate's distance to the line and the length of its

@@ -1,6 +1,6 @@
 //! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the
 //! stars within the cell enlarged by half its size on every side. Flat arrays, the same ones on the GPU.
-//! `shaders/stars.wgsl` has `cell_of` and `level_for` too.
+//! `shaders/sky/stars.wgsl` has `cell_of` and `level_for` too.
 
 use super::catalogue::Star;
 use super::field::StarField;
