@@ -1,6 +1,7 @@
 // From a look direction to the start of its ray: aberration and the local frame. Mirrors src/physics/observer.rs;
 // knows no integrator. Reads the uniform `frame`, declared where the bindings are.
 
+#import constants
 #import geodesic/geodesic
 #import shared/deciding
 #import shared/frame

@@ -2,18 +2,13 @@
 // src/scene/projection.rs, where the formulas and conventions are. Reads the uniform `frame`, declared where the
 // bindings are.
 
+#import constants
 #import shared/deciding
 #import shared/frame
 #import shared/math
 
 // BHR_PROJECTION_* that the kernel is for, or FROM_FRAME where it serves all and the uniform says which.
 override PROJECTION: u32 = 0u;
-
-const FROM_FRAME: u32 = 0xffffffffu;
-const PERSPECTIVE: u32 = 0u;
-const FISHEYE: u32 = 1u;
-const EQUIRECT: u32 = 2u;
-const CUBE: u32 = 3u;
 
 // A point (right, up, forward; PERSPECTIVE: the first two in halves of the image plane's sides) in the direction seen,
 // and its changes to the next pixel right and down.

@@ -1,15 +1,10 @@
 // Structure of the disk: mirrors src/scene/turbulence.rs, where the reasons are. Reads `frame`; knows no colours and
 // no records.
 
+#import constants
 #import records/record
 #import shared/frame
 #import shared/math
-
-const LIFETIME: f32 = 120.0;
-const CELLS_AROUND: u32 = 5u;
-const CELLS_PER_E_FOLD: f32 = 2.5;
-const AMPLITUDES: vec4<f32> = vec4<f32>(0.8, 0.7, 0.6, 0.5);
-const GAIN: f32 = 2.2;
 
 // What the disk's radiance is multiplied by. dx, dy: change of `at` to the next pixel.
 fn turbulent_brightness(at: Place, dx: Place, dy: Place) -> f32 {

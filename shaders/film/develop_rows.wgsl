@@ -1,5 +1,6 @@
 // Kernel: as film/develop.wgsl, for film/packed_rows.wgsl.
 
+#import constants
 #import film/packed_rows
 #import shared/deciding
 #import shared/pass

@@ -1,24 +1,21 @@
 // False colour for views other than light. Mirrors src/film/false_colour.rs, where the formulas, sources and reasons
 // are. Reads the uniform `film` of film/packed.wgsl or film/screen.wgsl, and film/film.wgsl's functions.
 
+#import constants
 #import film/encode
 #import film/params
-
-const COLOUR_OF_REDSHIFT: u32 = 1u;
-const COLOUR_OF_ORDER: u32 = 2u;
-const COLOUR_OF_METRIC: u32 = 5u;
 
 // sRGB-encoded colour of a view's value.
 fn false_colour(value: f32) -> vec3<f32> {
     let share = clamp((scaled(value) - film.view_low) * film.view_scale, 0.0, 1.0);
-    let lab = select(sequential(share), diverging(share), film.false_colour == COLOUR_OF_REDSHIFT);
+    let lab = select(sequential(share), diverging(share), film.false_colour == VIEW_REDSHIFT);
     return select(lab_encoded(lab), vec3<f32>(0.5), is_nan(vec3<f32>(value)));
 }
 
 // A view's value as its colours are spread: by itself, by its logarithm, or as METRIC has it.
 fn scaled(value: f32) -> f32 {
-    let spread = select(log2(max(value, 1e-9)), value, film.false_colour == COLOUR_OF_ORDER);
-    return select(spread, 1.0 - sqrt(1.0 - min(value, 1.0)), film.false_colour == COLOUR_OF_METRIC);
+    let spread = select(log2(max(value, 1e-9)), value, film.false_colour == VIEW_ORDER);
+    return select(spread, 1.0 - sqrt(1.0 - min(value, 1.0)), film.false_colour == VIEW_METRIC);
 }
 
 fn sequential(share: f32) -> vec3<f32> {

@@ -2,6 +2,7 @@
 // film/packed.wgsl or film/screen.wgsl, and shared/deciding.wgsl. Functions that pixels are put by in loops have no early return: Mesa
 // 22.3's shader compiler crashes on one.
 
+#import constants
 #import film/false_colour
 #import film/encode
 #import film/params
@@ -13,20 +14,6 @@ override TONE_MAP: u32 = 1u;
 override PIXELS: u32 = 0u;
 // Whether a kernel is made for the views other than light.
 override FALSE_COLOUR: bool = false;
-
-const FROM_FILM: u32 = 0xffffffffu;
-const PIXELS_FLOAT: u32 = 1u;
-const PIXELS_R32F: u32 = 2u;
-
-const TONE_MAP_ACES: u32 = 1u;
-const TONE_MAP_AGX: u32 = 2u;
-const FORMAT_BGRA8: u32 = 2u;
-const FORMAT_RGBA16F: u32 = 3u;
-const FORMAT_RGBA32F: u32 = 4u;
-const FORMAT_R32F: u32 = 5u;
-const MAX_SCENE_LIGHT: f32 = 65504.0;
-const MAX_F16: f32 = 65504.0;
-const MAX_F32: f32 = 3.40282347e38;
 
 fn is_float() -> bool {
     if PIXELS == FROM_FILM {
@@ -144,22 +131,11 @@ fn balanced(m: mat3x2<f32>, c: vec3<f32>) -> vec3<f32> {
     return c + vec3<f32>(dot(m[0], c.yz - c.x), dot(m[1], c.xz - c.y), dot(m[2], c.xy - c.z));
 }
 
-const ACES_IN = mat3x2<f32>(0.35458, 0.04823, 0.076, 0.01566, 0.0284, 0.13383);
-const ACES_OUT = mat3x2<f32>(-0.53108, -0.07367, -0.10208, -0.00605, -0.00327, -0.07276);
-
 fn aces(rgb: vec3<f32>) -> vec3<f32> {
     let v = balanced(ACES_IN, rgb);
     let fit = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
     return clamp(balanced(ACES_OUT, fit), vec3<f32>(0.0), vec3<f32>(1.0));
 }
-
-const AGX_IN = mat3x2<f32>(0.0784336, 0.0792237, 0.0423282, 0.0791661, 0.0423757, 0.0784336);
-const AGX_OUT = mat3x2<f32>(-0.0980332, -0.0990408, -0.0529035, -0.0989508, -0.0529776, -0.0980332);
-const AGX_LOW: f32 = -12.473931;
-const AGX_SPAN: f32 = 16.5;
-const AGX_PIVOT: f32 = 0.6060606;
-const AGX_TOE: f32 = 0.5122774;
-const AGX_SHOULDER: f32 = 0.5414642;
 
 fn agx(rgb: vec3<f32>) -> vec3<f32> {
     let inset = max(balanced(AGX_IN, rgb), vec3<f32>(1e-10));

@@ -1,6 +1,7 @@
 // The exposed light of a frame with bloom: what shading, or the sum of samples, is given to before it spreads.
 // Bindings as in film/packed.wgsl.
 
+#import constants
 #import film/encode
 #import film/film
 #import film/params

@@ -2,6 +2,7 @@
 // carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row (H200:
 // 49 against 24.5 GB/s). So a workgroup gathers the words of its 32 x 4 pixels, and then writes them row by row.
 
+#import constants
 #import film/film
 #import film/params
 #import shared/pass
@@ -9,12 +10,8 @@
 @group(2) @binding(0) var<uniform> film: FilmParams;
 @group(2) @binding(1) var<storage, read_write> pixels: array<u32>;
 
-// Pixels of a workgroup: as many as it has threads.
-const ROWS_WIDTH: u32 = 32u;
-const ROWS_PIXELS: u32 = 128u;
-
 // Of the workgroup's pixels, row by row; 4 words each at most.
-var<workgroup> row_words: array<u32, 512>;
+var<workgroup> row_words: array<u32, 4u * ROWS_PIXELS>;
 // Of this thread's pixel among them.
 var<private> rows_index: u32;
 

@@ -1,15 +1,12 @@
 // Light rays traced backward from the eye, in Mino time: the equations of motion. Mirrors src/physics/geodesic.rs,
 // where the formulas and their sources stand. Knows no integrator and no observer.
 
+#import constants
 #import shared/math
 
 // What a pipeline is made for; the host compiles one for each combination it needs.
 override SPINNING: bool = true;
 override DELAY: bool = true;
-
-// Clock.
-const CLOCK_COORDINATE: u32 = 0u;
-const CLOCK_RAIN: u32 = 1u;
 
 struct Constants {
     a: f32,

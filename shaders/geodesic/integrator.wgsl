@@ -1,13 +1,10 @@
 // Steps of a light ray in Mino time, their dense output, and the step limit beside the horizon. Mirrors
 // src/physics/integrator.rs. Knows the equations only through geodesic/geodesic.wgsl.
 
+#import constants
 #import geodesic/geodesic
-#import geodesic/nystrom
 #import shared/math
 
-const METHOD_NYSTROM: u32 = 0u;
-const METHOD_RK4: u32 = 1u;
-const METHOD_DORMAND_PRINCE: u32 = 2u;
 override METHOD: u32 = 0u;
 // Drag and delay diverge at the horizon, and inside it u is large: only then steps need a limit.
 override STEP_LIMIT: bool = true;

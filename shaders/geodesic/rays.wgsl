@@ -1,9 +1,9 @@
 // Kernel: rays whose start the host computed in f64 (`Scene::start`), one a thread, for bhr_trace_rays. Redshifts,
 // azimuths and units are the host's work: what comes back is where the ray crossed and ended.
 
+#import constants
 #import geodesic/geodesic
 #import geodesic/trace
-#import shared/fate
 
 struct RayStart {
     // energy, L, nu_local, u'
@@ -37,9 +37,6 @@ struct RaysUniform {
 @group(0) @binding(0) var<uniform> rays: RaysUniform;
 @group(0) @binding(1) var<storage, read> ray_starts: array<RayStart>;
 @group(0) @binding(2) var<storage, read_write> ray_ends: array<RayEnd>;
-
-// What bhr_trace_rays lists; the host knows it as MAX_CROSSINGS.
-const RAY_CROSSINGS: u32 = 4u;
 
 var<private> ray_end: u32;
 var<private> crossing_count: u32;

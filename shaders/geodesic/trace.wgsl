@@ -7,9 +7,9 @@
 //
 // which keeps a crossing of the equatorial plane.
 
+#import constants
 #import geodesic/geodesic
 #import geodesic/integrator
-#import shared/fate
 #requires fn on_crossing(c: Constants, crossing: PlaneCrossing)
 
 struct Settings {

@@ -6,6 +6,7 @@
 // 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row KERR_ROWS_BELOW standing for 2^-KERR_OCTAVES; those of the inner
 // branch (captured) follow those of the outer (escaping).
 
+#import constants
 #import lens/axis
 #requires var lens: KerrLens
 
@@ -21,18 +22,6 @@ struct KerrLens {
     // 1/r beyond which an inward ray is captured.
     capture_u: f32,
 }
-
-const KERR_COLUMNS: u32 = 512u;
-const KERR_PER_OCTAVE: u32 = 16u;
-const KERR_OCTAVES: f32 = 10.0;
-const KERR_ROWS_BELOW: u32 = 2u;
-const KERR_ROWS_ABOVE: u32 = 3u;
-// Nodes of the critical curve's own table.
-const KERR_CURVE: u32 = 512u;
-// |u| of a crossing that does not come: captured before (+), or gone past infinity (-).
-const KERR_NO_CROSSING: f32 = 1e3;
-// Bit of a cell's flags: its rays are to be integrated. Bits 0 .. 15: a crossing of that order may hit the disk.
-const KERR_DIRECT: u32 = 0x80000000u;
 
 // Nodes hold where the light of a crossing left, and when: a layer for each order with u, the unit vector of the
 // azimuth and the regular delay; else a layer for each four orders with their u.

@@ -1,6 +1,7 @@
 // Kernel: what may happen in each cell of the tables of lens/kerr.wgsl, and whether it may be interpolated; one thread
 // a cell. Mirrors `Patch` of src/physics/lens/kerr.rs.
 
+#import constants
 #import lens/kerr
 #import shared/deciding
 #import shared/frame
@@ -12,9 +13,8 @@
 @group(0) @binding(4) var crossings: texture_2d_array<f32>;
 @group(0) @binding(5) var flags_out: texture_storage_2d<r32uint, write>;
 
-// Error that a cell may have: rad of look direction for the sky, relative to 1 + conditioning for crossings; and of
-// azimuths, rad, and delays, relative to the orbital time.
-const KERR_TOLERANCE: f32 = 1e-6;
+// Errors that a cell may have beside KERR_TOLERANCE, which is that of the sky, rad of look direction: of radii of
+// crossings, relative to 1 + conditioning; of azimuths, rad, and delays, relative to the orbital time.
 const KERR_RADIUS_TOLERANCE: f32 = 2e-6;
 const KERR_PATTERN_TOLERANCE: f32 = 2e-5;
 

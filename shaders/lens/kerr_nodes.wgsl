@@ -1,13 +1,13 @@
 // Kernel: the nodes of the tables of lens/kerr.wgsl, one thread each: traces a ray to infinity and a little beyond, so
 // that crossings continue smoothly past it.
 
+#import constants
 #import camera/observer
 #import geodesic/geodesic
 #import geodesic/integrator
 #import geodesic/trace
 #import lens/kerr
 #import shared/deciding
-#import shared/fate
 #import shared/frame
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -21,9 +21,6 @@
 const KERR_STEP: f32 = 0.2;
 // Of any ray of the table: 2^-10 from the curve a ray ends within sigma 20.
 const KERR_STEPS: u32 = 400u;
-const KERR_BEYOND: f32 = 1.0;
-// Rays are followed to this multiple of capture_u, so that no crossing of the disk has a neighbour without one.
-const KERR_INWARD: f32 = 1.5;
 
 var<private> node: vec2<u32>;
 var<private> found: u32;

@@ -1,5 +1,6 @@
 // Looks rays up in the tables of lens/kerr.wgsl. Mirrors src/physics/lens/kerr.rs and src/cpu/lens.rs.
 
+#import constants
 #import camera/observer
 #import camera/projection
 #import geodesic/geodesic

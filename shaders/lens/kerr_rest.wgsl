@@ -1,6 +1,7 @@
 // Ray records with spin of pixels that the tables of lens/kerr.wgsl do not hold: integrated. The sky's footprint is
 // the tables' all the same; those of crossings come from the next pixels' rays.
 
+#import constants
 #import camera/observer
 #import camera/projection
 #import geodesic/geodesic
@@ -8,15 +9,13 @@
 #import lens/kerr
 #import lens/kerr_record
 #import records/record
-#import shared/fate
 #import shared/frame
 #import shared/math
 #import shared/pass
 
 // u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right (to the left
 // where a face ends), of the next below. u is 0 where there is none.
-const REST_ORDERS: u32 = 16u;
-var<private> rest_crossings: array<vec3<f32>, 48>;
+var<private> rest_crossings: array<vec3<f32>, 3u * CROSSINGS_KEPT>;
 var<private> rest_ray: u32;
 var<private> rest_order: u32;
 // Of the pixel itself, which is traced last: orders up to that of the last crossing.
@@ -29,14 +28,14 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if PATTERN {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
-    rest_count = min(crossing.order + 1u, REST_ORDERS);
-    rest_crossings[rest_ray * REST_ORDERS + min(crossing.order, REST_ORDERS - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+    rest_count = min(crossing.order + 1u, CROSSINGS_KEPT);
+    rest_crossings[rest_ray * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
 fn ray_record(id: vec2<u32>) -> Record {
     var record = look_up(id);
     let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
-    for (var i = 0u; i < 3u * REST_ORDERS; i += 1u) {
+    for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u) {
         rest_crossings[i] = vec3<f32>(0.0);
     }
     let x = pixel_place(id).x;
@@ -82,8 +81,8 @@ fn next_crossing() -> Crossing {
         if PATTERN {
             let at = rest_crossings[crossing.order];
             crossing.place = Place(-log(at.x), at.y, at.z);
-            crossing.dx = rest_change(at, rest_crossings[REST_ORDERS + crossing.order], rest_step);
-            crossing.dy = rest_change(at, rest_crossings[2u * REST_ORDERS + crossing.order], 1.0);
+            crossing.dx = rest_change(at, rest_crossings[CROSSINGS_KEPT + crossing.order], rest_step);
+            crossing.dy = rest_change(at, rest_crossings[2u * CROSSINGS_KEPT + crossing.order], 1.0);
         }
     }
     return crossing;

@@ -17,9 +17,3 @@ struct SchwarzschildLens {
     inner_nodes: u32,
 }
 
-const LENS_PER_OCTAVE: i32 = 32;
-const LENS_OCTAVES: f32 = 22.0;
-// Intervals in y = phi / (angle to the end of the ray).
-const LENS_INTERVALS: u32 = 128u;
-// 1/r where a captured ray's column ends: inside every disk.
-const LENS_INNER_END: f32 = 0.25;

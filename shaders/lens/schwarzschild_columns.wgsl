@@ -1,8 +1,8 @@
 // Kernel: u, and the delay's integral, along the ray of each node; one thread a node. The curves are in
 // lens/schwarzschild_curve.wgsl.
 
+#import constants
 #import geodesic/geodesic
-#import geodesic/nystrom
 #import lens/schwarzschild
 #import lens/schwarzschild_curve
 #import shared/deciding

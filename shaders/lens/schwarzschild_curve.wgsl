@@ -1,9 +1,9 @@
 // What the kernels that build the tables of lens/schwarzschild.wgsl share: the ray of a node, followed in sigma = S
 // tau, in which all rays take steps of like size; phi = kappa sigma.
 
+#import constants
 #import camera/observer
 #import geodesic/geodesic
-#import geodesic/nystrom
 #import lens/axis
 #import lens/schwarzschild
 #import shared/frame

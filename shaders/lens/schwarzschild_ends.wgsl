@@ -1,5 +1,6 @@
 // Kernel: where the ray of each node ends; one thread a node. The curves are in lens/schwarzschild_curve.wgsl.
 
+#import constants
 #import lens/schwarzschild
 #import lens/schwarzschild_curve
 #import shared/deciding

@@ -1,13 +1,13 @@
 // Ray records without spin, looked up in the tables of lens/schwarzschild.wgsl. Mirrors
 // src/physics/lens/schwarzschild.rs and src/cpu/lens.rs.
 
+#import constants
 #import camera/observer
 #import camera/projection
 #import geodesic/geodesic
 #import lens/axis
 #import lens/schwarzschild
 #import records/record
-#import shared/fate
 #import shared/frame
 #import shared/math
 #import shared/pass

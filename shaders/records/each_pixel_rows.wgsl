@@ -1,5 +1,6 @@
 // Kernel: as records/each_pixel.wgsl, for film/packed_rows.wgsl.
 
+#import constants
 #import film/packed_rows
 #import records/record
 #import shared/deciding

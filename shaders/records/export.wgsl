@@ -1,5 +1,6 @@
 // Puts the ray records of a tile into a buffer, for tests: src/gpu/export.rs reads them.
 
+#import constants
 #import records/record
 #import shared/frame
 #import shared/pass
@@ -8,10 +9,6 @@
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
 @group(2) @binding(0) var<storage, read_write> exported: array<vec4<f32>>;
-
-// Crossings of a record, and vectors: four of the ray, three of each crossing.
-const EXPORT_CROSSINGS: u32 = 4u;
-const EXPORT_SIZE: u32 = 4u + 3u * EXPORT_CROSSINGS;
 
 fn export_place(p: Place, w: f32) -> vec4<f32> {
     return vec4<f32>(p.ln_r, p.azimuth, p.delay, w);

@@ -12,6 +12,7 @@
 //
 //     fn take_record(id: vec2<u32>, record: Record)
 
+#import constants
 #import shared/frame
 
 // Where and when the light of a crossing left, or the change of it from pixel to pixel.
@@ -71,20 +72,6 @@ struct Crossing {
     // How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1; shading sets it.
     share: f32,
 }
-
-const EDGE_NONE: u32 = 0u;
-// An edge of the disk, or the neighbourhood of the critical curve where that is likely, or a steep change on the disk.
-const EDGE_DISK: u32 = 1u;
-// The critical curve, at which all images of order 2 and higher lie.
-const EDGE_CURVE: u32 = 2u;
-// Distances to the critical curve, pixels, below which a pixel is one of each kind.
-const CURVE_REACH: f32 = 0.85;
-const RINGS_REACH: f32 = 3.0;
-// Half a pixel, and half as much again: how far an edge may be from the pixel's centre. Mirrors scene/refine.rs.
-const EDGE_REACH: f32 = 0.75;
-
-// Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
-const STEEP_CHANGE: f32 = 0.1;
 
 // Whether an edge of the disk runs through the pixel whose crossing lies at u, or u changes steeply there; `change`:
 // of u to the next pixel right and down.

@@ -1,6 +1,7 @@
 // The list of a tile's pixels that edges run through: written by the kernels that shade pixels, read by refine/refine.wgsl.
 // Knows no light.
 
+#import constants
 #import records/record
 #import shared/pass
 

@@ -1,19 +1,18 @@
 // A ray that is integrated for one sample of a pixel, and its crossings of the whole plane. Used by
 // refine/traced.wgsl and refine/kerr.wgsl; knows no tables and no textures.
 
+#import constants
 #import camera/observer
 #import camera/projection
 #import geodesic/geodesic
 #import geodesic/trace
 #import records/record
-#import shared/fate
 #import shared/frame
 #import shared/math
 #import shared/pass
 
 // u, azimuth and delay by order; u is 0 where there is none.
-const KEPT_ORDERS: u32 = 16u;
-var<private> kept_crossings: array<vec3<f32>, 16>;
+var<private> kept_crossings: array<vec3<f32>, CROSSINGS_KEPT>;
 var<private> kept_order: u32;
 // Orders up to that of the last crossing.
 var<private> kept_count: u32;
@@ -26,13 +25,13 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if FOOTPRINTS {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
-    kept_count = min(crossing.order + 1u, KEPT_ORDERS);
-    kept_crossings[min(crossing.order, KEPT_ORDERS - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+    kept_count = min(crossing.order + 1u, CROSSINGS_KEPT);
+    kept_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
 // The record of the sample at pixel_place(id), without footprints.
 fn integrated_record(id: vec2<u32>) -> Record {
-    for (var i = 0u; i < KEPT_ORDERS; i += 1u) {
+    for (var i = 0u; i < CROSSINGS_KEPT; i += 1u) {
         kept_crossings[i] = vec3<f32>(0.0);
     }
     kept_order = 0u;

@@ -1,14 +1,12 @@
 // Ray records of samples with spin: as the tables of lens/kerr.wgsl have them, else integrated. The sky's footprint is
 // the tables' in either case; those of integrated crossings, too, or there are none.
 
+#import constants
 #import lens/kerr
 #import lens/kerr_record
 #import records/record
 #import refine/integrated
 #import shared/fate
-
-// Relative difference of u of crossings up to which the footprint of one serves for the other (src/cpu/lens.rs).
-const LIKE: f32 = 1e-2;
 
 var<private> integrated: bool;
 

@@ -2,6 +2,7 @@
 // the pixel's light.
 // Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
 
+#import constants
 #import camera/observer
 #import camera/projection
 #import records/record
@@ -20,13 +21,11 @@
 var<private> samples: u32;
 
 const LANES: u32 = 64u;
-// Of crossings; the host keeps max_crossings at so many.
-const LANE_ORDERS: u32 = 16u;
 
 // Of each thread's sample: u of its crossings by order, 0 where there is none; its fate; its light.
-var<workgroup> lane_u: array<f32, 1024>;
-var<workgroup> lane_fate: array<u32, 64>;
-var<workgroup> lane_light: array<vec4<f32>, 64>;
+var<workgroup> lane_u: array<f32, LANES * CROSSINGS_KEPT>;
+var<workgroup> lane_fate: array<u32, LANES>;
+var<workgroup> lane_light: array<vec4<f32>, LANES>;
 var<workgroup> listed: u32;
 
 var<private> lane: u32;
@@ -37,7 +36,7 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     zero = group.z;
     lane = i;
     samples = deciding(pass_.refined);
-    whole_plane = samples == 4u;
+    whole_plane = samples == EDGE_SAMPLES;
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
         listed = min(atomicLoad(&edges.counts[list_place(list_kind())]), limit);
@@ -60,8 +59,8 @@ fn refine_sample(entry: u32, count: u32) {
     }
     let record = ray_record(id);
     lane_fate[lane] = record.fate;
-    for (var k = 0u; k < LANE_ORDERS; k += 1u) {
-        lane_u[lane * LANE_ORDERS + k] = 0.0;
+    for (var k = 0u; k < CROSSINGS_KEPT; k += 1u) {
+        lane_u[lane * CROSSINGS_KEPT + k] = 0.0;
     }
     if whole_plane {
         for (var k = 0u; k < deciding(frame.max_crossings); k += 1u) {
@@ -69,7 +68,7 @@ fn refine_sample(entry: u32, count: u32) {
             if crossing.u <= 0.0 {
                 break;
             }
-            lane_u[lane * LANE_ORDERS + min(crossing.order, LANE_ORDERS - 1u)] = crossing.u;
+            lane_u[lane * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] = crossing.u;
         }
         rewind_crossings();
     }
@@ -153,7 +152,7 @@ fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
     crossing.share = 1.0;
     if whole_plane {
-        crossing.share = covered_share(crossing.u, min(crossing.order, LANE_ORDERS - 1u));
+        crossing.share = covered_share(crossing.u, min(crossing.order, CROSSINGS_KEPT - 1u));
         // Far from the disk g may be no number at all.
         crossing.g = select(1.0, crossing.g, crossing.share > 0.0);
         crossing.u = select(0.0, clamp(crossing.u, frame.disk_u.x, frame.disk_u.y), crossing.u > 0.0);
@@ -164,10 +163,10 @@ fn seen_crossing() -> Crossing {
 // Share of this sample's cell, of 2 x 2, in which the crossing of `order` lies on the disk, u changing evenly over the
 // cell.
 fn covered_share(u: f32, order: u32) -> f32 {
-    let left = lane_u[(lane & ~1u) * LANE_ORDERS + order];
-    let right = lane_u[(lane | 1u) * LANE_ORDERS + order];
-    let above = lane_u[(lane & ~2u) * LANE_ORDERS + order];
-    let below = lane_u[(lane | 2u) * LANE_ORDERS + order];
+    let left = lane_u[(lane & ~1u) * CROSSINGS_KEPT + order];
+    let right = lane_u[(lane | 1u) * CROSSINGS_KEPT + order];
+    let above = lane_u[(lane & ~2u) * CROSSINGS_KEPT + order];
+    let below = lane_u[(lane | 2u) * CROSSINGS_KEPT + order];
     let slope = vec2<f32>(right - left, below - above);
     let within = select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
     let share = share_below(frame.disk_u.y - u, slope) - share_below(frame.disk_u.x - u, slope);
@@ -185,11 +184,6 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
 }
 
-// Between the samples of a pixel: what u may change, of the disk's own range of it; and of the direct image, relative
-// to u, as there the light itself may not change evenly.
-const EVEN_CHANGE: f32 = 0.5;
-const DIRECT_CHANGE: f32 = 0.25;
-
 // What u of the crossing of `order` may change between the samples of a pixel.
 fn even_change(order: u32, high: f32) -> f32 {
     return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
@@ -201,12 +195,12 @@ fn is_ragged() -> bool {
     let near = frame.disk_u.y;
     var hidden = false;
     var ragged = false;
-    for (var k = 0u; k < min(deciding(frame.max_crossings), LANE_ORDERS); k += 1u) {
+    for (var k = 0u; k < min(deciding(frame.max_crossings), CROSSINGS_KEPT); k += 1u) {
         var low = 1e30;
         var high = 0.0;
         var present = 0u;
         for (var s = 0u; s < 4u; s += 1u) {
-            let u = lane_u[(lane + s) * LANE_ORDERS + k];
+            let u = lane_u[(lane + s) * CROSSINGS_KEPT + k];
             present += select(0u, 1u, u > 0.0);
             low = min(low, select(1e30, u, u > 0.0));
             high = max(high, u);

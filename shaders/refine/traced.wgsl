@@ -1,8 +1,8 @@
 // Ray records of samples of traced pixels: integrated, with the footprints of the pixel's own record where it has them.
 
+#import constants
 #import records/record
 #import refine/integrated
-#import shared/fate
 #import traced/footprints
 
 fn ray_record(id: vec2<u32>) -> Record {

@@ -1,12 +1,12 @@
 // Linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. How the record was made it does not
 // know.
 
+#import constants
 #import camera/projection
 #import emit/disk
 #import emit/turbulence
 #import records/record
 #import shared/deciding
-#import shared/fate
 #import shared/frame
 #import shared/math
 #import shared/pass
@@ -35,8 +35,6 @@ override SHOWS_MAP: bool = true;
 override SHOWS_GRID: bool = true;
 override OPAQUE: bool = false;
 override REFINES: bool = true;
-
-const TABLE_WIDTH: u32 = 2048u;
 
 fn light_table(i: u32) -> vec4<f32> {
     return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);

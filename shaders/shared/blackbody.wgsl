@@ -1,18 +1,10 @@
 // Thermal light as the eye sees it: mirrors physics/blackbody.rs (BlackbodyTable), where the formulas and reasons are.
 // Reads light_table(i), defined where the bindings are: node i is rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
 
+#import constants
 #requires fn light_table(i: u32) -> vec4<f32>
 
 const BLACKBODY_OFFSET: u32 = 0u;
-const BLACKBODY_SIZE: u32 = 512u;
-const MIN_TEMPERATURE: f32 = 100.0;
-const MAX_TEMPERATURE: f32 = 1e20;
-const COORDINATE_TEMPERATURE: f32 = 1000.0;
-// c2 / 650 nm
-const WIEN_TEMPERATURE: f32 = 22135.029;
-const MAX_RATIO: f32 = 5e34;
-const MAX_LN_RATIO: f32 = 80.0;
-const MAX_BEAMING: f32 = 1e9;
 
 // Of the table that begins at entry `first`: rgb / Y, not clamped, and ln(Y / T); MIN_TEMPERATURE <= temperature <=
 // MAX_TEMPERATURE.

@@ -54,12 +54,3 @@ struct Frame {
 
 const RAIN_CLOCK: u32 = 2u;
 
-const VIEW_REDSHIFT: u32 = 1u;
-const VIEW_ORDER: u32 = 2u;
-const VIEW_DEFLECTION: u32 = 3u;
-const VIEW_STEPS: u32 = 4u;
-const VIEW_METRIC: u32 = 5u;
-
-const EFFECT_DOPPLER_SHIFT: u32 = 1u;
-const EFFECT_GRAVITY_SHIFT: u32 = 2u;
-const EFFECT_BEAMING: u32 = 4u;

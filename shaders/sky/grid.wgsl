@@ -1,20 +1,10 @@
 // The coordinate grid laid over the sky: mirrors src/sky/grid.rs, where the reasons are. Uses shared/math.wgsl and
 // records/record.wgsl, and to_sky(d), defined where the bindings are.
 
+#import constants
 #import records/record
 #import shared/math
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
-
-const GRID_SPACING: f32 = PI / 12.0;
-const GRID_CAP_SPACING: f32 = PI / 2.0;
-const GRID_CAP: f32 = 0.9659258262890683;
-const GRID_WIDTH: f32 = 1.3;
-const GRID_OPEN: f32 = 10.0;
-const GRID_DENSE: f32 = 5.0;
-const GRID_TINT: f32 = GRID_WIDTH / GRID_DENSE;
-const GRID_WHOLE_SKY: f32 = 100.0;
-const GRID_COLOUR = vec3<f32>(0.05, 0.16, 0.26);
-const GRID_ORIGIN_COLOUR = vec3<f32>(0.42, 0.17, 0.03);
 
 struct Lines {
     coverage: f32,

@@ -2,18 +2,11 @@
 // read one by one: the weights of samplers have 8 bits. Uses shared/math.wgsl, records/record.wgsl and shared/blackbody.wgsl, and to_sky(d),
 // defined where the bindings are.
 
+#import constants
 #import records/record
 #import shared/blackbody
 #import shared/math
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
-
-const MAX_SPREAD: f32 = 6.0;
-const WHOLE_SKY: f32 = 100.0;
-const TINY_AXIS: f32 = 1e-12;
-const MAX_MAP_LIGHT: f32 = 1e9;
-const COOLEST_RATIO: f32 = -2.696;
-const HOTTEST_RATIO: f32 = 0.973;
-const TINY_LIGHT: f32 = 1e-9;
 
 // A line of taps across a pixel's patch: in levels of texels of 1 rad; from tap to tap, sky axes; length in steps.
 struct Taps {

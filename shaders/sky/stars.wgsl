@@ -10,9 +10,6 @@
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
 #requires fn least_patch() -> f32
 
-const STAR_TINY_AREA: f32 = 1e-30;
-const MAX_STAR_LIGHT: f32 = 1e9;
-
 fn star_side(level: u32) -> u32 {
     return STAR_FINEST >> level;
 }

@@ -1,15 +1,13 @@
 // Kernel: the steps of all rays of a traced rectangle, summed. In a pass of its own: a barrier or an atomic for every
 // pixel would cost the tracing kernel more than this does.
 
+#import constants
 #import shared/pass
 #import traced/layout
 
 @group(0) @binding(0) var<uniform> pass_: Pass;
 @group(0) @binding(1) var record_meta: texture_2d<u32>;
 @group(0) @binding(2) var<storage, read_write> step_sum: atomic<u32>;
-
-// Pixels of a row that one thread sums.
-const COUNT_RUN: u32 = 8u;
 
 var<workgroup> group_sum: atomic<u32>;
 

@@ -1,12 +1,12 @@
 // Kernel: traces the pixels of a tile's rectangle into record textures. What shading will do with them it does not
 // know.
 
+#import constants
 #import camera/observer
 #import camera/projection
 #import geodesic/geodesic
 #import geodesic/trace
 #import shared/deciding
-#import shared/fate
 #import shared/frame
 #import shared/math
 #import shared/pass

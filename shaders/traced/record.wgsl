@@ -1,7 +1,7 @@
 // Ray records of traced pixels: reads what traced/pixels.wgsl wrote.
 
+#import constants
 #import records/record
-#import shared/fate
 #import traced/footprints
 #import traced/layout
 

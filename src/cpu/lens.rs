@@ -12,16 +12,13 @@ use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_PLACE};
-use crate::scene::refine::{looked_up_edge, near_disk_edge, reached_u};
+use crate::scene::refine::{LIKE, looked_up_edge, near_disk_edge, reached_u};
 use crate::scene::turbulence::Place;
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
-
-/// Relative difference of u of crossings up to which the footprint of one serves for the other.
-const LIKE: f64 = 1e-2;
 
 /// All but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast as so many rays are
 /// traced.

@@ -206,14 +206,4 @@ mod tests {
             }
         }
     }
-
-    /// The numbers written into the WGSL are those here: `gpu_film_agrees` compares colours; this names the views.
-    #[test]
-    fn shader_knows_the_views() {
-        let wgsl = include_str!("../../shaders/film/false_colour.wgsl");
-        for (name, view) in [("REDSHIFT", View::Redshift), ("ORDER", View::Order), ("METRIC", View::Metric)] {
-            let line = format!("const COLOUR_OF_{name}: u32 = {}u;", view as u32);
-            assert!(wgsl.contains(&line), "{line}");
-        }
-    }
 }

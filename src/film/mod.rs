@@ -5,7 +5,7 @@
 
 pub mod bloom;
 mod false_colour;
-mod tone_map;
+pub(crate) mod tone_map;
 
 use crate::image::PixelFormat;
 use crate::scene::{Film, ToneMap, View};
@@ -166,7 +166,7 @@ fn code(v: f32) -> u32 {
 }
 
 /// Largest finite f16.
-const MAX_F16: f32 = 65504.0;
+pub(crate) const MAX_F16: f32 = 65504.0;
 
 /// Finite: brighter light than f16 can hold becomes its largest number.
 fn develop_rgba16f(params: &FilmParams, radiance: [f32; 4]) -> [u32; 2] {

@@ -28,6 +28,12 @@ struct LevelUniform {
     tails: [[f32; TAIL]; 2],
 }
 
+#[cfg(test)]
+pub(super) fn layout() -> super::layout::Layout {
+    super::layout::layout!(LevelUniform as "BloomLevel": fine, cells, origin, first, count, own, above,
+        tail_x = tails + 0, tail_y = tails + 16)
+}
+
 /// Textures that frames with bloom share; they grow and stay.
 #[derive(Default)]
 pub struct BloomBuffers {

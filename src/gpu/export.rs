@@ -6,8 +6,8 @@ use crate::scene::refine::Edge;
 use crate::scene::turbulence::Place;
 use glam::DVec3;
 
-const CROSSINGS: usize = 4;
-const VECTORS: usize = 4 + 3 * CROSSINGS;
+pub(super) const CROSSINGS: usize = 4;
+pub(super) const VECTORS: usize = 4 + 3 * CROSSINGS;
 /// Bytes of a record.
 pub const EXPORT_BYTES: u64 = 16 * VECTORS as u64;
 

@@ -1,9 +1,8 @@
 //! The files of shaders/, embedded in the library, by their names there without the ending; and `constants`, which Rust
 //! writes. Knows nothing of what is in them.
 
-use super::preprocess;
+use super::{constants, preprocess};
 use crate::error::{Error, Result};
-use crate::sky;
 use std::borrow::Cow;
 
 macro_rules! files {
@@ -34,7 +33,6 @@ pub const FILES: &[(&str, &str)] = files! {
     "film/summed"
     "geodesic/geodesic"
     "geodesic/integrator"
-    "geodesic/nystrom"
     "geodesic/rays"
     "geodesic/trace"
     "lens/axis"
@@ -84,7 +82,7 @@ pub const FILES: &[(&str, &str)] = files! {
 /// The text of a fragment.
 fn find(name: &str) -> Option<Cow<'static, str>> {
     if name == "constants" {
-        return Some(sky::StarIndex::wgsl_constants().into());
+        return Some(constants::fragment().into());
     }
     FILES.iter().find(|(file, _)| *file == name).map(|(_, text)| (*text).into())
 }
@@ -119,6 +117,15 @@ mod tests {
         let files: BTreeSet<_> = list(&rooms).flat_map(|room| list(&room).collect::<Vec<_>>()).collect();
         let embedded: BTreeSet<_> = FILES.iter().map(|(name, _)| rooms.join(format!("{name}.wgsl"))).collect();
         assert_eq!(files, embedded);
+    }
+
+    #[test]
+    fn every_file_is_part_of_some_shader() {
+        let sources = crate::gpu::shader_sources().expect("WGSL that can be joined");
+        for (name, _) in FILES {
+            let begin = format!("// {name}.wgsl\n");
+            assert!(sources.iter().any(|(_, source)| source.contains(&begin)), "{name} is part of no shader");
+        }
     }
 
     /// What a fragment may be given for something that it requires.

@@ -81,7 +81,7 @@ pub enum PixelTarget {
 }
 
 /// `FROM_FILM` of film/film.wgsl and `FROM_FRAME` of camera/projection.wgsl: the uniform says which.
-const FROM_UNIFORM: u32 = u32::MAX;
+pub(super) const FROM_UNIFORM: u32 = u32::MAX;
 
 impl FilmLook {
     /// For `film` in pixels of `format`.
@@ -170,7 +170,7 @@ pub struct Refined {
 
 /// `METHOD_*` of geodesic/integrator.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MethodCode(u32);
+pub struct MethodCode(pub(super) u32);
 
 impl From<Method> for MethodCode {
     fn from(method: Method) -> Self {
@@ -213,7 +213,7 @@ pub enum KernelKey {
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
 /// The same of those that put them row by row.
-const ROWS_GROUP: [u32; 2] = [32, 4];
+pub(super) const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 

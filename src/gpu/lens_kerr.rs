@@ -15,8 +15,8 @@ use glam::{DVec3, Vec4};
 use wgpu::BufferUsages as Usage;
 
 /// As in lens/kerr.wgsl; as many as nodes of the critical curve, which shares their texture.
-const COLUMNS: u32 = CRITICAL_NODES as u32;
-const PER_OCTAVE: usize = 16;
+pub(super) const COLUMNS: u32 = CRITICAL_NODES as u32;
+pub(super) const PER_OCTAVE: usize = 16;
 /// Orders in a layer without pattern.
 const ORDERS_A_LAYER: u32 = 4;
 /// Rows are made in so many at once: an eye that moves changes their number.
@@ -34,6 +34,12 @@ struct KerrUniform {
     rows: [u32; 2],
     orders: u32,
     capture_u: f32,
+}
+
+#[cfg(test)]
+pub(super) fn layout() -> super::layout::Layout {
+    super::layout::layout!(KerrUniform as "KerrLens": k, e1, e2, outer_rows = rows + 0, inner_rows = rows + 4, orders,
+        capture_u)
 }
 
 /// What is asked of the tables.

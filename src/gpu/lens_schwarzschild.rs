@@ -12,9 +12,9 @@ use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages as Usage;
 
 /// As in lens/schwarzschild.wgsl.
-const PER_OCTAVE: f64 = 32.0;
-const OCTAVES: f64 = 22.0;
-const INTERVALS: u32 = 128;
+pub(super) const PER_OCTAVE: f64 = 32.0;
+pub(super) const OCTAVES: f64 = 22.0;
+pub(super) const INTERVALS: u32 = 128;
 /// Nodes beyond the last place that is looked up.
 const MARGIN: f64 = 4.0;
 /// Eyes further in have no captured ray that meets a disk.
@@ -28,6 +28,12 @@ struct SchwarzschildUniform {
     separatrix: f32,
     slope: f32,
     nodes: [u32; 2],
+}
+
+#[cfg(test)]
+pub(super) fn layout() -> super::layout::Layout {
+    super::layout::layout!(SchwarzschildUniform as "SchwarzschildLens": critical, separatrix, slope,
+        outer_nodes = nodes + 0, inner_nodes = nodes + 4)
 }
 
 impl SchwarzschildUniform {

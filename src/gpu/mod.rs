@@ -6,6 +6,7 @@ mod bindings;
 mod bloom;
 mod buffer;
 mod compilers;
+mod constants;
 mod device;
 #[doc(hidden)]
 pub mod driver_lock;
@@ -17,6 +18,8 @@ mod frame_kernels;
 mod gl_thread;
 mod kernel_key;
 mod kernels;
+#[cfg(test)]
+mod layout;
 mod lens_kerr;
 mod lens_schwarzschild;
 mod loader;

@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::physics::observer::LocalFrame;
 
 /// Pixels of a row that a thread of traced/count.wgsl sums.
-const COUNT_RUN: u32 = 8;
+pub(super) const COUNT_RUN: u32 = 8;
 /// Bytes of a texel of the record textures.
 const TEXEL: u64 = 16;
 

@@ -13,7 +13,7 @@ use crate::sky::index::{PROFILE_OFFSET, PROFILE_SIZE};
 use std::sync::Arc;
 
 /// Entries of a row: a width that every device takes.
-const TABLE_WIDTH: usize = 2048;
+pub(super) const TABLE_WIDTH: usize = 2048;
 /// Rows that are written at once: 4 MiB.
 const WRITTEN_ROWS: usize = 128;
 

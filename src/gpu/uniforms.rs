@@ -62,6 +62,16 @@ pub struct PassUniform {
     pub light_origin: [i32; 2],
 }
 
+#[cfg(test)]
+pub(super) fn layouts() -> [super::layout::Layout; 2] {
+    use super::layout::layout;
+    let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
+        sky_x, sky_y, sky_z, disk, size, turbulence, disk_u, opaque_u, capture_u, max_steps, max_crossings, rain,
+        effects, view, pattern, map_sizes, projection);
+    let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
+    [frame, pass]
+}
+
 fn with(v: DVec3, w: f64) -> Vec4 {
     v.as_vec3().extend(w as f32)
 }

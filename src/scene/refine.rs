@@ -26,18 +26,20 @@ pub enum Edge {
 /// Samples of a pixel of either kind. The many also serve pixels on the disk where u does not change evenly.
 pub const EDGE_SAMPLES: u32 = 4;
 pub const CURVE_SAMPLES: u32 = 32;
+/// Relative difference of u of crossings up to which the footprint of one serves for the other.
+pub const LIKE: f64 = 1e-2;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
-const EDGE_REACH: f64 = 0.75;
+pub(crate) const EDGE_REACH: f64 = 0.75;
 /// Relative change of u from pixel to pixel from which on the disk's light in the pixel is not that at its centre.
-const STEEP_CHANGE: f64 = 0.1;
+pub(crate) const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
-const CURVE_REACH: f64 = 0.85;
-const RINGS_REACH: f64 = 3.0;
+pub(crate) const CURVE_REACH: f64 = 0.85;
+pub(crate) const RINGS_REACH: f64 = 3.0;
 /// Between the samples of a pixel of `EDGE_SAMPLES`: what u may change, of the disk's own range of it, and still count
 /// as even; and of the direct image, relative to u, as there the light itself may not change evenly.
-const EVEN_CHANGE: f64 = 0.5;
-const DIRECT_CHANGE: f64 = 0.25;
+pub(crate) const EVEN_CHANGE: f64 = 0.5;
+pub(crate) const DIRECT_CHANGE: f64 = 0.25;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
 pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {

@@ -29,14 +29,14 @@ use std::f64::consts::{LN_2, TAU};
 /// Rays with |t^| below 2^-`CORE_OCTAVES` are to be integrated: so close to the curve a direction in f32 says little.
 pub const CORE_OCTAVES: usize = 10;
 /// Rows below the first row of cells in use, and above the row of the axis: what the error estimate's stencil reaches.
-const ROWS_BELOW: usize = 2;
-const ROWS_ABOVE: usize = 3;
+pub(crate) const ROWS_BELOW: usize = 2;
+pub(crate) const ROWS_ABOVE: usize = 3;
 /// Step in sigma: some 1e-7 for a whole ray, typically much less: what f32 resolves.
 const STEP: f64 = 0.25;
 /// Of crossings and ends, in sigma.
 const SLACK: f64 = 1e-8;
 /// Sigma for which a ray is followed beyond infinity: longer than one step of the table takes a crossing.
-const BEYOND_INFINITY: f64 = 1.0;
+pub(crate) const BEYOND_INFINITY: f64 = 1.0;
 /// More than any ray of the grid needs.
 const MAX_STEPS: usize = 2000;
 /// Eyes nearer than this, in M, have the finer outer branch; it has few octaves then.
@@ -47,7 +47,7 @@ const NARROWEST_LAYER: f64 = 0.03;
 const LAYER_SHARE: f64 = 0.5;
 /// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without
 /// one.
-const INWARD: f64 = 1.5;
+pub(crate) const INWARD: f64 = 1.5;
 /// U of a crossing that does not come: the ray is captured before (+), or gone past infinity (-).
 pub const NO_CROSSING: f64 = 1e3;
 /// Most numbers in one node.
