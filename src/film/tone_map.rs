@@ -1,5 +1,5 @@
 //! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1].
-//! In f32, as `shaders/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
+//! In f32, as `shaders/film/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
 
 /// Brighter light is taken as this: far above every curve's white, and its square is finite.
 pub const MAX_SCENE_LIGHT: f32 = 65504.0;
@@ -25,8 +25,8 @@ fn balanced(m: Balanced, [r, g, b]: [f32; 3]) -> [f32; 3] {
 }
 
 /// Linear Rec. 709 -> ACES AP1 with the RRT's desaturation; and the way back with the ODT's (Hill).
-const ACES_IN: Balanced = [[0.35458, 0.04823], [0.076, 0.01566], [0.0284, 0.13383]];
-const ACES_OUT: Balanced = [[-0.53108, -0.07367], [-0.10208, -0.00605], [-0.00327, -0.07276]];
+pub(crate) const ACES_IN: Balanced = [[0.35458, 0.04823], [0.076, 0.01566], [0.0284, 0.13383]];
+pub(crate) const ACES_OUT: Balanced = [[-0.53108, -0.07367], [-0.10208, -0.00605], [-0.00327, -0.07276]];
 
 /// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab, and kept by many
 /// engines): a rational curve between two matrices. Unlike a curve per channel alone it lets bright saturated light go
@@ -38,17 +38,17 @@ pub fn aces(rgb: [f32; 3]) -> [f32; 3] {
 }
 
 /// Troy Sobotka's AgX inset, and its inverse.
-const AGX_IN: Balanced = [[0.0784336, 0.0792237], [0.0423282, 0.0791661], [0.0423757, 0.0784336]];
-const AGX_OUT: Balanced = [[-0.0980332, -0.0990408], [-0.0529035, -0.0989508], [-0.0529776, -0.0980332]];
+pub(crate) const AGX_IN: Balanced = [[0.0784336, 0.0792237], [0.0423282, 0.0791661], [0.0423757, 0.0784336]];
+pub(crate) const AGX_OUT: Balanced = [[-0.0980332, -0.0990408], [-0.0529035, -0.0989508], [-0.0529776, -0.0980332]];
 /// Stops about middle grey, 0.18, that the curve spans: -10 .. +6.5, in log2 of light.
-const AGX_LOW: f32 = -12.473931;
-const AGX_SPAN: f32 = 16.5;
+pub(crate) const AGX_LOW: f32 = -12.473931;
+pub(crate) const AGX_SPAN: f32 = 16.5;
 /// Middle grey on that axis, 10 / 16.5, where the curve passes through one half.
-const AGX_PIVOT: f32 = 0.606_060_6;
+pub(crate) const AGX_PIVOT: f32 = 0.606_060_6;
 
 /// |s| of the sigmoid below and above the pivot.
-const AGX_TOE: f32 = 0.5122774;
-const AGX_SHOULDER: f32 = 0.5414642;
+pub(crate) const AGX_TOE: f32 = 0.5122774;
+pub(crate) const AGX_SHOULDER: f32 = 0.5414642;
 
 /// AgX, base look (T. Sobotka, AgX-S2O3, 2022): inset, log2, a sigmoid, outset; the result is for a display of gamma
 /// 2.2. The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the

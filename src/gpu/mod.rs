@@ -6,6 +6,8 @@ mod device;
 mod frame;
 mod gl_tracer;
 mod kernel;
+#[cfg(test)]
+mod layouts;
 mod lens;
 mod window;
 
@@ -26,6 +28,8 @@ pub use frame::setup::FrameTarget;
 pub use frame::submission::Submitted;
 pub use frame::tracer::GpuTracer;
 pub use gl_tracer::GlTracer;
+#[doc(hidden)]
+pub use kernel::fragments::join_wgsl;
 pub use kernel::kernels::KernelWaits;
 #[doc(hidden)]
 pub use kernel::wgsl::shader_sources;

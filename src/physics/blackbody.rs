@@ -1,6 +1,6 @@
 //! Thermal light as the eye sees it: Planck's law through the CIE 1931 observer to linear Rec. 709 colour, the table
 //! of it that both tracers read, and the one rule by which a redshift changes it. Knows nothing of disks, stars or
-//! film. `shaders/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.
+//! film. `shaders/shared/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.
 
 use super::cie1931::{COLOUR_MATCHING, FIRST_WAVELENGTH, WAVELENGTH_STEP};
 use std::sync::OnceLock;
@@ -70,15 +70,15 @@ pub const MIN_TEMPERATURE: f64 = 100.0;
 pub const MAX_TEMPERATURE: f64 = 1e20;
 /// K. The table's coordinate is T0 / (T + T0): 0 at infinite temperature, where everything tabulated is analytic in 1
 /// / T. The value puts the nodes where the residual bends most.
-const COORDINATE_TEMPERATURE: f64 = 1000.0;
+pub(crate) const COORDINATE_TEMPERATURE: f64 = 1000.0;
 /// Metres. The wavelength of Wien's exponent that is taken out of ln Y; deep red, so that little remains when cold.
 const WIEN_WAVELENGTH: f64 = 650e-9;
-const WIEN_TEMPERATURE: f64 = SECOND_RADIATION_CONSTANT / WIEN_WAVELENGTH;
+pub(crate) const WIEN_TEMPERATURE: f64 = SECOND_RADIATION_CONSTANT / WIEN_WAVELENGTH;
 /// Largest luminance ratio, about e^80: leaves f32 room for colour, brightness and sums.
-const MAX_RATIO: f64 = 5e34;
-const MAX_LN_RATIO: f64 = 80.0;
+pub(crate) const MAX_RATIO: f64 = 5e34;
+pub(crate) const MAX_LN_RATIO: f64 = 80.0;
 /// Largest g_beaming / g_colour: its fourth power is finite in f32.
-const MAX_BEAMING: f64 = 1e9;
+pub(crate) const MAX_BEAMING: f64 = 1e9;
 
 /// Colour and luminance of blackbodies, linearly interpolated. From 500 K up to any temperature: luminance within 1e-4
 /// relative, rgb per luminance within 5e-5; down to 100 K luminance within 6e-3.

@@ -1,5 +1,5 @@
 //! Light rays traced backward from the eye, in Mino time tau: the equations of motion and what is measured along a ray.
-//! Knows no integrator and no observer. Mirrored by `shaders/geodesic.wgsl`.
+//! Knows no integrator and no observer. Mirrored by `shaders/geodesic/geodesic.wgsl`.
 //!
 //! State: u = 1/r, the unit position vector N (in axes that the drag has not turned), the drag angle and the delay.
 //! With the constants E, L = L_z, Q (Carter's), K = Q + L^2, B = K - 2 a L E + a^2 E^2 and primes for d / d tau

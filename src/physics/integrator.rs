@@ -1,6 +1,6 @@
 //! Steps of a light ray in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom method of
 //! order 5 that the renderer uses; their common dense output; the step limit beside the horizon. Knows the equations
-//! only through `geodesic`. Mirrored by `shaders/integrator.wgsl`.
+//! only through `geodesic`. Mirrored by `shaders/geodesic/integrator.wgsl`.
 
 use super::geodesic::{Clock, Constants, State};
 use glam::DVec3;
@@ -27,8 +27,8 @@ pub fn step(method: Method, c: &Constants, s: &State, h: f64, with_delay: bool) 
 }
 
 /// y weights of Nystrom's method at its first three nodes (the fourth's is 0), and y' weights at all four.
-pub(super) const B: [f64; 3] = [1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0];
-pub(super) const D: [f64; 4] = [1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0];
+pub(crate) const B: [f64; 3] = [1.0 / 24.0, 25.0 / 84.0, 9.0 / 56.0];
+pub(crate) const D: [f64; 4] = [1.0 / 24.0, 125.0 / 336.0, 27.0 / 56.0, 5.0 / 48.0];
 
 /// Nystrom's method for y'' = f(y); without spin N turns evenly, which is exact. Drag and delay, z' = f(u, N), take
 /// the weights of y', which keeps order 5.

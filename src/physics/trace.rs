@@ -1,5 +1,5 @@
 //! One light ray from the eye to its fate: steps, crossings of the equatorial plane, escape and capture. The only
-//! driver of the integrators. Mirrored by `shaders/trace.wgsl`.
+//! driver of the integrators. Mirrored by `shaders/geodesic/trace.wgsl`.
 
 use super::geodesic::{Constants, State};
 use super::integrator::{Method, Quintic, held_inside, step, step_limit};

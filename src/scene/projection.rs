@@ -1,5 +1,5 @@
 //! How a camera's projection takes positions of the frame to directions, in the camera's own axes (right, up,
-//! forward). Knows neither hole nor observer. Mirrored by `shaders/projection.wgsl`.
+//! forward). Knows neither hole nor observer. Mirrored by `shaders/camera/projection.wgsl`.
 
 use super::{Camera, Projection, Region};
 use crate::error::{Error, Result};

@@ -1,4 +1,4 @@
-//! The ray record of a pixel: the one interface between lensing and shading, on both tracers (shaders/record.wgsl has
+//! The ray record of a pixel: the one interface between lensing and shading, on both tracers (shaders/records/record.wgsl has
 //! the same fields). However it was made, shading cannot tell. Plain data.
 
 use super::refine::Edge;

@@ -1,5 +1,5 @@
 //! Pixels that edges run through: which these are, where their samples lie, and how much of a sample's cell the disk
-//! covers. Shared by both tracers (shaders/record.wgsl and shaders/refine.wgsl mirror it); knows no rays and no light.
+//! covers. Shared by both tracers (shaders/records/record.wgsl and shaders/refine/refine.wgsl mirror it); knows no rays and no light.
 //!
 //! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, and misses rings
 //! thinner than the pixel. Two kinds of pixels get more rays:
@@ -29,19 +29,21 @@ pub enum Edge {
 /// evenly.
 pub const EDGE_SAMPLES: u32 = 4;
 pub const CURVE_SAMPLES: u32 = 32;
+/// Relative difference of u of crossings up to which the footprint of one serves for the other.
+pub const LIKE: f64 = 1e-2;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
-const EDGE_REACH: f64 = 0.75;
+pub(crate) const EDGE_REACH: f64 = 0.75;
 /// The relative change of u from pixel to pixel above which the disk's mean light in the pixel is not that at its
 /// centre.
-const STEEP_CHANGE: f64 = 0.1;
+pub(crate) const STEEP_CHANGE: f64 = 0.1;
 /// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
-const CURVE_REACH: f64 = 0.85;
-const RINGS_REACH: f64 = 3.0;
+pub(crate) const CURVE_REACH: f64 = 0.85;
+pub(crate) const RINGS_REACH: f64 = 3.0;
 /// The change of u between the samples of a pixel of `EDGE_SAMPLES` that still counts as even: as a share of the disk's
 /// own range of u, and for the direct image relative to u, because there the light itself may not change evenly.
-const EVEN_CHANGE: f64 = 0.5;
-const DIRECT_CHANGE: f64 = 0.25;
+pub(crate) const EVEN_CHANGE: f64 = 0.5;
+pub(crate) const DIRECT_CHANGE: f64 = 0.25;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
 pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {

@@ -1,5 +1,5 @@
 //! The light of a sky map in a pixel, filtered over the pixel's patch of sky, and what frequency shifts make of it.
-//! Both tracers filter alike: `shaders/sky_map.wgsl` has the functions under the same names. Knows no cameras and no
+//! Both tracers filter alike: `shaders/sky/map.wgsl` has the functions under the same names. Knows no cameras and no
 //! holes.
 //!
 //! The patch is taken for an ellipse, whose axes are the singular values of the pixel's derivatives. Trilinear taps,
@@ -15,23 +15,23 @@ use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// Longest line that taps stand on, in minor axes; so there are at most 7, the outer ones at half weight and more.
-const MAX_SPREAD: f64 = 6.0;
+pub(crate) const MAX_SPREAD: f64 = 6.0;
 /// sr. A pixel that sees more of the sky than this, or of whose patch nothing is known, gets the mean of all.
-const WHOLE_SKY: f64 = 100.0;
+pub(crate) const WHOLE_SKY: f64 = 100.0;
 /// rad. Keeps divisions finite for cameras of no field of view at all.
-const TINY_AXIS: f64 = 1e-12;
+pub(crate) const TINY_AXIS: f64 = 1e-12;
 /// Brightest light: finite in f32, whatever the host multiplies it by.
-const MAX_MAP_LIGHT: f64 = 1e9;
+pub(crate) const MAX_MAP_LIGHT: f64 = 1e9;
 
 // Colours are taken for temperatures from 2500 K to 25000 K: those of the reddest and the bluest stars.
 /// ln(blue / red) of such blackbodies, linear Rec. 709.
-const COOLEST_RATIO: f64 = -2.696;
-const HOTTEST_RATIO: f64 = 0.973;
+pub(crate) const COOLEST_RATIO: f64 = -2.696;
+pub(crate) const HOTTEST_RATIO: f64 = 0.973;
 /// Coefficients of 1000 K / T in powers of ln(blue / red), between those: least squares, at most 0.15 % off.
 const INVERSE_TEMPERATURE: [f64; 6] =
     [0.152_906_4, -0.102_254_5, -0.005_097_082, -0.005_358_591, -0.003_424_309, -0.000_596_459_5];
 /// Least blue and red that have a colour: that of darker light is not looked at.
-const TINY_LIGHT: f64 = 1e-9;
+pub(crate) const TINY_LIGHT: f64 = 1e-9;
 
 /// A line of taps.
 struct Taps {

@@ -1,5 +1,5 @@
 //! Where the Milky Way's plane lies, and how stars crowd towards it: one law for the procedural field, for the mean
-//! light of faint stars and for `shaders/stars.wgsl`.
+//! light of faint stars and for `shaders/sky/stars.wgsl`.
 
 use super::catalogue::Star;
 use glam::DVec3;

@@ -1,5 +1,5 @@
 //! The coordinate grid of the sky axes: lines of constant width on the screen, laid over the sky. The same in both
-//! tracers (`shaders/sky_grid.wgsl`). Knows no cameras and no holes.
+//! tracers (`shaders/sky/grid.wgsl`). Knows no cameras and no holes.
 //!
 //! Right ascension every 15 degrees (an hour), from declination +-75 degrees to the poles every 90; declination every
 //! 15. How far a pixel is from a line it knows from the coordinate's distance to the line and the length of its
@@ -10,22 +10,22 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// rad. Between lines.
-const GRID_SPACING: f64 = PI / 12.0;
+pub(crate) const GRID_SPACING: f64 = PI / 12.0;
 /// rad. Between those of right ascension beyond GRID_CAP, the sine of a declination with a line of its own.
-const GRID_CAP_SPACING: f64 = PI / 2.0;
-const GRID_CAP: f64 = 0.965_925_826_289_068_3;
+pub(crate) const GRID_CAP_SPACING: f64 = PI / 2.0;
+pub(crate) const GRID_CAP: f64 = 0.965_925_826_289_068_3;
 /// Pixels.
-const GRID_WIDTH: f64 = 1.3;
+pub(crate) const GRID_WIDTH: f64 = 1.3;
 /// Pixels between lines from which on they are lines, and below which they are a tint.
-const GRID_OPEN: f64 = 10.0;
-const GRID_DENSE: f64 = 5.0;
+pub(crate) const GRID_OPEN: f64 = 10.0;
+pub(crate) const GRID_DENSE: f64 = 5.0;
 /// Coverage of that tint: of the lines at GRID_DENSE, and no more where they are denser.
-const GRID_TINT: f64 = GRID_WIDTH / GRID_DENSE;
+pub(crate) const GRID_TINT: f64 = GRID_WIDTH / GRID_DENSE;
 /// A pixel that sees more of the sky than this (sr), or of whose patch nothing is known, is a tint.
-const GRID_WHOLE_SKY: f64 = 100.0;
+pub(crate) const GRID_WHOLE_SKY: f64 = 100.0;
 /// Linear Rec. 709 radiance of the lines, and of the equator and right ascension 0.
-const GRID_COLOUR: [f64; 3] = [0.05, 0.16, 0.26];
-const GRID_ORIGIN_COLOUR: [f64; 3] = [0.42, 0.17, 0.03];
+pub(crate) const GRID_COLOUR: [f64; 3] = [0.05, 0.16, 0.26];
+pub(crate) const GRID_ORIGIN_COLOUR: [f64; 3] = [0.42, 0.17, 0.03];
 
 /// Coverage of a family of lines, and how much of it is of the line where the coordinate is 0.
 #[derive(Clone, Copy)]

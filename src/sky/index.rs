@@ -1,6 +1,6 @@
 //! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the
 //! stars within the cell enlarged by half its size on every side. Flat arrays, the same ones on the GPU.
-//! `shaders/stars.wgsl` has `cell_of` and `level_for` too.
+//! `shaders/sky/stars.wgsl` has `cell_of` and `level_for` too.
 
 use super::catalogue::Star;
 use super::field::StarField;
@@ -36,11 +36,11 @@ const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, 9.6, 8.3, 7.0,
 
 /// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for
 /// `PROFILE_SIZE` entries of the disk's, the mean skies, and the stars.
-const MEAN_SKY_TABLES: usize = BLACKBODY_SIZE;
+pub(crate) const MEAN_SKY_TABLES: usize = BLACKBODY_SIZE;
 pub const PROFILE_OFFSET: usize = MEAN_SKY_TABLES + (STAR_LEVELS as usize + 1) * BLACKBODY_SIZE;
 pub const PROFILE_SIZE: usize = 2048;
-const MEAN_SKY_OFFSET: usize = PROFILE_OFFSET + PROFILE_SIZE;
-const STARS_OFFSET: usize = MEAN_SKY_OFFSET + STAR_LEVELS as usize;
+pub(crate) const MEAN_SKY_OFFSET: usize = PROFILE_OFFSET + PROFILE_SIZE;
+pub(crate) const STARS_OFFSET: usize = MEAN_SKY_OFFSET + STAR_LEVELS as usize;
 
 /// Blackbodies that stand for the stars that a level leaves out, before their light is put into one table.
 const MEAN_SKY_PARTS: usize = 6;
@@ -166,7 +166,7 @@ impl StarIndex {
         })
     }
 
-    /// `light_tables` of the GPU, at the offsets of `wgsl_constants`: blackbodies; the mean skies' tables; room for
+    /// `light_tables` of the GPU, at the offsets above: blackbodies; the mean skies' tables; room for
     /// the disk's profile; of each level the temperatures that its table and the next one are looked up at (0: no
     /// light), the next one's flux limit, and the crowding; of every star flux, temperature, its ln Y, 0; the lists.
     pub fn light_tables(&self) -> impl Iterator<Item = [f32; 4]> + '_ {
@@ -199,23 +199,6 @@ impl StarIndex {
 
     fn lists_offset(&self) -> usize {
         STARS_OFFSET + self.stars.len() / 2
-    }
-
-    /// The constants of the shaders that this module decides, as WGSL.
-    pub fn wgsl_constants() -> String {
-        let [x, y, z] = GALACTIC_POLE.to_array();
-        format!(
-            "const MEAN_SKY_TABLES: u32 = {MEAN_SKY_TABLES}u;\n\
-             const PROFILE_OFFSET: u32 = {PROFILE_OFFSET}u;\n\
-             const PROFILE_SIZE: u32 = {PROFILE_SIZE}u;\n\
-             const MEAN_SKY_OFFSET: u32 = {MEAN_SKY_OFFSET}u;\n\
-             const STARS_OFFSET: u32 = {STARS_OFFSET}u;\n\
-             const STAR_LEVELS: u32 = {STAR_LEVELS}u;\n\
-             const STAR_FINEST: u32 = {STAR_FINEST}u;\n\
-             const STAR_WARP: f32 = {STAR_WARP};\n\
-             const STAR_MARGIN: f32 = {STAR_MARGIN};\n\
-             const GALACTIC_POLE: vec3<f32> = vec3<f32>({x}, {y}, {z});\n"
-        )
     }
 
     /// The mean sky's brightness in a direction (a unit vector), relative to its mean over the sky.

@@ -5,14 +5,14 @@
 
 pub mod catalogue;
 mod field;
-mod filter;
+pub(crate) mod filter;
 pub mod galaxy;
-mod grid;
+pub(crate) mod grid;
 pub mod index;
 mod map;
 mod milky_way;
 pub mod procedural;
-mod stars;
+pub(crate) mod stars;
 
 pub use field::StarField;
 pub use filter::shifted_map_light;

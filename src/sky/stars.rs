@@ -1,4 +1,4 @@
-//! How stars are drawn, the same in both tracers (`shaders/stars.wgsl`): as points with a fixed footprint in pixels,
+//! How stars are drawn, the same in both tracers (`shaders/sky/stars.wgsl`): as points with a fixed footprint in pixels,
 //! so that they neither alias nor sparkle, and with the brightness that the lens's magnification gives them.
 
 use super::index::{STAR_LEVELS, StarIndex, cell_of, level_for, margin};
@@ -12,9 +12,9 @@ use glam::{DVec2, DVec3};
 /// field of view see them, whose pixels are small: no less than an f32 can tell.
 const LEAST_PATCH: (f64, f64) = (1e-5, 1e-3);
 /// Keeps the division finite for cameras of no field of view at all.
-const TINY_AREA: f64 = 1e-30;
+pub(crate) const TINY_AREA: f64 = 1e-30;
 /// Brightest sum: finite in f32, whatever the host multiplies it by.
-const MAX_STAR_LIGHT: f64 = 1e9;
+pub(crate) const MAX_STAR_LIGHT: f64 = 1e9;
 
 /// Quadratic B-spline, support [-1.5, 1.5]: its values at t + integers sum to 1, so a star's light does not depend on
 /// where between the pixels it lies.

@@ -16,7 +16,7 @@ use bytemuck::{Pod, Zeroable};
 /// Bytes of a pixel's light.
 pub const LIGHT_BYTES: u64 = 8;
 
-/// `BloomLevel` of bloom.wgsl.
+/// `BloomLevel` of bloom/level.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 struct LevelUniform {
@@ -28,6 +28,12 @@ struct LevelUniform {
     own: f32,
     above: f32,
     tails: [[f32; TAIL]; 2],
+}
+
+#[cfg(test)]
+pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
+    crate::gpu::kernel::layout::layout!(LevelUniform as "BloomLevel": fine, cells, origin, first, count, own, above,
+        tail_x = tails + 0, tail_y = tails + 16)
 }
 
 /// Textures that frames with bloom share; they grow and stay.

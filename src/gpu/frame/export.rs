@@ -1,4 +1,4 @@
-//! The ray records of a frame, for tests: has export.wgsl write them, and reads them back.
+//! The ray records of a frame, for tests: has records/export.wgsl write them, and reads them back.
 
 use super::buffers::Size;
 use super::stages::Taking;
@@ -8,6 +8,7 @@ use crate::allocate::collected;
 use crate::error::{Error, Result};
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::{KernelKey, PixelTarget};
+use crate::gpu::kernel::sizes::EXPORT_VECTORS;
 use crate::gpu::lens::records::Shared;
 use crate::physics::trace::Fate;
 use crate::scene::Scene;
@@ -17,14 +18,12 @@ use crate::scene::turbulence::Place;
 use crate::tracer::{FrameRequest, Tile};
 use glam::DVec3;
 
-const CROSSINGS: usize = 4;
-const VECTORS: usize = 4 + 3 * CROSSINGS;
 /// Bytes of a record.
-pub const EXPORT_BYTES: u64 = 16 * VECTORS as u64;
+pub const EXPORT_BYTES: u64 = 16 * EXPORT_VECTORS as u64;
 
 /// The record in `bytes`, EXPORT_BYTES of them.
 pub fn imported(bytes: &[u8]) -> Record {
-    let mut v = [[0.0_f64; 4]; VECTORS];
+    let mut v = [[0.0_f64; 4]; EXPORT_VECTORS];
     for (out, word) in v.as_flattened_mut().iter_mut().zip(bytes.chunks_exact(4)) {
         *out = bytemuck::pod_read_unaligned::<f32>(word).into();
     }

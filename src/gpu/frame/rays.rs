@@ -55,6 +55,13 @@ struct RayEnd {
     rest: [u32; 4],
 }
 
+#[cfg(test)]
+pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 3] {
+    use crate::gpu::kernel::layout::layout;
+    let given = layout!(RaysUniform as "RaysUniform": step, tolerance, max_steps, count, a, r_plus, r_minus, capture_u);
+    [given, layout!(RayStart as "RayStart": light, curve, n, dn), layout!(RayEnd as "RayEnd": n, rest)]
+}
+
 #[derive(Default)]
 pub struct RayBuffers {
     made: Option<[Buffer; 3]>,

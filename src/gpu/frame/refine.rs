@@ -1,5 +1,5 @@
 //! The second look at pixels that edges run through: their list on the device, and the kernels that go over it
-//! (edges.wgsl, refine.wgsl). Knows kernels and their groups, no records and no light.
+//! (refine/edges.wgsl, refine/refine.wgsl). Knows kernels and their groups, no records and no light.
 
 use super::tiles::MAX_BATCH;
 use crate::error::{Error, Result};
@@ -9,7 +9,7 @@ use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::{FilmLook, KernelKey, Look, Refined, Source, Variant};
 use wgpu::BufferUsages as Usage;
 
-/// `Edges` of edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
+/// `Edges` of refine/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
 
 /// Workgroups that share the list: as `REST_GROUPS` of stages.rs.

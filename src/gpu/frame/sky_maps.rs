@@ -70,7 +70,7 @@ impl SkyMaps {
     }
 }
 
-/// All levels in one texture: the finest on top, below it the others side by side (`level_place` of sky_map.wgsl). A
+/// All levels in one texture: the finest on top, below it the others side by side (`level_place` of sky/map.wgsl). A
 /// texture's own levels would do, but lavapipe (Mesa 22.3) takes the size of one for the size of another where pixels
 /// of a workgroup read different ones. Levels that do not fit into a texture are left out.
 fn upload(device: &Device, map: &SkyMap) -> Result<MapTexture> {

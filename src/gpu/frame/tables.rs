@@ -1,20 +1,19 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
 //! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
-//! entries a row (shade.wgsl says why).
+//! entries a row (shade/shade.wgsl says why).
 
 use super::sky_maps::SkyMaps;
 use crate::allocate::with_room;
 use crate::error::{Error, Result};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::sizes::TABLE_WIDTH;
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::scene::Scene;
 use crate::sky::StarIndex;
 use crate::sky::index::{PROFILE_OFFSET, PROFILE_SIZE};
 use std::sync::Arc;
 
-/// Entries of a row: a width that every device takes.
-const TABLE_WIDTH: usize = 2048;
 /// Rows that are written at once: 4 MiB.
 const WRITTEN_ROWS: usize = 128;
 
@@ -90,13 +89,13 @@ impl Tables {
         self.sky_maps
     }
 
-    /// In the order of group 0 of shade.wgsl.
+    /// In the order of group 0 of shade/shade.wgsl.
     pub fn textures(&self) -> [&Texture; 4] {
         let [milky_way, map] = self.sky_maps.textures();
         [&self.light, &self.star_cells, milky_way, map]
     }
 
-    /// `Frame::map_sizes` of frame.wgsl.
+    /// `Frame::map_sizes` of shared/frame.wgsl.
     pub fn map_sizes(&self) -> [u32; 4] {
         self.sky_maps.sizes()
     }

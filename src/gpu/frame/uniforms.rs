@@ -1,4 +1,4 @@
-//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of frame.wgsl and pass.wgsl, field by field. The
+//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field by field. The
 //! only place where f64 becomes f32 on its way to the GPU.
 
 use crate::error::Result;
@@ -60,6 +60,16 @@ pub struct PassUniform {
     /// `EDGE_SAMPLES` or `CURVE_SAMPLES`.
     pub refined: u32,
     pub light_origin: [i32; 2],
+}
+
+#[cfg(test)]
+pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
+    use crate::gpu::kernel::layout::layout;
+    let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
+        sky_x, sky_y, sky_z, disk, size, turbulence, disk_u, opaque_u, capture_u, max_steps, max_crossings, rain,
+        effects, view, pattern, map_sizes, projection);
+    let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
+    [frame, pass]
 }
 
 fn with(v: DVec3, w: f64) -> Vec4 {

@@ -144,7 +144,7 @@ impl Store {
         let layouts = key.groups().iter().map(|slots| self.layout(device, slots)).collect::<Result<Vec<_>>>()?;
         let pipeline = device.compute_pipeline(&Kernel {
             label: key.entry_point(),
-            source: &[&key.wgsl()],
+            source: &[&key.wgsl()?],
             loops: LOOPS,
             entry_point: key.entry_point(),
             constants: &key.constants(),
@@ -285,14 +285,8 @@ impl Kernels {
     }
 }
 
-/// SAFETY of the promise: every loop in shaders/ is one of: the inner loop of `trace`, which adds 1 to `steps` in
-/// every turn before it can `continue` and ends at `max_steps` <= 100000; its outer loop, which ends unless the inner
-/// one has taken a step; loops counted over constants (of a pipeline or of all), over the samples of a pixel (32 at
-/// most), over the words of a pixel (4 at most), over the pixels of a tile, over the crossings of a record (the host
-/// keeps `max_crossings` and `orders` at 16 or less), or over deferred pixels or those of a list of edges, of which
-/// there are fewer than 2^31; that of `map_light` over the taps of a pixel, at most 7, and two levels; loops over the
-/// bits of a word, which loses a bit in every turn; and the two of `star_light`, of which every turn uses up a star of
-/// the cell's list, at most 255, or a mean sky, of which there are two, or ends the loop.
+/// SAFETY of the promise: `every_loop_ends_for_a_reason` of tests/shaders.rs holds every loop of every shader against a
+/// list that says why it ends, and fails for one that is not on it.
 const LOOPS: Loops = Loops::Proven(unsafe { ProvenFinite::promise() });
 
 impl Compiled {

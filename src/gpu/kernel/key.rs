@@ -5,6 +5,7 @@ use super::slots::{
     LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, SCREEN, Slot, TRACED, edge_slots, shade_slots, sum_slots,
 };
 use super::wgsl;
+use crate::error::Result;
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
 use crate::scene::{Film, Projection, ToneMap, View};
@@ -56,7 +57,7 @@ pub struct FilmLook {
     pub(in crate::gpu) target: PixelTarget,
 }
 
-/// Pixel formats that one kernel serves: `PIXELS` of film.wgsl.
+/// Pixel formats that one kernel serves: `PIXELS` of film/film.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PixelKind {
     /// RGBA8 and BGRA8.
@@ -79,8 +80,8 @@ pub enum PixelTarget {
     Light,
 }
 
-/// `FROM_FILM` of film.wgsl and `FROM_FRAME` of projection.wgsl: the uniform says which.
-const FROM_UNIFORM: u32 = u32::MAX;
+/// `FROM_FILM` of film/film.wgsl and `FROM_FRAME` of camera/projection.wgsl: the uniform says which.
+pub(in crate::gpu) const FROM_UNIFORM: u32 = u32::MAX;
 
 impl FilmLook {
     /// For `film` in pixels of `format`.
@@ -130,7 +131,7 @@ impl FilmLook {
         }
     }
 
-    /// The group of film.wgsl and what puts the pixels.
+    /// The group of film/film.wgsl and what puts the pixels.
     fn slots(self) -> Vec<Slot> {
         let pixels = match self.target {
             PixelTarget::Screen => Slot::TextureWrite(SCREEN),
@@ -152,15 +153,15 @@ impl FilmLook {
 /// The maker of the ray records that a kernel reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Source {
-    /// traced.wgsl
+    /// traced/record.wgsl
     Traced,
-    /// lens_schwarzschild_record.wgsl
+    /// lens/schwarzschild_record.wgsl
     Schwarzschild { delay: bool, moving: bool },
-    /// lens_kerr_pixel.wgsl, and of the pixels it defers lens_kerr_rest.wgsl
+    /// lens/kerr_pixel.wgsl, and of the pixels it defers lens/kerr_rest.wgsl
     Kerr { delay: bool, pattern: bool, moving: bool, rest: bool },
 }
 
-/// How refine.wgsl finds its samples of a pixel.
+/// How refine/refine.wgsl finds its samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Refined {
     /// Of the pixels' own records.
@@ -169,9 +170,9 @@ pub struct Refined {
     pub variant: Variant,
 }
 
-/// `METHOD_*` of integrator.wgsl.
+/// `METHOD_*` of geodesic/integrator.wgsl.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct MethodCode(u32);
+pub struct MethodCode(pub(in crate::gpu) u32);
 
 impl From<Method> for MethodCode {
     fn from(method: Method) -> Self {
@@ -214,7 +215,7 @@ pub enum KernelKey {
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
 /// The same of those that put them row by row.
-const ROWS_GROUP: [u32; 2] = [32, 4];
+pub(in crate::gpu) const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
 
@@ -257,23 +258,24 @@ impl KernelKey {
         }
     }
 
-    pub fn wgsl(self) -> String {
+    /// The WGSL that declares the entry point. Errors: as [`wgsl::kernel`].
+    pub fn wgsl(self) -> Result<String> {
         match self {
-            Self::Pixels(_) => wgsl::pixels(),
-            Self::Rays(_) => wgsl::rays(),
-            Self::Count => wgsl::count(),
+            Self::Pixels(_) => wgsl::kernel("traced/pixels"),
+            Self::Rays(_) => wgsl::kernel("geodesic/rays"),
+            Self::Count => wgsl::kernel("traced/count"),
             Self::ShadeSample(source, _) => wgsl::shade_sample(source),
             Self::ShadeOnly(source, _, film) => wgsl::shade_only(source, film),
             Self::Refine(refined, _, film) => wgsl::refine(refined.source, film),
             Self::Develop(film, glare) => wgsl::develop(film, glare.is_some()),
-            Self::Gather(..) => wgsl::gather(),
-            Self::GatherBase => wgsl::gather_base(),
-            Self::GiveBack => wgsl::give_back(),
+            Self::Gather(..) => wgsl::kernel("bloom/gather"),
+            Self::GatherBase => wgsl::kernel("bloom/base"),
+            Self::GiveBack => wgsl::kernel("bloom/return"),
             Self::Export(source, ..) => wgsl::export(source),
-            Self::SchwarzschildEnds => wgsl::schwarzschild_ends(),
-            Self::SchwarzschildColumns { .. } => wgsl::schwarzschild_columns(),
-            Self::KerrNodes { .. } => wgsl::kerr_nodes(),
-            Self::KerrFlags { .. } => wgsl::kerr_flags(),
+            Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
+            Self::SchwarzschildColumns { .. } => wgsl::kernel("lens/schwarzschild_columns"),
+            Self::KerrNodes { .. } => wgsl::kernel("lens/kerr_nodes"),
+            Self::KerrFlags { .. } => wgsl::kernel("lens/kerr_flags"),
         }
     }
 

@@ -2,7 +2,13 @@
 //! scene.
 
 pub(in crate::gpu) mod compilers;
+pub(in crate::gpu) mod constants;
+pub(in crate::gpu) mod fragments;
 pub(in crate::gpu) mod kernels;
 pub(in crate::gpu) mod key;
+#[cfg(test)]
+pub(in crate::gpu) mod layout;
+pub(in crate::gpu) mod preprocess;
+pub(in crate::gpu) mod sizes;
 pub(in crate::gpu) mod slots;
 pub(in crate::gpu) mod wgsl;

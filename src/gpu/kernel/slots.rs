@@ -19,14 +19,14 @@ pub enum Slot {
     TextureWrite(TextureKind),
 }
 
-/// `record_sky`, `record_meta` and `record_disk` of traced_layout.wgsl.
+/// `record_sky`, `record_meta` and `record_disk` of traced/layout.wgsl.
 pub const TRACED: [TextureKind; 3] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::Rgba32Uint, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2Array },
 ];
 
-/// Radiance of shade_sample.wgsl and develop.wgsl.
+/// Radiance of shade/sample.wgsl and film/develop.wgsl.
 pub const RADIANCE: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 };
 
@@ -42,7 +42,7 @@ pub const LENS_COLUMNS: TextureKind =
 /// Flags of a lens's cells.
 pub const LENS_FLAGS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 };
-/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade.wgsl.
+/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade/shade.wgsl.
 const TABLES: [TextureKind; 4] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
@@ -50,7 +50,7 @@ const TABLES: [TextureKind; 4] = [
     SKY_MAP,
 ];
 
-/// Pyramids of sky_map.wgsl.
+/// Pyramids of sky/map.wgsl.
 pub const SKY_MAP: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
 
@@ -104,18 +104,18 @@ impl Source {
     }
 }
 
-/// Group 0 of shade.wgsl.
+/// Group 0 of shade/shade.wgsl.
 pub fn shade_slots() -> Vec<Slot> {
     let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
     vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
 }
 
-/// Group 2 of shade_sample.wgsl.
+/// Group 2 of shade/sample.wgsl.
 pub fn sum_slots() -> Vec<Slot> {
     vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]
 }
 
-/// Group 3 of edges.wgsl.
+/// Group 3 of refine/edges.wgsl.
 pub fn edge_slots() -> Vec<Slot> {
     vec![Slot::Write]
 }

@@ -1,5 +1,5 @@
 //! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk
-//! has changed, read by lens_kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
+//! has changed, read by lens/kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
 //! no scene.
 
 use crate::error::{Error, Result};
@@ -8,6 +8,7 @@ use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{self, Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::sizes::{KERR_COLUMNS, KERR_PER_OCTAVE};
 use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind};
 use crate::physics::lens::critical::CRITICAL_NODES;
 use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution};
@@ -16,14 +17,11 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 use wgpu::BufferUsages as Usage;
 
-/// As in lens_kerr.wgsl; as many as nodes of the critical curve, which shares their texture.
-const COLUMNS: u32 = CRITICAL_NODES as u32;
-const PER_OCTAVE: usize = 16;
 /// Orders in a layer without pattern.
 const ORDERS_A_LAYER: u32 = 4;
 /// Rows are made in so many at once: an eye that moves changes their number.
 const ROWS_STEP: u32 = 64;
-/// `Deferred` of lens_kerr_record.wgsl: bytes before the pixels, and of a pixel.
+/// `Deferred` of lens/kerr_record.wgsl: bytes before the pixels, and of a pixel.
 const DEFERRED_HEAD: u64 = 68;
 const DEFERRED_PIXEL: u64 = 4;
 
@@ -36,6 +34,12 @@ struct KerrUniform {
     rows: [u32; 2],
     orders: u32,
     capture_u: f32,
+}
+
+#[cfg(test)]
+pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
+    crate::gpu::kernel::layout::layout!(KerrUniform as "KerrLens": k, e1, e2, outer_rows = rows + 0, inner_rows = rows + 4, orders,
+        capture_u)
 }
 
 /// What is asked of the tables.
@@ -165,12 +169,12 @@ impl KerrTables {
         };
         let all = [shared.as_slice(), &[texture(&flags)]].concat();
         let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: wanted.pattern })?.stage(device, &[&all])?;
-        Ok(Some(KerrStages { trace_nodes, flag_cells, size: [COLUMNS, uniform.rows[0] + uniform.rows[1]] }))
+        Ok(Some(KerrStages { trace_nodes, flag_cells, size: [KERR_COLUMNS, uniform.rows[0] + uniform.rows[1]] }))
     }
 
     /// Makes room for the eye's tables and writes what the host knows of them.
     fn remake(&mut self, device: &Device, frame: &LocalFrame, wanted: &Wanted) -> Result<KerrUniform> {
-        let resolution = Resolution { chi_nodes: COLUMNS as usize, nodes_per_octave: [PER_OCTAVE; 2] };
+        let resolution = Resolution { chi_nodes: KERR_COLUMNS as usize, nodes_per_octave: [KERR_PER_OCTAVE; 2] };
         let crossings = Crossings { orders: wanted.orders as usize, disk_u: wanted.disk_u, pattern: wanted.pattern };
         let grid = Grid::new(frame, resolution, crossings)
             .ok_or_else(|| Error::internal(format!("no lens tables for an eye at r = {} M", frame.r)))?;
@@ -231,7 +235,7 @@ impl KerrTables {
 impl Made {
     fn new(device: &Device, rows: [u32; 2], layers: u32) -> Result<Self> {
         let texture = |kind: TextureKind, label: &str, height: u32, layers: u32| {
-            device.texture(label, kind.format, kind.dimension, [COLUMNS, height], layers)
+            device.texture(label, kind.format, kind.dimension, [KERR_COLUMNS, height], layers)
         };
         // wgpu makes no array texture of one layer on GL.
         let layers = layers.max(2);
@@ -239,7 +243,7 @@ impl Made {
             rows,
             layers,
             uniform: device.buffer("lens", size_of::<KerrUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST)?,
-            curve: device.table("critical curve", LENS_ROWS.format, [COLUMNS, 2])?,
+            curve: device.table("critical curve", LENS_ROWS.format, [KERR_COLUMNS, 2])?,
             sky: texture(LENS_ROWS, "lens sky", rows[0], 1)?,
             crossings: texture(LENS_COLUMNS, "lens crossings", rows[1], layers)?,
             flags: texture(LENS_FLAGS, "lens flags", rows[1], 1)?,

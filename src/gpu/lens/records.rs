@@ -9,11 +9,10 @@ use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::{KernelKey, Source, Variant};
+use crate::gpu::kernel::sizes::COUNT_RUN;
 use crate::gpu::kernel::slots::{TRACED, TextureKind};
 use crate::physics::observer::LocalFrame;
 
-/// Pixels of a row that a thread of count.wgsl sums.
-const COUNT_RUN: u32 = 8;
 /// Bytes of a texel of the record textures.
 const TEXEL: u64 = 16;
 

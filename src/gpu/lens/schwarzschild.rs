@@ -1,5 +1,5 @@
 //! The tables of a spin-0 lens on the device: built by compute passes when the eye's radius has changed, read by
-//! lens_schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
+//! lens/schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
 
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
@@ -7,16 +7,13 @@ use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::{KernelKey, LENS_GROUP};
+use crate::gpu::kernel::sizes::{SCHWARZSCHILD_INTERVALS, SCHWARZSCHILD_OCTAVES, SCHWARZSCHILD_PER_OCTAVE};
 use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_ROWS, TextureKind};
 use crate::physics::observer::{LocalFrame, Observer};
 use crate::physics::shadow::shadow;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages as Usage;
 
-/// As in lens_schwarzschild.wgsl.
-const PER_OCTAVE: f64 = 32.0;
-const OCTAVES: f64 = 22.0;
-const INTERVALS: u32 = 128;
 /// Nodes beyond the last place that is looked up.
 const MARGIN: f64 = 4.0;
 /// Eyes further in have no captured ray that meets a disk.
@@ -32,6 +29,12 @@ struct SchwarzschildUniform {
     nodes: [u32; 2],
 }
 
+#[cfg(test)]
+pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
+    crate::gpu::kernel::layout::layout!(SchwarzschildUniform as "SchwarzschildLens": critical, separatrix, slope,
+        outer_nodes = nodes + 0, inner_nodes = nodes + 4)
+}
+
 impl SchwarzschildUniform {
     fn new(frame: &LocalFrame) -> Self {
         let u = 1.0 / frame.r;
@@ -42,7 +45,8 @@ impl SchwarzschildUniform {
         let q = (2.0 * u + 1.0 / 3.0).sqrt();
         let separatrix = 2.0 * (1.0 / 3.0 - u) / ((1.0 + q) * (1.0 + q));
         let slope = if frame.rain { 1.0 } else { (1.0 - 2.0 * u).max(0.0).sqrt() };
-        let nodes = |t_hat: f64| (PER_OCTAVE * (t_hat.log2() + OCTAVES) + MARGIN).ceil() as u32;
+        let nodes =
+            |t_hat: f64| (SCHWARZSCHILD_PER_OCTAVE * (t_hat.log2() + SCHWARZSCHILD_OCTAVES) + MARGIN).ceil() as u32;
         let inner = if frame.r > INNER_BRANCH_FROM { nodes(half / w) } else { 0 };
         Self {
             critical: [half as f32, psi.sin() as f32, psi.cos() as f32, w as f32],
@@ -144,7 +148,7 @@ impl Made {
             device.texture(label, kind.format, kind.dimension, size, BRANCHES)
         };
         let row = |label| device.texture(label, LENS_ROWS.format, LENS_ROWS.dimension, [nodes, BRANCHES], 1);
-        let columns = [nodes, INTERVALS];
+        let columns = [nodes, SCHWARZSCHILD_INTERVALS];
         Ok(Self {
             nodes,
             delay,

@@ -3,8 +3,7 @@
 use crate::error::Result;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
-
-const SOURCE: &str = include_str!("../../../shaders/present.wgsl");
+use crate::gpu::kernel::wgsl;
 
 /// Pipelines for images of one format.
 pub struct Presenter {
@@ -14,13 +13,8 @@ pub struct Presenter {
     pipelines: [wgpu::RenderPipeline; 2],
 }
 
-/// The WGSL of the triangle.
-pub fn present_source() -> String {
-    SOURCE.into()
-}
-
 impl Presenter {
-    /// Errors: as [`Device::scoped`].
+    /// Errors: as [`Device::scoped`] and [`wgsl::kernel`].
     pub fn new(device: &Device, format: wgpu::TextureFormat) -> Result<Self> {
         let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
             binding,
@@ -35,6 +29,7 @@ impl Presenter {
         };
         let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
         let entries = [entry(0, texture), entry(1, sampler)];
+        let source = wgsl::kernel("window/present")?;
         device.scoped("present", |d| {
             let layout = d.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
                 label: Some("present"),
@@ -47,7 +42,7 @@ impl Presenter {
             });
             let module = d.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some("present"),
-                source: wgpu::ShaderSource::Wgsl(SOURCE.into()),
+                source: wgpu::ShaderSource::Wgsl(source.into()),
             });
             // A format that the GPU encodes wants linear light.
             let linear = format.is_srgb() || format == wgpu::TextureFormat::Rgba16Float;
@@ -102,7 +97,7 @@ impl Presenter {
             [wgpu::BindingResource::TextureView(&screen.view), wgpu::BindingResource::Sampler(&self.sampler)];
         let group = device.bind(&self.layout, &resources)?;
         let [same, stretched] = &self.pipelines;
-        // SAFETY: the triangle covers the image (present.wgsl), and nothing discards a part of it.
+        // SAFETY: the triangle covers the image (window/present.wgsl), and nothing discards a part of it.
         let written = unsafe { wgpu::LoadOpDontCare::enabled() };
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("present"),

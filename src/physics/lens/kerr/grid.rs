@@ -12,14 +12,14 @@ use std::f64::consts::{LN_2, TAU};
 /// curve.
 pub const CORE_OCTAVES: usize = 10;
 /// Rows below the first row of cells in use, and above the row of the axis, for the stencil of the error estimate.
-pub(super) const ROWS_BELOW: usize = 2;
-pub(super) const ROWS_ABOVE: usize = 3;
+pub(crate) const ROWS_BELOW: usize = 2;
+pub(crate) const ROWS_ABOVE: usize = 3;
 /// The step in sigma. It gives some 1e-7 for a whole ray, typically much less; f32 resolves no more.
 pub(super) const STEP: f64 = 0.25;
 /// The error in sigma to which crossings and ends are found.
 pub(super) const SLACK: f64 = 1e-8;
 /// The length in sigma for which a ray is followed beyond infinity: longer than one step of the table takes a crossing.
-pub(super) const BEYOND_INFINITY: f64 = 1.0;
+pub(crate) const BEYOND_INFINITY: f64 = 1.0;
 /// A bound on the steps of a ray, which no ray of the grid reaches.
 pub(super) const MAX_STEPS: usize = 2000;
 /// Eyes nearer than this, in M, get the finer outer branch, which has few octaves for them.
@@ -31,7 +31,7 @@ pub(super) const NARROWEST_LAYER: f64 = 0.03;
 pub(super) const LAYER_SHARE: f64 = 0.5;
 /// Rays are followed to this multiple of `Grid::capture_u`, so that no crossing of the disk has a neighbour without
 /// one.
-pub(super) const INWARD: f64 = 1.5;
+pub(crate) const INWARD: f64 = 1.5;
 /// The U that marks a missing crossing: positive where the ray is captured before, negative where it has passed
 /// infinity.
 pub const NO_CROSSING: f64 = 1e3;

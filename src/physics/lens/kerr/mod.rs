@@ -21,6 +21,7 @@ mod look;
 mod node;
 mod table;
 
+pub(crate) use grid::{BEYOND_INFINITY, INWARD, ROWS_ABOVE, ROWS_BELOW};
 pub use grid::{
     Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, NO_CROSSING, Node, PATTERN_TOLERANCE, POOR_CROSSINGS,
     PackedNode, Place, Resolution, TOLERANCE, divergent_delay,

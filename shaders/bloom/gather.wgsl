@@ -1,0 +1,69 @@
+// Kernel: each cell of a grid takes the mean of what the finer cells, or pixels, about it give it of their light.
+
+#import bloom/level
+#import shared/f16
+
+// Finer cells along a cell's side, even.
+override STEP: i32 = 2;
+// The finer ones are cells, which give by the spline, and not pixels, which give by their distance from the cells'
+// centres.
+override GRID: bool = true;
+
+@group(0) @binding(0) var<uniform> level: BloomLevel;
+@group(0) @binding(1) var finer: texture_2d<f32>;
+@group(0) @binding(2) var gathered: texture_storage_2d<rgba16float, write>;
+
+// What tap `tap` gives, wherever the cell lies; 0 beyond the taps.
+fn kernel(tap: i32) -> f32 {
+    if GRID {
+        let from_end = min(tap, 5 - tap);
+        let inner = select(10.0, 5.0, from_end == 1) / 16.0;
+        return select(select(inner, 1.0 / 16.0, from_end == 0), 0.0, from_end < 0);
+    }
+    let from_end = min(f32(tap) + 0.5, f32(2 * STEP - tap) - 0.5);
+    return max(from_end, 0.0) / f32(STEP);
+}
+
+// How much there is of the finer cell that is `from_end` before the last.
+fn coverage(from_end: i32, tail: vec4<f32>) -> f32 {
+    if !GRID {
+        return 1.0;
+    }
+    let last = select(tail.z, tail.w, from_end == 0);
+    return select(select(1.0, tail.y, from_end == 2), last, from_end < 2);
+}
+
+// What a cell takes by tap `tap`, which is finer cell `i`, along one side: what would go to a missing cell stays with
+// the pixel's own.
+fn taken(tap: i32, i: i32, cell: i32, cells: u32, fine: u32, tail: vec4<f32>) -> f32 {
+    let own = i / STEP == cell;
+    let before = select(0.0, kernel(tap + STEP), own && cell == 0);
+    let after = select(0.0, kernel(tap - STEP), own && cell + 1 == i32(cells));
+    let there = i >= 0 && i < i32(fine);
+    return select(0.0, (kernel(tap) + before + after) * coverage(i32(fine) - 1 - i, tail), there);
+}
+
+@compute @workgroup_size(8, 16)
+fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
+    if any(id.xy >= level.count) {
+        return;
+    }
+    let taps = select(2 * STEP, 6, GRID);
+    let cell = vec2<i32>(level.first + id.xy);
+    let corner = STEP * cell - (taps - STEP) / 2;
+    let last = vec2<i32>(level.fine) - 1;
+    var sum = vec3<f32>(0.0);
+    var weights = 0.0;
+    for (var y = 0; y < taps; y += 1) {
+        let row = corner.y + y;
+        let down = taken(y, row, cell.y, level.cells.y, level.fine.y, level.tail_y);
+        for (var x = 0; x < taps; x += 1) {
+            let column = corner.x + x;
+            let weight = down * taken(x, column, cell.x, level.cells.x, level.fine.x, level.tail_x);
+            let place = clamp(vec2<i32>(column, row), vec2<i32>(0), last) - level.origin;
+            sum += weight * textureLoad(finer, place, 0).xyz;
+            weights += weight;
+        }
+    }
+    textureStore(gathered, level.first + id.xy, rounded_to_f16(vec4<f32>(sum / weights, 1.0)));
+}

@@ -1,0 +1,22 @@
+// The light that film/develop.wgsl and film/develop_rows.wgsl take in frames with bloom: what is left in a pixel of its own, and
+// its share of what spreads over the finest grid, which falls linearly from the cells' centres.
+
+#import bloom/level
+#import shared/pass
+
+// Pixels along a cell's side, even.
+override STEP: u32 = 2u;
+
+@group(1) @binding(0) var exposed_light: texture_2d<f32>;
+@group(1) @binding(1) var glare: texture_2d<f32>;
+@group(1) @binding(2) var smooth_: sampler;
+@group(1) @binding(3) var<uniform> level: BloomLevel;
+
+fn tile_light(id: vec2<u32>) -> vec4<f32> {
+    let place = pass_.origin + vec2<i32>(id) + 1;
+    let light = textureLoad(exposed_light, place - pass_.light_origin, 0);
+    let between = (vec2<f32>(place) + 0.5) / f32(STEP) - 0.5;
+    let inside = clamp(between, vec2<f32>(0.0), vec2<f32>(level.cells - 1u));
+    let scattered = textureSampleLevel(glare, smooth_, (inside + 0.5) / vec2<f32>(textureDimensions(glare)), 0.0);
+    return vec4<f32>(level.own * light.xyz + level.above * scattered.xyz, light.w);
+}

@@ -1,0 +1,123 @@
+// From a look direction to the start of its ray: aberration and the local frame. Mirrors src/physics/observer.rs;
+// knows no integrator. Reads the uniform `frame`, declared where the bindings are.
+
+#import constants
+#import geodesic/geodesic
+#import shared/deciding
+#import shared/frame
+
+struct RayBegin {
+    c: Constants,
+    state: State,
+    // nu(camera) / nu(observer of the local frame).
+    frequency_ratio: f32,
+    // False: no light can come from there (rain frame, E <= 0).
+    light: bool,
+}
+
+// The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and
+// nu(camera) / nu(observer of the local frame).
+struct LocalLook {
+    // In the camera's own frame, and in the local one.
+    look: vec3<f32>,
+    n: vec3<f32>,
+    frequency_ratio: f32,
+}
+
+// False: the camera rests in the local frame.
+override MOVING: bool = true;
+
+fn local_look(look: vec3<f32>) -> LocalLook {
+    if !MOVING {
+        return LocalLook(look, look, 1.0);
+    }
+    let beta = frame.beta.xyz;
+    let gamma = frame.beta.w;
+    let along = dot(beta, look);
+    // In f32 an eye that falls beside the horizon moves at 1: its ray straight ahead is as good as any.
+    let ratio = 1.0 / (gamma * max(1.0 - along, 6e-8));
+    return LocalLook(look, normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
+}
+
+// Change of `seen.n` when the look direction in the camera's own frame changes by `change`; at rest with what that
+// holds along it.
+fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
+    if !MOVING {
+        return change;
+    }
+    let beta = frame.beta.xyz;
+    let gamma = frame.beta.w;
+    let turn = change - seen.look * dot(seen.look, change);
+    let along = dot(beta, turn);
+    return seen.frequency_ratio * (turn + beta * (gamma * gamma / (gamma + 1.0) * along) + seen.n * (gamma * along));
+}
+
+fn begin_ray(look: vec3<f32>) -> RayBegin {
+    let seen = local_look(look);
+    var begin = begin_local(seen.n);
+    begin.frequency_ratio = seen.frequency_ratio;
+    return begin;
+}
+
+// For a look direction in the local frame; frequency_ratio 1.
+fn begin_local(n: vec3<f32>) -> RayBegin {
+    var begin: RayBegin;
+    begin.frequency_ratio = 1.0;
+    // Rain frames are for spin 0.
+    if !SPINNING && deciding(frame.rain) != 0u {
+        begin_rain(&begin, n);
+    } else {
+        begin_zamo(&begin, n);
+    }
+    return begin;
+}
+
+fn constants(energy: f32, angular_momentum: f32, carter: f32, k: f32, nu_local: f32) -> Constants {
+    let a = frame.hole.x;
+    let a2e2 = a * a * energy * energy;
+    let b = k - 2.0 * a * angular_momentum * energy + a2e2;
+    let scale = max(sqrt(max(k + a2e2, 0.0)), 3.0 * abs(energy));
+    return Constants(a, energy, angular_momentum, nu_local, k, b, a2e2, a * a * carter, scale, frame.place.x, frame.hole.y,
+        frame.hole.z, select(CLOCK_COORDINATE, CLOCK_RAIN, frame.rain == RAIN_CLOCK));
+}
+
+// Scaled so that the local observer measures frequency 1: good for every E (geodesic.rs).
+fn begin_zamo(begin: ptr<function, RayBegin>, n: vec3<f32>) {
+    let u = frame.place.x;
+    let s = frame.place.y;
+    let c = frame.place.z;
+    let a = frame.hole.x;
+    let omega = frame.zamo.x;
+    let q = frame.zamo.y;
+    let p = -n;
+    let energy = frame.place.w + omega * q * s * p.z;
+    let polar = frame.zamo.z * p.y / u;
+    let w = q * p.z;
+    let carter = polar * polar + c * c * (w * w - a * a * energy * energy);
+    let k = polar * polar + w * w - a * a * c * c * energy * energy;
+    (*begin).c = constants(energy, s * w, carter, k, 1.0);
+    (*begin).state = State(u, frame.zamo.w * p.x, frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
+    (*begin).light = true;
+}
+
+// Spin 0: beta_rain = sqrt(2 u) is place.w.
+fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
+    let u = frame.place.x;
+    let beta = frame.place.w;
+    let p = -n;
+    let energy = 1.0 + beta * n.x;
+    let e = 1.0 / max(energy, 1e-6);
+    let polar = p.y * e / u;
+    let w = p.z * e / u;
+    let cw = frame.place.z * w;
+    let k = polar * polar + w * w;
+    (*begin).c = constants(1.0, frame.place.y * w, polar * polar + cw * cw, k, e);
+    (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
+    (*begin).light = energy > 0.0;
+}
+
+// g of the disk's matter for the local frame's observer (physics::orbit::redshift).
+fn redshift_of(c: Constants, u: f32) -> f32 {
+    let v = sign(frame.hole.w) * u * sqrt(u);
+    return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0)) / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
+}

@@ -1,0 +1,20 @@
+// The exposed light of a frame with bloom: what shading, or the sum of samples, is given to before it spreads.
+// Bindings as in film/packed.wgsl.
+
+#import constants
+#import film/encode
+#import film/film
+#import film/params
+#import shared/f16
+#import shared/pass
+
+@group(2) @binding(0) var<uniform> film: FilmParams;
+@group(2) @binding(1) var exposed_light: texture_storage_2d<rgba16float, write>;
+
+// Alpha is kept here, and dropped in development.
+fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
+    let place = pass_.origin + vec2<i32>(id) + 1 - pass_.light_origin;
+    let light = limited(radiance.xyz * film.exposure, MAX_SCENE_LIGHT);
+    let alpha = limited(vec3<f32>(radiance.w), 1.0).x;
+    textureStore(exposed_light, place, rounded_to_f16(vec4<f32>(light, alpha)));
+}

@@ -1,0 +1,15 @@
+// How pixels are developed: the uniform `film`, which the fragment that puts the pixels binds. Mirrors `FilmParams` of
+// src/film/mod.rs.
+
+#requires var film: FilmParams
+
+struct FilmParams {
+    exposure: f32,
+    tone_map: u32,
+    format: u32,
+    false_colour: u32,
+    view_low: f32,
+    view_scale: f32,
+    transparent: u32,
+    reserved: u32,
+}

@@ -1,0 +1,24 @@
+// Ray records with spin, as the tables of lens/kerr.wgsl have them; rays that they do not hold are left to
+// lens/kerr_rest.wgsl.
+
+#import lens/kerr_record
+#import records/record
+#import shared/pass
+
+fn ray_record(id: vec2<u32>) -> Record {
+    return look_up(id);
+}
+
+fn next_crossing() -> Crossing {
+    return next_looked_up();
+}
+
+// Only looking tells.
+fn more_crossings() -> bool {
+    return true;
+}
+
+fn defer_pixel(id: vec2<u32>) {
+    let i = atomicAdd(&deferred.counts[pass_.slot], 1u);
+    deferred.pixels[i] = id.x | (id.y << 16u);
+}

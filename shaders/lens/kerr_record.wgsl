@@ -1,0 +1,230 @@
+// Looks rays up in the tables of lens/kerr.wgsl. Mirrors src/physics/lens/kerr.rs and src/cpu/lens.rs.
+
+#import constants
+#import camera/observer
+#import camera/projection
+#import geodesic/geodesic
+#import lens/axis
+#import lens/kerr
+#import records/record
+#import shared/fate
+#import shared/frame
+#import shared/math
+#import shared/pass
+
+@group(1) @binding(0) var<uniform> lens: KerrLens;
+// First row: T = tan(R / 2) and dT/dchi at a node, and at the next, evenly in chi.
+@group(1) @binding(1) var kerr_curve: texture_2d<f32>;
+@group(1) @binding(2) var kerr_sky: texture_2d<f32>;
+@group(1) @binding(3) var kerr_crossings: texture_2d_array<f32>;
+@group(1) @binding(4) var kerr_flags: texture_2d<u32>;
+@group(1) @binding(5) var<storage, read_write> deferred: Deferred;
+
+// Pixels whose rays are to be integrated.
+struct Deferred {
+    // Of all rays integrated so far.
+    steps: atomic<u32>,
+    // Of each sample of the submission.
+    counts: array<atomic<u32>, 16>,
+    // x in the low half, y in the high half.
+    pixels: array<u32>,
+}
+
+// The record at hand: what its crossings need.
+struct Looked {
+    seen: LocalLook,
+    cell: vec2<u32>,
+    // Those of crossings that were given already are taken away.
+    flags: u32,
+    all_flags: u32,
+    // Whether an edge of the disk runs through the pixel at a crossing given so far.
+    on_edge: bool,
+    // beyond_right_angle(t).
+    beyond: f32,
+    // Weights of interpolation and their derivatives, by column and by row.
+    columns: vec4<f32>,
+    columns_slope: vec4<f32>,
+    rows: vec4<f32>,
+    rows_slope: vec4<f32>,
+    // d(column), d(row) from this pixel to the next right and down.
+    dx: vec2<f32>,
+    dy: vec2<f32>,
+}
+
+var<private> looked: Looked;
+
+// FATE_PENDING: not in the tables; footprint and fate are nearly right all the same.
+fn look_up(id: vec2<u32>) -> Record {
+    let at = pixel_place(id);
+    let view = camera_view(at.x, at.y);
+    let seen = local_look(view.look);
+    let n = seen.n;
+    let begin = begin_local(n);
+    let energy = begin.c.energy / begin.c.nu_local;
+
+    let cosine = dot(n, lens.k.xyz);
+    let across = vec2<f32>(dot(n, lens.e1.xyz), dot(n, lens.e2.xyz));
+    let sine2 = dot(across, across);
+    let sine = sqrt(sine2);
+    let chi = select(vec2<f32>(0.0, 1.0), across / sine, sine > 0.0);
+    let epsilon = lens.k.w;
+    let angle = arctan2(chi.x, chi.y);
+    let half_tangent = critical_tangent(select(angle, angle + TAU, angle < 0.0) * (f32(KERR_CURVE) / TAU));
+    let w = 0.5 * (angle + arctan2(chi.x, epsilon * chi.y));
+    let w_slope = 0.5 + 0.5 * epsilon / (epsilon * epsilon * chi.y * chi.y + chi.x * chi.x);
+    let around = select(w, w + TAU, w < 0.0) * (f32(KERR_COLUMNS) / TAU);
+    let column = min(u32(around), KERR_COLUMNS - 1u);
+    let t = lens_tangent(cosine, sine2, half_tangent.x);
+    let inner = t <= 0.0;
+    let t_hat = abs(t) / half_tangent.x;
+    let rows = select(lens.outer_rows, lens.inner_rows, inner);
+    let last = rows - 2u * KERR_ROWS_ABOVE;
+    let place = lens_place(t_hat, KERR_OCTAVES, f32(KERR_PER_OCTAVE), last);
+
+    looked.seen = seen;
+    looked.cell = vec2<u32>(column, kerr_first_row(inner) + place.node + KERR_ROWS_BELOW);
+    looked.all_flags = textureLoad(kerr_flags, looked.cell, 0).x;
+    looked.flags = looked.all_flags;
+    looked.on_edge = false;
+    looked.beyond = beyond_right_angle(t);
+    looked.columns = lagrange(around - f32(column));
+    looked.columns_slope = lagrange_slope(around - f32(column));
+    looked.rows = lagrange(place.share);
+    looked.rows_slope = lagrange_slope(place.share);
+
+    // d psi and d chi; dt = (1 + t^2) / 2 (d psi - dR), dR = 2 dT / (1 + T^2), d(row) = n / ln 2 (dt / t - dT / T).
+    let outward = kerr_radial(chi.x, chi.y) * cosine - lens.k.xyz * sine;
+    let along = (lens.e1.xyz * chi.y - lens.e2.xyz * chi.x) / max(sine, 1e-6);
+    let slope_t = 0.5 * (1.0 + t * t) / select(-max(-t, 1e-12), max(t, 1e-12), t > 0.0);
+    let slope_r = half_tangent.y * (slope_t * 2.0 / (1.0 + half_tangent.x * half_tangent.x) + 1.0 / half_tangent.x);
+    const ROWS: f32 = f32(KERR_PER_OCTAVE) * 1.4426950408889634;
+    // What they hold along n turns nothing.
+    let grid_x = local_change(seen, view.dx);
+    let grid_y = local_change(seen, view.dy);
+    let chi_change = vec2<f32>(dot(along, grid_x), dot(along, grid_y));
+    let row_change = ROWS * (slope_t * vec2<f32>(dot(outward, grid_x), dot(outward, grid_y)) - slope_r * chi_change);
+    let column_change = chi_change * (w_slope * f32(KERR_COLUMNS) / TAU);
+    looked.dx = vec2<f32>(column_change.x, row_change.x);
+    looked.dy = vec2<f32>(column_change.y, row_change.y);
+
+    var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0),
+        UNKNOWN_FOOTPRINT);
+    if !inner {
+        record.fate = FATE_ESCAPED;
+        record.sky_redshift = seen.frequency_ratio / energy;
+        let sky = interpolate(KERR_SKY_LAYER);
+        let inverse = inverseSqrt(dot(sky.value.xyz, sky.value.xyz));
+        record.sky = sky.value.xyz * inverse;
+        let dx = (sky.by_column.xyz * looked.dx.x + sky.by_row.xyz * looked.dx.y) * inverse;
+        let dy = (sky.by_column.xyz * looked.dy.x + sky.by_row.xyz * looked.dy.y) * inverse;
+        record.footprint = footprint_of(record.sky, dx, dy);
+    }
+    if t_hat < exp2(-KERR_OCTAVES) || (looked.flags & KERR_DIRECT) != 0u {
+        record.fate = FATE_PENDING;
+    }
+    return record;
+}
+
+// tan(R / 2) and its derivative by chi at a place of the curve's own table: cubic Hermite.
+fn critical_tangent(position: f32) -> vec2<f32> {
+    let node = min(u32(position), KERR_CURVE - 1u);
+    let x = position - f32(node);
+    let ends = textureLoad(kerr_curve, vec2<u32>(node, 0u), 0);
+    const H: f32 = TAU / f32(KERR_CURVE);
+    let rise = ends.z - ends.x;
+    let c2 = 3.0 * rise - H * (2.0 * ends.y + ends.w);
+    let c3 = H * (ends.y + ends.w) - 2.0 * rise;
+    return vec2<f32>(ends.x + x * (H * ends.y + x * (c2 + x * c3)), ends.y + x * (2.0 * c2 + 3.0 * x * c3) / H);
+}
+
+struct Interpolated {
+    value: vec4<f32>,
+    by_column: vec4<f32>,
+    by_row: vec4<f32>,
+}
+
+const KERR_SKY_LAYER: u32 = 0xffffu;
+
+// Of a layer of the crossings, or of the sky.
+fn interpolate(layer: u32) -> Interpolated {
+    var sum: Interpolated;
+    for (var j = 0u; j < 4u; j += 1u) {
+        let row = looked.cell.y + j - 1u;
+        var value = vec4<f32>(0.0);
+        var slope = vec4<f32>(0.0);
+        for (var i = 0u; i < 4u; i += 1u) {
+            let place = vec2<u32>((looked.cell.x + KERR_COLUMNS + i - 1u) % KERR_COLUMNS, row);
+            var at: vec4<f32>;
+            if layer == KERR_SKY_LAYER {
+                at = textureLoad(kerr_sky, place, 0);
+            } else {
+                at = textureLoad(kerr_crossings, place, layer, 0);
+            }
+            value += at * looked.columns[i];
+            slope += at * looked.columns_slope[i];
+        }
+        sum.value += value * looked.rows[j];
+        sum.by_row += value * looked.rows_slope[j];
+        sum.by_column += slope * looked.rows[j];
+    }
+    return sum;
+}
+
+// Of component `lane` to the next pixel right and down.
+fn looked_up_change(at: Interpolated, lane: u32) -> vec2<f32> {
+    let by = vec2<f32>(at.by_column[lane], at.by_row[lane]);
+    return vec2<f32>(dot(by, looked.dx), dot(by, looked.dy));
+}
+
+fn edges_of_pixel(through: f32) -> u32 {
+    // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
+    let rows = length(vec2<f32>(looked.dx.y, looked.dy.y));
+    let curve = looked.beyond * f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
+    return edges_looked_up(looked.on_edge, curve, looked.cell.y < lens.outer_rows, through);
+}
+
+// The next crossing of the disk in the tables.
+fn next_looked_up() -> Crossing {
+    var crossing: Crossing;
+    if !DISK {
+        return crossing;
+    }
+    var orders = looked.flags & 0xffffu;
+    while orders != 0u && crossing.u <= 0.0 {
+        let order = firstTrailingBit(orders);
+        orders &= orders - 1u;
+        let at = interpolate(select(order / 4u, order, PATTERN));
+        let lane = select(order % 4u, 0u, PATTERN);
+        let u = at.value[lane];
+        looked.on_edge = looked.on_edge || near_disk_edge(u, looked_up_change(at, lane));
+        if is_wanted(u) && u < KERR_NO_CROSSING {
+            crossing.u = u;
+            crossing.order = order;
+        }
+    }
+    looked.flags = orders;
+    if crossing.u > 0.0 {
+        let c = begin_local(looked.seen.n).c;
+        crossing.g = looked.seen.frequency_ratio * redshift_of(c, crossing.u);
+    }
+    if PATTERN && crossing.u > 0.0 {
+        put_pattern(&crossing, interpolate(crossing.order));
+    }
+    return crossing;
+}
+
+fn put_pattern(crossing: ptr<function, Crossing>, at: Interpolated) {
+    let u = at.value.x;
+    let delay = at.value.w + 1.0 / frame.place.x + 1.0 / u - 2.0 * log(u / frame.place.x);
+    (*crossing).place = Place(-log(u), arctan2(at.value.z, at.value.y), select(0.0, delay, DELAY));
+    if FOOTPRINTS {
+        (*crossing).dx = place_change((*crossing).u, at, looked.dx);
+        (*crossing).dy = place_change((*crossing).u, at, looked.dy);
+    }
+}
+
+fn place_change(u: f32, at: Interpolated, change: vec2<f32>) -> Place {
+    let d = at.by_column * change.x + at.by_row * change.y;
+    let turn = (at.value.y * d.z - at.value.z * d.y) / max(dot(at.value.yz, at.value.yz), 1e-6);
+    return Place(-d.x / u, turn, select(0.0, d.w - (1.0 / u + 2.0) * d.x / u, DELAY));
+}

@@ -1,0 +1,251 @@
+// Ray records without spin, looked up in the tables of lens/schwarzschild.wgsl. Mirrors
+// src/physics/lens/schwarzschild.rs and src/cpu/lens.rs.
+
+#import constants
+#import camera/observer
+#import camera/projection
+#import geodesic/geodesic
+#import lens/axis
+#import lens/schwarzschild
+#import records/record
+#import shared/frame
+#import shared/math
+#import shared/pass
+
+@group(1) @binding(0) var<uniform> lens: SchwarzschildLens;
+@group(1) @binding(1) var lens_swept: texture_2d<f32>;
+@group(1) @binding(2) var lens_u: texture_2d_array<f32>;
+@group(1) @binding(3) var lens_delay: texture_2d_array<f32>;
+
+// The record at hand: what its crossings need.
+struct Looked {
+    // Look direction in the local frame, and nu(camera) / nu(local frame).
+    seen: LocalLook,
+    branch: u32,
+    place: LensPlace,
+    // Angle to the end of the ray, and to the first crossing of the plane; the number of the next crossing.
+    swept: f32,
+    first: f32,
+    order: u32,
+    // d(swept) / d(place), and of the change to the next pixel right and down: d(place), and of the ray's plane about
+    // e_r.
+    swept_slope: f32,
+    change: vec2<f32>,
+    turn: vec2<f32>,
+    // d(first crossing's angle) to the next pixel right and down: the same for every crossing.
+    first_change: vec2<f32>,
+    // Whether an edge of the disk runs through the pixel at a crossing given so far.
+    on_edge: bool,
+    // beyond_right_angle(t).
+    beyond: f32,
+    // Unit vectors of the ray's plane (with e_r) and across it, chart.
+    along: vec3<f32>,
+    across: vec3<f32>,
+}
+
+var<private> looked: Looked;
+
+fn ray_record(id: vec2<u32>) -> Record {
+    let at = pixel_place(id);
+    let view = camera_view(at.x, at.y);
+    let seen = local_look(view.look);
+    let n = seen.n;
+    let energy = local_energy(n);
+    // What they hold along n turns nothing below.
+    let dx = local_change(seen, view.dx);
+    let dy = local_change(seen, view.dy);
+
+    // cos psi = -n_r.
+    let s2 = dot(n.yz, n.yz);
+    let s = sqrt(s2);
+    let t = lens_tangent(-n.x, s2, lens.critical.x);
+    let escaped = t > 0.0;
+    let t_hat = max(abs(t) / lens.critical.w, exp2(-LENS_OCTAVES));
+    let branch = select(1u, 0u, escaped);
+    let nodes = select(lens.inner_nodes, lens.outer_nodes, escaped);
+    let has_column = nodes > 2u && energy > 0.0;
+    let place = lens_place(t_hat, LENS_OCTAVES, f32(LENS_PER_OCTAVE), max(nodes, 3u) - 3u);
+    let ends = textureLoad(lens_swept, vec2<u32>(place.node, branch), 0);
+    let swept = select(0.0, dot(lagrange(place.share), ends), has_column);
+    let swept_slope = dot(lagrange_slope(place.share), ends);
+    // d(place) / d(psi); 1 / ln 2 = 1.4427.
+    let slope = f32(LENS_PER_OCTAVE) * 0.7213475204444817 * (1.0 + t * t) / (select(-t_hat, t_hat, escaped) * lens.critical.w);
+
+    // Tangential unit vector, (e_theta, e_phi).
+    let tangent = select(vec2<f32>(1.0, 0.0), n.yz / s, s > 0.0);
+    let d_psi = vec2<f32>(s * dx.x - n.x * dot(tangent, dx.yz), s * dy.x - n.x * dot(tangent, dy.yz));
+    let d_across = vec2<f32>(tangent.x * dx.z - tangent.y * dx.y, tangent.x * dy.z - tangent.y * dy.y);
+    looked.seen = seen;
+    looked.branch = branch;
+    looked.place = place;
+    looked.swept = swept;
+    looked.order = 0u;
+    looked.swept_slope = swept_slope;
+    looked.change = slope * d_psi;
+    looked.turn = d_across / max(s, 1e-6);
+    looked.along = frame.e_theta.xyz * tangent.x + frame.e_phi.xyz * tangent.y;
+    looked.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
+    looked.first = first_crossing_angle(tangent.x);
+    looked.on_edge = false;
+    looked.beyond = beyond_right_angle(t);
+    if DISK {
+        // N_z stays 0 (OrbitPlane::image_change); both factors change sign from crossing to crossing.
+        let turn = sincos(min(looked.first, PI));
+        let rise = looked.along.z * turn.y - frame.e_r.z * turn.x;
+        looked.first_change = looked.turn * (-looked.across.z * turn.x / rise);
+    }
+
+    // L = r sin(theta) p_phi, p = -n.
+    let momentum = -frame.place.y * n.z / frame.place.x;
+    var record = Record(FATE_CAPTURED, 0u, energy, momentum, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    if escaped {
+        let turn = sincos(swept);
+        let e_r = frame.e_r.xyz;
+        record.fate = FATE_ESCAPED;
+        record.sky_redshift = seen.frequency_ratio / energy;
+        record.sky = e_r * turn.y + looked.along * turn.x;
+        // By psi in the ray's plane, and sin(swept) / sin(psi) across it; outward, where both sines vanish, their
+        // slopes' ratio.
+        let swept_psi = swept_slope * slope;
+        let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
+        record.footprint = Footprint(looked.along * turn.y - e_r * turn.x, looked.across,
+            vec2<f32>(swept_psi * d_psi.x, across * d_across.x), vec2<f32>(swept_psi * d_psi.y, across * d_across.y));
+    }
+    return record;
+}
+
+// E of the look direction n, at nu_local = 1: the lapse, or 1 - sqrt(2 u) cos psi in the rain frame; <= 0: no light
+// comes from there.
+fn local_energy(n: vec3<f32>) -> f32 {
+    return select(frame.place.w, 1.0 + frame.place.w * n.x, frame.rain != 0u);
+}
+
+// phi of the first zero of N_z = cos(theta) cos(phi) - sin(theta) n_theta sin(phi), in (0, pi]; never for a ray in the
+// plane.
+fn first_crossing_angle(n_theta: f32) -> f32 {
+    let sine = frame.place.y;
+    let cosine = frame.place.z;
+    let angle = arctan2(abs(cosine), sine * n_theta * sign(cosine));
+    let in_plane = select(PI, 1e30, n_theta == 0.0);
+    return select(angle, in_plane, cosine == 0.0);
+}
+
+fn next_crossing() -> Crossing {
+    var crossing: Crossing;
+    if !DISK {
+        return crossing;
+    }
+    if looked.first >= looked.swept {
+        return crossing;
+    }
+    var phi = looked.first + PI * f32(looked.order);
+    // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found
+    // must be kept apart, too: lanes that have left go on writing.)
+    loop {
+        let at = column_at(lens_u, phi / max(looked.swept, 1e-6));
+        let u = at.x;
+        let comes = phi < looked.swept && looked.order < frame.max_crossings;
+        if comes && crossing.u <= 0.0 {
+            looked.on_edge = looked.on_edge || near_disk_edge(u, u_change(at, phi));
+        }
+        if comes && is_wanted(u) && crossing.u <= 0.0 {
+            crossing.u = u;
+            crossing.order = looked.order;
+        }
+        looked.order += 1u;
+        phi += PI;
+
+        continuing {
+            break if crossing.u > 0.0 || phi >= looked.swept || looked.order >= frame.max_crossings;
+        }
+    }
+    if crossing.u > 0.0 {
+        complete(&crossing, looked.first + PI * f32(crossing.order));
+    }
+    return crossing;
+}
+
+// Only looking tells.
+fn more_crossings() -> bool {
+    return true;
+}
+
+// Of u to the next pixel right and down, where the table of u has `at` at the crossing `phi`.
+fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
+    let y = phi / looked.swept;
+    return at.y * looked.change + at.z * ((looked.first_change - y * looked.swept_slope * looked.change) / looked.swept);
+}
+
+// Of a table over (place, y): value and derivatives by place and by y. Cubic in both: Hermite in y, Lagrange in place.
+fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
+    let scaled = clamp(y, 0.0, 1.0) * f32(LENS_INTERVALS);
+    let j = min(u32(scaled), LENS_INTERVALS - 1u);
+    let x = scaled - f32(j);
+    let weights = lagrange(looked.place.share);
+    let slopes = lagrange_slope(looked.place.share);
+    var value = vec4<f32>(0.0);
+    var change = vec4<f32>(0.0);
+    for (var i = 0u; i < 4u; i += 1u) {
+        let node = max(looked.place.node + i, 1u) - 1u;
+        let ends = textureLoad(columns, vec2<u32>(node, j), looked.branch, 0);
+        value += ends * weights[i];
+        change += ends * slopes[i];
+    }
+    // Hermite's base at x; slopes are by y, intervals 1 / LENS_INTERVALS long.
+    const H: f32 = 1.0 / f32(LENS_INTERVALS);
+    let x1 = 1.0 - x;
+    let base = vec4<f32>(x1 * x1 * (1.0 + 2.0 * x), x * x1 * x1 * H, x * x * (3.0 - 2.0 * x), -x * x * x1 * H);
+    let base_slope = vec4<f32>(-6.0 * x * x1 / H, x1 * (1.0 - 3.0 * x), 6.0 * x * x1 / H, x * (3.0 * x - 2.0));
+    return vec3<f32>(dot(value, base), dot(change, base), dot(value, base_slope));
+}
+
+fn complete(crossing: ptr<function, Crossing>, phi: f32) {
+    let begin = begin_local(looked.seen.n);
+    let c = begin.c;
+    let u = (*crossing).u;
+    (*crossing).g = looked.seen.frequency_ratio * redshift_of(c, u);
+    if !FOOTPRINTS {
+        return;
+    }
+    let at = column_at(lens_u, phi / looked.swept);
+    let turn = sincos(phi);
+    let n = frame.e_r.xyz * turn.y + looked.along * turn.x;
+    let tangent = looked.along * turn.y - frame.e_r.xyz * turn.x;
+    // u' by tau.
+    let kappa = sqrt(c.k);
+    let du = at.z / looked.swept * kappa;
+    (*crossing).place = Place(-log(u), arctan2(n.y, n.x), 0.0);
+    if DELAY {
+        let integral = column_at(lens_delay, phi / looked.swept).x;
+        (*crossing).place.delay = retardation(c, frame.place.x, begin.state.du, u, du, integral);
+    }
+    // How far a turn of the ray's plane moves the crossing around the disk, and how far the next pixel moves it.
+    let swing = (n.x * looked.across.y - n.y * looked.across.x) * turn.x;
+    let around = n.x * tangent.y - n.y * tangent.x;
+    let rho2 = n.x * n.x + n.y * n.y;
+    let phi_change = looked.first_change;
+    let azimuth_change = (looked.turn * swing + phi_change * around) / rho2;
+    let du_change = u_change(at, phi);
+    // The gradient of the travel time at its far end is the photon's momentum: b along phi, -u' / (D u^2) along u.
+    var delay_change = vec2<f32>(0.0);
+    if DELAY {
+        delay_change = (kappa * phi_change + du / (u * u * (1.0 - 2.0 * u)) * du_change) / c.energy;
+    }
+    (*crossing).dx = Place(-du_change.x / u, azimuth_change.x, delay_change.x);
+    (*crossing).dy = Place(-du_change.y / u, azimuth_change.y, delay_change.y);
+}
+
+fn edges_of_pixel(through: f32) -> u32 {
+    // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
+    let curve = looked.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(looked.change), 1e-30);
+    return edges_looked_up(looked.on_edge, curve, looked.branch == 0u, through);
+}
+
+// Gives the crossings once more from the first.
+fn rewind_crossings() {
+    looked.order = 0u;
+}
+
+// No record is pending here.
+fn defer_pixel(id: vec2<u32>) {
+}

@@ -1,0 +1,110 @@
+// The ray record of a pixel: the one interface between lensing and shading. src/scene/record.rs has the same fields.
+// However it was made, whoever makes records (traced/record.wgsl, lens_*.wgsl) defines
+//
+//     fn ray_record(id: vec2<u32>) -> Record      of the tile's pixel `id`
+//     fn next_crossing() -> Crossing              of that record, front to back, within the disk's radii
+//     fn more_crossings() -> bool                 whether next_crossing may give one more
+//     fn defer_pixel(id: vec2<u32>)               leaves a pixel whose record is FATE_PENDING to a later kernel
+//     fn edges_of_pixel(through: f32) -> u32      EDGE_*: what runs through the pixel of that record, once its crossings have been
+//                                                 given; through: what the disk lets pass of the light behind it
+//
+// and whoever uses them
+//
+//     fn take_record(id: vec2<u32>, record: Record)
+
+#import constants
+#import shared/frame
+
+// Where and when the light of a crossing left, or the change of it from pixel to pixel.
+struct Place {
+    ln_r: f32,
+    azimuth: f32,
+    delay: f32,
+}
+
+struct Record {
+    fate: u32,
+    // Integration steps spent on the pixel.
+    steps: u32,
+    // E and L, scaled so that the local frame's observer measures 1.
+    energy: f32,
+    angular_momentum: f32,
+    // 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
+    plane_u: f32,
+    // nu(camera) / nu(at infinity); 0 unless escaped.
+    sky_redshift: f32,
+    // Sky direction, chart, and its footprint.
+    sky: vec3<f32>,
+    footprint: Footprint,
+}
+
+// Changes of a unit vector to the next pixel right and down, in two unit vectors at right angles to it and to each
+// other; 1e30 where nothing is known.
+struct Footprint {
+    p: vec3<f32>,
+    q: vec3<f32>,
+    dx: vec2<f32>,
+    dy: vec2<f32>,
+}
+
+const UNKNOWN_FOOTPRINT: Footprint = Footprint(vec3<f32>(0.0), vec3<f32>(0.0), vec2<f32>(1e30), vec2<f32>(1e30));
+
+// Of changes at right angles to the unit vector `d`. (The basis is that of Duff et al. 2017.)
+fn footprint_of(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> Footprint {
+    let sense = select(-1.0, 1.0, d.z >= 0.0);
+    let a = -1.0 / (sense + d.z);
+    let b = d.x * d.y * a;
+    let p = vec3<f32>(1.0 + sense * d.x * d.x * a, sense * b, -sense * d.x);
+    let q = vec3<f32>(b, sense + d.y * d.y * a, -d.y);
+    return Footprint(p, q, vec2<f32>(dot(dx, p), dot(dx, q)), vec2<f32>(dot(dy, p), dot(dy, q)));
+}
+
+// A crossing within the disk's radii; u is 0 when there is no further one.
+struct Crossing {
+    u: f32,
+    g: f32,
+    order: u32,
+    // ln_r; azimuth and delay where shading needs them, else 0.
+    place: Place,
+    // With FOOTPRINTS: change to the next pixel right and down.
+    dx: Place,
+    dy: Place,
+    // How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1; shading sets it.
+    share: f32,
+}
+
+// Whether an edge of the disk runs through the pixel whose crossing lies at u, or u changes steeply there; `change`:
+// of u to the next pixel right and down.
+fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
+    let far = frame.disk_u.x;
+    let near = frame.disk_u.y;
+    let sum = abs(change.x) + abs(change.y);
+    let steep = u >= far && u <= near && sum > STEEP_CHANGE * u;
+    return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
+}
+
+// What d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large by beyond 90 degrees from
+// the curve, whose antipode is not near it.
+fn beyond_right_angle(t: f32) -> f32 {
+    let most = max(abs(t), 1.0);
+    return 0.5 * (most + 1.0 / most);
+}
+
+// Of a looked-up pixel `curve` pixels from the critical curve; the rings lie outside it.
+fn edges_looked_up(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
+    let near_ring = DISK && outside && through > 0.0 && curve < RINGS_REACH;
+    let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);
+    return select(kind, EDGE_CURVE, through > 0.0 && curve < CURVE_REACH);
+}
+
+// Whether there is a disk, and whether shading needs the footprint of crossings.
+override DISK: bool = true;
+override FOOTPRINTS: bool = true;
+// Whether next_crossing can give crossings of the plane outside the disk's radii as well, and whether it is to.
+override WHOLE_PLANE: bool = false;
+var<private> whole_plane: bool;
+
+// Whether next_crossing gives one at u.
+fn is_wanted(u: f32) -> bool {
+    return (WHOLE_PLANE && whole_plane && u > 0.0) || (u >= frame.disk_u.x && u <= frame.disk_u.y);
+}

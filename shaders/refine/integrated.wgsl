@@ -1,0 +1,87 @@
+// A ray that is integrated for one sample of a pixel, and its crossings of the whole plane. Used by
+// refine/traced.wgsl and refine/kerr.wgsl; knows no tables and no textures.
+
+#import constants
+#import camera/observer
+#import camera/projection
+#import geodesic/geodesic
+#import geodesic/trace
+#import records/record
+#import shared/frame
+#import shared/math
+#import shared/pass
+
+// u, azimuth and delay by order; u is 0 where there is none.
+var<private> kept_crossings: array<vec3<f32>, CROSSINGS_KEPT>;
+var<private> kept_order: u32;
+// Orders up to that of the last crossing.
+var<private> kept_count: u32;
+// Of the ray.
+var<private> kept_constants: Constants;
+var<private> kept_ratio: f32;
+
+fn on_crossing(c: Constants, crossing: PlaneCrossing) {
+    var azimuth = 0.0;
+    if FOOTPRINTS {
+        azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
+    }
+    kept_count = min(crossing.order + 1u, CROSSINGS_KEPT);
+    kept_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+}
+
+// The record of the sample at pixel_place(id), without footprints.
+fn integrated_record(id: vec2<u32>) -> Record {
+    for (var i = 0u; i < CROSSINGS_KEPT; i += 1u) {
+        kept_crossings[i] = vec3<f32>(0.0);
+    }
+    kept_order = 0u;
+    kept_count = 0u;
+    let place = pixel_place(id);
+    let begin = begin_ray(camera_look(place.x, place.y));
+    kept_constants = begin.c;
+    kept_ratio = begin.frequency_ratio;
+    var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local, begin.c.angular_momentum / begin.c.nu_local,
+        0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    if begin.light {
+        // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
+        let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
+        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, opaque_u);
+        let traced = trace(begin.c, begin.state, settings);
+        record.fate = traced.fate;
+        if traced.fate == FATE_ESCAPED {
+            let end = escape(begin.c, traced);
+            record.sky = chart_direction(end.n, end.drag);
+            record.sky_redshift = begin.frequency_ratio / record.energy;
+            // Unknown, but in directions that exist.
+            record.footprint = footprint_of(record.sky, vec3<f32>(0.0), vec3<f32>(0.0));
+            record.footprint.dx = vec2<f32>(1e30);
+            record.footprint.dy = vec2<f32>(1e30);
+        }
+    }
+    return record;
+}
+
+fn more_integrated() -> bool {
+    return kept_order < kept_count;
+}
+
+// Without footprint.
+fn next_integrated() -> Crossing {
+    var crossing: Crossing;
+    if !DISK {
+        return crossing;
+    }
+    while more_integrated() && crossing.u <= 0.0 {
+        let at = kept_crossings[kept_order];
+        if is_wanted(at.x) {
+            crossing.u = at.x;
+            crossing.order = kept_order;
+            crossing.g = kept_ratio * redshift_of(kept_constants, at.x);
+            crossing.place = Place(-log(at.x), at.y, at.z);
+            crossing.dx = Place(1e30, 0.0, 0.0);
+            crossing.dy = Place(1e30, 0.0, 0.0);
+        }
+        kept_order += 1u;
+    }
+    return crossing;
+}

@@ -1,0 +1,51 @@
+// Ray records of samples with spin: as the tables of lens/kerr.wgsl have them, else integrated. The sky's footprint is
+// the tables' in either case; those of integrated crossings, too, or there are none.
+
+#import constants
+#import lens/kerr
+#import lens/kerr_record
+#import records/record
+#import refine/integrated
+#import shared/fate
+
+var<private> integrated: bool;
+
+fn ray_record(id: vec2<u32>) -> Record {
+    var record = look_up(id);
+    integrated = record.fate == FATE_PENDING;
+    if integrated {
+        let footprint = record.footprint;
+        let known = record.sky_redshift != 0.0;
+        record = integrated_record(id);
+        if known {
+            record.footprint = footprint;
+        }
+    }
+    return record;
+}
+
+fn next_crossing() -> Crossing {
+    if !integrated {
+        return next_looked_up();
+    }
+    var crossing = next_integrated();
+    if PATTERN && crossing.u > 0.0 {
+        // Footprints need not be as exact: the tables' serve where they hold the same crossing.
+        let alike = interpolate(crossing.order);
+        if abs(alike.value.x / crossing.u - 1.0) < LIKE {
+            crossing.dx = place_change(crossing.u, alike, looked.dx);
+            crossing.dy = place_change(crossing.u, alike, looked.dy);
+        }
+    }
+    return crossing;
+}
+
+fn more_crossings() -> bool {
+    return !integrated || more_integrated();
+}
+
+// Gives the crossings once more from the first.
+fn rewind_crossings() {
+    kept_order = 0u;
+    looked.flags = looked.all_flags;
+}

@@ -1,0 +1,7 @@
+// What becomes of a pixel's light where it has but one sample: it is developed.
+
+#requires fn put_pixel(id: vec2<u32>, radiance: vec4<f32>)
+
+fn take_light(id: vec2<u32>, light: vec4<f32>) {
+    put_pixel(id, light);
+}

@@ -1,0 +1,26 @@
+// Shades a pixel's record, and lists the pixel if edges run through it. Knows not what becomes of light: who uses this
+// file defines
+//
+//     fn take_light(id: vec2<u32>, light: vec4<f32>)      of the tile's pixel `id`; a second time in place of the first
+
+#import camera/projection
+#import records/record
+#import refine/edges
+#import shade/shade
+#import shared/pass
+#requires fn next_crossing() -> Crossing
+#requires fn edges_of_pixel(through: f32) -> u32
+#requires fn take_light(id: vec2<u32>, light: vec4<f32>)
+
+fn take_record(id: vec2<u32>, record: Record) {
+    take_light(id, shade_record(id, record));
+    if REFINES && has_look(pixel_place(id)) {
+        note_edges(id, edges_of_pixel(seen_through));
+    }
+}
+
+fn seen_crossing() -> Crossing {
+    var crossing = next_crossing();
+    crossing.share = 1.0;
+    return crossing;
+}

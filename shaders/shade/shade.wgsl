@@ -1,0 +1,170 @@
+// Linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. How the record was made it does not
+// know.
+
+#import constants
+#import camera/projection
+#import emit/disk
+#import emit/turbulence
+#import records/record
+#import shared/deciding
+#import shared/frame
+#import shared/math
+#import shared/pass
+#import sky/grid
+#import sky/map
+#import sky/stars
+#requires fn next_crossing() -> Crossing
+#requires fn more_crossings() -> bool
+#requires fn seen_crossing() -> Crossing
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> pass_: Pass;
+// Tables as textures, TABLE_WIDTH entries a row: software drivers reach into buffers lane by lane.
+@group(0) @binding(2) var light_tables: texture_2d<f32>;
+@group(0) @binding(3) var star_cells: texture_2d<u32>;
+// Pyramids of sky/map.wgsl: the embedded one, and the host's.
+@group(0) @binding(4) var milky_way: texture_2d<f32>;
+@group(0) @binding(5) var sky_map: texture_2d<f32>;
+
+// What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every
+// `if`.
+override SHOWS_LIGHT: bool = true;
+override SHOWS_STARS: bool = true;
+override SHOWS_MILKY_WAY: bool = true;
+override SHOWS_MAP: bool = true;
+override SHOWS_GRID: bool = true;
+override OPAQUE: bool = false;
+override REFINES: bool = true;
+
+fn light_table(i: u32) -> vec4<f32> {
+    return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
+}
+
+fn star_cell(i: u32) -> u32 {
+    return textureLoad(star_cells, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0).x;
+}
+
+// Of the tile's pixel `id`: light and alpha, or the view's value first; nothing where the projection shows nothing.
+fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
+    let seen = has_look(pixel_place(id));
+    if SHOWS_LIGHT {
+        return select(vec4<f32>(0.0), pixel_light(record), seen);
+    }
+    return vec4<f32>(select(no_value(), view_value(record, id), seen), 0.0, 0.0, 1.0);
+}
+
+// NaN, which may not be written as a constant.
+fn no_value() -> f32 {
+    return bitcast<f32>(0x7fc00000u | frame.view);
+}
+
+fn to_sky(d: vec3<f32>) -> vec3<f32> {
+    return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
+}
+
+// Of stars.rs.
+fn least_patch() -> f32 {
+    return frame.sky_z.w;
+}
+
+// Of the light behind the disk, how much it lets pass at the pixel shaded last.
+var<private> seen_through: f32;
+
+// Who uses this file defines seen_crossing() -> Crossing: next_crossing() with its share.
+fn pixel_light(here: Record) -> vec4<f32> {
+    var light = vec3<f32>(0.0);
+    var open = 1.0;
+    // max_crossings bounds what next_crossing gives; behind the first crossing of an opaque disk nothing is seen.
+    for (var k = 0u; k < select(deciding(frame.max_crossings), 1u, OPAQUE); k += 1u) {
+        let crossing = seen_crossing();
+        if crossing.u <= 0.0 {
+            break;
+        }
+        var structure = 1.0;
+        if FOOTPRINTS {
+            structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
+        }
+        let opacity = frame.disk.z * crossing.share;
+        light += open * opacity * structure * disk_light(crossing.u, crossing_shift(here, crossing));
+        open *= 1.0 - opacity;
+        // To find at the loop's begin that there is none lavapipe would run all of the body once more.
+        if !more_crossings() {
+            break;
+        }
+    }
+    seen_through = open;
+    if (SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID) && here.fate == FATE_ESCAPED && open > 0.0 {
+        light += open * sky_light(here);
+    }
+    return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
+}
+
+fn crossing_shift(here: Record, crossing: Crossing) -> Shift {
+    if ALL_EFFECTS {
+        return Shift(crossing.g, crossing.g);
+    }
+    let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(crossing.u, here.energy, here.angular_momentum);
+    return visible_shift(crossing.g, gravity);
+}
+
+fn sky_light(here: Record) -> vec3<f32> {
+    var shift = Shift(here.sky_redshift, here.sky_redshift);
+    if !ALL_EFFECTS {
+        shift = visible_shift(here.sky_redshift, nu_static_eye(here.energy) / here.energy);
+    }
+    var light = vec3<f32>(0.0);
+    if SHOWS_STARS {
+        light = star_light(here.sky, here.footprint, shift.colour, shift.beaming) * frame.sky_x.w;
+    }
+    if SHOWS_MILKY_WAY || SHOWS_MAP {
+        light += extended_light(here, shift) * frame.sky_y.w;
+    }
+    if SHOWS_GRID {
+        light = under_grid(light, to_sky(here.sky), here.footprint);
+    }
+    return light;
+}
+
+// Of the Milky Way and the host's map.
+fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
+    let d = to_sky(here.sky);
+    let taps = map_taps(here.footprint);
+    var light = vec3<f32>(0.0);
+    if SHOWS_MILKY_WAY {
+        light = shifted_map_light(map_light(milky_way, frame.map_sizes.xy, d, taps), shift.colour, shift.beaming);
+    }
+    if SHOWS_MAP {
+        light += shifted_map_light(map_light(sky_map, frame.map_sizes.zw, d, taps), shift.colour, shift.beaming);
+    }
+    return light;
+}
+
+// What BHR_VIEW_* shows; NaN where there is nothing.
+fn view_value(here: Record, id: vec2<u32>) -> f32 {
+    let nothing = no_value();
+    let first = next_crossing();
+    let on_disk = first.u > 0.0;
+    let in_sky = here.fate == FATE_ESCAPED;
+    switch deciding(frame.view) {
+        case VIEW_REDSHIFT: {
+            return select(select(nothing, here.sky_redshift, in_sky), first.g, on_disk);
+        }
+        case VIEW_ORDER: {
+            let elsewhere = select(select(nothing, -2.0, here.fate == FATE_CAPTURED), -1.0, in_sky);
+            return select(elsewhere, f32(first.order), on_disk);
+        }
+        case VIEW_DEFLECTION: {
+            let place = pixel_place(id);
+            let n = camera_look(place.x, place.y);
+            let look = frame.e_r.xyz * n.x + frame.e_theta.xyz * n.y + frame.e_phi.xyz * n.z;
+            return select(nothing, arctan2(length(cross(look, here.sky)), dot(look, here.sky)), in_sky);
+        }
+        case VIEW_STEPS: {
+            return f32(here.steps);
+        }
+        default: {
+            // METRIC: -g_tt = 1 - 2/r in the plane.
+            return select(nothing, 1.0 - 2.0 * here.plane_u, here.plane_u > 0.0);
+        }
+    }
+}

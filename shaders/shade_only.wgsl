@@ -1,5 +1,0 @@
-// What becomes of a pixel's light where it has but one sample: it is developed.
-
-fn take_light(id: vec2<u32>, light: vec4<f32>) {
-    put_pixel(id, light);
-}

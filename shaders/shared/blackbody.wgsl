@@ -1,0 +1,47 @@
+// Thermal light as the eye sees it: mirrors physics/blackbody.rs (BlackbodyTable), where the formulas and reasons are.
+// Reads light_table(i), defined where the bindings are: node i is rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
+
+#import constants
+#requires fn light_table(i: u32) -> vec4<f32>
+
+const BLACKBODY_OFFSET: u32 = 0u;
+
+// Of the table that begins at entry `first`: rgb / Y, not clamped, and ln(Y / T); MIN_TEMPERATURE <= temperature <=
+// MAX_TEMPERATURE.
+fn blackbody_lookup(first: u32, temperature: f32) -> vec4<f32> {
+    const SCALE = f32(BLACKBODY_SIZE - 1u) * (MIN_TEMPERATURE + COORDINATE_TEMPERATURE);
+    let position = SCALE / (temperature + COORDINATE_TEMPERATURE);
+    let index = min(u32(position), BLACKBODY_SIZE - 2u);
+    let share = position - f32(index);
+    let low = light_table(first + index);
+    let high = light_table(first + index + 1u);
+    var value = low + (high - low) * share;
+    value.w -= WIEN_TEMPERATURE / temperature;
+    return value;
+}
+
+// The rule of colour and beaming: B(g_colour T) g_beaming^4 / g_colour^4, where a luminance of e^log_reference counts
+// as 1.
+fn shifted_blackbody(temperature: f32, log_reference: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    return shifted_light(BLACKBODY_OFFSET, temperature, log_reference, g_colour, g_beaming);
+}
+
+// The same with the table that begins at entry `first`.
+fn shifted_light(first: u32, temperature: f32, log_reference: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
+    let observed = temperature * g_colour;
+    if observed >= MIN_TEMPERATURE && g_beaming > 0.0 {
+        let taken = min(observed, MAX_TEMPERATURE);
+        let value = blackbody_lookup(first, taken);
+        let beaming = min(g_beaming / g_colour, MAX_BEAMING);
+        let gain = (beaming * beaming) * (beaming * beaming);
+        let luminance = exp(min(value.w - log_reference, MAX_LN_RATIO)) * gain * taken;
+        return into_gamut(value.xyz) * min(luminance, MAX_RATIO);
+    }
+    return vec3<f32>(0.0);
+}
+
+// A colour of luminance 1 mixed with white until no component is negative.
+fn into_gamut(rgb: vec3<f32>) -> vec3<f32> {
+    let least = min(min(min(rgb.x, rgb.y), rgb.z), 0.0);
+    return (rgb - least) / (1.0 - least);
+}

@@ -1,0 +1,35 @@
+// One sample of one tile: the uniform `pass_`, declared where the bindings are. The traced rectangle is the tile and
+// one pixel around it, for the derivatives.
+
+#requires var pass_: Pass
+
+struct Pass {
+    // Of the traced rectangle's top-left pixel in the full frame.
+    origin: vec2<i32>,
+    // Of the traced rectangle.
+    size: vec2<u32>,
+    // Of this sample in its pixel, 0 .. 1.
+    offset: vec2<f32>,
+    // Of this sample among all.
+    weight: f32,
+    // 1: begins a new sum.
+    first: u32,
+    // Of this sample among those of the submission.
+    slot: u32,
+    // Samples that refine/refine.wgsl takes of a pixel.
+    refined: u32,
+    // Where in the full frame the texture of a frame's light begins (film/light.wgsl).
+    light_origin: vec2<i32>,
+}
+
+// From this sample to the place looked at, pixels: 0 but where refine/refine.wgsl spreads samples over a pixel.
+var<private> sample_shift: vec2<f32>;
+
+fn outside_tile(id: vec2<u32>) -> bool {
+    return id.x >= pass_.size.x - 2u || id.y >= pass_.size.y - 2u;
+}
+
+// Of the sample in the tile's pixel `id`: its place in the full frame, pixels.
+fn pixel_place(id: vec2<u32>) -> vec2<f32> {
+    return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset + sample_shift;
+}

@@ -1,0 +1,83 @@
+// Kernel: traces the pixels of a tile's rectangle into record textures. What shading will do with them it does not
+// know.
+
+#import constants
+#import camera/observer
+#import camera/projection
+#import geodesic/geodesic
+#import geodesic/trace
+#import shared/deciding
+#import shared/frame
+#import shared/math
+#import shared/pass
+#import traced/layout
+
+@group(0) @binding(0) var<uniform> frame: Frame;
+@group(0) @binding(1) var<uniform> pass_: Pass;
+@group(0) @binding(2) var record_sky: texture_storage_2d<rgba32float, write>;
+@group(0) @binding(3) var record_meta: texture_storage_2d<rgba32uint, write>;
+@group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
+
+// Whether shading needs to know where on the disk a crossing is.
+override AZIMUTH: bool = true;
+
+// Of the ray being traced.
+var<private> pixel: vec2<u32>;
+var<private> frequency_ratio: f32;
+var<private> disk_orders: u32;
+var<private> inside_orders: u32;
+var<private> plane_u: f32;
+
+fn on_crossing(c: Constants, crossing: PlaneCrossing) {
+    if crossing.order == 0u {
+        plane_u = crossing.u;
+    }
+    // Without a disk its radii are (1, 0).
+    if crossing.u > max(frame.disk_u.x, frame.disk_u.y) {
+        inside_orders |= 1u << crossing.order;
+    }
+    if crossing.u >= frame.disk_u.x && crossing.u <= frame.disk_u.y {
+        var azimuth = 0.0;
+        if AZIMUTH {
+            azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
+        }
+        let g = frequency_ratio * redshift_of(c, crossing.u);
+        textureStore(record_disk, pixel, countOneBits(disk_orders), vec4<f32>(crossing.u, g, azimuth, crossing.delay));
+        disk_orders |= 1u << crossing.order;
+    }
+}
+
+@compute @workgroup_size(8, 16)
+fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
+    zero = id.z;
+    if id.x >= pass_.size.x || id.y >= pass_.size.y {
+        return;
+    }
+    pixel = id.xy;
+    let place = vec2<f32>(pass_.origin + vec2<i32>(pixel)) + pass_.offset;
+    let begin = begin_ray(camera_look(place.x, place.y));
+    let c = begin.c;
+    frequency_ratio = begin.frequency_ratio;
+    disk_orders = 0u;
+    inside_orders = 0u;
+    plane_u = 0.0;
+    var sky = vec4<f32>(0.0);
+    var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
+    if begin.light {
+        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
+        let traced = trace(c, begin.state, settings);
+        m.fate = traced.fate;
+        m.steps = traced.steps;
+        if traced.fate == FATE_ESCAPED {
+            let end = escape(c, traced);
+            sky = vec4<f32>(chart_direction(end.n, end.drag), frequency_ratio / m.energy);
+        }
+    }
+    textureStore(record_sky, pixel, sky);
+    m.orders = disk_orders;
+    m.inside = inside_orders;
+    if frame.view == VIEW_METRIC {
+        m.energy = plane_u;
+    }
+    textureStore(record_meta, pixel, pack_meta(m));
+}

@@ -1,0 +1,241 @@
+//! The numbers that shaders share with Rust, by their names in WGSL: the fragment `constants` is printed from them, so
+//! that neither side can change alone. What each one means stands where Rust declares it.
+
+use super::key::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
+use super::sizes;
+use crate::film::{self, tone_map};
+use crate::image::PixelFormat;
+use crate::physics::integrator::{self, Method};
+use crate::physics::lens::{critical, kerr, schwarzschild};
+use crate::physics::trace::{CROSSINGS_KEPT, Fate};
+use crate::physics::{blackbody, geodesic};
+use crate::scene::refine::{self, Edge};
+use crate::scene::{Effects, MAX_CROSSINGS, Projection, ToneMap, View, turbulence};
+use crate::sky::{filter, galaxy, grid, index, stars};
+use std::fmt::Debug;
+
+/// A value of a kind: its type and itself, as WGSL.
+macro_rules! wgsl {
+    (u32 $value:expr) => {
+        format!("u32 = {}u", $value as u32)
+    };
+    (i32 $value:expr) => {
+        format!("i32 = {}", $value as i32)
+    };
+    (f32 $value:expr) => {
+        format!("f32 = {:?}", $value as f32)
+    };
+    (vec3 $value:expr) => {
+        format!("vec3<f32> = vec3<f32>({})", list($value.map(|v| v as f32)))
+    };
+    (vec4 $value:expr) => {
+        format!("vec4<f32> = vec4<f32>({})", list($value.map(|v| v as f32)))
+    };
+    (mat3x2 $value:expr) => {
+        format!("mat3x2<f32> = mat3x2<f32>({})", list::<f32>($value.into_iter().flatten()))
+    };
+}
+
+/// Constants by name, kind and value.
+macro_rules! constants {
+    ($($name:ident: $kind:ident = $value:expr;)*) => { vec![$((stringify!($name), wgsl!($kind $value))),*] };
+}
+
+fn list<T: Debug>(values: impl IntoIterator<Item = T>) -> String {
+    values.into_iter().map(|value| format!("{value:?}")).collect::<Vec<_>>().join(", ")
+}
+
+/// The fragment.
+pub fn fragment() -> String {
+    all().into_iter().map(|(name, value)| format!("const {name}: {value};\n")).collect()
+}
+
+/// Name; type and value as WGSL.
+fn all() -> Vec<(&'static str, String)> {
+    constants! {
+        FATE_CAPTURED: u32 = Fate::Captured;
+        FATE_ESCAPED: u32 = Fate::Escaped;
+        FATE_UNRESOLVED: u32 = Fate::Unresolved;
+        FATE_HIDDEN: u32 = Fate::Hidden;
+        CLOCK_COORDINATE: u32 = geodesic::Clock::Coordinate;
+        CLOCK_RAIN: u32 = geodesic::Clock::Rain;
+        METHOD_RK4: u32 = MethodCode::from(Method::Rk4).0;
+        METHOD_DORMAND_PRINCE: u32 = MethodCode::from(Method::DormandPrince).0;
+        B1: f32 = integrator::B[0];
+        B2: f32 = integrator::B[1];
+        B3: f32 = integrator::B[2];
+        D1: f32 = integrator::D[0];
+        D2: f32 = integrator::D[1];
+        D3: f32 = integrator::D[2];
+        D4: f32 = integrator::D[3];
+        CROSSINGS_KEPT: u32 = CROSSINGS_KEPT;
+        RAY_CROSSINGS: u32 = MAX_CROSSINGS;
+
+        LENS_PER_OCTAVE: i32 = sizes::SCHWARZSCHILD_PER_OCTAVE;
+        LENS_OCTAVES: f32 = sizes::SCHWARZSCHILD_OCTAVES;
+        LENS_INTERVALS: u32 = sizes::SCHWARZSCHILD_INTERVALS;
+        LENS_INNER_END: f32 = schwarzschild::CAPTURE_U;
+        KERR_COLUMNS: u32 = sizes::KERR_COLUMNS;
+        KERR_PER_OCTAVE: u32 = sizes::KERR_PER_OCTAVE;
+        KERR_OCTAVES: f32 = kerr::CORE_OCTAVES;
+        KERR_ROWS_BELOW: u32 = kerr::ROWS_BELOW;
+        KERR_ROWS_ABOVE: u32 = kerr::ROWS_ABOVE;
+        KERR_CURVE: u32 = critical::CRITICAL_NODES;
+        KERR_NO_CROSSING: f32 = kerr::NO_CROSSING;
+        KERR_DIRECT: u32 = kerr::DIRECT;
+        KERR_TOLERANCE: f32 = kerr::TOLERANCE;
+        KERR_BEYOND: f32 = kerr::BEYOND_INFINITY;
+        KERR_INWARD: f32 = kerr::INWARD;
+        LIKE: f32 = refine::LIKE;
+
+        VIEW_REDSHIFT: u32 = View::Redshift;
+        VIEW_ORDER: u32 = View::Order;
+        VIEW_DEFLECTION: u32 = View::Deflection;
+        VIEW_STEPS: u32 = View::Steps;
+        VIEW_METRIC: u32 = View::Metric;
+        EFFECT_DOPPLER_SHIFT: u32 = Effects::DOPPLER_SHIFT;
+        EFFECT_GRAVITY_SHIFT: u32 = Effects::GRAVITY_SHIFT;
+        EFFECT_BEAMING: u32 = Effects::BEAMING;
+        FROM_FRAME: u32 = FROM_UNIFORM;
+        PERSPECTIVE: u32 = Projection::Perspective;
+        FISHEYE: u32 = Projection::Fisheye;
+        EQUIRECT: u32 = Projection::Equirect;
+        CUBE: u32 = Projection::Cube;
+
+        EDGE_NONE: u32 = Edge::None;
+        EDGE_DISK: u32 = Edge::Disk;
+        EDGE_CURVE: u32 = Edge::Curve;
+        EDGE_SAMPLES: u32 = refine::EDGE_SAMPLES;
+        CURVE_REACH: f32 = refine::CURVE_REACH;
+        RINGS_REACH: f32 = refine::RINGS_REACH;
+        EDGE_REACH: f32 = refine::EDGE_REACH;
+        STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
+        EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
+        DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
+
+        BLACKBODY_SIZE: u32 = blackbody::BLACKBODY_SIZE;
+        MIN_TEMPERATURE: f32 = blackbody::MIN_TEMPERATURE;
+        MAX_TEMPERATURE: f32 = blackbody::MAX_TEMPERATURE;
+        COORDINATE_TEMPERATURE: f32 = blackbody::COORDINATE_TEMPERATURE;
+        WIEN_TEMPERATURE: f32 = blackbody::WIEN_TEMPERATURE;
+        MAX_RATIO: f32 = blackbody::MAX_RATIO;
+        MAX_LN_RATIO: f32 = blackbody::MAX_LN_RATIO;
+        MAX_BEAMING: f32 = blackbody::MAX_BEAMING;
+        LIFETIME: f32 = turbulence::LIFETIME;
+        CELLS_AROUND: u32 = turbulence::CELLS_AROUND;
+        CELLS_PER_E_FOLD: f32 = turbulence::CELLS_PER_E_FOLD;
+        AMPLITUDES: vec4 = turbulence::AMPLITUDES;
+        GAIN: f32 = turbulence::GAIN;
+
+        TABLE_WIDTH: u32 = sizes::TABLE_WIDTH;
+        MEAN_SKY_TABLES: u32 = index::MEAN_SKY_TABLES;
+        PROFILE_OFFSET: u32 = index::PROFILE_OFFSET;
+        PROFILE_SIZE: u32 = index::PROFILE_SIZE;
+        MEAN_SKY_OFFSET: u32 = index::MEAN_SKY_OFFSET;
+        STARS_OFFSET: u32 = index::STARS_OFFSET;
+        STAR_LEVELS: u32 = index::STAR_LEVELS;
+        STAR_FINEST: u32 = index::STAR_FINEST;
+        STAR_WARP: f32 = index::STAR_WARP;
+        STAR_MARGIN: f32 = index::STAR_MARGIN;
+        GALACTIC_POLE: vec3 = galaxy::GALACTIC_POLE.to_array();
+        STAR_TINY_AREA: f32 = stars::TINY_AREA;
+        MAX_STAR_LIGHT: f32 = stars::MAX_STAR_LIGHT;
+        MAX_SPREAD: f32 = filter::MAX_SPREAD;
+        WHOLE_SKY: f32 = filter::WHOLE_SKY;
+        TINY_AXIS: f32 = filter::TINY_AXIS;
+        MAX_MAP_LIGHT: f32 = filter::MAX_MAP_LIGHT;
+        COOLEST_RATIO: f32 = filter::COOLEST_RATIO;
+        HOTTEST_RATIO: f32 = filter::HOTTEST_RATIO;
+        TINY_LIGHT: f32 = filter::TINY_LIGHT;
+        GRID_SPACING: f32 = grid::GRID_SPACING;
+        GRID_CAP_SPACING: f32 = grid::GRID_CAP_SPACING;
+        GRID_CAP: f32 = grid::GRID_CAP;
+        GRID_WIDTH: f32 = grid::GRID_WIDTH;
+        GRID_OPEN: f32 = grid::GRID_OPEN;
+        GRID_DENSE: f32 = grid::GRID_DENSE;
+        GRID_TINT: f32 = grid::GRID_TINT;
+        GRID_WHOLE_SKY: f32 = grid::GRID_WHOLE_SKY;
+        GRID_COLOUR: vec3 = grid::GRID_COLOUR;
+        GRID_ORIGIN_COLOUR: vec3 = grid::GRID_ORIGIN_COLOUR;
+
+        FROM_FILM: u32 = FROM_UNIFORM;
+        PIXELS_FLOAT: u32 = PixelKind::Float;
+        PIXELS_R32F: u32 = PixelKind::R32F;
+        TONE_MAP_ACES: u32 = ToneMap::Aces;
+        TONE_MAP_AGX: u32 = ToneMap::Agx;
+        FORMAT_BGRA8: u32 = PixelFormat::Bgra8Srgb;
+        FORMAT_RGBA16F: u32 = PixelFormat::Rgba16F;
+        FORMAT_RGBA32F: u32 = PixelFormat::Rgba32F;
+        FORMAT_R32F: u32 = PixelFormat::R32F;
+        MAX_SCENE_LIGHT: f32 = tone_map::MAX_SCENE_LIGHT;
+        MAX_F16: f32 = film::MAX_F16;
+        MAX_F32: f32 = f32::MAX;
+        ACES_IN: mat3x2 = tone_map::ACES_IN;
+        ACES_OUT: mat3x2 = tone_map::ACES_OUT;
+        AGX_IN: mat3x2 = tone_map::AGX_IN;
+        AGX_OUT: mat3x2 = tone_map::AGX_OUT;
+        AGX_LOW: f32 = tone_map::AGX_LOW;
+        AGX_SPAN: f32 = tone_map::AGX_SPAN;
+        AGX_PIVOT: f32 = tone_map::AGX_PIVOT;
+        AGX_TOE: f32 = tone_map::AGX_TOE;
+        AGX_SHOULDER: f32 = tone_map::AGX_SHOULDER;
+        ROWS_WIDTH: u32 = ROWS_GROUP[0];
+        ROWS_PIXELS: u32 = ROWS_GROUP[0] * ROWS_GROUP[1];
+        COUNT_RUN: u32 = sizes::COUNT_RUN;
+        EXPORT_CROSSINGS: u32 = sizes::EXPORT_CROSSINGS;
+        EXPORT_SIZE: u32 = sizes::EXPORT_VECTORS;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::kernel::fragments::FILES;
+    use std::collections::BTreeSet;
+    use std::path::Path;
+
+    /// The names of the constants that the lines of a text declare at their begin, whoever may see them.
+    fn declared(text: &str) -> impl Iterator<Item = &str> {
+        let plain = text.lines().map(|line| {
+            line.strip_prefix("pub").map_or(line, |rest| {
+                rest.strip_prefix("(").and_then(|rest| rest.split_once(')')).map_or(rest, |(_, rest)| rest).trim_start()
+            })
+        });
+        let names = plain.filter_map(|line| line.strip_prefix("const ")?.split([':', ' ']).next());
+        names.filter(|name| !name.is_empty() && !name.starts_with('_'))
+    }
+
+    fn rust_files(folder: &Path, found: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                rust_files(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(std::fs::read_to_string(&path).expect("a text"));
+            }
+        }
+    }
+
+    #[test]
+    fn no_shader_repeats_a_constant_of_rust() {
+        let mut files = Vec::new();
+        rust_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
+        let rust: BTreeSet<_> = files.iter().flat_map(|text| declared(text)).collect();
+        let printed: BTreeSet<_> = all().into_iter().map(|(name, _)| name).collect();
+        assert!(rust.contains("BLACKBODY_SIZE") && rust.contains("GRID_WIDTH"), "{rust:?}");
+        for (file, text) in FILES {
+            for name in declared(text) {
+                assert!(!rust.contains(name) && !printed.contains(name), "{name} of {file} is Rust's as well");
+            }
+        }
+    }
+
+    #[test]
+    fn every_constant_is_used() {
+        let words = |text: &'static str| text.split(|c: char| !c.is_alphanumeric() && c != '_');
+        let used: BTreeSet<_> = FILES.iter().flat_map(|(_, text)| words(text)).collect();
+        for (name, _) in all() {
+            assert!(used.contains(name), "no shader uses {name}");
+        }
+    }
+}

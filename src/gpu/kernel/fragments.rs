@@ -1,0 +1,168 @@
+//! The files of shaders/, embedded in the library, by their names there without the ending; and `constants`, which Rust
+//! writes. Knows nothing of what is in them.
+
+use super::{constants, preprocess};
+use crate::error::{Error, Result};
+use std::borrow::Cow;
+
+macro_rules! files {
+    ($($name:literal)*) => { &[$(($name, include_str!(concat!("../../../shaders/", $name, ".wgsl")))),*] };
+}
+
+/// Name and text of every file of shaders/.
+pub const FILES: &[(&str, &str)] = files! {
+    "bloom/base"
+    "bloom/gather"
+    "bloom/glare"
+    "bloom/level"
+    "bloom/return"
+    "camera/observer"
+    "camera/projection"
+    "emit/disk"
+    "emit/turbulence"
+    "film/develop"
+    "film/develop_rows"
+    "film/encode"
+    "film/false_colour"
+    "film/film"
+    "film/light"
+    "film/packed"
+    "film/packed_rows"
+    "film/params"
+    "film/screen"
+    "film/summed"
+    "geodesic/geodesic"
+    "geodesic/integrator"
+    "geodesic/rays"
+    "geodesic/trace"
+    "lens/axis"
+    "lens/kerr"
+    "lens/kerr_flags"
+    "lens/kerr_nodes"
+    "lens/kerr_pixel"
+    "lens/kerr_record"
+    "lens/kerr_rest"
+    "lens/schwarzschild"
+    "lens/schwarzschild_columns"
+    "lens/schwarzschild_curve"
+    "lens/schwarzschild_ends"
+    "lens/schwarzschild_record"
+    "records/each_deferred"
+    "records/each_pixel"
+    "records/each_pixel_rows"
+    "records/export"
+    "records/record"
+    "refine/edges"
+    "refine/integrated"
+    "refine/kerr"
+    "refine/refine"
+    "refine/traced"
+    "shade/only"
+    "shade/record"
+    "shade/sample"
+    "shade/shade"
+    "shared/blackbody"
+    "shared/deciding"
+    "shared/f16"
+    "shared/fate"
+    "shared/frame"
+    "shared/math"
+    "shared/pass"
+    "sky/grid"
+    "sky/map"
+    "sky/stars"
+    "traced/count"
+    "traced/footprints"
+    "traced/layout"
+    "traced/pixels"
+    "traced/record"
+    "window/present"
+};
+
+/// The text of a fragment.
+fn find(name: &str) -> Option<Cow<'static, str>> {
+    if name == "constants" {
+        return Some(constants::fragment().into());
+    }
+    FILES.iter().find(|(file, _)| *file == name).map(|(_, text)| (*text).into())
+}
+
+/// The WGSL of `roots` and of all that they import. Errors: INTERNAL, with the names, where a fragment is missing or
+/// something that one requires.
+pub fn join(roots: &[&str]) -> Result<String> {
+    preprocess::join(&find, roots).map_err(|error| Error::internal(format!("WGSL of {error}")))
+}
+
+/// The WGSL of a fragment that is no file, and of all that it imports; for tests. Errors: as [`join`].
+#[doc(hidden)]
+pub fn join_wgsl(text: &str) -> Result<String> {
+    const NAME: &str = "a test";
+    let find = |name: &str| if name == NAME { Some(text.to_string().into()) } else { find(name) };
+    preprocess::join(&find, &[NAME]).map_err(Error::internal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+    use std::path::Path;
+    use wgpu::naga::front::wgsl;
+    use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
+
+    #[test]
+    fn every_file_is_embedded() {
+        let rooms = Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+        let list =
+            |folder: &Path| std::fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+        let files: BTreeSet<_> = list(&rooms).flat_map(|room| list(&room).collect::<Vec<_>>()).collect();
+        let embedded: BTreeSet<_> = FILES.iter().map(|(name, _)| rooms.join(format!("{name}.wgsl"))).collect();
+        assert_eq!(files, embedded);
+    }
+
+    #[test]
+    fn every_file_is_part_of_some_shader() {
+        let sources = crate::gpu::shader_sources().expect("WGSL that can be joined");
+        for (name, _) in FILES {
+            let begin = format!("// {name}.wgsl\n");
+            assert!(sources.iter().any(|(_, source)| source.contains(&begin)), "{name} is part of no shader");
+        }
+    }
+
+    /// What a fragment may be given for something that it requires.
+    fn stub(required: &str) -> String {
+        match (required.strip_prefix("var "), required.split_once("->")) {
+            (Some(variable), _) => format!("var<private> {variable};\n"),
+            (None, Some((_, given))) => format!("{required} {{ var value: {given}; return value; }}\n"),
+            (None, None) => format!("{required} {{ }}\n"),
+        }
+    }
+
+    /// A fragment with all that it imports, and stubs for what is required then.
+    fn alone(find: &dyn Fn(&str) -> Option<Cow<'static, str>>, name: &str) -> std::result::Result<(), String> {
+        let joined = preprocess::Joined::new(find, &[name])?;
+        let mut required = BTreeSet::new();
+        for unmet in joined.unmet() {
+            if let Some(found) = unmet.found {
+                return Err(format!("{} requires `{}`, but there is `{found}`", unmet.fragment, unmet.required));
+            }
+            required.insert(unmet.required);
+        }
+        let source = joined.source() + &required.into_iter().map(stub).collect::<String>();
+        let module = wgsl::parse_str(&source).map_err(|error| format!("{name}: {}", error.emit_to_string(&source)))?;
+        let checked = Validator::new(ValidationFlags::all(), Capabilities::empty()).validate(&module);
+        checked.map_err(|error| format!("{name}: {}", error.emit_to_string(&source)))?;
+        Ok(())
+    }
+
+    #[test]
+    fn every_fragment_imports_and_requires_what_it_uses() {
+        for (name, text) in FILES {
+            alone(&find, name).unwrap_or_else(|error| panic!("{error}"));
+            let code: String = text.lines().filter(|line| !line.starts_with('#') && !line.contains("//")).collect();
+            for hook in text.lines().filter_map(|line| line.strip_prefix("#requires fn ")) {
+                let (hook, _) = hook.split_once('(').expect("a function");
+                assert!(code.contains(&format!("{hook}(")), "{name} has no use for {hook}");
+            }
+        }
+    }
+}

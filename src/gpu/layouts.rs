@@ -1,0 +1,51 @@
+//! Tests that the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has them.
+
+use super::frame::{bloom, rays, uniforms};
+use super::kernel::layout::{Layout, layout};
+use super::kernel::wgsl::shader_sources;
+use super::lens::{kerr, schwarzschild};
+use std::collections::{BTreeMap, BTreeSet};
+use wgpu::naga::{AddressSpace, Module, TypeInner, front::wgsl};
+
+/// Every struct that Rust shares with shaders.
+fn shared() -> Vec<Layout> {
+    let film = layout!(crate::film::FilmParams as "FilmParams": exposure, tone_map, format, false_colour, view_low,
+        view_scale, transparent, reserved);
+    let [frame, pass] = uniforms::layouts();
+    let [given, start, end] = rays::layouts();
+    vec![film, frame, pass, given, start, end, kerr::layout(), schwarzschild::layout(), bloom::layout()]
+}
+
+/// The structs of a module by name: size, and members with their offsets.
+fn structs(module: &Module) -> BTreeMap<&str, (usize, Vec<(&str, usize)>)> {
+    let named = module.types.iter().filter_map(|(_, ty)| match (&ty.inner, ty.name.as_deref()) {
+        (TypeInner::Struct { members, span }, Some(name)) => {
+            let members = members.iter().filter_map(|m| Some((m.name.as_deref()?, m.offset as usize))).collect();
+            Some((name, (*span as usize, members)))
+        }
+        _ => None,
+    });
+    named.collect()
+}
+
+#[test]
+fn structs_lie_in_memory_as_in_wgsl() {
+    let sources = shader_sources().expect("WGSL that can be joined");
+    let modules = sources.iter().map(|(_, source)| wgsl::parse_str(source).expect("WGSL")).collect::<Vec<_>>();
+    let shared = shared();
+    let mut uniforms = BTreeSet::new();
+    let mut compared = BTreeSet::new();
+    for module in &modules {
+        let structs = structs(module);
+        let names = module.global_variables.iter().filter(|(_, variable)| variable.space == AddressSpace::Uniform);
+        uniforms.extend(names.filter_map(|(_, variable)| module.types[variable.ty].name.as_deref()));
+        for layout in &shared {
+            if let Some((size, members)) = structs.get(layout.name) {
+                assert_eq!((size, members), (&layout.size, &layout.members), "{}", layout.name);
+                compared.insert(layout.name);
+            }
+        }
+    }
+    assert_eq!(compared, shared.iter().map(|layout| layout.name).collect(), "structs that no shader has");
+    assert!(uniforms.is_subset(&compared), "a uniform that is compared with none: {uniforms:?}, {compared:?}");
+}
