@@ -1,4 +1,5 @@
-//! The WGSL of every kernel: which fragments of shaders/ make it, for which choices. Knows neither bindings nor devices.
+//! The WGSL of every kernel: which fragments of shaders/ make it, for which choices. Knows neither bindings nor
+//! devices.
 
 use super::fragments::join;
 use super::kernel_key::{FilmLook, PixelTarget, Source};
