@@ -51,6 +51,19 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// The modules of the crate and their text, without comments and tests.
 fn modules() -> BTreeMap<Module, String> {
+    let all = modules_with_tests();
+    let only_tests = |module: &Module| {
+        let Some((name, parent)) = module.split_last() else { return false };
+        let declared = all.get(parent).is_some_and(|code| {
+            let code = code.replace("#[cfg(test)]\n", "#[cfg(test)] ").replace("pub ", "");
+            code.contains(&format!("#[cfg(test)] mod {name};"))
+        });
+        declared || name == "memory_absent"
+    };
+    all.iter().filter(|(module, _)| !only_tests(module)).map(|(m, code)| (m.clone(), code.clone())).collect()
+}
+
+fn modules_with_tests() -> BTreeMap<Module, String> {
     let source = root().join("src");
     let mut found = Vec::new();
     files(&source, &mut found);
@@ -62,7 +75,11 @@ fn modules() -> BTreeMap<Module, String> {
             module.pop();
         }
         let text = fs::read_to_string(&path).unwrap();
-        let code = text.split("#[cfg(test)]\nmod ").next().unwrap();
+        let tests = text.match_indices("#[cfg(test)]\n").map(|(at, _)| at);
+        let end = tests
+            .into_iter()
+            .find(|at| text[*at..].lines().nth(1).is_some_and(|line| line.contains("mod ") && line.ends_with('{')));
+        let code = &text[..end.unwrap_or(text.len())];
         // A visibility imports nothing.
         let code = code.replace("pub(in crate::gpu)", "pub").replace("pub(crate)", "pub");
         (module, code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n"))

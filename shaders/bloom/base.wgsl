@@ -1,6 +1,6 @@
-// Kernel: as bloom/gather.wgsl for the finest grid's cells of 2 x 2 pixels, whose shares 1 3 3 1 are those of linear
-// filtering between the pixels of two pairs: 4 samples instead of 16. Beyond the frame's border lies the border's
-// pixel, which so keeps its light.
+// Kernel: does what bloom/gather.wgsl does, for the finest grid's cells of 2 x 2 pixels. Their shares 1 3 3 1 are those
+// of linear filtering between the pixels of two pairs, so that 4 samples serve instead of 16. Beyond the frame's border
+// lies the border's pixel, which so keeps its light.
 
 #import bloom/level
 #import shared/f16
@@ -10,7 +10,7 @@
 @group(0) @binding(2) var smooth_: sampler;
 @group(0) @binding(3) var gathered: texture_storage_2d<rgba16float, write>;
 
-// Between pixels, whose centres are at whole numbers.
+// The light at a place between pixels, whose centres lie at whole numbers.
 fn between(place: vec2<f32>) -> vec3<f32> {
     let inside = clamp(place, vec2<f32>(0.0), vec2<f32>(level.fine - 1u)) - vec2<f32>(level.origin);
     return textureSampleLevel(pixels, smooth_, (inside + 0.5) / vec2<f32>(textureDimensions(pixels)), 0.0).xyz;

@@ -3,17 +3,17 @@
 #import bloom/level
 #import shared/f16
 
-// Finer cells along a cell's side, even.
+// The number of finer cells along a cell's side; it is even.
 override STEP: i32 = 2;
-// The finer ones are cells, which give by the spline, and not pixels, which give by their distance from the cells'
-// centres.
+// True: the finer grid's cells are gathered, weighted by the spline. False: pixels are, weighted by their distance from
+// the cells' centres.
 override GRID: bool = true;
 
 @group(0) @binding(0) var<uniform> level: BloomLevel;
 @group(0) @binding(1) var finer: texture_2d<f32>;
 @group(0) @binding(2) var gathered: texture_storage_2d<rgba16float, write>;
 
-// What tap `tap` gives, wherever the cell lies; 0 beyond the taps.
+// The weight of tap `tap`, wherever the cell lies; 0 beyond the taps.
 fn kernel(tap: i32) -> f32 {
     if GRID {
         let from_end = min(tap, 5 - tap);
@@ -33,8 +33,8 @@ fn coverage(from_end: i32, tail: vec4<f32>) -> f32 {
     return select(select(1.0, tail.y, from_end == 2), last, from_end < 2);
 }
 
-// What a cell takes by tap `tap`, which is finer cell `i`, along one side: what would go to a missing cell stays with
-// the pixel's own.
+// The weight of tap `tap`, which is finer cell `i`, along one side of a cell. The share that would go to a missing cell
+// stays with the pixel's own cell.
 fn taken(tap: i32, i: i32, cell: i32, cells: u32, fine: u32, tail: vec4<f32>) -> f32 {
     let own = i / STEP == cell;
     let before = select(0.0, kernel(tap + STEP), own && cell == 0);

@@ -1,10 +1,11 @@
-// The light that film/develop.wgsl and film/develop_rows.wgsl take in frames with bloom: what is left in a pixel of its own, and
-// its share of what spreads over the finest grid, which falls linearly from the cells' centres.
+// The light that film/develop.wgsl and film/develop_rows.wgsl develop in frames with bloom: the share that a pixel
+// keeps of its own light, and its share of the light that the finest grid spreads, which falls linearly from the cells'
+// centres.
 
 #import bloom/level
 #import shared/pass
 
-// Pixels along a cell's side, even.
+// The number of pixels along a cell's side; it is even.
 override STEP: u32 = 2u;
 
 @group(1) @binding(0) var exposed_light: texture_2d<f32>;

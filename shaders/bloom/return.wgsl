@@ -10,7 +10,7 @@
 @group(0) @binding(3) var smooth_: sampler;
 @group(0) @binding(4) var spread: texture_storage_2d<rgba16float, write>;
 
-// Between coarser cells, whose centres are at whole numbers; beyond the last ones lie the same.
+// The light at a place between coarser cells, whose centres lie at whole numbers; beyond the last cells it is theirs.
 fn between(place: vec2<f32>) -> vec3<f32> {
     let inside = clamp(place, vec2<f32>(0.0), vec2<f32>(level.cells - 1u));
     return textureSampleLevel(coarser, smooth_, (inside + 0.5) / vec2<f32>(textureDimensions(coarser)), 0.0).xyz;

@@ -1,5 +1,5 @@
-// From a look direction to the start of its ray: aberration and the local frame. Mirrors src/physics/observer.rs;
-// knows no integrator. Reads the uniform `frame`, declared where the bindings are.
+// The way from a look direction to the start of its ray: aberration and the local frame. Mirrors
+// src/physics/observer.rs; knows no integrator.
 
 #import constants
 #import geodesic/geodesic
@@ -59,7 +59,7 @@ fn begin_ray(look: vec3<f32>) -> RayBegin {
     return begin;
 }
 
-// For a look direction in the local frame; frequency_ratio 1.
+// The same for a look direction in the local frame; frequency_ratio is 1.
 fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
     begin.frequency_ratio = 1.0;
@@ -77,8 +77,8 @@ fn constants(energy: f32, angular_momentum: f32, carter: f32, k: f32, nu_local: 
     let a2e2 = a * a * energy * energy;
     let b = k - 2.0 * a * angular_momentum * energy + a2e2;
     let scale = max(sqrt(max(k + a2e2, 0.0)), 3.0 * abs(energy));
-    return Constants(a, energy, angular_momentum, nu_local, k, b, a2e2, a * a * carter, scale, frame.place.x, frame.hole.y,
-        frame.hole.z, select(CLOCK_COORDINATE, CLOCK_RAIN, frame.rain == RAIN_CLOCK));
+    return Constants(a, energy, angular_momentum, nu_local, k, b, a2e2, a * a * carter, scale, frame.place.x,
+        frame.hole.y, frame.hole.z, select(CLOCK_COORDINATE, CLOCK_RAIN, frame.rain == RAIN_CLOCK));
 }
 
 // Scaled so that the local observer measures frequency 1: good for every E (geodesic.rs).
@@ -96,7 +96,8 @@ fn begin_zamo(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     let carter = polar * polar + c * c * (w * w - a * a * energy * energy);
     let k = polar * polar + w * w - a * a * c * c * energy * energy;
     (*begin).c = constants(energy, s * w, carter, k, 1.0);
-    (*begin).state = State(u, frame.zamo.w * p.x, frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
+    (*begin).state = State(u, frame.zamo.w * p.x, frame.e_r.xyz,
+        -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).light = true;
 }
 
@@ -112,12 +113,14 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     let cw = frame.place.z * w;
     let k = polar * polar + w * w;
     (*begin).c = constants(1.0, frame.place.y * w, polar * polar + cw * cw, k, e);
-    (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz, -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
+    (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz,
+        -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).light = energy > 0.0;
 }
 
 // g of the disk's matter for the local frame's observer (physics::orbit::redshift).
 fn redshift_of(c: Constants, u: f32) -> f32 {
     let v = sign(frame.hole.w) * u * sqrt(u);
-    return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0)) / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
+    return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0))
+        / (c.energy * (1.0 + c.a * v) - v * c.angular_momentum);
 }

@@ -1,13 +1,12 @@
 // How the camera's projection takes positions of the full frame, in pixels, to look directions. Mirrors
-// src/scene/projection.rs, where the formulas and conventions are. Reads the uniform `frame`, declared where the
-// bindings are.
+// src/scene/projection.rs, where the formulas and conventions are.
 
 #import constants
 #import shared/deciding
 #import shared/frame
 #import shared/math
 
-// BHR_PROJECTION_* that the kernel is for, or FROM_FRAME where it serves all and the uniform says which.
+// The BHR_PROJECTION_* that the kernel is made for, or FROM_UNIFORM where it serves all and the uniform says which.
 override PROJECTION: u32 = 0u;
 
 // A point (right, up, forward; PERSPECTIVE: the first two in halves of the image plane's sides) in the direction seen,
@@ -27,28 +26,28 @@ struct CameraView {
 }
 
 fn is_perspective() -> bool {
-    if PROJECTION == FROM_FRAME {
+    if PROJECTION == FROM_UNIFORM {
         return deciding(frame.projection) == PERSPECTIVE;
     }
     return PROJECTION == PERSPECTIVE;
 }
 
 fn is_fisheye() -> bool {
-    if PROJECTION == FROM_FRAME {
+    if PROJECTION == FROM_UNIFORM {
         return deciding(frame.projection) == FISHEYE;
     }
     return PROJECTION == FISHEYE;
 }
 
 fn is_equirect() -> bool {
-    if PROJECTION == FROM_FRAME {
+    if PROJECTION == FROM_UNIFORM {
         return deciding(frame.projection) == EQUIRECT;
     }
     return PROJECTION == EQUIRECT;
 }
 
 fn is_cube() -> bool {
-    if PROJECTION == FROM_FRAME {
+    if PROJECTION == FROM_UNIFORM {
         return deciding(frame.projection) == CUBE;
     }
     return PROJECTION == CUBE;
@@ -83,7 +82,7 @@ fn camera_view(x: f32, y: f32) -> CameraView {
     let p = camera_point(x, y);
     let ray = in_frame(p.at);
     let inverse = inverseSqrt(dot(ray, ray));
-    // Of a perspective frame most components are 0, which no compiler may leave out.
+    // Most of a perspective frame's components are 0, which no compiler may leave out.
     var dx = frame.right.xyz * p.dx.x;
     var dy = frame.up.xyz * p.dy.y;
     if !is_perspective() {
@@ -145,7 +144,7 @@ fn cube_point(x: f32, y: f32) -> FramePoint {
         turned_to_face(u32(face), vec3<f32>(0.0, -step, 0.0)));
 }
 
-// Of right left up down front back.
+// Turns a point from the forward face to one of the faces right, left, up, down, front, back.
 fn turned_to_face(face: u32, p: vec3<f32>) -> vec3<f32> {
     let s = select(1.0, -1.0, (face & 1u) == 1u);
     let ahead = vec3<f32>(s * p.x, p.y, s * p.z);

@@ -1,6 +1,5 @@
-// Light of the disk at one crossing. Mirrors src/cpu/shade.rs; the profile's table comes from physics/disk_flux.rs (at
-// PROFILE_OFFSET of StarIndex::wgsl_constants; of each entry its value and the step to the next). Reads `frame` and
-// light_table(i), defined where the bindings are.
+// The disk's light at one crossing. Mirrors src/cpu/shade.rs. The table of the temperature profile comes from
+// src/physics/disk_flux.rs and lies at PROFILE_OFFSET; an entry is the value and the step to the next one.
 
 #import constants
 #import shared/blackbody

@@ -1,12 +1,11 @@
-// Structure of the disk: mirrors src/scene/turbulence.rs, where the reasons are. Reads `frame`; knows no colours and
-// no records.
+// The structure of the disk. Mirrors src/scene/turbulence.rs, where the reasons are. Knows no colours.
 
 #import constants
 #import records/record
 #import shared/frame
 #import shared/math
 
-// What the disk's radiance is multiplied by. dx, dy: change of `at` to the next pixel.
+// The factor on the disk's radiance. dx, dy: the change of `at` to the next pixel.
 fn turbulent_brightness(at: Place, dx: Place, dy: Place) -> f32 {
     let since = frame.turbulence.y + (frame.turbulence.z - at.delay);
     let births = floor(since / (0.5 * LIFETIME));
@@ -43,7 +42,7 @@ fn cells_across(d: Place, sheared: f32, omega: f32) -> f32 {
     let turn = (d.azimuth - sheared * d.ln_r + omega * d.delay) / TAU;
     let x = abs(d.ln_r * CELLS_PER_E_FOLD);
     let y = abs(turn * f32(CELLS_AROUND));
-    // Not length(): a square may overflow.
+    // length() would not do: a square may overflow.
     let most = max(max(x, y), 1e-30);
     return most * length(vec2<f32>(x, y) / most);
 }

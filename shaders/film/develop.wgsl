@@ -1,4 +1,5 @@
-// Kernel: light of a tile to pixels. The curves are in film/film.wgsl; whose light it is, in film/summed.wgsl or bloom/glare.wgsl.
+// Kernel: develops the light of a tile to pixels. The curves are in film/film.wgsl; the light comes from
+// film/summed.wgsl or bloom/glare.wgsl.
 
 #import shared/deciding
 #import shared/pass

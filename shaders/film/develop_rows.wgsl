@@ -1,4 +1,4 @@
-// Kernel: as film/develop.wgsl, for film/packed_rows.wgsl.
+// Kernel: does what film/develop.wgsl does, for film/packed_rows.wgsl.
 
 #import constants
 #import film/packed_rows

@@ -1,6 +1,7 @@
-// Radiance within the range of a pixel, and the sRGB curve. Mirrors src/film/mod.rs, where the formulas and reasons are.
+// Limits radiance to the range of a pixel, and encodes it by the sRGB curve. Mirrors src/film/mod.rs, where the
+// formulas and reasons are.
 
-// NaN by its bits: a comparison of floats may be compiled as if there were none.
+// Tells NaN by its bits: a comparison of floats may be compiled as if there were none.
 fn is_nan(v: vec3<f32>) -> vec3<bool> {
     return (bitcast<vec3<u32>>(v) & vec3<u32>(0x7fffffffu)) > vec3<u32>(0x7f800000u);
 }

@@ -1,11 +1,11 @@
 // False colour for views other than light. Mirrors src/film/false_colour.rs, where the formulas, sources and reasons
-// are. Reads the uniform `film` of film/packed.wgsl or film/screen.wgsl, and film/film.wgsl's functions.
+// are.
 
 #import constants
 #import film/encode
 #import film/params
 
-// sRGB-encoded colour of a view's value.
+// The sRGB-encoded colour of a view's value.
 fn false_colour(value: f32) -> vec3<f32> {
     let share = clamp((scaled(value) - film.view_low) * film.view_scale, 0.0, 1.0);
     let lab = select(sequential(share), diverging(share), film.false_colour == VIEW_REDSHIFT);

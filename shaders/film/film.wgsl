@@ -1,6 +1,6 @@
-// Film: radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Reads the uniform `film` of
-// film/packed.wgsl or film/screen.wgsl. Functions that loops call have no early return, as Mesa 22.3's shader
-// compiler crashes on some; but for those under an `if` over constants, which src/gpu/device/specialise.rs leaves out.
+// Film: develops radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Functions that are
+// called from loops have no early return, as Mesa 22.3's shader compiler crashes on some; but for those under an `if`
+// over constants, which src/gpu/device/specialise.rs leaves out.
 
 #import constants
 #import film/false_colour
@@ -8,15 +8,15 @@
 #import film/params
 #import shared/deciding
 
-// The number of the ToneMap that a kernel is made for, or FROM_FILM where it serves all and the uniform says which.
+// The number of the ToneMap that a kernel is made for, or FROM_UNIFORM where it serves all and the uniform says which.
 override TONE_MAP: u32 = 1u;
-// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, R32F, or FROM_FILM.
+// The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, R32F, or FROM_UNIFORM.
 override PIXELS: u32 = 0u;
 // Whether a kernel is made for the views other than light.
 override FALSE_COLOUR: bool = false;
 
 fn is_float() -> bool {
-    if PIXELS == FROM_FILM {
+    if PIXELS == FROM_UNIFORM {
         let format = deciding(film.format);
         return (format == FORMAT_RGBA16F) | (format == FORMAT_RGBA32F);
     }
@@ -24,7 +24,7 @@ fn is_float() -> bool {
 }
 
 fn is_r32f() -> bool {
-    if PIXELS == FROM_FILM {
+    if PIXELS == FROM_UNIFORM {
         return deciding(film.format) == FORMAT_R32F;
     }
     return PIXELS == PIXELS_R32F;
@@ -35,14 +35,14 @@ fn is_rgba32f() -> bool {
 }
 
 fn is_aces() -> bool {
-    if TONE_MAP == FROM_FILM {
+    if TONE_MAP == FROM_UNIFORM {
         return deciding(film.tone_map) == TONE_MAP_ACES;
     }
     return TONE_MAP == TONE_MAP_ACES;
 }
 
 fn is_agx() -> bool {
-    if TONE_MAP == FROM_FILM {
+    if TONE_MAP == FROM_UNIFORM {
         return deciding(film.tone_map) == TONE_MAP_AGX;
     }
     return TONE_MAP == TONE_MAP_AGX;

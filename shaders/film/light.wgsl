@@ -1,5 +1,5 @@
-// The exposed light of a frame with bloom: what shading, or the sum of samples, is given to before it spreads.
-// Bindings as in film/packed.wgsl.
+// Puts the exposed light of a frame with bloom, from shading or from the sum of samples, into a texture from which it
+// then spreads. The bindings are those of film/packed.wgsl.
 
 #import constants
 #import film/encode

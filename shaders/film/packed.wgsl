@@ -1,5 +1,5 @@
-// The packed pixels of a tile, rows without gaps: what a frame's last kernel writes for the host. (Uniforms of group 2
-// come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
+// Puts the packed pixels of a tile, rows without gaps, into the buffer that a frame's last kernel writes for the host.
+// (The uniforms of group 2 come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
 
 #import film/film
 #import film/params
@@ -12,7 +12,7 @@ fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let place = vec2<u32>(pass_.origin + vec2<i32>(id) + 1);
     let words = develop(radiance, place.x, place.y);
     let i = id.y * (pass_.size.x - 2u) + id.x;
-    // Not a loop over words[k]: with one, frames at spin 0.9 take 11 % longer (H200).
+    // This is no loop over words[k]: with one, frames at spin 0.9 take 11 % longer (H200).
     if is_float() {
         let first = pixel_words() * i;
         pixels[first] = words.x;

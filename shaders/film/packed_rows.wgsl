@@ -1,6 +1,7 @@
-// The packed pixels of a tile, as film/packed.wgsl has them, for kernels whose `pixels` lie in the host's memory: the bus
-// carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row (H200:
-// 49 against 24.5 GB/s). So a workgroup gathers the words of its 32 x 4 pixels, and then writes them row by row.
+// Puts the packed pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory. The
+// bus carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row
+// (H200: 49 against 24.5 GB/s). So a workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide,
+// gathers their words and then writes them row by row.
 
 #import constants
 #import film/film
@@ -10,9 +11,9 @@
 @group(2) @binding(0) var<uniform> film: FilmParams;
 @group(2) @binding(1) var<storage, read_write> pixels: array<u32>;
 
-// Of the workgroup's pixels, row by row; 4 words each at most.
+// The words of the workgroup's pixels, row by row; a pixel has 4 at most.
 var<workgroup> row_words: array<u32, 4u * ROWS_PIXELS>;
-// Of this thread's pixel among them.
+// The number of this thread's pixel among them.
 var<private> rows_index: u32;
 
 fn keep_words(words: vec4<u32>) {

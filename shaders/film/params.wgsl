@@ -1,5 +1,5 @@
-// How pixels are developed: the uniform `film`, which the fragment that puts the pixels binds. Mirrors `FilmParams` of
-// src/film/mod.rs.
+// The uniform `film`, which says how pixels are developed; the fragment that puts the pixels binds it. Mirrors
+// `FilmParams` of src/film/mod.rs.
 
 #requires var film: FilmParams
 

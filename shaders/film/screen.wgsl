@@ -1,4 +1,5 @@
-// The pixels of a window's texture: what a frame's last kernel writes for window/present.wgsl. Bindings as in film/packed.wgsl.
+// Puts pixels into a window's texture, which a frame's last kernel writes for window/present.wgsl. The bindings are
+// those of film/packed.wgsl.
 
 #import film/film
 #import film/params

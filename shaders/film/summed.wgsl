@@ -1,4 +1,5 @@
-// The light that film/develop.wgsl and film/develop_rows.wgsl take: the sum of a tile's samples.
+// The light that film/develop.wgsl and film/develop_rows.wgsl develop in frames without bloom: the sum of a tile's
+// samples.
 
 @group(1) @binding(0) var radiance: texture_2d<f32>;
 

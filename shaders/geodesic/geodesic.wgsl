@@ -4,7 +4,7 @@
 #import constants
 #import shared/math
 
-// What a pipeline is made for; the host compiles one for each combination it needs.
+// Choices that a pipeline is made for; the host compiles one for each combination that it needs.
 override SPINNING: bool = true;
 override DELAY: bool = true;
 

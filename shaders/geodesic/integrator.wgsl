@@ -11,7 +11,7 @@ override STEP_LIMIT: bool = true;
 
 struct Step {
     state: State,
-    // Of the embedded method; 0 for the others.
+    // The error by the embedded method; 0 for the other methods.
     error: f32,
 }
 
@@ -39,7 +39,8 @@ fn nystrom_step(c: Constants, s: State, h: f32) -> State {
     end.u = s.u + (h * s.du + h2 * (B1 * f1 + B2 * f2 + B3 * f3));
     end.du = s.du + h * (D1 * f1 + D2 * f2 + D3 * f3 + D4 * f4);
     if SPINNING {
-        end.drag += h * (D1 * drag_rate(c, s.u) + D2 * drag_rate(c, u2) + D3 * drag_rate(c, u3) + D4 * drag_rate(c, u4));
+        end.drag += h * (D1 * drag_rate(c, s.u) + D2 * drag_rate(c, u2)
+            + D3 * drag_rate(c, u3) + D4 * drag_rate(c, u4));
         let n_z = nystrom_step_of_n(c, s, h, &end);
         if DELAY {
             end.delay += h * (D1 * delay_rate(c, s.u, s.n.z) + D2 * delay_rate(c, u2, n_z.x)
@@ -79,18 +80,20 @@ fn turn_n(c: Constants, s: State, h: f32, end: ptr<function, State>) {
 }
 
 fn derivative(c: Constants, s: State) -> State {
-    return State(s.du, u_acceleration(c, s.u), s.dn, n_acceleration(c, s.n), drag_rate(c, s.u), delay_rate(c, s.u, s.n.z));
+    return State(s.du, u_acceleration(c, s.u), s.dn, n_acceleration(c, s.n), drag_rate(c, s.u),
+        delay_rate(c, s.u, s.n.z));
 }
 
 // s + h d.
 fn advance(s: State, h: f32, d: State) -> State {
-    return State(s.u + h * d.u, s.du + h * d.du, s.n + d.n * h, s.dn + d.dn * h, s.drag + h * d.drag, s.delay + h * d.delay);
+    return State(s.u + h * d.u, s.du + h * d.du, s.n + d.n * h, s.dn + d.dn * h, s.drag + h * d.drag,
+        s.delay + h * d.delay);
 }
 
 // a x + b y.
 fn blend(a: f32, x: State, b: f32, y: State) -> State {
-    return State(a * x.u + b * y.u, a * x.du + b * y.du, x.n * a + y.n * b, x.dn * a + y.dn * b, a * x.drag + b * y.drag,
-        a * x.delay + b * y.delay);
+    return State(a * x.u + b * y.u, a * x.du + b * y.du, x.n * a + y.n * b, x.dn * a + y.dn * b,
+        a * x.drag + b * y.drag, a * x.delay + b * y.delay);
 }
 
 fn rk4_step(c: Constants, s: State, h: f32) -> State {
@@ -108,7 +111,8 @@ fn dormand_prince_step(c: Constants, s: State, h: f32) -> Step {
     let k3 = derivative(c, advance(s, h, blend(3.0 / 40.0, k1, 9.0 / 40.0, k2)));
     let w4 = blend(1.0, blend(44.0 / 45.0, k1, -56.0 / 15.0, k2), 32.0 / 9.0, k3);
     let k4 = derivative(c, advance(s, h, w4));
-    let w5 = blend(1.0, blend(19372.0 / 6561.0, k1, -25360.0 / 2187.0, k2), 1.0, blend(64448.0 / 6561.0, k3, -212.0 / 729.0, k4));
+    let w5 = blend(1.0, blend(19372.0 / 6561.0, k1, -25360.0 / 2187.0, k2), 1.0,
+        blend(64448.0 / 6561.0, k3, -212.0 / 729.0, k4));
     let k5 = derivative(c, advance(s, h, w5));
     let w6 = blend(1.0, blend(1.0, blend(9017.0 / 3168.0, k1, -355.0 / 33.0, k2), 1.0,
         blend(46732.0 / 5247.0, k3, 49.0 / 176.0, k4)), -5103.0 / 18656.0, k5);

@@ -1,5 +1,5 @@
-// Kernel: rays whose start the host computed in f64 (`Scene::start`), one a thread, for bhr_trace_rays. Redshifts,
-// azimuths and units are the host's work: what comes back is where the ray crossed and ended.
+// Kernel: traces rays whose start the host computed in f64 (`Scene::start`), one a thread, for bhr_trace_rays.
+// Redshifts, azimuths and units are the host's work; the kernel gives back where the ray crossed the plane and ended.
 
 #import constants
 #import geodesic/geodesic
@@ -43,9 +43,8 @@ var<private> crossing_count: u32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     crossing_count += 1u;
-    ray_ends[ray_end + crossing_count] =
-        RayEnd(vec4<f32>(crossing.n, crossing.drag),
-            vec4<u32>(bitcast<u32>(crossing.u), bitcast<u32>(crossing.delay), crossing.order, 0u));
+    ray_ends[ray_end + crossing_count] = RayEnd(vec4<f32>(crossing.n, crossing.drag),
+        vec4<u32>(bitcast<u32>(crossing.u), bitcast<u32>(crossing.delay), crossing.order, 0u));
 }
 
 @compute @workgroup_size(64)
@@ -54,13 +53,14 @@ fn trace_rays(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let given = ray_starts[id.x];
-    // By t: of an eye inside the horizon no host asks for delays.
+    // The clock is t: no host asks for the delays of an observer inside the horizon.
     let c = Constants(rays.a, given.light.x, given.light.y, given.light.z, given.curve.x, given.curve.y, given.curve.z,
         given.curve.w, given.dn.w, given.n.w, rays.r_plus, rays.r_minus, CLOCK_COORDINATE);
     let start = State(given.n.w, given.light.w, given.n.xyz, given.dn.xyz, 0.0, 0.0);
     ray_end = id.x * (1u + RAY_CROSSINGS);
     crossing_count = 0u;
-    let settings = Settings(rays.step, rays.tolerance, rays.max_steps, RAY_CROSSINGS, rays.capture_u, vec2<f32>(1.0, 0.0));
+    let settings = Settings(rays.step, rays.tolerance, rays.max_steps, RAY_CROSSINGS, rays.capture_u,
+        vec2<f32>(1.0, 0.0));
     let traced = trace(c, start, settings);
     var end: State;
     if traced.fate == FATE_ESCAPED {

@@ -1,11 +1,8 @@
 // One light ray from the eye to its fate. Mirrors src/physics/trace.rs; knows no observer, no pixel and no buffer.
 //
-// The inner loop only steps; what happens in a step is looked into outside it: GPUs (and lavapipe, which runs both
-// sides of an `if`) would pay for root finding in every step. A kernel that uses this file defines
-//
-//     fn on_crossing(c: Constants, crossing: PlaneCrossing)
-//
-// which keeps a crossing of the equatorial plane.
+// The inner loop only steps; whatever happens in a step is looked into outside it: GPUs (and lavapipe, which runs both
+// sides of an `if`) would pay for root finding in every step. A kernel's on_crossing keeps a crossing of the equatorial
+// plane.
 
 #import constants
 #import geodesic/geodesic
@@ -136,7 +133,7 @@ fn tau_at_horizon(c: Constants, traced: RayTrace) -> f32 {
 fn crossing_state(c: Constants, start: State, to: State, h: f32) -> State {
     let partial = h * quintic_root(quintic_of_n_z(c, start, to, h));
     var there = step_ray(c, start, partial).state;
-    // What rounding left of N_z, to first order.
+    // The rest of N_z that rounding left, to first order.
     let rest = clamp(-there.n.z / there.dn.z, -0.1 * h, 0.1 * h);
     there.drag += drag_rate(c, there.u) * rest;
     there.u += there.du * rest;

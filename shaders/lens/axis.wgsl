@@ -1,5 +1,5 @@
-// What the lens tables of both kinds share: the logarithmic axis of distance from the critical curve, and cubic
-// interpolation. Mirrors src/physics/lens/coordinate.rs.
+// The parts that the lens tables of both kinds share: the logarithmic axis of distance from the critical curve, and
+// cubic interpolation. Mirrors src/physics/lens/coordinate.rs.
 
 // A place on an axis: the node before it, and how far it is to the next, 0 .. 1.
 struct LensPlace {
@@ -11,7 +11,8 @@ struct LensPlace {
 fn log2_mantissa(m: f32) -> f32 {
     let z = (m - 1.0) / (m + 1.0);
     let z2 = z * z;
-    let series = 1.0 + z2 * (1.0 / 3.0 + z2 * (0.2 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 * (1.0 / 11.0 + z2 / 13.0)))));
+    let series = 1.0 + z2 * (1.0 / 3.0
+        + z2 * (0.2 + z2 * (1.0 / 7.0 + z2 * (1.0 / 9.0 + z2 * (1.0 / 11.0 + z2 / 13.0)))));
     return 2.8853900817779268 * z * series;
 }
 
@@ -22,8 +23,8 @@ fn exp2_share(x: f32) -> f32 {
     return 1.4142135623730951 * series;
 }
 
-// Of t_hat >= 2^-octaves on an axis of `per_octave` nodes that begins there; `last`: the last node that an
-// interpolation may begin at. Exponent and mantissa apart: their sum would cost digits.
+// The place of t_hat >= 2^-octaves on an axis of `per_octave` nodes that begins there; `last` is the last node that an
+// interpolation may begin at. Exponent and mantissa are kept apart: their sum would cost digits.
 fn lens_place(t_hat: f32, octaves: f32, per_octave: f32, last: u32) -> LensPlace {
     let bits = bitcast<u32>(max(t_hat, exp2(-octaves)));
     let octave = (f32(bits >> 23u) - 127.0 + octaves) * per_octave;
@@ -50,8 +51,8 @@ fn lagrange(s: f32) -> vec4<f32> {
 
 fn lagrange_slope(s: f32) -> vec4<f32> {
     let s2 = s * s;
-    return vec4<f32>((-3.0 * s2 + 6.0 * s - 2.0) / 6.0, (3.0 * s2 - 4.0 * s - 1.0) * 0.5, (-3.0 * s2 + 2.0 * s + 2.0) * 0.5,
-        (3.0 * s2 - 1.0) / 6.0);
+    return vec4<f32>((-3.0 * s2 + 6.0 * s - 2.0) / 6.0, (3.0 * s2 - 4.0 * s - 1.0) * 0.5,
+        (-3.0 * s2 + 2.0 * s + 2.0) * 0.5, (3.0 * s2 - 1.0) / 6.0);
 }
 
 // tan((psi - R) / 2), where tan(R / 2) = half_tangent and sine, cosine are psi's; no cancellation in 1 + cos psi.

@@ -1,4 +1,4 @@
-// The lens of an eye outside the photon region of a spinning hole, as tables over the look direction in polar
+// The lens of an observer outside the photon region of a spinning hole, as tables over the look direction in polar
 // coordinates (psi, chi) about the centre of the critical curve psi = R(chi). Shared by the kernels that build the
 // tables and those that read them; mirrors src/physics/lens/kerr.rs, where the reasons are.
 //
@@ -17,7 +17,7 @@ struct KerrLens {
     e2: vec4<f32>,
     outer_rows: u32,
     inner_rows: u32,
-    // Of the crossings of the plane that nodes hold.
+    // The number of crossings of the plane that a node holds.
     orders: u32,
     // 1/r beyond which an inward ray is captured.
     capture_u: f32,
@@ -43,7 +43,8 @@ fn kerr_direction(chi: vec2<f32>, a: f32, b: f32) -> vec3<f32> {
     return lens.k.xyz * ((b - a) * (b + a) * norm) + kerr_radial(chi.x, chi.y) * (2.0 * a * b * norm);
 }
 
-// Of row `row` among all rows, or half a row on; `column`: sin chi, cos chi and tan(R / 2) there.
+// The look direction of row `row` among all rows, or half a row on; `column` holds sin chi, cos chi and tan(R / 2)
+// there.
 fn kerr_node_direction(column: vec4<f32>, row: u32, half_row: bool) -> vec3<f32> {
     let inner = row >= lens.outer_rows;
     let node = i32(row - kerr_first_row(inner)) - i32(KERR_ROWS_BELOW);

@@ -101,8 +101,8 @@ fn patch_of(layer: u32) -> Patch {
     return p;
 }
 
-// Of lengths along x and chi: change per rad of look direction, the smaller one over the cell of the greater one of
-// both directions.
+// The stretch of a cell, from the lengths of its changes along x and chi: change per rad of look direction, the smaller
+// one over the cell of the greater one of both directions.
 fn stretch_of(rows: vec2<f32>, columns: vec2<f32>) -> f32 {
     return max(min(rows.x, rows.y) / row_angle, min(columns.x, columns.y) / max(column_angle, 1e-12));
 }
@@ -115,7 +115,8 @@ fn sky_is_good() -> bool {
     return p.filled && length(p.error.xyz) <= KERR_TOLERANCE * max(stretch, 1.0);
 }
 
-// Flags of the crossings in component `k` of a layer, of the order `order`.
+// Flags of the crossings in component `k` of a layer, whose order is `order`. Bits 0 .. 15 say that a crossing of that
+// order may hit the disk, KERR_DIRECT that the rays of the cell are to be integrated.
 fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let margin = 0.25 * max(p.finite_high[k] - p.finite_low[k], 0.0);
     // Pixels beside an edge look for it, too; as `REACHED_U` of scene/refine.rs.
@@ -129,9 +130,10 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
         return bit | KERR_DIRECT;
     }
     let size = clamp(p.low[k], far, near);
-    let stretch = stretch_of(abs(vec2<f32>(p.by_row[0][k], p.by_row[1][k])), abs(vec2<f32>(p.by_column[0][k], p.by_column[1][k])));
+    let stretch = stretch_of(abs(vec2<f32>(p.by_row[0][k], p.by_row[1][k])),
+        abs(vec2<f32>(p.by_column[0][k], p.by_column[1][k])));
     let conditioning = 1.0 + critical * stretch / size;
-    // What rounding leaves of nodes much larger than the least.
+    // The error that rounding leaves of nodes much larger than the least.
     let noise = 6e-8 * max(abs(p.low[k]), abs(p.high[k]));
     let good = p.error[k] + noise <= KERR_RADIUS_TOLERANCE * conditioning * size;
     return bit | select(KERR_DIRECT, 0u, good);

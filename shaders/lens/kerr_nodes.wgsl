@@ -19,7 +19,7 @@
 @group(0) @binding(4) var crossings_out: texture_storage_2d_array<rgba32float, write>;
 
 const KERR_STEP: f32 = 0.2;
-// Of any ray of the table: 2^-10 from the curve a ray ends within sigma 20.
+// The most steps of a ray of the table: 2^-10 from the curve a ray ends within sigma 20.
 const KERR_STEPS: u32 = 400u;
 
 var<private> node: vec2<u32>;

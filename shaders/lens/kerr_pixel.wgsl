@@ -1,4 +1,4 @@
-// Ray records with spin, as the tables of lens/kerr.wgsl have them; rays that they do not hold are left to
+// Ray records with spin, as the tables of lens/kerr.wgsl have them; rays that the tables do not hold are left to
 // lens/kerr_rest.wgsl.
 
 #import lens/kerr_record
@@ -13,7 +13,7 @@ fn next_crossing() -> Crossing {
     return next_looked_up();
 }
 
-// Only looking tells.
+// Whether there is one only next_crossing finds out.
 fn more_crossings() -> bool {
     return true;
 }

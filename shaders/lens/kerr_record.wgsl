@@ -22,9 +22,9 @@
 
 // Pixels whose rays are to be integrated.
 struct Deferred {
-    // Of all rays integrated so far.
+    // Steps of all rays integrated so far.
     steps: atomic<u32>,
-    // Of each sample of the submission.
+    // The number of pixels of each sample of the submission.
     counts: array<atomic<u32>, 16>,
     // x in the low half, y in the high half.
     pixels: array<u32>,
@@ -34,7 +34,7 @@ struct Deferred {
 struct Looked {
     seen: LocalLook,
     cell: vec2<u32>,
-    // Those of crossings that were given already are taken away.
+    // The flags without those of crossings that were given already.
     flags: u32,
     all_flags: u32,
     // Whether an edge of the disk runs through the pixel at a crossing given so far.
@@ -98,7 +98,7 @@ fn look_up(id: vec2<u32>) -> Record {
     let slope_t = 0.5 * (1.0 + t * t) / select(-max(-t, 1e-12), max(t, 1e-12), t > 0.0);
     let slope_r = half_tangent.y * (slope_t * 2.0 / (1.0 + half_tangent.x * half_tangent.x) + 1.0 / half_tangent.x);
     const ROWS: f32 = f32(KERR_PER_OCTAVE) * 1.4426950408889634;
-    // What they hold along n turns nothing.
+    // The components of these changes along n turn nothing.
     let grid_x = local_change(seen, view.dx);
     let grid_y = local_change(seen, view.dy);
     let chi_change = vec2<f32>(dot(along, grid_x), dot(along, grid_y));
@@ -107,8 +107,8 @@ fn look_up(id: vec2<u32>) -> Record {
     looked.dx = vec2<f32>(column_change.x, row_change.x);
     looked.dy = vec2<f32>(column_change.y, row_change.y);
 
-    var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0),
-        UNKNOWN_FOOTPRINT);
+    var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0,
+        vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if !inner {
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
@@ -145,7 +145,7 @@ struct Interpolated {
 
 const KERR_SKY_LAYER: u32 = 0xffffu;
 
-// Of a layer of the crossings, or of the sky.
+// The value and the slopes of a layer of the crossings, or of the sky, at the record's place.
 fn interpolate(layer: u32) -> Interpolated {
     var sum: Interpolated;
     for (var j = 0u; j < 4u; j += 1u) {
@@ -170,7 +170,7 @@ fn interpolate(layer: u32) -> Interpolated {
     return sum;
 }
 
-// Of component `lane` to the next pixel right and down.
+// The change of component `lane` to the next pixel right and down.
 fn looked_up_change(at: Interpolated, lane: u32) -> vec2<f32> {
     let by = vec2<f32>(at.by_column[lane], at.by_row[lane]);
     return vec2<f32>(dot(by, looked.dx), dot(by, looked.dy));

@@ -1,5 +1,5 @@
-// Ray records with spin of pixels that the tables of lens/kerr.wgsl do not hold: integrated. The sky's footprint is
-// the tables' all the same; those of crossings come from the next pixels' rays.
+// Ray records with spin of pixels that the tables of lens/kerr.wgsl do not hold, integrated. The sky's footprint is the
+// tables' all the same; those of crossings come from the next pixels' rays.
 
 #import constants
 #import camera/observer
@@ -18,9 +18,9 @@
 var<private> rest_crossings: array<vec3<f32>, 3u * CROSSINGS_KEPT>;
 var<private> rest_ray: u32;
 var<private> rest_order: u32;
-// Of the pixel itself, which is traced last: orders up to that of the last crossing.
+// The number of orders up to the last crossing of the pixel's own ray, which is traced last.
 var<private> rest_count: u32;
-// Of the second ray from the pixel: 1 or -1.
+// The step from the pixel to its second ray: 1 or -1 pixels.
 var<private> rest_step: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
@@ -29,12 +29,14 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
     rest_count = min(crossing.order + 1u, CROSSINGS_KEPT);
-    rest_crossings[rest_ray * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+    rest_crossings[rest_ray * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] =
+        vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
 fn ray_record(id: vec2<u32>) -> Record {
     var record = look_up(id);
-    let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
+    let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u,
+        frame.opaque_u);
     for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u) {
         rest_crossings[i] = vec3<f32>(0.0);
     }

@@ -1,4 +1,4 @@
-// Kernel: u, and the delay's integral, along the ray of each node; one thread a node. The curves are in
+// Kernel: fills u, and the delay's integral, along the ray of each node; one thread a node. The curves are in
 // lens/schwarzschild_curve.wgsl.
 
 #import constants
@@ -7,11 +7,11 @@
 #import lens/schwarzschild_curve
 #import shared/deciding
 
-// What lens/schwarzschild_ends.wgsl found.
+// The ends that lens/schwarzschild_ends.wgsl found.
 @group(0) @binding(2) var ends: texture_2d<f32>;
-// phi at the end, at the nodes -1, 0, 1, 2.
+// The angle phi at the end of the rays of the nodes -1, 0, 1, 2.
 @group(0) @binding(3) var swept_out: texture_storage_2d<rgba32float, write>;
-// Of interval j of y: u and du/dy at its begin, then at its end. x: node, y: j, layer: branch.
+// u and du/dy at the begin of interval j of y, then at its end. x: node, y: j, layer: branch.
 @group(0) @binding(4) var u_out: texture_storage_2d_array<rgba32float, write>;
 // The same of the delay's integral.
 @group(0) @binding(5) var delay_out: texture_storage_2d_array<rgba32float, write>;
@@ -72,7 +72,7 @@ fn column_middle(a: vec3<f32>, b: vec3<f32>, h: f32) -> vec2<f32> {
         15.0 / 8.0 * (b.x - a.x) / h - 7.0 / 16.0 * (a.y + b.y) - h / 32.0 * (a.z - b.z));
 }
 
-// By sigma.
+// The slope of the delay's integral by sigma.
 fn delay_slope(curve: Curve, u: f32) -> f32 {
     return delay_rate(curve.c, u, 0.0) / curve.c.scale;
 }

@@ -1,5 +1,5 @@
-// What the kernels that build the tables of lens/schwarzschild.wgsl share: the ray of a node, followed in sigma = S
-// tau, in which all rays take steps of like size; phi = kappa sigma.
+// The parts that the kernels which build the tables of lens/schwarzschild.wgsl share: the ray of a node, followed in
+// sigma = S tau, in which all rays take steps of like size; phi = kappa sigma.
 
 #import constants
 #import camera/observer
@@ -57,7 +57,8 @@ fn curve_of(t: f32, t_hat: f32) -> Curve {
         let sin_half = t * cos_half;
         let middle = lens.critical.z * cos_half - lens.critical.y * sin_half;
         curve.v = 0.0;
-        curve.dv = curve.kappa * -2.0 * lens.slope * frame.place.x * sin_half * (cos_half - beta * middle) / (sine * lens.critical.y);
+        curve.dv = curve.kappa * -2.0 * lens.slope * frame.place.x * sin_half
+            * (cos_half - beta * middle) / (sine * lens.critical.y);
     } else {
         curve.v = begin.state.u;
         curve.dv = begin.state.du / begin.c.scale;
@@ -82,7 +83,7 @@ fn curve_acceleration(curve: Curve, e: f32, v: f32) -> f32 {
     return curve.kappa * curve.kappa * v * (rest + 3.0 * v);
 }
 
-// What e decays by from a step's begin to its inner nodes and its end.
+// The factors by which e decays from a step's begin to its inner nodes and its end.
 fn step_decay(curve: Curve, h: f32) -> vec3<f32> {
     return exp(vec3<f32>(0.2, 2.0 / 3.0, 1.0) * (-curve.kappa * h));
 }

@@ -1,4 +1,4 @@
-// Kernel: where the ray of each node ends; one thread a node. The curves are in lens/schwarzschild_curve.wgsl.
+// Kernel: finds where the ray of each node ends; one thread a node. The curves are in lens/schwarzschild_curve.wgsl.
 
 #import constants
 #import lens/schwarzschild

@@ -51,7 +51,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     let seen = local_look(view.look);
     let n = seen.n;
     let energy = local_energy(n);
-    // What they hold along n turns nothing below.
+    // The components of these changes along n turn nothing below.
     let dx = local_change(seen, view.dx);
     let dy = local_change(seen, view.dy);
 
@@ -69,7 +69,8 @@ fn ray_record(id: vec2<u32>) -> Record {
     let swept = select(0.0, dot(lagrange(place.share), ends), has_column);
     let swept_slope = dot(lagrange_slope(place.share), ends);
     // d(place) / d(psi); 1 / ln 2 = 1.4427.
-    let slope = f32(LENS_PER_OCTAVE) * 0.7213475204444817 * (1.0 + t * t) / (select(-t_hat, t_hat, escaped) * lens.critical.w);
+    let slope = f32(LENS_PER_OCTAVE) * 0.7213475204444817 * (1.0 + t * t)
+        / (select(-t_hat, t_hat, escaped) * lens.critical.w);
 
     // Tangential unit vector, (e_theta, e_phi).
     let tangent = select(vec2<f32>(1.0, 0.0), n.yz / s, s > 0.0);
@@ -104,8 +105,8 @@ fn ray_record(id: vec2<u32>) -> Record {
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
         record.sky = e_r * turn.y + looked.along * turn.x;
-        // By psi in the ray's plane, and sin(swept) / sin(psi) across it; outward, where both sines vanish, their
-        // slopes' ratio.
+        // The direction changes by psi in the ray's plane, and by sin(swept) / sin(psi) across it; outward, where both
+        // sines vanish, by their slopes' ratio.
         let swept_psi = swept_slope * slope;
         let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
         record.footprint = Footprint(looked.along * turn.y - e_r * turn.x, looked.across,
@@ -165,18 +166,20 @@ fn next_crossing() -> Crossing {
     return crossing;
 }
 
-// Only looking tells.
+// Whether there is one only next_crossing finds out.
 fn more_crossings() -> bool {
     return true;
 }
 
-// Of u to the next pixel right and down, where the table of u has `at` at the crossing `phi`.
+// The change of u to the next pixel right and down, where the table of u has `at` at the crossing `phi`.
 fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
     let y = phi / looked.swept;
-    return at.y * looked.change + at.z * ((looked.first_change - y * looked.swept_slope * looked.change) / looked.swept);
+    return at.y * looked.change
+        + at.z * ((looked.first_change - y * looked.swept_slope * looked.change) / looked.swept);
 }
 
-// Of a table over (place, y): value and derivatives by place and by y. Cubic in both: Hermite in y, Lagrange in place.
+// The value of a table over (place, y), and its derivatives by place and by y. It is cubic in both: Hermite in y,
+// Lagrange in place.
 fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
     let scaled = clamp(y, 0.0, 1.0) * f32(LENS_INTERVALS);
     let j = min(u32(scaled), LENS_INTERVALS - 1u);

@@ -1,4 +1,4 @@
-// Kernel: makes the records of the pixels that records/each_pixel.wgsl deferred and has them taken.
+// Kernel: makes the records of the pixels that records/each_pixel.wgsl deferred, and hands each to take_record.
 
 #import lens/kerr_record
 #import records/record

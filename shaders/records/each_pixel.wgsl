@@ -1,4 +1,4 @@
-// Kernel: makes the record of each pixel of a tile and has it taken.
+// Kernel: makes the record of each pixel of a tile, and hands it to take_record.
 
 #import records/record
 #import shared/deciding

@@ -1,4 +1,4 @@
-// Kernel: as records/each_pixel.wgsl, for film/packed_rows.wgsl.
+// Kernel: does what records/each_pixel.wgsl does, for film/packed_rows.wgsl.
 
 #import constants
 #import film/packed_rows

@@ -10,6 +10,8 @@
 @group(0) @binding(1) var<uniform> pass_: Pass;
 @group(2) @binding(0) var<storage, read_write> exported: array<vec4<f32>>;
 
+// A record takes EXPORT_SIZE vectors: four for the ray, three for each of EXPORT_CROSSINGS crossings.
+
 fn export_place(p: Place, w: f32) -> vec4<f32> {
     return vec4<f32>(p.ln_r, p.azimuth, p.delay, w);
 }

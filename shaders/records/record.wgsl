@@ -1,16 +1,16 @@
 // The ray record of a pixel: the one interface between lensing and shading. src/scene/record.rs has the same fields.
-// However it was made, whoever makes records (traced/record.wgsl, lens_*.wgsl) defines
+// However records are made, the fragment that makes them (one of traced/, lens/ or refine/) declares
 //
-//     fn ray_record(id: vec2<u32>) -> Record      of the tile's pixel `id`
-//     fn next_crossing() -> Crossing              of that record, front to back, within the disk's radii
-//     fn more_crossings() -> bool                 whether next_crossing may give one more
-//     fn defer_pixel(id: vec2<u32>)               leaves a pixel whose record is FATE_PENDING to a later kernel
-//     fn edges_of_pixel(through: f32) -> u32      EDGE_*: what runs through the pixel of that record, once its crossings have been
-//                                                 given; through: what the disk lets pass of the light behind it
+//     fn ray_record(id: vec2<u32>) -> Record   gives the record of the tile's pixel `id`;
+//     fn next_crossing() -> Crossing           gives its crossings one by one, front to back, within the disk's radii;
+//     fn more_crossings() -> bool              says whether next_crossing may give one more;
+//     fn rewind_crossings()                    begins with the first crossing again (for samples);
+//     fn defer_pixel(id: vec2<u32>)            leaves a pixel whose record is FATE_PENDING to a later kernel;
+//     fn edges_of_pixel(through: f32) -> u32   says which edge, EDGE_*, runs through the pixel, once its crossings have
+//                                              been given; `through` is the share of the light behind the disk
+//                                              that the disk lets pass.
 //
-// and whoever uses them
-//
-//     fn take_record(id: vec2<u32>, record: Record)
+// The fragment that uses records declares take_record, and shading declares seen_crossing.
 
 #import constants
 #import shared/frame
@@ -49,7 +49,7 @@ struct Footprint {
 
 const UNKNOWN_FOOTPRINT: Footprint = Footprint(vec3<f32>(0.0), vec3<f32>(0.0), vec2<f32>(1e30), vec2<f32>(1e30));
 
-// Of changes at right angles to the unit vector `d`. (The basis is that of Duff et al. 2017.)
+// The footprint of changes at right angles to the unit vector `d`. (The basis is that of Duff et al. 2017.)
 fn footprint_of(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> Footprint {
     let sense = select(-1.0, 1.0, d.z >= 0.0);
     let a = -1.0 / (sense + d.z);
@@ -83,14 +83,14 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }
 
-// What d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large by beyond 90 degrees from
-// the curve, whose antipode is not near it.
+// The factor by which d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large beyond 90
+// degrees from the curve, whose antipode is not near it.
 fn beyond_right_angle(t: f32) -> f32 {
     let most = max(abs(t), 1.0);
     return 0.5 * (most + 1.0 / most);
 }
 
-// Of a looked-up pixel `curve` pixels from the critical curve; the rings lie outside it.
+// EDGE_* of a looked-up pixel that lies `curve` pixels from the critical curve; the rings lie outside it.
 fn edges_looked_up(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
     let near_ring = DISK && outside && through > 0.0 && curve < RINGS_REACH;
     let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);

@@ -16,7 +16,7 @@ var<private> kept_crossings: array<vec3<f32>, CROSSINGS_KEPT>;
 var<private> kept_order: u32;
 // Orders up to that of the last crossing.
 var<private> kept_count: u32;
-// Of the ray.
+// The constants of the ray.
 var<private> kept_constants: Constants;
 var<private> kept_ratio: f32;
 
@@ -40,12 +40,13 @@ fn integrated_record(id: vec2<u32>) -> Record {
     let begin = begin_ray(camera_look(place.x, place.y));
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;
-    var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local, begin.c.angular_momentum / begin.c.nu_local,
-        0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
+        begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if begin.light {
         // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
         let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
-        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, opaque_u);
+        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
+            frame.capture_u, opaque_u);
         let traced = trace(begin.c, begin.state, settings);
         record.fate = traced.fate;
         if traced.fate == FATE_ESCAPED {

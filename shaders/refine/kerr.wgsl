@@ -1,5 +1,5 @@
-// Ray records of samples with spin: as the tables of lens/kerr.wgsl have them, else integrated. The sky's footprint is
-// the tables' in either case; those of integrated crossings, too, or there are none.
+// Ray records of samples with spin, as the tables of lens/kerr.wgsl have them, else integrated. The sky's footprint is
+// the tables' in either case; those of integrated crossings are the tables' as well, or there are none.
 
 #import constants
 #import lens/kerr

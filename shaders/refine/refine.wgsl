@@ -1,6 +1,6 @@
-// Kernel: shades `pass_.refined` samples of each pixel of a list of refine/edges.wgsl and has their mean taken in place of
-// the pixel's light.
-// Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are. Knows no way to make records.
+// Kernel: shades `pass_.refined` samples of each pixel of a list of refine/edges.wgsl, and hands their mean to
+// take_light in place of the pixel's light. Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are.
+// Knows no way to make records.
 
 #import constants
 #import camera/observer
@@ -16,13 +16,13 @@
 #requires fn rewind_crossings()
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
 
-// Of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 32 where the
-// critical curve runs, as what lies beside it is too thin for that.
+// The samples of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 32
+// where the critical curve runs, as what lies beside it is too thin for that.
 var<private> samples: u32;
 
 const LANES: u32 = 64u;
 
-// Of each thread's sample: u of its crossings by order, 0 where there is none; its fate; its light.
+// The sample of each thread: u of its crossings by order, 0 where there is none; its fate; its light.
 var<workgroup> lane_u: array<f32, LANES * CROSSINGS_KEPT>;
 var<workgroup> lane_fate: array<u32, LANES>;
 var<workgroup> lane_light: array<vec4<f32>, LANES>;
@@ -86,7 +86,7 @@ fn refine_sample(entry: u32, count: u32) {
     workgroupBarrier();
 }
 
-// Of refine/edges.wgsl: which list this dispatch goes over.
+// The list of refine/edges.wgsl that this dispatch goes over.
 fn list_kind() -> u32 {
     return select(1u, 0u, whole_plane);
 }
@@ -95,7 +95,7 @@ fn sample_index() -> u32 {
     return lane % samples;
 }
 
-// Of this thread's sample in its pixel, 0 .. 1: the middle of its quarter.
+// The place of this thread's sample in its pixel, 0 .. 1: the middle of its quarter.
 fn quarter_place() -> vec2<f32> {
     return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;
 }
@@ -128,14 +128,15 @@ fn level_of_share(share: f32, slope: vec2<f32>) -> f32 {
     return select(size, -size, share < 0.5);
 }
 
-// At right angles to the circle about the shadow's centre that runs through the pixel, in pixels right and down.
+// The direction at right angles to the circle about the shadow's centre that runs through the pixel, in pixels right
+// and down.
 fn across_curve(id: vec2<u32>) -> vec2<f32> {
     sample_shift = vec2<f32>(0.0);
     let at = pixel_place(id);
     let view = camera_view(at.x, at.y);
     let seen = local_look(view.look);
     let centre = vec3<f32>(frame.e_r.w, frame.e_theta.w, frame.e_phi.w);
-    // What the changes of a look direction hold along it is not its change.
+    // The components of a look direction's changes along it are no changes of it.
     let across_sight = centre - seen.n * dot(centre, seen.n);
     return vec2<f32>(dot(across_sight, local_change(seen, view.dx)), dot(across_sight, local_change(seen, view.dy)));
 }
@@ -184,12 +185,12 @@ fn share_below(level: f32, slope: vec2<f32>) -> f32 {
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
 }
 
-// What u of the crossing of `order` may change between the samples of a pixel.
+// How much u of the crossing of `order` may change between the samples of a pixel.
 fn even_change(order: u32, high: f32) -> f32 {
     return min(EVEN_CHANGE * (frame.disk_u.y - frame.disk_u.x), select(1e30, DIRECT_CHANGE * high, order == 0u));
 }
 
-// Of the first of a pixel's 4 lanes: whether what it shows cannot change evenly from sample to sample.
+// For the first of a pixel's 4 lanes: whether what the pixel shows cannot change evenly from sample to sample.
 fn is_ragged() -> bool {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;

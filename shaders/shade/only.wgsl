@@ -1,4 +1,4 @@
-// What becomes of a pixel's light where it has but one sample: it is developed.
+// Develops the light of a pixel at once, where the pixel has but one sample.
 
 #requires fn put_pixel(id: vec2<u32>, radiance: vec4<f32>)
 

@@ -1,7 +1,5 @@
-// Shades a pixel's record, and lists the pixel if edges run through it. Knows not what becomes of light: who uses this
-// file defines
-//
-//     fn take_light(id: vec2<u32>, light: vec4<f32>)      of the tile's pixel `id`; a second time in place of the first
+// Shades a pixel's record, and lists the pixel if edges run through it. take_light takes the light of the tile's pixel
+// `id`; where it is called a second time, that light takes the place of the first.
 
 #import camera/projection
 #import records/record

@@ -1,9 +1,9 @@
-// What becomes of the light of one of a pixel's samples: it is added to the sum of those before.
+// Adds the light of one of a pixel's samples to the sum of those before.
 
 #import shared/deciding
 #import shared/pass
 
-// Of the tile: the sum of the samples before, and with this one.
+// The sum of the tile's samples before this one, and the sum with it.
 @group(2) @binding(0) var radiance_before: texture_2d<f32>;
 @group(2) @binding(1) var radiance: texture_storage_2d<rgba32float, write>;
 

@@ -1,5 +1,5 @@
-// Linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. How the record was made it does not
-// know.
+// The linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. Does not know how the record was
+// made.
 
 #import constants
 #import camera/projection
@@ -26,8 +26,8 @@
 @group(0) @binding(4) var milky_way: texture_2d<f32>;
 @group(0) @binding(5) var sky_map: texture_2d<f32>;
 
-// What a pipeline is made for; the host compiles one for each combination it needs: lavapipe runs both sides of every
-// `if`.
+// Choices that a pipeline is made for; the host compiles one for each combination that it needs: lavapipe runs both
+// sides of every `if`.
 override SHOWS_LIGHT: bool = true;
 override SHOWS_STARS: bool = true;
 override SHOWS_MILKY_WAY: bool = true;
@@ -44,7 +44,7 @@ fn star_cell(i: u32) -> u32 {
     return textureLoad(star_cells, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0).x;
 }
 
-// Of the tile's pixel `id`: light and alpha, or the view's value first; nothing where the projection shows nothing.
+// Light and alpha of the tile's pixel `id`, or the view's value first; nothing where the projection shows nothing.
 fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
     let seen = has_look(pixel_place(id));
     if SHOWS_LIGHT {
@@ -62,15 +62,15 @@ fn to_sky(d: vec3<f32>) -> vec3<f32> {
     return frame.sky_x.xyz * d.x + frame.sky_y.xyz * d.y + frame.sky_z.xyz * d.z;
 }
 
-// Of stars.rs.
+// The least patch of src/sky/stars.rs.
 fn least_patch() -> f32 {
     return frame.sky_z.w;
 }
 
-// Of the light behind the disk, how much it lets pass at the pixel shaded last.
+// The share of the light behind the disk that the disk lets pass at the pixel shaded last.
 var<private> seen_through: f32;
 
-// Who uses this file defines seen_crossing() -> Crossing: next_crossing() with its share.
+// Light and alpha of a record. seen_crossing gives next_crossing with its share.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
@@ -87,7 +87,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
         let opacity = frame.disk.z * crossing.share;
         light += open * opacity * structure * disk_light(crossing.u, crossing_shift(here, crossing));
         open *= 1.0 - opacity;
-        // To find at the loop's begin that there is none lavapipe would run all of the body once more.
+        // If the loop found at its begin that there is none, lavapipe would run all of the body once more.
         if !more_crossings() {
             break;
         }
@@ -125,7 +125,7 @@ fn sky_light(here: Record) -> vec3<f32> {
     return light;
 }
 
-// Of the Milky Way and the host's map.
+// The light of the Milky Way and of the host's map.
 fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
     let d = to_sky(here.sky);
     let taps = map_taps(here.footprint);
@@ -139,7 +139,7 @@ fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
     return light;
 }
 
-// What BHR_VIEW_* shows; NaN where there is nothing.
+// The value that BHR_VIEW_* shows; NaN where there is nothing.
 fn view_value(here: Record, id: vec2<u32>) -> f32 {
     let nothing = no_value();
     let first = next_crossing();

@@ -1,13 +1,13 @@
-// Thermal light as the eye sees it: mirrors physics/blackbody.rs (BlackbodyTable), where the formulas and reasons are.
-// Reads light_table(i), defined where the bindings are: node i is rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
+// Thermal light as the eye sees it: mirrors src/physics/blackbody.rs (BlackbodyTable), where the formulas and reasons
+// are. Node i of the table, light_table(i), holds rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
 
 #import constants
 #requires fn light_table(i: u32) -> vec4<f32>
 
 const BLACKBODY_OFFSET: u32 = 0u;
 
-// Of the table that begins at entry `first`: rgb / Y, not clamped, and ln(Y / T); MIN_TEMPERATURE <= temperature <=
-// MAX_TEMPERATURE.
+// The value of the table that begins at entry `first`: rgb / Y, not clamped, and ln(Y / T); MIN_TEMPERATURE <=
+// temperature <= MAX_TEMPERATURE.
 fn blackbody_lookup(first: u32, temperature: f32) -> vec4<f32> {
     const SCALE = f32(BLACKBODY_SIZE - 1u) * (MIN_TEMPERATURE + COORDINATE_TEMPERATURE);
     let position = SCALE / (temperature + COORDINATE_TEMPERATURE);

@@ -1,7 +1,7 @@
 // Numbers rounded to what f16 tells apart, to even: storing them in a texture of f16 changes nothing, whatever way the
 // driver rounds. So sums of light keep what they are on average.
 
-// Of 0 <= v <= 65504.
+// For 0 <= v <= 65504.
 fn rounded_to_f16(v: vec4<f32>) -> vec4<f32> {
     let bits = bitcast<vec4<u32>>(v);
     // Adding just under half of the last place, and its lowest bit.

@@ -1,12 +1,12 @@
-// The scene as the kernels of a frame see it. src/gpu/uniforms.rs mirrors the struct.
+// The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/uniforms.rs.
 
 #import shared/deciding
 #requires var frame: Frame
 
 // The scene in the hole's units; the same for all tiles and samples of a frame.
 struct Frame {
-    // Units of a FramePoint (camera/projection.wgsl), to the right, up, forward; components in the observer's frame. w of the
-    // first: angle of a fisheye's pixel.
+    // Units of a FramePoint (camera/projection.wgsl), to the right, up, forward, as components in the observer's frame.
+    // w of the first: the angle of a fisheye's pixel.
     right: vec4<f32>,
     up: vec4<f32>,
     forward: vec4<f32>,
@@ -29,7 +29,7 @@ struct Frame {
     sky_z: vec4<f32>,
     // Temperature, its ln Y, opacity, brightness.
     disk: vec4<f32>,
-    // Of the full frame, pixels; then step in sigma and tolerance.
+    // The size of the full frame, pixels; then the step in sigma and the tolerance.
     size: vec4<f32>,
     // Strength, age at the reference time, delay of light of that time (M), 0 of Turbulence in turbulence.rs.
     turbulence: vec4<f32>,

@@ -18,11 +18,12 @@ fn sincos_turn(part: f32, whole: f32) -> vec2<f32> {
     return sincos_quarters((part - k * (0.25 * whole)) * (TAU / whole), k);
 }
 
-// Of y + k pi/2, |y| <= pi/4, k a whole number.
+// (sin, cos) of y + k pi/2, where |y| <= pi/4 and k is a whole number.
 fn sincos_quarters(y: f32, k: f32) -> vec2<f32> {
     let y2 = y * y;
     let s = y + y * y2 * (-1.6666654611e-1 + y2 * (8.3321608736e-3 - y2 * 1.9515295891e-4));
-    let c = 1.0 - 0.5 * y2 + y2 * y2 * (4.166664568298827e-2 + y2 * (-1.388731625493765e-3 + y2 * 2.443315711809948e-5));
+    let c = 1.0 - 0.5 * y2
+        + y2 * y2 * (4.166664568298827e-2 + y2 * (-1.388731625493765e-3 + y2 * 2.443315711809948e-5));
     let quadrant = i32(k) & 3;
     let swapped = select(vec2<f32>(s, c), vec2<f32>(c, s), (quadrant & 1) == 1);
     let sign = vec2<f32>(select(1.0, -1.0, quadrant >= 2), select(1.0, -1.0, quadrant == 1 || quadrant == 2));
@@ -43,7 +44,8 @@ fn arctan2(y: f32, x: f32) -> f32 {
     let beyond = ratio > 0.4142135623731;
     let t = select(ratio, (ratio - 1.0) / (ratio + 1.0), beyond);
     let t2 = t * t;
-    var angle = t + t * t2 * (-3.33329491539e-1 + t2 * (1.99777106478e-1 + t2 * (-1.38776856032e-1 + t2 * 8.05374449538e-2)));
+    var angle = t + t * t2 * (-3.33329491539e-1
+        + t2 * (1.99777106478e-1 + t2 * (-1.38776856032e-1 + t2 * 8.05374449538e-2)));
     angle += select(0.0, 0.785398163397448, beyond);
     angle = select(angle, 1.5707963267949 - angle, ay > ax);
     angle = select(angle, PI - angle, x < 0.0);

@@ -1,20 +1,20 @@
-// One sample of one tile: the uniform `pass_`, declared where the bindings are. The traced rectangle is the tile and
-// one pixel around it, for the derivatives.
+// One sample of one tile: the uniform `pass_`, which the kernel binds. The traced rectangle is the tile and one pixel
+// around it, for the derivatives.
 
 #requires var pass_: Pass
 
 struct Pass {
-    // Of the traced rectangle's top-left pixel in the full frame.
+    // The traced rectangle's top-left pixel in the full frame.
     origin: vec2<i32>,
-    // Of the traced rectangle.
+    // The size of the traced rectangle.
     size: vec2<u32>,
-    // Of this sample in its pixel, 0 .. 1.
+    // The place of this sample in its pixel, 0 .. 1.
     offset: vec2<f32>,
-    // Of this sample among all.
+    // The weight of this sample among all.
     weight: f32,
     // 1: begins a new sum.
     first: u32,
-    // Of this sample among those of the submission.
+    // The number of this sample among those of the submission.
     slot: u32,
     // Samples that refine/refine.wgsl takes of a pixel.
     refined: u32,
@@ -22,14 +22,15 @@ struct Pass {
     light_origin: vec2<i32>,
 }
 
-// From this sample to the place looked at, pixels: 0 but where refine/refine.wgsl spreads samples over a pixel.
+// The shift from this sample to the place looked at, pixels: 0 but where refine/refine.wgsl spreads samples over a
+// pixel.
 var<private> sample_shift: vec2<f32>;
 
 fn outside_tile(id: vec2<u32>) -> bool {
     return id.x >= pass_.size.x - 2u || id.y >= pass_.size.y - 2u;
 }
 
-// Of the sample in the tile's pixel `id`: its place in the full frame, pixels.
+// The place of the sample in the tile's pixel `id` in the full frame, pixels.
 fn pixel_place(id: vec2<u32>) -> vec2<f32> {
     return vec2<f32>(pass_.origin + vec2<i32>(id) + 1) + pass_.offset + sample_shift;
 }

@@ -1,5 +1,4 @@
-// The coordinate grid laid over the sky: mirrors src/sky/grid.rs, where the reasons are. Uses shared/math.wgsl and
-// records/record.wgsl, and to_sky(d), defined where the bindings are.
+// The coordinate grid laid over the sky. Mirrors src/sky/grid.rs, where the reasons are.
 
 #import constants
 #import records/record
@@ -29,7 +28,7 @@ fn under_grid(light: vec3<f32>, d: vec3<f32>, footprint: Footprint) -> vec3<f32>
     let p = to_sky(footprint.p);
     let q = to_sky(footprint.q);
     let rho = max(sqrt(d.x * d.x + d.y * d.y), 1e-6);
-    // Of right ascension and of declination, in the tangent plane.
+    // Changes of right ascension and of declination, in the tangent plane.
     let east = vec2<f32>(d.x * p.y - d.y * p.x, d.x * q.y - d.y * q.x) / (rho * rho);
     let north = vec2<f32>(p.z, q.z) / rho;
     let spacing = select(GRID_CAP_SPACING, GRID_SPACING, abs(d.z) < GRID_CAP);

@@ -1,6 +1,5 @@
-// The light of sky maps in a pixel: mirrors src/sky/filter.rs, where the reasons are, on the texels of src/sky/map.rs,
-// read one by one: the weights of samplers have 8 bits. Uses shared/math.wgsl, records/record.wgsl and shared/blackbody.wgsl, and to_sky(d),
-// defined where the bindings are.
+// The light of sky maps in a pixel. Mirrors src/sky/filter.rs, where the reasons are, on the texels of src/sky/map.rs.
+// They are read one by one, as the weights of samplers have but 8 bits.
 
 #import constants
 #import records/record
@@ -25,10 +24,12 @@ fn map_taps(footprint: Footprint) -> Taps {
     let major = max(sqrt(0.5 * stretch2 + half_split), TINY_AXIS);
     let minor = max(abs(dx.x * dy.y - dx.y * dy.x) / major, major * (1.0 / sqrt(1.0 + MAX_SPREAD * MAX_SPREAD)));
     let ratio = major / minor;
-    let along = select(vec2<f32>(cross, half_split - half_difference), vec2<f32>(half_split + half_difference, cross), half_difference >= 0.0);
+    let along = select(vec2<f32>(cross, half_split - half_difference),
+        vec2<f32>(half_split + half_difference, cross), half_difference >= 0.0);
     let axis = along * (minor / max(length(along), 1e-30));
     if stretch2 < WHOLE_SKY {
-        return Taps(log2(minor), to_sky(footprint.p) * axis.x + to_sky(footprint.q) * axis.y, sqrt(max(ratio * ratio - 1.0, 0.0)));
+        return Taps(log2(minor), to_sky(footprint.p) * axis.x + to_sky(footprint.q) * axis.y,
+            sqrt(max(ratio * ratio - 1.0, 0.0)));
     }
     return Taps(1e3, vec3<f32>(0.0), 0.0);
 }
@@ -92,7 +93,7 @@ fn map_bilinear(map: texture_2d<f32>, finest: vec2<u32>, uv: vec2<f32>, level: u
 }
 
 fn shifted_map_light(rgb: vec3<f32>, g_colour: f32, g_beaming: f32) -> vec3<f32> {
-    // Of the Milky Way most is.
+    // Most of the Milky Way is black.
     if all(rgb == vec3<f32>(0.0)) {
         return vec3<f32>(0.0);
     }
@@ -105,5 +106,6 @@ fn shifted_map_light(rgb: vec3<f32>, g_colour: f32, g_beaming: f32) -> vec3<f32>
 
 fn colour_temperature(ln_ratio: f32) -> f32 {
     let x = clamp(ln_ratio, COOLEST_RATIO, HOTTEST_RATIO);
-    return 1000.0 / (0.1529064 + x * (-0.1022545 + x * (-0.005097082 + x * (-0.005358591 + x * (-0.003424309 + x * -0.0005964595)))));
+    return 1000.0 / (0.1529064 + x * (-0.1022545
+        + x * (-0.005097082 + x * (-0.005358591 + x * (-0.003424309 + x * -0.0005964595)))));
 }

@@ -1,6 +1,5 @@
-// The stars of a pixel: mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule),
-// where the reasons are. Reads light_table(i), star_cell(i), to_sky(d) and least_patch(), defined where the bindings
-// are; the constants in capitals that are not here come from StarIndex::wgsl_constants.
+// The stars of a pixel. Mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule),
+// where the reasons are.
 
 #import constants
 #import records/record
@@ -88,7 +87,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
     if i >= end && means == 0u {
         return light;
     }
-    // What takes a distance from the direction to pixels across and down, times the pixel's area on the sky.
+    // The vectors that take a distance from the direction to pixels across and down, times the pixel's area on the sky.
     let p_axis = to_sky(footprint.p);
     let q_axis = to_sky(footprint.q);
     let across = p_axis * dy.y - q_axis * dy.x;

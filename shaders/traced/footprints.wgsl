@@ -1,5 +1,5 @@
-// Footprints of traced pixels, from their neighbours' records, which traced/pixels.wgsl wrote. The layout of the textures is
-// in traced/layout.wgsl.
+// Footprints of traced pixels, from their neighbours' records, which traced/pixels.wgsl wrote. The layout of the
+// textures is in traced/layout.wgsl.
 
 #import camera/projection
 #import records/record
@@ -11,7 +11,7 @@
 @group(1) @binding(1) var record_meta: texture_2d<u32>;
 @group(1) @binding(2) var record_disk: texture_2d_array<f32>;
 
-// Of the record at hand: its place in the textures.
+// The place of the record at hand in the textures.
 var<private> traced_pixel: vec2<u32>;
 // Whether the neighbours to the left and to the right are of the same face.
 var<private> traced_joined: vec2<bool>;
@@ -28,7 +28,7 @@ fn traced_neighbours(step: vec2<u32>) -> vec2<bool> {
     return select(traced_joined, vec2<bool>(true), step.x == 0u);
 }
 
-// Of the pixel, whose own ray goes to `here`, about the direction `sky` of one of its samples.
+// The footprint of the pixel, whose own ray goes to `here`, about the direction `sky` of one of its samples.
 fn sky_footprint(here: vec3<f32>, sky: vec3<f32>) -> Footprint {
     let dx = derivative_of_direction(here, vec2<u32>(1u, 0u));
     let dy = derivative_of_direction(here, vec2<u32>(0u, 1u));

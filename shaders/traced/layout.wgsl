@@ -1,10 +1,10 @@
-// How traced/pixels.wgsl leaves what it traced for traced/record.wgsl. Textures of the traced rectangle's size, because neighbours
-// are read together and software drivers reach into buffers lane by lane:
+// How traced/pixels.wgsl leaves what it traced for traced/record.wgsl: in textures of the traced rectangle's size,
+// because neighbours are read together and software drivers reach into buffers lane by lane.
 //
 //     record_sky    xyz: sky direction, chart; w: sky_redshift, 0 unless the ray escaped.
 //     record_meta   TracedMeta.
-//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth (with AZIMUTH, else 0), delay (with
-//                   DELAY, else 0).
+//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth (with AZIMUTH, else 0), delay
+//                   (with DELAY, else 0).
 
 // x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge; bit 16 + k:
 // it is the disk's. y: steps. z, w: E and L; in the METRIC view z is plane_u.
@@ -18,7 +18,8 @@ struct TracedMeta {
 }
 
 fn pack_meta(m: TracedMeta) -> vec4<u32> {
-    return vec4<u32>(m.fate | ((m.inside & 0x3fffu) << 2u) | (m.orders << 16u), m.steps, bitcast<u32>(m.energy), bitcast<u32>(m.angular_momentum));
+    return vec4<u32>(m.fate | ((m.inside & 0x3fffu) << 2u) | (m.orders << 16u), m.steps,
+        bitcast<u32>(m.energy), bitcast<u32>(m.angular_momentum));
 }
 
 fn unpack_meta(v: vec4<u32>) -> TracedMeta {

@@ -1,5 +1,4 @@
-// Kernel: traces the pixels of a tile's rectangle into record textures. What shading will do with them it does not
-// know.
+// Kernel: traces the pixels of a tile's rectangle into record textures. Does not know what shading will do with them.
 
 #import constants
 #import camera/observer
@@ -21,7 +20,7 @@
 // Whether shading needs to know where on the disk a crossing is.
 override AZIMUTH: bool = true;
 
-// Of the ray being traced.
+// The ray being traced: its pixel, and what is found on its way.
 var<private> pixel: vec2<u32>;
 var<private> frequency_ratio: f32;
 var<private> disk_orders: u32;
@@ -64,7 +63,8 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
     if begin.light {
-        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u, frame.opaque_u);
+        let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
+            frame.capture_u, frame.opaque_u);
         let traced = trace(c, begin.state, settings);
         m.fate = traced.fate;
         m.steps = traced.steps;

@@ -5,7 +5,7 @@
 #import traced/footprints
 #import traced/layout
 
-// Of the record at hand: the crossings not yet given, and the layer of the next.
+// The crossings of the record at hand that were not given yet, as bits, and the layer of the next.
 var<private> traced_orders: u32;
 var<private> traced_layer: u32;
 
@@ -14,7 +14,8 @@ fn ray_record(id: vec2<u32>) -> Record {
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
-    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.energy, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.energy, 0.0, vec3<f32>(0.0),
+        UNKNOWN_FOOTPRINT);
     if m.fate == FATE_ESCAPED {
         let sky = textureLoad(record_sky, traced_pixel, 0);
         record.sky = sky.xyz;
@@ -56,10 +57,11 @@ fn edges_of_pixel(through: f32) -> u32 {
     let kinds = vec4<u32>(edge_between(here, traced_pixel - across), edge_between(here, traced_pixel + across),
         edge_between(here, traced_pixel - down), edge_between(here, traced_pixel + down));
     let beside = select(vec2<u32>(EDGE_NONE), kinds.xy, traced_joined);
-    return max(max(max(beside.x, beside.y), max(kinds.z, kinds.w)), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
+    return max(max(max(beside.x, beside.y), max(kinds.z, kinds.w)),
+        select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
 }
 
-// Of a pixel with crossings of these orders, the first.
+// Whether u of the first of a pixel's crossings, whose orders are the bits, changes steeply to the next pixels.
 fn is_steep(orders: u32) -> bool {
     if !DISK || orders == 0u {
         return false;

@@ -1,6 +1,6 @@
 //! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve and
-//! dithering; float formats get the radiance as it is. Views other than light get false colour, or their value. In
-//! f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how
+//! dithering; float formats get the radiance as it is. Views other than light get false colour, or their value. In f32,
+//! so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how
 //! light was made.
 
 pub mod bloom;

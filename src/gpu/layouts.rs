@@ -16,8 +16,10 @@ fn shared() -> Vec<Layout> {
     vec![film, frame, pass, given, start, end, kerr::layout(), schwarzschild::layout(), bloom::layout()]
 }
 
+type Members<'a> = Vec<(&'a str, usize)>;
+
 /// The structs of a module by name: size, and members with their offsets.
-fn structs(module: &Module) -> BTreeMap<&str, (usize, Vec<(&str, usize)>)> {
+fn structs(module: &Module) -> BTreeMap<&str, (usize, Members<'_>)> {
     let named = module.types.iter().filter_map(|(_, ty)| match (&ty.inner, ty.name.as_deref()) {
         (TypeInner::Struct { members, span }, Some(name)) => {
             let members = members.iter().filter_map(|m| Some((m.name.as_deref()?, m.offset as usize))).collect();

@@ -1,5 +1,6 @@
 //! Pixels that edges run through: which these are, where their samples lie, and how much of a sample's cell the disk
-//! covers. Shared by both tracers (shaders/records/record.wgsl and shaders/refine/refine.wgsl mirror it); knows no rays and no light.
+//! covers. Shared by both tracers (shaders/records/record.wgsl and shaders/refine/refine.wgsl mirror it); knows no rays
+//! and no light.
 //!
 //! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, and misses rings
 //! thinner than the pixel. Two kinds of pixels get more rays:

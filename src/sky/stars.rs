@@ -1,5 +1,5 @@
-//! How stars are drawn, the same in both tracers (`shaders/sky/stars.wgsl`): as points with a fixed footprint in pixels,
-//! so that they neither alias nor sparkle, and with the brightness that the lens's magnification gives them.
+//! How stars are drawn, the same in both tracers (`shaders/sky/stars.wgsl`): as points with a fixed footprint in
+//! pixels, so that they neither alias nor sparkle, and with the brightness that the lens's magnification gives them.
 
 use super::index::{STAR_LEVELS, StarIndex, cell_of, level_for, margin};
 use crate::physics::blackbody::BlackbodyTable;

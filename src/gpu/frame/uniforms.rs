@@ -1,5 +1,5 @@
-//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field by field. The
-//! only place where f64 becomes f32 on its way to the GPU.
+//! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field
+//! by field. The only place where f64 becomes f32 on its way to the GPU.
 
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;

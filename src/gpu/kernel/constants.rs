@@ -96,7 +96,6 @@ fn all() -> Vec<(&'static str, String)> {
         EFFECT_DOPPLER_SHIFT: u32 = Effects::DOPPLER_SHIFT;
         EFFECT_GRAVITY_SHIFT: u32 = Effects::GRAVITY_SHIFT;
         EFFECT_BEAMING: u32 = Effects::BEAMING;
-        FROM_FRAME: u32 = FROM_UNIFORM;
         PERSPECTIVE: u32 = Projection::Perspective;
         FISHEYE: u32 = Projection::Fisheye;
         EQUIRECT: u32 = Projection::Equirect;
@@ -158,7 +157,7 @@ fn all() -> Vec<(&'static str, String)> {
         GRID_COLOUR: vec3 = grid::GRID_COLOUR;
         GRID_ORIGIN_COLOUR: vec3 = grid::GRID_ORIGIN_COLOUR;
 
-        FROM_FILM: u32 = FROM_UNIFORM;
+        FROM_UNIFORM: u32 = FROM_UNIFORM;
         PIXELS_FLOAT: u32 = PixelKind::Float;
         PIXELS_R32F: u32 = PixelKind::R32F;
         TONE_MAP_ACES: u32 = ToneMap::Aces;

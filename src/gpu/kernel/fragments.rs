@@ -128,7 +128,22 @@ mod tests {
         }
     }
 
-    /// What a fragment may be given for something that it requires.
+    #[test]
+    fn lines_are_short_and_comments_are_sentences() {
+        for (name, text) in FILES {
+            let mut inside = false;
+            for (line, number) in text.lines().zip(1..) {
+                assert!(line.chars().count() <= 120, "{name}, line {number} has more than 120 columns");
+                let comment = line.trim_start().strip_prefix("//");
+                let first = comment.and_then(|text| text.split_whitespace().next()).unwrap_or_default();
+                let leans = !inside && ["Of", "What", "Who", "Which"].contains(&first);
+                assert!(!leans, "{name}, line {number} is no sentence: {line}");
+                inside = comment.is_some();
+            }
+        }
+    }
+
+    /// A declaration that stands in for one that a fragment requires.
     fn stub(required: &str) -> String {
         match (required.strip_prefix("var "), required.split_once("->")) {
             (Some(variable), _) => format!("var<private> {variable};\n"),

@@ -80,7 +80,7 @@ pub enum PixelTarget {
     Light,
 }
 
-/// `FROM_FILM` of film/film.wgsl and `FROM_FRAME` of camera/projection.wgsl: the uniform says which.
+/// The value of a constant whose choice the kernel asks the uniform for while it runs.
 pub(in crate::gpu) const FROM_UNIFORM: u32 = u32::MAX;
 
 impl FilmLook {

@@ -1,8 +1,9 @@
-//! Joins WGSL from fragments that say what they need, in the manner of vello's preprocessor. A line of a fragment may be
+//! Joins WGSL from fragments that say what they need, in the manner of vello's preprocessor. Two directives do so, each
+//! on a line of its own:
 //!
-//! - `#import NAME`: the fragment NAME is joined as well, before this one, and once however many import it;
-//! - `#requires DECLARATION`: whoever imports this fragment sees to it that another one declares just this, `fn f(i: u32)
-//!   -> f32` or `var name: Type` (in whatever address space). Such a hook lets one text serve several kernels.
+//! - `#import NAME`: the fragment NAME is joined as well, before this one, and once however many import it.
+//! - `#requires DECLARATION`: another fragment of the kernel declares just this, `fn f(i: u32) -> f32` or `var name:
+//!   Type` (in whatever address space). Such a hook lets one text serve several kernels.
 //!
 //! Knows no fragment by name.
 
@@ -130,8 +131,7 @@ fn declarations(text: &str) -> Vec<(String, String)> {
 /// A declaration without the attributes before it, such as `@group(0) @binding(1)`.
 fn without_attributes(mut text: &str) -> &str {
     while text.starts_with('@') {
-        let word = text.find([' ', '\n']).and_then(|end| text.get(end + 1..)).unwrap_or("");
-        text = word.trim_start();
+        text = text.split_once([' ', '\n']).map_or("", |(_, rest)| rest.trim_start());
     }
     text
 }
@@ -147,10 +147,8 @@ fn name_of(declaration: &str) -> &str {
 
 /// A declaration with one space between words, and a variable's without its address space.
 fn normal(declaration: &str) -> String {
-    let plain = match declaration.strip_prefix("var<").and_then(|rest| rest.split_once('>')) {
-        Some((_, rest)) => format!("var {rest}"),
-        None => declaration.to_string(),
-    };
+    let variable = declaration.strip_prefix("var<").and_then(|rest| rest.split_once('>'));
+    let plain = variable.map_or(declaration.to_string(), |(_, rest)| format!("var {rest}"));
     plain.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
