@@ -1,7 +1,7 @@
 /* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
  *
- * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing
- * else: make a context, set the hole and the camera, and render into memory of your own.
+ * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing else: make a
+ * context, set the hole and the camera, and render into memory of your own.
  *
  * Example
  *   #include "bhr.h"
@@ -32,63 +32,69 @@
  *   }
  *
  * Units
- *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild
- *   radius is 2 M. Angles in radians, temperatures in kelvin, times in scene lengths. Only disk radii are in
- *   units of M.
+ *   Geometric, G = c = 1. The host chooses the unit of length of its scene; the mass M is given in it, so that the
+ *   Schwarzschild radius is 2 M. Angles are in radians, temperatures in kelvin, times in scene lengths. Only the disk's
+ *   radii are in units of M.
  *
  * Coordinates
- *   The hole sits at the origin. x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the
- *   Schwarzschild / Boyer-Lindquist coordinates about the spin axis, which is also the disk's normal: +z unless
- *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that
- *   takes +z to it (about +x for -z): r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart;
- *   positions and directions stay in scene axes. Right-handed.
+ *   The hole sits at the origin of right-handed axes. r, th, ph are the Schwarzschild / Boyer-Lindquist coordinates
+ *   about the spin axis: x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th). The spin axis is also the disk's
+ *   normal, and is +z unless bhr_set_axis changes it.
  *
- *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit
- *   vectors of spherical coordinates there (on the axis e_th = x, e_ph = y), standing for the components along
- *   the orthonormal frame of the local static observer (the ZAMO when the hole spins). Any non-zero length is
- *   accepted and normalised (velocity: as it is). A moving camera's axes are that frame boosted without
- *   rotation. Inside a spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a
- *   spinning hole's horizon everything is BHR_ERROR_UNSUPPORTED.
+ *   With another axis the chart is the scene's axes under the shortest rotation that takes +z to it (about +x for -z).
+ *   Then r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart; positions and directions stay
+ *   in scene axes.
+ *
+ *   A direction (or velocity) at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit vectors of
+ *   spherical coordinates there (on the axis e_th = x, e_ph = y). Its components are those along the orthonormal frame
+ *   of the local static observer (the ZAMO when the hole spins). A direction may have any non-zero length, and is
+ *   normalised; a velocity is taken as it is. A moving camera's axes are that frame boosted without rotation. Inside a
+ *   spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a spinning hole's horizon
+ *   everything is BHR_ERROR_UNSUPPORTED.
  *
  *   Prograde always means +ph about the axis, retrograde -ph; with spin < 0 the hole turns towards -ph.
  *
  * Errors
- *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message says
- *   what was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call fills in
- *   is NULL or 0 after a failure. Setters check their own argument only; what combinations forbid (a static camera
- *   inside the horizon, say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means
- *   a bug in bhr: only destroy calls are valid on that context, its jobs and its surfaces then. Below, errors are
- *   named without BHR_ERROR_; those that any call may return for NULL, from inside a callback or after
- *   BHR_ERROR_INTERNAL are not named each time.
+ *   Every call that can fail returns a BhrStatus; bhr_error_message says what was wrong, with the value and the limit.
+ *   A failed setter leaves the context as it was. Whatever a call fills in is NULL or 0 after a failure. Setters check
+ *   their own argument only; combinations that cannot be (a static camera inside the horizon, say) are
+ *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means a bug in bhr: from then on
+ *   only destroy calls are valid on that context, its jobs and its surfaces.
+ *
+ *   Below, errors are named without BHR_ERROR_. Errors that any call may return, for NULL, from inside a callback or
+ *   after BHR_ERROR_INTERNAL, are not named each time.
  *
  * Structs
- *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than
- *   in the library's first version is BHR_ERROR_INVALID_ARGUMENT. A field that a program's struct does not reach
- *   has its default as input, and is not written as output. Larger than this library's is accepted as input when
- *   the rest is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear
- *   struct_size bytes and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
+ *   Structs that may grow begin with struct_size: sizeof the struct that the program was compiled with. A size smaller
+ *   than in the library's first version is BHR_ERROR_INVALID_ARGUMENT. A field that a program's struct does not reach
+ *   has its default as input, and is not written as output. A struct larger than this library's is accepted as input
+ *   when the rest of it is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init functions
+ *   clear struct_size bytes and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
  *
  * Pointers
- *   A pointer is NULL only where this header says that it may be. Whatever is passed in is copied before the
- *   call returns; what the host owns (windows, pixels) stays its own.
+ *   A pointer is NULL only where this header says that it may be. Everything that is passed in is copied before the
+ *   call returns; windows and pixels stay the host's own.
  *
  * Threads and callbacks
- *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other.
- *   (macOS: surfaces on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the
- *   calling thread. From inside a callback, a call on a context, job or surface and bhr_adapter_count and _info
- *   return BHR_ERROR_INVALID_STATE; calls on plain structs and images, versions and messages are allowed. A
- *   callback must not wait for another thread's call on the same context. No callback runs after the destroy
- *   call of its context has returned.
+ *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other. (macOS:
+ *   surfaces on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the calling
+ *   thread.
+ *
+ *   From inside a callback, a call on a context, job or surface returns BHR_ERROR_INVALID_STATE, and so do
+ *   bhr_adapter_count and bhr_adapter_info; calls on plain structs and images, versions and messages are allowed. A
+ *   callback must not wait for another thread's call on the same context. No callback runs after the destroy call of
+ *   its context has returned.
  *
  * Memory
- *   Memory for what takes more than some tens of kilobytes (frames, maps, tables, rays, star fields) is asked for in
- *   such a way that a refusal is BHR_ERROR_OUT_OF_MEMORY, with the size; it is refused as well when less than a
- *   megabyte would be left. A thread that cannot be started is the same error. The context stays usable, and the call
- *   succeeds once there is memory again. Four things cannot be caught, and end the process where no memory is left:
- *   small allocations of the Rust runtime and of the thread pool; those of graphics drivers and loaders; those of
- *   wgpu, through which GPUs are reached; and those of image codecs, when other threads take the memory that was
- *   found free before a file is read or written. Hosts that must survive this use BHR_BACKEND_CPU, or keep some
- *   memory in reserve and free it when this error comes.
+ *   Large memory, of more than some tens of kilobytes (frames, maps, tables, rays, star fields), is asked for in such a
+ *   way that a refusal is BHR_ERROR_OUT_OF_MEMORY, with the size; it is refused as well when less than a megabyte would
+ *   be left. A thread that cannot be started is the same error. The context stays usable, and the call succeeds once
+ *   there is memory again.
+ *
+ *   Four things cannot be caught, and end the process where no memory is left: small allocations of the Rust runtime
+ *   and of the thread pool; those of graphics drivers and loaders; those of wgpu, through which GPUs are reached; and
+ *   those of image codecs, when other threads take the memory that was found free before a file is read or written.
+ *   Hosts that must survive this use BHR_BACKEND_CPU, or keep some memory in reserve and free it when this error comes.
  *
  * The process
  *   The library never writes to stdout or stderr, never calls exit or abort (but see Memory), installs no signal
@@ -108,17 +114,10 @@ extern "C" {
 
 /* ---- version ---- */
 
-/** This header's major version. Before 1.0 minor versions add and grow, and remove nothing. */
-#define BHR_VERSION_MAJOR 0
-
-/** This header's minor version. */
-#define BHR_VERSION_MINOR 2
-
-/** This header's patch version. */
-#define BHR_VERSION_PATCH 0
-
-/** The value to pass to bhr_context_create: N of libbhr.so.N. */
-#define BHR_ABI_VERSION 0u
+#define BHR_VERSION_MAJOR 0 /**< This header's major version. Before 1.0, minor versions only add. */
+#define BHR_VERSION_MINOR 2 /**< This header's minor version. */
+#define BHR_VERSION_PATCH 0 /**< This header's patch version. */
+#define BHR_ABI_VERSION 0u  /**< The value to pass to bhr_context_create: N of libbhr.so.N. */
 
 /** The loaded library's version: major << 16 | minor << 8 | patch. Any thread, inside callbacks too. */
 uint32_t bhr_version(void);

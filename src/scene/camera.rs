@@ -19,9 +19,9 @@ pub enum Projection {
 pub enum Motion {
     /// At rest; the ZAMO when the hole spins.
     Static = 0,
-    /// Radially from rest at infinity.
+    /// Falls radially from rest at infinity.
     FreeFall = 1,
-    /// Along +phi on a circle.
+    /// Moves along +phi on a circle.
     Orbit = 2,
     /// Moves with `Camera::velocity`.
     Velocity = 3,
