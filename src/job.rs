@@ -1,5 +1,5 @@
-//! Frames in the background: orders, each with its own copy of the scene, and what their host knows of them. Who makes
-//! them: worker.rs. Knows no callbacks and nothing of C.
+//! Frames in the background: orders, each with its own copy of the scene, and all that their host knows of them. The
+//! threads of worker.rs make them. Knows no callbacks and nothing of C.
 
 mod worker;
 
@@ -23,17 +23,17 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 #[derive(Clone)]
 pub struct Job {
     shared: Arc<Shared>,
-    /// Where it may still wait for its turn.
+    /// The queue in which the job may still wait for its turn.
     line: Weak<Line>,
 }
 
 #[derive(Default)]
 struct Shared {
     outcome: Mutex<Option<Result<FrameStats>>>,
-    /// At every step and at the end.
+    /// Signalled at every step and at the end.
     changed: Condvar,
     cancelled: AtomicBool,
-    /// Bits of the f64 that is done, 0 .. 1.
+    /// The bits of the part that is done, an f64 in 0 .. 1.
     fraction: AtomicU64,
 }
 
@@ -43,7 +43,8 @@ impl Job {
         f64::from_bits(self.shared.fraction.load(Ordering::Relaxed))
     }
 
-    /// Asks it to stop: what is not yet begun is not done any more. It ends at once if its turn has not come.
+    /// Asks the job to stop: work that is not yet begun is not done any more. The job ends at once if its turn has not
+    /// come.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
         if let Some(order) = self.line.upgrade().and_then(|line| line.withdraw(&self.shared))
@@ -71,7 +72,7 @@ impl Job {
             let fraction = self.fraction();
             if fraction != told {
                 told = fraction;
-                // Not under the lock: the caller's code may take its time, or ask this job.
+                // The lock is not held here: the caller's code may take its time, or ask this job.
                 drop(outcome);
                 if !progress(fraction) {
                     self.cancel();
@@ -97,7 +98,7 @@ impl Shared {
     }
 
     fn report(&self, fraction: f64) {
-        // Under the lock, lest a waiter miss it between looking and sleeping.
+        // The lock is held, or a waiter could miss this between looking and sleeping.
         let _outcome = lock(&self.outcome);
         self.fraction.store(fraction.to_bits(), Ordering::Relaxed);
         self.changed.notify_all();

@@ -201,7 +201,7 @@ impl Tracer {
     }
 }
 
-/// Where the numbers about a renderer's last finished frame stand, whoever made it.
+/// The numbers about a renderer's last finished frame, whoever made it.
 #[derive(Clone, Default)]
 pub struct StatsBoard(Arc<Mutex<FrameStats>>);
 
@@ -218,7 +218,7 @@ impl StatsBoard {
 
 /// One scene, one tracer.
 pub struct Renderer {
-    /// What the next frame shows. A frame works on the scene as it is when the frame is asked for.
+    /// The scene that the next frame shows. A frame works on the scene as it is when the frame is asked for.
     pub scene: Scene,
     options: RendererOptions,
     adapter: AdapterInfo,
@@ -226,7 +226,7 @@ pub struct Renderer {
     tracer: SharedTracer,
     stats: StatsBoard,
     copiers: Arc<Copiers>,
-    /// From the first job on.
+    /// The threads for jobs, from the first job on.
     worker: Option<Worker>,
     /// Made for this renderer, and perhaps still there.
     surfaces: Vec<Weak<Surface>>,
@@ -432,7 +432,7 @@ impl Renderer {
         *self.stats.0.lock()
     }
 
-    /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a
+    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a region with bloom; a
     /// format that does not go with the view.
     fn request(
         &self,
@@ -521,7 +521,7 @@ impl Renderer {
         self.tracer.lock().prepare(&self.scene, &request, window.as_ref(), progress)
     }
 
-    /// The same for windows of `size` only. Errors: as [`Self::render`].
+    /// Prepares frames in windows of `size` only. Errors: as [`Self::render`].
     pub fn prepare_window(&mut self, size: [u32; 2], progress: &mut Progress<'_>) -> Result<()> {
         let window = frame_request(&self.scene, size, PixelFormat::Rgba8Srgb);
         self.tracer.lock().prepare(&self.scene, &window, Some(&window), progress)

@@ -21,21 +21,21 @@ use crate::error::Result;
 /// How frames reach the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PresentMode {
-    /// At the display's rate, never torn.
+    /// Frames wait for the display, and are never torn.
     Vsync,
-    /// At once.
+    /// Frames are shown at once, and may tear.
     Immediate,
-    /// The newest at the display's rate.
+    /// The newest frame is shown at the display's rate.
     Mailbox,
 }
 
-/// What knows when a window takes its next frame, for windows whose VSYNC is not left to the driver.
+/// Tells when a window takes its next frame, for windows whose VSYNC is not left to the driver.
 pub trait Pacer: Send {
     /// Waits until the window takes a frame, a second at most; whether it does. Errors: SURFACE_LOST.
     fn wait(&mut self) -> Result<bool>;
     /// Asks to be told when the window takes the frame after the one that is presented next. Errors: SURFACE_LOST.
     fn ask(&mut self) -> Result<()>;
-    /// What was asked may have been lost: the next frame need not wait.
+    /// Called when the request may have been lost: the next frame need not wait.
     fn forget(&mut self);
 }
 
