@@ -563,24 +563,6 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 
 /* ---- images in the host's memory ---- */
 
-/** A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest. */
-typedef int32_t BhrFormat;
-
-/** 4 bytes: red, green, blue with the sRGB curve, alpha. */
-#define BHR_FORMAT_RGBA8_SRGB 1
-
-/** 4 bytes: blue, green, red with the sRGB curve, alpha. */
-#define BHR_FORMAT_BGRA8_SRGB 2
-
-/** 4 half floats: linear radiance, Rec. 709 primaries; alpha. */
-#define BHR_FORMAT_RGBA16F 3
-
-/** 4 floats: linear radiance, Rec. 709 primaries; alpha. */
-#define BHR_FORMAT_RGBA32F 4
-
-/** 1 float: the value of a view other than BHR_VIEW_LIGHT. */
-#define BHR_FORMAT_R32F 5
-
 /**
  * BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
  * Bloom adds light and leaves alpha as it is: glare over the host's own picture.
@@ -593,6 +575,15 @@ typedef int32_t BhrFormat;
  * 0.2.0.
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
+
+/** A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest. */
+typedef int32_t BhrFormat;
+
+#define BHR_FORMAT_RGBA8_SRGB 1 /**< 4 bytes: red, green, blue with the sRGB curve, alpha. */
+#define BHR_FORMAT_BGRA8_SRGB 2 /**< 4 bytes: blue, green, red with the sRGB curve, alpha. */
+#define BHR_FORMAT_RGBA16F 3    /**< 4 half floats: linear radiance, Rec. 709 primaries; alpha. */
+#define BHR_FORMAT_RGBA32F 4    /**< 4 floats: linear radiance, Rec. 709 primaries; alpha. */
+#define BHR_FORMAT_R32F 5       /**< 1 float: the value of a view other than BHR_VIEW_LIGHT. */
 
 /**
  * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
@@ -1143,10 +1134,10 @@ typedef struct BhrRay {
 
 /** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
 typedef struct BhrCrossing {
-    double radius; /**< Boyer-Lindquist r, scene lengths. */
-    double azimuth; /**< Boyer-Lindquist ph in the chart, (-pi, pi]. */
+    double radius;   /**< Boyer-Lindquist r, scene lengths. */
+    double azimuth;  /**< Boyer-Lindquist ph in the chart, (-pi, pi]. */
     double redshift; /**< g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
-    double delay; /**< Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon. */
+    double delay;    /**< Coordinate time since the photon left, scene lengths; NaN from inside the horizon. */
 } BhrCrossing;
 
 /** How a ray ends. */
@@ -1162,14 +1153,13 @@ typedef int32_t BhrFate;
  * hit_size.
  */
 typedef struct BhrHit {
-    BhrFate fate;            /**< BHR_FATE_*. */
+    BhrFate fate; /**< BHR_FATE_*. */
     uint32_t crossing_count; /**< 0 .. BHR_MAX_CROSSINGS. */
     double sky_direction[3]; /**< Asymptotic, unit, scene axes; 0 unless escaped. */
-    double sky_redshift;     /**< nu(camera) / nu(at infinity); NaN unless escaped. */
-    /** Spin 0: the orbit angle from the observer to infinity, or to the horizon, radians; with spin NaN. */
-    double swept_angle;
-    uint32_t steps;                           /**< Integration steps. */
-    uint32_t reserved;                        /**< Reserved: 0. */
+    double sky_redshift; /**< nu(camera) / nu(at infinity); NaN unless escaped. */
+    double swept_angle; /**< Spin 0: orbit angle to infinity, or to the horizon, radians; with spin NaN. */
+    uint32_t steps; /**< Integration steps. */
+    uint32_t reserved; /**< Reserved: 0. */
     BhrCrossing crossings[BHR_MAX_CROSSINGS]; /**< In order along the ray; 0 beyond crossing_count. */
 } BhrHit;
 
@@ -1229,15 +1219,14 @@ BhrStatus bhr_trace_path(BhrContext *context,
 
 /** Numbers about the last finished frame; all 0 before the first. Times in nanoseconds. */
 typedef struct BhrFrameStats {
-    uint32_t struct_size; /**< sizeof(BhrFrameStats), set by the caller. */
-    uint32_t reserved;    /**< Reserved: 0. */
-    uint64_t frame_index; /**< Counts the finished frames of a context from 1: images, jobs and windows. */
-    uint64_t rays;        /**< Pixels times samples. */
-    uint64_t steps;       /**< Integration steps of all rays; rays that were looked up take none. */
-    /** From the call's beginning to its end; for a job, from bhr_render_image_async until it was done. */
-    uint64_t cpu_ns;
-    uint64_t gpu_ns; /**< Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
-    uint64_t readback_ns; /**< Time to copy pixels from the GPU's memory to the host's, without the wait for the GPU. */
+    uint32_t struct_size;  /**< sizeof(BhrFrameStats), set by the caller. */
+    uint32_t reserved;     /**< Reserved: 0. */
+    uint64_t frame_index;  /**< Counts the finished frames of a context from 1: images, jobs and windows. */
+    uint64_t rays;         /**< Pixels times samples. */
+    uint64_t steps;        /**< Integration steps of all rays; rays that were looked up take none. */
+    uint64_t cpu_ns;       /**< From the call's beginning to its end; for a job, from its order until it was done. */
+    uint64_t gpu_ns;       /**< Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
+    uint64_t readback_ns;  /**< Time to copy pixels into the host's memory, without the wait for the GPU. */
     uint64_t device_bytes; /**< Device memory that the context holds. */
 } BhrFrameStats;
 

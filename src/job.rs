@@ -54,13 +54,13 @@ impl Job {
         }
     }
 
-    /// What it ended with; `None` while it runs.
+    /// The outcome of the job; `None` while it runs.
     pub fn outcome(&self) -> Option<Result<FrameStats>> {
         lock(&self.shared.outcome).clone()
     }
 
     /// Waits for its end, at most `timeout` (`None`: for ever), and calls `progress`, which cancels it by returning
-    /// false, on this thread whenever more is done. What it ended with; `None` while it runs.
+    /// false, on this thread whenever more is done. The result is the job's outcome; `None` while it runs.
     pub fn wait(&self, timeout: Option<Duration>, progress: &mut Progress<'_>) -> Option<Result<FrameStats>> {
         let deadline = timeout.and_then(|timeout| Instant::now().checked_add(timeout));
         let mut told = f64::NAN;

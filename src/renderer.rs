@@ -377,7 +377,7 @@ impl Renderer {
                 _ => Ok(()),
             },
         };
-        // Another thread may have been told of the loss by now.
+        // By now another thread may have been told of the loss.
         destroyed.or_else(|error| if error.kind == ErrorKind::DeviceLost { Ok(()) } else { Err(error) })
     }
 

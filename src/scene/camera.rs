@@ -28,7 +28,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// As in `BHR_MOTION_*`.
+    /// The name in `BHR_MOTION_*`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Static => "STATIC",

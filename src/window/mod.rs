@@ -55,7 +55,7 @@ impl Window {
         Ok(Self { native, x11: x11::X11Window::open(&native)? })
     }
 
-    /// What to present through.
+    /// The handle to present through.
     pub fn handles(&self) -> Handles {
         self.x11.as_ref().map_or_else(|| self.native.handles(), |window| window.handles())
     }
@@ -75,7 +75,7 @@ impl Window {
         self.x11.as_ref().map(|window| window.depth)
     }
 
-    /// What the window's server had against frames that nobody waited for.
+    /// The complaints of the window's server about frames that nobody waited for.
     fn drop_errors(&self) {
         if let Some(window) = &self.x11 {
             window.drop_errors();
@@ -105,7 +105,7 @@ impl Window {
         Ok(Self { native })
     }
 
-    /// What to present through.
+    /// The handle to present through.
     pub fn handles(&self) -> Handles {
         self.native.handles()
     }
@@ -125,7 +125,7 @@ impl Window {
         None
     }
 
-    /// What the window's server had against frames that nobody waited for.
+    /// The complaints of the window's server about frames that nobody waited for.
     fn drop_errors(&self) {}
 
     /// `None`: the driver's VSYNC is good enough.

@@ -42,7 +42,7 @@ pub enum Handles {
 }
 
 impl NativeWindow {
-    /// As `BHR_WINDOW_*`.
+    /// The name in `BHR_WINDOW_*`.
     fn kind(&self) -> &'static str {
         match self {
             Self::Xlib { .. } => "XLIB",

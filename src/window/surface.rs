@@ -62,7 +62,7 @@ struct Screen {
     texture: Option<Texture>,
     /// Dropped after the texture, as it holds the device.
     swapchain: Swapchain,
-    /// With one, VSYNC is MAILBOX underneath, each frame when the pacer says so.
+    /// The pacer. With one, VSYNC is MAILBOX underneath, and each frame waits until the pacer says so.
     pacer: Option<Box<dyn Pacer>>,
 }
 
