@@ -17,7 +17,8 @@ pub fn crowded_density(sine: f64) -> f64 {
     2.0 / ((1.0 + sine) * (1.0 + sine))
 }
 
-/// |sin b| below which the share `share` of the stars of `crowded_density` lies: the integral 2 s / (1 + s), turned round.
+/// The |sin b| below which the share `share` of the stars of `crowded_density` lies: the inverse of the integral 2 s /
+/// (1 + s).
 pub fn crowded_sine(share: f64) -> f64 {
     share / (2.0 - share)
 }

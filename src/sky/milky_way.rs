@@ -20,8 +20,9 @@ static HEIGHTS: &[u8] = include_bytes!("data/milky_way.png");
 const HIGHEST: f64 = 6.0;
 /// Texels of the map.
 const MAP_SIZE: [u32; 2] = [2048, 1024];
-/// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al. 1998, A&AS 127, 1, section 10:
-/// 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the next, and in the end nothing.
+/// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al.
+/// 1998, A&AS 127, 1, section 10: 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the
+/// next, and in the end nothing.
 const BRIGHTEST: f64 = 20.6;
 const MAGNITUDES_A_HEIGHT: f64 = 0.3;
 /// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer
