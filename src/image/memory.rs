@@ -318,6 +318,7 @@ impl<'a> ImageMut<'a> {
 
     /// Errors: as `new`, or `pixels` NULL.
     ///
+    /// # Safety
     /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not the
     /// bytes between them) are readable and writable, and nobody else's, during `'a`.
     pub unsafe fn from_raw(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
