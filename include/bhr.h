@@ -1,7 +1,7 @@
 /* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
  *
- * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing
- * else: make a context, set the hole and the camera, and render into memory of your own.
+ * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing else: make a
+ * context, set the hole and the camera, and render into memory of your own.
  *
  * Example
  *   #include "bhr.h"
@@ -32,63 +32,69 @@
  *   }
  *
  * Units
- *   Geometric, G = c = 1. One scene length unit is the host's; the mass M is given in it, so the Schwarzschild
- *   radius is 2 M. Angles in radians, temperatures in kelvin, times in scene lengths. Only disk radii are in
- *   units of M.
+ *   Geometric, G = c = 1. The host chooses the unit of length of its scene; the mass M is given in it, so that the
+ *   Schwarzschild radius is 2 M. Angles are in radians, temperatures in kelvin, times in scene lengths. Only the disk's
+ *   radii are in units of M.
  *
  * Coordinates
- *   The hole sits at the origin. x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th) with r, th, ph the
- *   Schwarzschild / Boyer-Lindquist coordinates about the spin axis, which is also the disk's normal: +z unless
- *   bhr_set_axis changes it. With another axis the chart is the scene's axes under the shortest rotation that
- *   takes +z to it (about +x for -z): r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart;
- *   positions and directions stay in scene axes. Right-handed.
+ *   The hole sits at the origin of right-handed axes. r, th, ph are the Schwarzschild / Boyer-Lindquist coordinates
+ *   about the spin axis: x = r sin(th) cos(ph), y = r sin(th) sin(ph), z = r cos(th). The spin axis is also the disk's
+ *   normal, and is +z unless bhr_set_axis changes it.
  *
- *   A direction (or velocity) given at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit
- *   vectors of spherical coordinates there (on the axis e_th = x, e_ph = y), standing for the components along
- *   the orthonormal frame of the local static observer (the ZAMO when the hole spins). Any non-zero length is
- *   accepted and normalised (velocity: as it is). A moving camera's axes are that frame boosted without
- *   rotation. Inside a spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a
- *   spinning hole's horizon everything is BHR_ERROR_UNSUPPORTED.
+ *   With another axis the chart is the scene's axes under the shortest rotation that takes +z to it (about +x for -z).
+ *   Then r, th, ph, the frames below and BhrCrossing.azimuth refer to the turned chart; positions and directions stay
+ *   in scene axes.
+ *
+ *   A direction (or velocity) at a place is n = n_r e_r + n_th e_th + n_ph e_ph with the Euclidean unit vectors of
+ *   spherical coordinates there (on the axis e_th = x, e_ph = y). Its components are those along the orthonormal frame
+ *   of the local static observer (the ZAMO when the hole spins). A direction may have any non-zero length, and is
+ *   normalised; a velocity is taken as it is. A moving camera's axes are that frame boosted without rotation. Inside a
+ *   spin-0 horizon the frame is that of the observer falling from rest at infinity; inside a spinning hole's horizon
+ *   everything is BHR_ERROR_UNSUPPORTED.
  *
  *   Prograde always means +ph about the axis, retrograde -ph; with spin < 0 the hole turns towards -ph.
  *
  * Errors
- *   Every call that can fail returns a BhrStatus: 0 success, > 0 success with news, < 0 error; bhr_error_message says
- *   what was wrong, with the value and the limit. A failed setter leaves the context as it was. What a call fills in
- *   is NULL or 0 after a failure. Setters check their own argument only; what combinations forbid (a static camera
- *   inside the horizon, say) is BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means
- *   a bug in bhr: only destroy calls are valid on that context, its jobs and its surfaces then. Below, errors are
- *   named without BHR_ERROR_; those that any call may return for NULL, from inside a callback or after
- *   BHR_ERROR_INTERNAL are not named each time.
+ *   Every call that can fail returns a BhrStatus; bhr_error_message says what was wrong, with the value and the limit.
+ *   A failed setter leaves the context as it was. Whatever a call fills in is NULL or 0 after a failure. Setters check
+ *   their own argument only; combinations that cannot be (a static camera inside the horizon, say) are
+ *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means a bug in bhr: from then on
+ *   only destroy calls are valid on that context, its jobs and its surfaces.
+ *
+ *   Below, errors are named without BHR_ERROR_. Errors that any call may return, for NULL, from inside a callback or
+ *   after BHR_ERROR_INTERNAL, are not named each time.
  *
  * Structs
- *   Those that may grow begin with struct_size = sizeof the struct the program was compiled with. Smaller than
- *   in the library's first version is BHR_ERROR_INVALID_ARGUMENT. A field that a program's struct does not reach
- *   has its default as input, and is not written as output. Larger than this library's is accepted as input when
- *   the rest is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init functions clear
- *   struct_size bytes and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
+ *   Structs that may grow begin with struct_size: sizeof the struct that the program was compiled with. A size smaller
+ *   than in the library's first version is BHR_ERROR_INVALID_ARGUMENT. A field that a program's struct does not reach
+ *   has its default as input, and is not written as output. A struct larger than this library's is accepted as input
+ *   when the rest of it is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init functions
+ *   clear struct_size bytes and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
  *
  * Pointers
- *   A pointer is NULL only where this header says that it may be. Whatever is passed in is copied before the
- *   call returns; what the host owns (windows, pixels) stays its own.
+ *   A pointer is NULL only where this header says that it may be. Everything that is passed in is copied before the
+ *   call returns; windows and pixels stay the host's own.
  *
  * Threads and callbacks
- *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other.
- *   (macOS: surfaces on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the
- *   calling thread. From inside a callback, a call on a context, job or surface and bhr_adapter_count and _info
- *   return BHR_ERROR_INVALID_STATE; calls on plain structs and images, versions and messages are allowed. A
- *   callback must not wait for another thread's call on the same context. No callback runs after the destroy
- *   call of its context has returned.
+ *   Any thread may call. Contexts are independent of each other; calls on one context wait for each other. (macOS:
+ *   surfaces on the main thread only.) Log callbacks may run on any thread, progress callbacks run on the calling
+ *   thread.
+ *
+ *   From inside a callback, a call on a context, job or surface returns BHR_ERROR_INVALID_STATE, and so do
+ *   bhr_adapter_count and bhr_adapter_info; calls on plain structs and images, versions and messages are allowed. A
+ *   callback must not wait for another thread's call on the same context. No callback runs after the destroy call of
+ *   its context has returned.
  *
  * Memory
- *   Memory for what takes more than some tens of kilobytes (frames, maps, tables, rays, star fields) is asked for in
- *   such a way that a refusal is BHR_ERROR_OUT_OF_MEMORY, with the size; it is refused as well when less than a
- *   megabyte would be left. A thread that cannot be started is the same error. The context stays usable, and the call
- *   succeeds once there is memory again. Four things cannot be caught, and end the process where no memory is left:
- *   small allocations of the Rust runtime and of the thread pool; those of graphics drivers and loaders; those of
- *   wgpu, through which GPUs are reached; and those of image codecs, when other threads take the memory that was
- *   found free before a file is read or written. Hosts that must survive this use BHR_BACKEND_CPU, or keep some
- *   memory in reserve and free it when this error comes.
+ *   Large memory, of more than some tens of kilobytes (frames, maps, tables, rays, star fields), is asked for in such a
+ *   way that a refusal is BHR_ERROR_OUT_OF_MEMORY, with the size; it is refused as well when less than a megabyte would
+ *   be left. A thread that cannot be started is the same error. The context stays usable, and the call succeeds once
+ *   there is memory again.
+ *
+ *   Four things cannot be caught, and end the process where no memory is left: small allocations of the Rust runtime
+ *   and of the thread pool; those of graphics drivers and loaders; those of wgpu, through which GPUs are reached; and
+ *   those of image codecs, when other threads take the memory that was found free before a file is read or written.
+ *   Hosts that must survive this use BHR_BACKEND_CPU, or keep some memory in reserve and free it when this error comes.
  *
  * The process
  *   The library never writes to stdout or stderr, never calls exit or abort (but see Memory), installs no signal
@@ -108,17 +114,10 @@ extern "C" {
 
 /* ---- version ---- */
 
-/** This header's major version. Before 1.0 minor versions add and grow, and remove nothing. */
-#define BHR_VERSION_MAJOR 0
-
-/** This header's minor version. */
-#define BHR_VERSION_MINOR 2
-
-/** This header's patch version. */
-#define BHR_VERSION_PATCH 0
-
-/** The value to pass to bhr_context_create: N of libbhr.so.N. */
-#define BHR_ABI_VERSION 0u
+#define BHR_VERSION_MAJOR 0 /**< This header's major version. Before 1.0, minor versions only add. */
+#define BHR_VERSION_MINOR 2 /**< This header's minor version. */
+#define BHR_VERSION_PATCH 0 /**< This header's patch version. */
+#define BHR_ABI_VERSION 0u  /**< The value to pass to bhr_context_create: N of libbhr.so.N. */
 
 /** The loaded library's version: major << 16 | minor << 8 | patch. Any thread, inside callbacks too. */
 uint32_t bhr_version(void);
@@ -216,22 +215,14 @@ typedef int32_t BhrBackend;
 
 /** One adapter. */
 typedef struct BhrAdapterInfo {
-    /** sizeof(BhrAdapterInfo), set by the caller. */
-    uint32_t struct_size;
-    /** BHR_BACKEND_*, never AUTO. */
-    BhrBackend backend;
-    /** BHR_ADAPTER_* bits. */
-    uint32_t flags;
-    /** PCI id of the vendor; 0 for the CPU tracer. */
-    uint32_t vendor_id;
-    /** PCI id of the device; 0 for the CPU tracer. */
-    uint32_t device_id;
-    /** Reserved: 0. */
-    uint32_t reserved;
-    /** UTF-8, cut where it is longer. */
-    char name[256];
-    /** Name and version of the driver, UTF-8; "" where it is not known. */
-    char driver[256];
+    uint32_t struct_size; /**< sizeof(BhrAdapterInfo), set by the caller. */
+    BhrBackend backend;   /**< BHR_BACKEND_*, never AUTO. */
+    uint32_t flags;       /**< BHR_ADAPTER_* bits. */
+    uint32_t vendor_id;   /**< PCI id of the vendor; 0 for the CPU tracer. */
+    uint32_t device_id;   /**< PCI id of the device; 0 for the CPU tracer. */
+    uint32_t reserved;    /**< Reserved: 0. */
+    char name[256];       /**< UTF-8, cut where it is longer. */
+    char driver[256];     /**< Name and version of the driver, UTF-8; "" where it is not known. */
 } BhrAdapterInfo;
 
 /**
@@ -268,24 +259,15 @@ typedef int32_t BhrWindowKind;
  * raw-window-handle crate.
  */
 typedef struct BhrWindow {
-    /** sizeof(BhrWindow). */
-    uint32_t struct_size;
-    /** BHR_WINDOW_*. */
-    BhrWindowKind kind;
-    /** The connection to the display, where the kind has one. */
-    void *display;
-    /** The window, view, layer or surface, where the kind has a pointer to it. */
-    void *handle;
-    /** A second pointer, for Windows only. */
-    void *aux;
-    /** X11: the id of the window. */
-    uint64_t id;
-    /** X11: the id of the window's visual; may be 0. */
-    uint64_t visual_id;
-    /** X11: the number of the window's screen; may be 0. */
-    int32_t screen;
-    /** Reserved: 0. */
-    uint32_t reserved;
+    uint32_t struct_size; /**< sizeof(BhrWindow). */
+    BhrWindowKind kind;   /**< BHR_WINDOW_*. */
+    void *display;        /**< The connection to the display, where the kind has one. */
+    void *handle;         /**< The window, view, layer or surface, where the kind has a pointer to it. */
+    void *aux;            /**< A second pointer, for Windows only. */
+    uint64_t id;          /**< X11: the id of the window. */
+    uint64_t visual_id;   /**< X11: the id of the window's visual; may be 0. */
+    int32_t screen;       /**< X11: the number of the window's screen; may be 0. */
+    uint32_t reserved;    /**< Reserved: 0. */
 } BhrWindow;
 
 /* ---- context ---- */
@@ -304,12 +286,9 @@ typedef struct BhrContext BhrContext;
 
 /** How to make a context. Fill in with bhr_context_options_init first. */
 typedef struct BhrContextOptions {
-    /** sizeof(BhrContextOptions). */
-    uint32_t struct_size;
-    /** BHR_CONTEXT_* bits. Default 0. */
-    uint32_t flags;
-    /** Default BHR_BACKEND_AUTO. */
-    BhrBackend backend;
+    uint32_t struct_size; /**< sizeof(BhrContextOptions). */
+    uint32_t flags;       /**< BHR_CONTEXT_* bits. Default 0. */
+    BhrBackend backend;   /**< Default BHR_BACKEND_AUTO. */
     /**
      * Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the
      * library chooses.
@@ -319,10 +298,8 @@ typedef struct BhrContextOptions {
     uint32_t cpu_threads;
     /** The messages that log_fn is told: this level and the more severe ones. Default BHR_LOG_WARN. */
     BhrLogLevel log_level;
-    /** NULL (default): silent. */
-    BhrLogFn log_fn;
-    /** Handed to log_fn. */
-    void *log_user;
+    BhrLogFn log_fn; /**< NULL (default): silent. */
+    void *log_user;  /**< Handed to log_fn. */
     /**
      * A window that the adapter must be able to present to; it is looked at during the call only. With AUTO, adapters
      * that cannot are passed over; the CPU tracer always qualifies, because its frames reach windows in other ways.
@@ -392,33 +369,22 @@ BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_
 
 /** Numbers about the hole and the camera's observer. Lengths are in scene units; what is not defined is NaN. */
 typedef struct BhrHoleInfo {
-    /** sizeof(BhrHoleInfo), set by the caller. */
-    uint32_t struct_size;
-    /** Reserved: 0. */
-    uint32_t reserved;
-    /** r+ = M + sqrt(M^2 - a^2). */
-    double horizon_radius;
-    /** 2 M, at every spin. */
-    double ergosphere_equatorial_radius;
-    /** Equatorial circular photon orbit towards +ph. */
-    double photon_orbit_prograde;
-    /** Equatorial circular photon orbit towards -ph. */
-    double photon_orbit_retrograde;
-    /** Innermost stable circular orbit of matter towards +ph. */
-    double isco_prograde;
-    /** Innermost stable circular orbit of matter towards -ph. */
-    double isco_retrograde;
-    /** Spin 0: 3 sqrt(3) M; NaN with spin. */
-    double critical_impact_parameter;
+    uint32_t struct_size;                /**< sizeof(BhrHoleInfo), set by the caller. */
+    uint32_t reserved;                   /**< Reserved: 0. */
+    double horizon_radius;               /**< r+ = M + sqrt(M^2 - a^2). */
+    double ergosphere_equatorial_radius; /**< 2 M, at every spin. */
+    double photon_orbit_prograde;        /**< Equatorial circular photon orbit towards +ph. */
+    double photon_orbit_retrograde;      /**< Equatorial circular photon orbit towards -ph. */
+    double isco_prograde;                /**< Innermost stable circular orbit of matter towards +ph. */
+    double isco_retrograde;              /**< Innermost stable circular orbit of matter towards -ph. */
+    double critical_impact_parameter;    /**< Spin 0: 3 sqrt(3) M; NaN with spin. */
     /**
      * Spin 0: angular radius of the shadow as the camera's observer sees it, radians (Synge 1966, with
      * aberration); NaN with spin.
      */
     double shadow_angular_radius;
-    /** Boyer-Lindquist r of the camera. */
-    double camera_radius;
-    /** d tau / d t, the rate of the clock of the camera's observer. */
-    double camera_time_rate;
+    double camera_radius;    /**< Boyer-Lindquist r of the camera. */
+    double camera_time_rate; /**< d tau / d t, the rate of the clock of the camera's observer. */
 } BhrHoleInfo;
 
 /**
@@ -485,25 +451,18 @@ typedef int32_t BhrMotion;
 
 /** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
 typedef struct BhrCamera {
-    /** sizeof(BhrCamera). */
-    uint32_t struct_size;
-    /** BHR_PROJECTION_*. Default PERSPECTIVE. */
-    BhrProjection projection;
-    /** Default (0, -30, 5). Not (0, 0, 0). */
-    double position[3];
-    /** Any non-zero length. Default: towards the hole. */
-    double forward[3];
-    /** Any non-zero length, not parallel to forward. Default +z. */
-    double up[3];
+    uint32_t struct_size;     /**< sizeof(BhrCamera). */
+    BhrProjection projection; /**< BHR_PROJECTION_*. Default PERSPECTIVE. */
+    double position[3];       /**< Default (0, -30, 5). Not (0, 0, 0). */
+    double forward[3];        /**< Any non-zero length. Default: towards the hole. */
+    double up[3];             /**< Any non-zero length, not parallel to forward. Default +z. */
     /**
      * Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default
      * pi / 3.
      */
     double fov_y;
-    /** BHR_MOTION_*. Default STATIC. */
-    BhrMotion motion;
-    /** Reserved: 0. */
-    uint32_t reserved;
+    BhrMotion motion;  /**< BHR_MOTION_*. Default STATIC. */
+    uint32_t reserved; /**< Reserved: 0. */
     /**
      * For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
      * direction given at position. Default 0.
@@ -568,28 +527,20 @@ BhrStatus bhr_camera_advance(const BhrContext *context,
  * units of M.
  */
 typedef struct BhrDisk {
-    /** sizeof(BhrDisk). */
-    uint32_t struct_size;
-    /** BHR_DISK_* bits. Default 0: prograde. */
-    uint32_t flags;
-    /** In M, 0 .. 1e6. 0 (default): the ISCO. Matter inside the ISCO does not shine. */
-    double inner_radius;
-    /** In M, greater than inner_radius, to 1e6. Default 20. */
-    double outer_radius;
-    /** Kelvin at the hottest radius of the profile, 500 .. 1e9. Default 6500. */
-    double temperature;
-    /** 0 .. 1. Default 1. */
-    double opacity;
-    /** 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
-    double brightness;
+    uint32_t struct_size; /**< sizeof(BhrDisk). */
+    uint32_t flags;       /**< BHR_DISK_* bits. Default 0: prograde. */
+    double inner_radius;  /**< In M, 0 .. 1e6. 0 (default): the ISCO. Matter inside the ISCO does not shine. */
+    double outer_radius;  /**< In M, greater than inner_radius, to 1e6. Default 20. */
+    double temperature;   /**< Kelvin at the hottest radius of the profile, 500 .. 1e9. Default 6500. */
+    double opacity;       /**< 0 .. 1. Default 1. */
+    double brightness;    /**< 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
     /**
      * Contrast of the structure that orbits with the matter, from 0, smooth (default), to 1. It makes the disk lighter
      * and darker by turns, and bhr_set_time carries it along. A pattern lives for 120 M, and every 60 M a new one
      * begins: two at a time fade in and out.
      */
     double turbulence;
-    /** Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0. */
-    uint64_t seed;
+    uint64_t seed; /**< Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0. */
 } BhrDisk;
 
 /**
@@ -612,24 +563,6 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
 
 /* ---- images in the host's memory ---- */
 
-/** A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest. */
-typedef int32_t BhrFormat;
-
-/** 4 bytes: red, green, blue with the sRGB curve, alpha. */
-#define BHR_FORMAT_RGBA8_SRGB 1
-
-/** 4 bytes: blue, green, red with the sRGB curve, alpha. */
-#define BHR_FORMAT_BGRA8_SRGB 2
-
-/** 4 half floats: linear radiance, Rec. 709 primaries; alpha. */
-#define BHR_FORMAT_RGBA16F 3
-
-/** 4 floats: linear radiance, Rec. 709 primaries; alpha. */
-#define BHR_FORMAT_RGBA32F 4
-
-/** 1 float: the value of a view other than BHR_VIEW_LIGHT. */
-#define BHR_FORMAT_R32F 5
-
 /**
  * BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
  * Bloom adds light and leaves alpha as it is: glare over the host's own picture.
@@ -643,6 +576,15 @@ typedef int32_t BhrFormat;
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
 
+/** A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest. */
+typedef int32_t BhrFormat;
+
+#define BHR_FORMAT_RGBA8_SRGB 1 /**< 4 bytes: red, green, blue with the sRGB curve, alpha. */
+#define BHR_FORMAT_BGRA8_SRGB 2 /**< 4 bytes: blue, green, red with the sRGB curve, alpha. */
+#define BHR_FORMAT_RGBA16F 3    /**< 4 half floats: linear radiance, Rec. 709 primaries; alpha. */
+#define BHR_FORMAT_RGBA32F 4    /**< 4 floats: linear radiance, Rec. 709 primaries; alpha. */
+#define BHR_FORMAT_R32F 5       /**< 1 float: the value of a view other than BHR_VIEW_LIGHT. */
+
 /**
  * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
  * side or interleaved; different contexts may then render them at the same time.
@@ -652,14 +594,10 @@ typedef int32_t BhrFormat;
  * front of it, and no check can find that.
  */
 typedef struct BhrImage {
-    /** sizeof(BhrImage). */
-    uint32_t struct_size;
-    /** BHR_FORMAT_*. Default RGBA8_SRGB. */
-    BhrFormat format;
-    /** Pixels, 1 .. 2^20. */
-    uint32_t width;
-    /** Pixels, 1 .. 2^20. */
-    uint32_t height;
+    uint32_t struct_size; /**< sizeof(BhrImage). */
+    BhrFormat format;     /**< BHR_FORMAT_*. Default RGBA8_SRGB. */
+    uint32_t width;       /**< Pixels, 1 .. 2^20. */
+    uint32_t height;      /**< Pixels, 1 .. 2^20. */
     /** The top-left pixel; with BHR_IMAGE_BOTTOM_UP the bottom-left one. Aligned to its channel: 1, 2 or 4 bytes. */
     void *pixels;
     /**
@@ -673,10 +611,8 @@ typedef struct BhrImage {
      * |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
      */
     uint64_t byte_size;
-    /** BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only. */
-    uint32_t flags;
-    /** Reserved: 0. */
-    uint32_t reserved;
+    uint32_t flags;    /**< BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only. */
+    uint32_t reserved; /**< Reserved: 0. */
 } BhrImage;
 
 /**
@@ -752,21 +688,16 @@ BhrStatus bhr_image_release(BhrImage *image);
 
 /** The sky: everything that lies at infinity. */
 typedef struct BhrSky {
-    /** sizeof(BhrSky). */
-    uint32_t struct_size;
-    /** BHR_SKY_* bits; 0: black. Default STARS | MILKY_WAY. */
-    uint32_t flags;
-    /** 0 .. 1e6. Default 1. */
-    double stars_brightness;
-    /** A factor on the light of the Milky Way and the map, 0 .. 1e6. Default 1. */
-    double map_brightness;
+    uint32_t struct_size;    /**< sizeof(BhrSky). */
+    uint32_t flags;          /**< BHR_SKY_* bits; 0: black. Default STARS | MILKY_WAY. */
+    double stars_brightness; /**< 0 .. 1e6. Default 1. */
+    double map_brightness;   /**< A factor on the light of the Milky Way and the map, 0 .. 1e6. Default 1. */
     /**
      * Unit quaternion x y z w that takes sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole)
      * to scene axes. Default (0, 0, 0, 1).
      */
     double orientation[4];
-    /** Selects the stars of BHR_SKY_PROCEDURAL: any number. Default 0. */
-    uint64_t seed;
+    uint64_t seed; /**< Selects the stars of BHR_SKY_PROCEDURAL: any number. Default 0. */
 } BhrSky;
 
 /**
@@ -816,12 +747,9 @@ typedef int32_t BhrToneMap;
  * curve, dithering.
  */
 typedef struct BhrFilm {
-    /** sizeof(BhrFilm). */
-    uint32_t struct_size;
-    /** BHR_TONE_MAP_*. Default ACES. */
-    BhrToneMap tone_map;
-    /** Stops, -20 .. 20. Default 0. */
-    double exposure_ev;
+    uint32_t struct_size; /**< sizeof(BhrFilm). */
+    BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
+    double exposure_ev;   /**< Stops, -20 .. 20. Default 0. */
     /**
      * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
      * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of
@@ -911,10 +839,8 @@ typedef int32_t BhrMethod;
 
 /** How exactly to trace. */
 typedef struct BhrQuality {
-    /** sizeof(BhrQuality). */
-    uint32_t struct_size;
-    /** BHR_METHOD_*. Default AUTO. */
-    BhrMethod method;
+    uint32_t struct_size; /**< sizeof(BhrQuality). */
+    BhrMethod method;     /**< BHR_METHOD_*. Default AUTO. */
     /**
      * Samples of each pixel, 1 (default) .. 256. More than one are drawn from, and so weighted by, a quadratic
      * B-spline 3 pixels wide about the pixel's centre. (CUBE: they lie evenly in the pixel, because another part of
@@ -932,12 +858,9 @@ typedef struct BhrQuality {
      * own.
      */
     double tolerance;
-    /** Images of the disk to follow, 0 (the direct one only) .. 15. Default 3. */
-    uint32_t max_disk_order;
-    /** Reserved: 0. */
-    uint32_t reserved;
-    /** Windows: traced size / window size, 0.1 .. 1. Default 1. */
-    double render_scale;
+    uint32_t max_disk_order; /**< Images of the disk to follow, 0 (the direct one only) .. 15. Default 3. */
+    uint32_t reserved;       /**< Reserved: 0. */
+    double render_scale;     /**< Windows: traced size / window size, 0.1 .. 1. Default 1. */
 } BhrQuality;
 
 /**
@@ -1012,18 +935,12 @@ BhrStatus bhr_set_view(BhrContext *context, BhrView view);
  * the same bytes as the frame.
  */
 typedef struct BhrRegion {
-    /** sizeof(BhrRegion). */
-    uint32_t struct_size;
-    /** Pixels of the whole frame, 1 .. 2^20. */
-    uint32_t full_width;
-    /** Pixels of the whole frame, 1 .. 2^20. */
-    uint32_t full_height;
-    /** Column of the image's left pixels in the frame, < full_width. */
-    uint32_t x;
-    /** Row of the image's top pixels in the frame, < full_height. */
-    uint32_t y;
-    /** Reserved: 0. */
-    uint32_t reserved;
+    uint32_t struct_size; /**< sizeof(BhrRegion). */
+    uint32_t full_width;  /**< Pixels of the whole frame, 1 .. 2^20. */
+    uint32_t full_height; /**< Pixels of the whole frame, 1 .. 2^20. */
+    uint32_t x;           /**< Column of the image's left pixels in the frame, < full_width. */
+    uint32_t y;           /**< Row of the image's top pixels in the frame, < full_height. */
+    uint32_t reserved;    /**< Reserved: 0. */
 } BhrRegion;
 
 /**
@@ -1199,8 +1116,7 @@ void bhr_surface_destroy(BhrSurface *surface);
  * that fill it in are not told its size.
  */
 typedef struct BhrRay {
-    /** Scene axes and lengths. */
-    double position[3];
+    double position[3]; /**< Scene axes and lengths. */
     /**
      * The direction in which the observer looks, opposite to the photon's momentum; any non-zero length. Components
      * are along the frame that the conventions above give: the local static observer's (ZAMO), inside a spin-0 horizon
@@ -1218,14 +1134,10 @@ typedef struct BhrRay {
 
 /** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
 typedef struct BhrCrossing {
-    /** Boyer-Lindquist r, scene lengths. */
-    double radius;
-    /** Boyer-Lindquist ph in the chart, (-pi, pi]. */
-    double azimuth;
-    /** g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
-    double redshift;
-    /** Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon. */
-    double delay;
+    double radius;   /**< Boyer-Lindquist r, scene lengths. */
+    double azimuth;  /**< Boyer-Lindquist ph in the chart, (-pi, pi]. */
+    double redshift; /**< g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
+    double delay;    /**< Coordinate time since the photon left, scene lengths; NaN from inside the horizon. */
 } BhrCrossing;
 
 /** How a ray ends. */
@@ -1241,22 +1153,14 @@ typedef int32_t BhrFate;
  * hit_size.
  */
 typedef struct BhrHit {
-    /** BHR_FATE_*. */
-    BhrFate fate;
-    /** 0 .. BHR_MAX_CROSSINGS. */
-    uint32_t crossing_count;
-    /** Asymptotic, unit, scene axes; 0 unless escaped. */
-    double sky_direction[3];
-    /** nu(camera) / nu(at infinity); NaN unless escaped. */
-    double sky_redshift;
-    /** Spin 0: the orbit angle from the observer to infinity, or to the horizon, radians; with spin NaN. */
-    double swept_angle;
-    /** Integration steps. */
-    uint32_t steps;
-    /** Reserved: 0. */
-    uint32_t reserved;
-    /** In order along the ray; 0 beyond crossing_count. */
-    BhrCrossing crossings[BHR_MAX_CROSSINGS];
+    BhrFate fate; /**< BHR_FATE_*. */
+    uint32_t crossing_count; /**< 0 .. BHR_MAX_CROSSINGS. */
+    double sky_direction[3]; /**< Asymptotic, unit, scene axes; 0 unless escaped. */
+    double sky_redshift; /**< nu(camera) / nu(at infinity); NaN unless escaped. */
+    double swept_angle; /**< Spin 0: orbit angle to infinity, or to the horizon, radians; with spin NaN. */
+    uint32_t steps; /**< Integration steps. */
+    uint32_t reserved; /**< Reserved: 0. */
+    BhrCrossing crossings[BHR_MAX_CROSSINGS]; /**< In order along the ray; 0 beyond crossing_count. */
 } BhrHit;
 
 /**
@@ -1315,24 +1219,15 @@ BhrStatus bhr_trace_path(BhrContext *context,
 
 /** Numbers about the last finished frame; all 0 before the first. Times in nanoseconds. */
 typedef struct BhrFrameStats {
-    /** sizeof(BhrFrameStats), set by the caller. */
-    uint32_t struct_size;
-    /** Reserved: 0. */
-    uint32_t reserved;
-    /** Counts the finished frames of a context from 1: images, jobs and windows. */
-    uint64_t frame_index;
-    /** Pixels times samples. */
-    uint64_t rays;
-    /** Integration steps of all rays; rays that were looked up take none. */
-    uint64_t steps;
-    /** From the call's beginning to its end; for a job, from bhr_render_image_async until it was done. */
-    uint64_t cpu_ns;
-    /** Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
-    uint64_t gpu_ns;
-    /** Time to copy pixels from the GPU's memory to the host's, without the wait for the GPU. */
-    uint64_t readback_ns;
-    /** Device memory that the context holds. */
-    uint64_t device_bytes;
+    uint32_t struct_size;  /**< sizeof(BhrFrameStats), set by the caller. */
+    uint32_t reserved;     /**< Reserved: 0. */
+    uint64_t frame_index;  /**< Counts the finished frames of a context from 1: images, jobs and windows. */
+    uint64_t rays;         /**< Pixels times samples. */
+    uint64_t steps;        /**< Integration steps of all rays; rays that were looked up take none. */
+    uint64_t cpu_ns;       /**< From the call's beginning to its end; for a job, from its order until it was done. */
+    uint64_t gpu_ns;       /**< Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
+    uint64_t readback_ns;  /**< Time to copy pixels into the host's memory, without the wait for the GPU. */
+    uint64_t device_bytes; /**< Device memory that the context holds. */
 } BhrFrameStats;
 
 /** Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */

@@ -1,5 +1,5 @@
-//! Frames in the background: orders, each with its own copy of the scene, and what their host knows of them. Who makes
-//! them: worker.rs. Knows no callbacks and nothing of C.
+//! Frames in the background: orders, each with its own copy of the scene, and all that their host knows of them. The
+//! threads of worker.rs make them. Knows no callbacks and nothing of C.
 
 mod worker;
 
@@ -24,17 +24,17 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 #[derive(Clone)]
 pub struct Job {
     shared: Arc<Shared>,
-    /// Where it may still wait for its turn.
+    /// The queue in which the job may still wait for its turn.
     line: Weak<Line>,
 }
 
 #[derive(Default)]
 struct Shared {
     outcome: Mutex<Option<Result<FrameStats>>>,
-    /// At every step and at the end.
+    /// Signalled at every step and at the end.
     changed: Condvar,
     cancelled: AtomicBool,
-    /// Bits of the f64 that is done, 0 .. 1.
+    /// The bits of the part that is done, an f64 in 0 .. 1.
     fraction: AtomicU64,
 }
 
@@ -44,7 +44,8 @@ impl Job {
         f64::from_bits(self.shared.fraction.load(Ordering::Relaxed))
     }
 
-    /// Asks it to stop: what is not yet begun is not done any more. It ends at once if its turn has not come.
+    /// Asks the job to stop: work that is not yet begun is not done any more. The job ends at once if its turn has not
+    /// come.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
         if let Some(order) = self.line.upgrade().and_then(|line| line.withdraw(&self.shared))
@@ -54,13 +55,13 @@ impl Job {
         }
     }
 
-    /// What it ended with; `None` while it runs.
+    /// The outcome of the job; `None` while it runs.
     pub fn outcome(&self) -> Option<Result<FrameStats>> {
         lock(&self.shared.outcome).clone()
     }
 
     /// Waits for its end, at most `timeout` (`None`: for ever), and calls `progress`, which cancels it by returning
-    /// false, on this thread whenever more is done. What it ended with; `None` while it runs.
+    /// false, on this thread whenever more is done. The result is the job's outcome; `None` while it runs.
     pub fn wait(&self, timeout: Option<Duration>, progress: &mut Progress<'_>) -> Option<Result<FrameStats>> {
         let deadline = timeout.and_then(|timeout| Instant::now().checked_add(timeout));
         let mut told = f64::NAN;
@@ -72,7 +73,7 @@ impl Job {
             let fraction = self.fraction();
             if fraction != told {
                 told = fraction;
-                // Not under the lock: the caller's code may take its time, or ask this job.
+                // The lock is not held here: the caller's code may take its time, or ask this job.
                 drop(outcome);
                 if !progress(fraction) {
                     self.cancel();
@@ -98,7 +99,7 @@ impl Shared {
     }
 
     fn report(&self, fraction: f64) {
-        // Under the lock, lest a waiter miss it between looking and sleeping.
+        // The lock is held, or a waiter could miss this between looking and sleeping.
         let _outcome = lock(&self.outcome);
         self.fraction.store(fraction.to_bits(), Ordering::Relaxed);
         self.changed.notify_all();

@@ -8,7 +8,8 @@
 //! - [`window`]: the host's windows as targets of frames.
 //! - `thread_scope`: what the library's threads take over from the threads that they work for.
 //! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
-//! - `deferred`: below all: what waits until a thread holds no lock of the process. `allocate`: memory that may be refused.
+//! - `deferred`: below all: work that waits until a thread holds no lock of the process. `allocate`: memory that may be
+//!   refused.
 
 mod allocate;
 #[doc(hidden)]

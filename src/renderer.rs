@@ -37,7 +37,7 @@ pub struct RendererOptions {
 
 /// One scene, one tracer.
 pub struct Renderer {
-    /// What the next frame shows. A frame works on the scene as it is when the frame is asked for.
+    /// The scene that the next frame shows. A frame works on the scene as it is when the frame is asked for.
     pub scene: Scene,
     options: RendererOptions,
     adapter: AdapterInfo,
@@ -45,7 +45,7 @@ pub struct Renderer {
     tracer: SharedTracer,
     stats: StatsBoard,
     copiers: Arc<Copiers>,
-    /// From the first job on.
+    /// The threads for jobs, from the first job on.
     worker: Option<Worker>,
     /// Made for this renderer, and perhaps still there.
     surfaces: Vec<Weak<Surface>>,
@@ -196,7 +196,7 @@ impl Renderer {
                 _ => Ok(()),
             },
         };
-        // Another thread may have been told of the loss by now.
+        // By now another thread may have been told of the loss.
         destroyed.or_else(|error| if error.kind == ErrorKind::DeviceLost { Ok(()) } else { Err(error) })
     }
 
@@ -251,7 +251,7 @@ impl Renderer {
         self.stats.last()
     }
 
-    /// What a tracer is asked for an image of `size`. Errors: a region that the image overruns; a region with bloom; a
+    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a region with bloom; a
     /// format that does not go with the view.
     fn request(
         &self,
@@ -340,7 +340,7 @@ impl Renderer {
         self.tracer.lock().prepare(&self.scene, &request, window.as_ref(), progress)
     }
 
-    /// The same for windows of `size` only. Errors: as [`Self::render`].
+    /// Prepares frames in windows of `size` only. Errors: as [`Self::render`].
     pub fn prepare_window(&mut self, size: [u32; 2], progress: &mut Progress<'_>) -> Result<()> {
         let window = frame_request(&self.scene, size, PixelFormat::Rgba8Srgb);
         self.tracer.lock().prepare(&self.scene, &window, Some(&window), progress)

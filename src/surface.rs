@@ -16,12 +16,12 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// Frames whose numbers are not taken yet, at most: more than a window's images hold back.
+/// The most frames whose numbers are not taken yet: more than a window's images hold back.
 const UNTAKEN: usize = 4;
-/// Steps of one frame under way at most.
+/// The most steps of one frame that are under way.
 const AHEAD: usize = 3;
 
-/// What became of a frame.
+/// The outcome of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shown {
     Presented,
@@ -61,18 +61,18 @@ enum Way {
 /// A window's images, and the texture that they are filled from.
 struct Screen {
     texture: Option<Texture>,
-    /// Goes after the texture, as it has the device.
+    /// Dropped after the texture, as it holds the device.
     swapchain: Swapchain,
-    /// With one, VSYNC is MAILBOX underneath, each frame when the pacer says so.
+    /// The pacer. With one, VSYNC is MAILBOX underneath, and each frame waits until the pacer says so.
     pacer: Option<Box<dyn Pacer>>,
 }
 
 struct Untaken {
     steps: VecDeque<Submitted>,
-    /// Goes after the steps.
+    /// Dropped after the steps.
     device: Arc<Device>,
     stats: FrameStats,
-    /// From the call's begin to its end.
+    /// Time from the call's beginning to its end.
     call: Duration,
 }
 
@@ -250,7 +250,7 @@ impl Inner {
         Ok(Shown::Presented)
     }
 
-    /// Of the frames that have run.
+    /// Takes the numbers of the frames that have run.
     fn take_numbers(&mut self, board: &StatsBoard) -> Result<()> {
         while let Some(first) = self.untaken.front() {
             let done = match first.steps.back() {
@@ -318,7 +318,7 @@ fn stretched(request: &FrameRequest, pixels: &[u8], size: [u32; 2]) -> Result<Op
         return Ok(None);
     }
     let mut out = with_room(width * height * 4, "a window's stretched frame")?;
-    // Of a place: the pixel before it, the one after, and how far it is from the first.
+    // The pixel before a place, the one after, and how far the place is from the first.
     let place = |i: usize, to: usize, from: usize| {
         let at = ((i as f32 + 0.5) * from as f32 / to as f32 - 0.5).clamp(0.0, (from - 1) as f32);
         let before = at as usize;
@@ -349,7 +349,7 @@ fn pacer_of(window: &Window) -> Option<Box<dyn Pacer>> {
 }
 
 impl Way {
-    /// What says when frames of the mode are shown, if not the driver.
+    /// The pacer, which says when frames of the mode are shown, if the driver does not.
     fn pacer(&mut self, mode: PresentMode) -> Option<&mut Box<dyn Pacer>> {
         match self {
             Self::Direct(screen, _) | Self::Uploaded(screen, _) => screen.pacer(mode),
@@ -456,7 +456,7 @@ impl Screen {
         let mode = if self.pacer(mode).is_some() { PresentMode::Mailbox } else { mode };
         for _ in 0..2 {
             if !self.swapchain.is_configured(mode) {
-                // What X11 says; elsewhere, and if the window has just gone, what the host says.
+                // The size is what X11 says; elsewhere, and if the window has just gone, what the host says.
                 let size = window.size().unwrap_or(given).map(|side| side.max(1));
                 self.check_size(size)?;
                 let _alone = tracer.map(|tracer| tracer.lock());
@@ -476,7 +476,7 @@ impl Screen {
                 Acquired::None | Acquired::Outdated | Acquired::Lost => return Err(window_gone()),
             }
         }
-        // It changes faster than its images can be made.
+        // The window changes faster than its images can be made.
         Ok(None)
     }
 
@@ -484,7 +484,7 @@ impl Screen {
     fn texture(&mut self, request: &FrameRequest, host_fills: bool) -> Result<&Texture> {
         let size = [request.width, request.height];
         if self.texture.as_ref().is_none_or(|texture| texture.size() != size) {
-            // The old one goes first: both together need not fit.
+            // The old texture goes first: both together need not fit.
             self.texture = None;
             self.texture = Some(self.swapchain.device().screen(size, host_fills)?);
         }

@@ -13,6 +13,15 @@ use std::path::PathBuf;
 use std::ptr::null_mut;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+/// BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
+/// Bloom adds light and leaves alpha as it is: glare over the host's own picture.
+pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
+
+/// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
+/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
+/// 0.2.0.
+pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
+
 /// A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest.
 pub type BhrFormat = i32;
 /// 4 bytes: red, green, blue with the sRGB curve, alpha.
@@ -25,15 +34,6 @@ pub const BHR_FORMAT_RGBA16F: BhrFormat = 3;
 pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
 /// 1 float: the value of a view other than BHR_VIEW_LIGHT.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
-
-/// BhrImage.flags: the sky is left out, and alpha is 1 - the sky's share, premultiplied. Without this flag alpha is 1.
-/// Bloom adds light and leaves alpha as it is: glare over the host's own picture.
-pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
-
-/// BhrImage.flags: the picture's bottom row comes first in memory, as OpenGL has it. pixels is then the lowest
-/// address of the block, as without the flag, and row_stride, 0 or more, is the distance to the next row up. Since
-/// 0.2.0.
-pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
 /// side or interleaved; different contexts may then render them at the same time.

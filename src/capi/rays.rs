@@ -44,7 +44,7 @@ pub struct BhrCrossing {
     pub azimuth: f64,
     /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
     pub redshift: f64,
-    /// Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon.
+    /// Coordinate time since the photon left, scene lengths; NaN from inside the horizon.
     pub delay: f64,
 }
 
@@ -72,7 +72,7 @@ pub struct BhrHit {
     pub sky_direction: [f64; 3],
     /// nu(camera) / nu(at infinity); NaN unless escaped.
     pub sky_redshift: f64,
-    /// Spin 0: the orbit angle from the observer to infinity, or to the horizon, radians; with spin NaN.
+    /// Spin 0: orbit angle to infinity, or to the horizon, radians; with spin NaN.
     pub swept_angle: f64,
     /// Integration steps.
     pub steps: u32,

@@ -22,11 +22,11 @@ pub struct BhrFrameStats {
     pub rays: u64,
     /// Integration steps of all rays; rays that were looked up take none.
     pub steps: u64,
-    /// From the call's beginning to its end; for a job, from bhr_render_image_async until it was done.
+    /// From the call's beginning to its end; for a job, from its order until it was done.
     pub cpu_ns: u64,
     /// Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU.
     pub gpu_ns: u64,
-    /// Time to copy pixels from the GPU's memory to the host's, without the wait for the GPU.
+    /// Time to copy pixels into the host's memory, without the wait for the GPU.
     pub readback_ns: u64,
     /// Device memory that the context holds.
     pub device_bytes: u64,

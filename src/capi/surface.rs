@@ -168,7 +168,7 @@ pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
         surface.end("it was destroyed");
         Ok(())
     });
-    // What a panic has left of it goes by itself: a second one on the way would end the process.
+    // The surface is dropped under a guard of its own: a second panic while one unwinds would end the process.
     let dropped = guarded(move || {
         drop(surface);
         Ok(())

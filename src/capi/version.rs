@@ -3,7 +3,7 @@
 
 use std::ffi::c_char;
 
-/// This header's major version. Before 1.0 minor versions add and grow, and remove nothing.
+/// This header's major version. Before 1.0, minor versions only add.
 pub const BHR_VERSION_MAJOR: u32 = 0;
 /// This header's minor version.
 pub const BHR_VERSION_MINOR: u32 = 2;

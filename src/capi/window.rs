@@ -1,5 +1,5 @@
-//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Its fields are read and checked here;
-//! nothing behind its pointers is touched.
+//! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Its fields are read and checked
+//! here; nothing behind its pointers is touched.
 
 use super::pointer::{check_reserved, unknown};
 use super::versioned::{self, POINTER, Versioned};

@@ -357,7 +357,7 @@ mod tests {
         scene.hole.spin = spin;
         scene.camera = Camera {
             position,
-            // From inside the photon sphere most of what is seen is behind.
+            // An observer inside the photon sphere sees most of the sky behind.
             forward: position * if r < 3.0 { 1.0 } else { -1.0 }
                 + DVec3::new(0.1, -0.1, 0.05) * r * f64::to_radians(fov),
             up: DVec3::new(0.3, 0.1, 0.8),

@@ -4,7 +4,7 @@
 //! ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how that light was made, or of
 //! 8-bit pixels.
 //!
-//! What it shows: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
+//! The result: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
 //! (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height. These are the
 //! wings of light scattered in the eye: 10 / theta^3 + 10 / theta^2 in degrees (G. Spencer, P. Shirley, K. Zimmerman,
 //! D. Greenberg, SIGGRAPH 1995, their photopic f1 and f2, 0.478 * 20.91 and 0.138 * 72.37; likewise J. J. Vos, CIE
@@ -207,7 +207,8 @@ impl Bloom {
         Ok(Self { frame, factor, direct: (1.0 - scattered * (1.0 - narrow)) as f32, levels })
     }
 
-    /// What level `index` gets: its weight; or 1, as it comes with the coarser ones already.
+    /// The factor on the light of level `index`: its weight if it is the coarsest; else 1, because its light comes
+    /// weighted already.
     pub fn weight_above(&self, index: usize) -> f32 {
         match self.levels.get(index) {
             Some(last) if index + 1 == self.levels.len() => last.weight,
@@ -359,8 +360,8 @@ impl Bloom {
     }
 }
 
-/// Of the coarser cells about cell `i`, which get its light, those that give it back; a missing one's share is its own
-/// cell's.
+/// The coarser cells that give light back to cell `i`, and their shares; at the border the share of a missing cell is
+/// that of the cell itself.
 fn returned(i: usize, coarser: u32) -> ([usize; 3], [f32; 3]) {
     let own = i / 2;
     let cells = [own.saturating_sub(1), own, (own + 1).min(coarser as usize - 1)];

@@ -7,22 +7,22 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Bytes from which waking other threads, some 10 us, is worth it.
+/// The bytes from which on it is worth waking other threads, which takes some 10 us.
 const SHARED_FROM: usize = 1 << 20;
-/// More threads than this copy no faster (H200, 16 cores: 1 thread 13 GB/s, 2: 25, 4: 47, 8: 57 to 96).
+/// The most threads: more copy no faster (H200, 16 cores: 1 thread 13 GB/s, 2: 25, 4: 47, 8: 57 to 96).
 const MOST_THREADS: usize = 8;
-/// Parts for each thread, so that one that comes late holds up little.
+/// The parts for each thread, so that one that comes late holds up little.
 const PARTS_A_THREAD: usize = 2;
 
-/// A pool that starts with the first large piece, and ends with this.
+/// A pool of threads that starts with the first large piece, and ends with this value.
 pub struct Copiers {
     threads: usize,
-    /// `None` inside: the system gave no threads.
+    /// The pool; `None` inside if the system gave no threads.
     pool: OnceLock<Option<ThreadPool>>,
 }
 
 impl Default for Copiers {
-    /// Half of the cores this process may use, at most 8: the rest of them are the host's.
+    /// Copiers for this process: half of the cores it may use, at most 8; the other cores are the host's.
     fn default() -> Self {
         let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
         Self::new((cores / 2).min(MOST_THREADS))
@@ -52,7 +52,7 @@ impl Copiers {
             let builder = rayon::ThreadPoolBuilder::new().num_threads(self.threads);
             let built = builder.thread_name(|i| format!("bhr-copy-{i}")).build();
             let pool = built.inspect_err(|error| log::warn!("no threads to copy frames with: {error}")).ok()?;
-            // Once all of them run, they have what threads take at their start, which is not ours to refuse.
+            // Once all threads run, they have the memory that a thread takes at its start, which bhr cannot refuse.
             pool.broadcast(|_| ());
             Some(pool)
         };

@@ -319,8 +319,8 @@ impl<'a> ImageMut<'a> {
     /// Errors: as `new`, or `pixels` NULL.
     ///
     /// # Safety
-    /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not what lies
-    /// between them) are readable and writable, and nobody else's, during `'a`.
+    /// `pixels` is the top-left pixel of a block of `byte_size` bytes, laid out as `layout` says; its rows (not the
+    /// bytes between them) are readable and writable, and nobody else's, during `'a`.
     pub unsafe fn from_raw(layout: Layout, pixels: *mut u8, byte_size: u64) -> Result<Self> {
         Self::begin(Rows::new(layout, FirstRow::Top, pixels, byte_size))
     }

@@ -24,8 +24,8 @@ pub const MAX_UNFINISHED: usize = 64;
 /// GPU busy.
 const AHEAD: usize = 4;
 
-/// What the submitting thread hands to the finishing one. Of each frame: `Begun`, then its steps, and `Left` if those
-/// are not all; or `Made` alone.
+/// The messages of the submitting thread to the finishing one. For each frame they are `Begun`, then its steps, and
+/// `Left` if those are not all; or `Made` alone.
 enum Event {
     Begun(Box<Running>),
     Step(Box<Submitted>),
@@ -44,13 +44,13 @@ struct Running {
     count: u64,
 }
 
-/// What host and threads share.
+/// The state that host and threads share.
 #[derive(Default)]
 pub(super) struct Line {
     state: Mutex<State>,
-    /// An order came, or room for a step, or the end.
+    /// Signalled when an order came, or room for a step, or the end.
     to_submit: Condvar,
-    /// An event came, or the end.
+    /// Signalled when an event came, or the end.
     to_finish: Condvar,
 }
 
@@ -60,7 +60,7 @@ struct State {
     /// Orders taken by the submitting thread and not yet finished.
     taken: usize,
     events: VecDeque<Event>,
-    /// Submitted and not yet finished.
+    /// Steps that are submitted and not yet finished.
     steps: usize,
     /// No more orders will come.
     closed: bool,
@@ -90,7 +90,7 @@ impl Worker {
         Ok(worker)
     }
 
-    /// `end`: what the others hear when `work` has ended.
+    /// Runs `work`; `end` tells the others when it has ended.
     fn spawn(&mut self, name: &str, scope: ThreadScope, work: fn(&Line), end: fn(&mut State)) -> Result<()> {
         let line = self.line.clone();
         let begun = Arc::new(Barrier::new(2));
@@ -110,7 +110,7 @@ impl Worker {
         let thread = std::thread::Builder::new().name(name.into()).spawn(body).map_err(|error| {
             Error::new(ErrorKind::OutOfMemory, format!("no thread to render in the background: {error}"))
         })?;
-        // What a thread takes at its start, which is not ours to refuse, it has once it runs.
+        // Once a thread runs, it has the memory that it takes at its start, which bhr cannot refuse.
         begun.wait();
         self.threads.push(thread);
         Ok(())
@@ -217,12 +217,12 @@ impl Line {
     }
 
     fn finish(&self, order: Order, outcome: Result<FrameStats>) {
-        // First, so that a host that has seen the end may order again.
+        // This comes first, so that a host that has seen the end may order again.
         lock(&self.state).taken -= 1;
         order.finish(outcome);
     }
 
-    /// Of a thread. What it leaves behind is dropped.
+    /// Ends a thread; everything that it leaves behind is dropped.
     fn end(&self, panicked: bool, end: fn(&mut State)) {
         let left = {
             let mut state = lock(&self.state);
@@ -276,7 +276,7 @@ fn submit(line: &Line, mut order: Order) {
     }
 }
 
-/// Without overlap with the next frame: the CPU is busy, and GL is one thread's.
+/// Makes a frame without overlap with the next one: the CPU is busy, and GL is one thread's.
 fn render_whole(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
     let (scene, request, target, shared) = (&order.scene, &order.request, &mut order.target, order.shared.clone());
     let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
@@ -295,10 +295,10 @@ fn render_whole(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
 
 /// A frame of which steps are left, and the tracer, which no other frame may use before they are submitted.
 struct Submitting {
-    /// `None` only while it is being dropped.
+    /// The lock of the tracer; `None` only while it is being dropped.
     guard: Option<ArcMutexGuard<RawMutex, Tracer>>,
     frame: BegunFrame,
-    /// Goes after the frame.
+    /// Dropped after the frame.
     _device: Arc<Device>,
 }
 

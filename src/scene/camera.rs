@@ -19,16 +19,16 @@ pub enum Projection {
 pub enum Motion {
     /// At rest; the ZAMO when the hole spins.
     Static = 0,
-    /// Radially from rest at infinity.
+    /// Falls radially from rest at infinity.
     FreeFall = 1,
-    /// Along +phi on a circle.
+    /// Moves along +phi on a circle.
     Orbit = 2,
     /// Moves with `Camera::velocity`.
     Velocity = 3,
 }
 
 impl Motion {
-    /// As in `BHR_MOTION_*`.
+    /// The name in `BHR_MOTION_*`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Static => "STATIC",

@@ -12,7 +12,7 @@ pub struct Disk {
     pub inner_radius: f64,
     /// Default 20.
     pub outer_radius: f64,
-    /// K at the hottest radius of the Page-Thorne profile, 500 .. 1e9. Default 6500.
+    /// Temperature at the hottest radius of the Page-Thorne profile, K, 500 .. 1e9. Default 6500.
     pub temperature: f64,
     /// 0 .. 1. Default 1.
     pub opacity: f64,

@@ -32,11 +32,11 @@ const KERR_NEAR: f64 = 1e4;
 /// How the rays of a frame are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lensing {
-    /// Each by itself.
+    /// Each ray is traced by itself.
     Traced,
-    /// In the tables of a spin-0 lens.
+    /// Rays are looked up in the tables of a spin-0 lens.
     Schwarzschild,
-    /// In the tables of a Kerr lens; rays that they do not hold are traced.
+    /// Rays are looked up in the tables of a Kerr lens; those that they do not hold are traced.
     Kerr,
 }
 
@@ -44,7 +44,7 @@ impl Scene {
     /// How the rays of a frame of `pixels` pixels (the full frame's, of which an image may be a part) are found by an
     /// eye at `frame`.
     pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_worth: KerrWorth) -> Lensing {
-        // METRIC looks where no disk is: tables end before.
+        // METRIC shows places where no disk is; tables end before.
         if self.quality.method != Method::Auto || self.view == View::Metric {
             return Lensing::Traced;
         }

@@ -1,4 +1,4 @@
-//! From the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks
+//! Converts the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks
 //! through a pixel. The only place that converts; both tracers and the queries build on it.
 
 use super::hole::unit;
@@ -9,7 +9,7 @@ use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use glam::{DMat3, DVec3};
 
-/// Where observers may be, in M: beyond, f32 tracers could not hold a ray's constants.
+/// The range of observers, M: farther out, f32 tracers could not hold a ray's constants.
 pub const MIN_RADIUS: f64 = 1e-6;
 pub const MAX_RADIUS: f64 = 1e15;
 
@@ -19,7 +19,7 @@ impl Scene {
     pub fn local_frame(&self, position: DVec3) -> Result<LocalFrame> {
         let chart = self.hole.scene_to_chart() * position / self.hole.mass;
         let r = chart.length();
-        // NaN and r = 0 are the frame's business.
+        // NaN and r = 0 are refused by the frame itself.
         if position.is_finite() && (r > MAX_RADIUS || (r > 0.0 && r < MIN_RADIUS)) {
             return Err(Error::state(format!(
                 "position lies at r = {r:e} M (mass is {:e}); it must lie in [{MIN_RADIUS:e}, {MAX_RADIUS:e}] M",
@@ -126,8 +126,8 @@ impl Lens {
         (look, steps.map(|step| (step - look * look.dot(step)) * inverse))
     }
 
-    /// At right angles to the circle about `centre`, a look direction in the frame, that runs through position (x, y),
-    /// in pixels right and down; of any length.
+    /// The direction on the frame, in pixels right and down and of any length, at right angles to the circle about
+    /// `centre`, a look direction in the frame, that runs through position (x, y).
     pub fn across(&self, centre: DVec3, [x, y]: [f64; 2]) -> [f64; 2] {
         let (look, changes) = self.look_and_changes(x, y);
         let seen = self.observer.look(look);

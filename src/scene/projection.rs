@@ -108,7 +108,7 @@ impl Mapping {
         }
     }
 
-    /// From the centre, pixels to the right and up.
+    /// The distance from the centre, pixels, to the right and up.
     fn offset(&self, x: f64, y: f64) -> DVec2 {
         DVec2::new(x - 0.5 * self.width, 0.5 * self.height - y)
     }
@@ -118,7 +118,7 @@ impl Mapping {
         if radius > 0.0 { sin / radius } else { self.pixel_angle }
     }
 
-    /// From forward to the right, and up, radians; beyond the poles latitudes go on.
+    /// Longitude from forward to the right, and latitude, radians; beyond the poles latitudes go on.
     fn longitude_and_latitude(&self, x: f64, y: f64) -> [f64; 2] {
         [TAU * (x / self.width - 0.5), FRAC_PI_2 * (1.0 - 2.0 * y / self.height)]
     }

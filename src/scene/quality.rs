@@ -1,4 +1,4 @@
-//! How exactly to trace, as the host states it.
+//! The settings that decide how exactly rays are traced, as the host states them.
 
 use crate::error::{Error, Result};
 
@@ -39,26 +39,26 @@ pub struct Quality {
     pub max_disk_order: u32,
     /// Windows: traced size / window size, 0.1 .. 1. Default 1.
     pub render_scale: f64,
-    /// Whether AUTO looks rays up; not the host's to choose.
+    /// Whether AUTO looks rays up. The host cannot choose this.
     #[doc(hidden)]
     pub lens_tables: LensTables,
-    /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. Not the host's to
-    /// choose.
+    /// Whether a GPU writes pixels into the host's memory itself; `None`: where that is faster. The host cannot choose
+    /// this.
     #[doc(hidden)]
     pub mapped_pixels: Option<bool>,
     /// Whether one kernel serves all projections, pixel formats and tone maps but the usual ones; `None`: on hardware.
     /// Not the host's to choose.
     #[doc(hidden)]
     pub shares_kernels: Option<bool>,
-    /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, as software drivers put
-    /// most of their work off until a kernel runs. Not the host's to choose.
+    /// Whether kernels of likely next scenes are made in the background; `None`: on hardware, because software drivers
+    /// put most of their work off until a kernel runs. The host cannot choose this.
     #[doc(hidden)]
     pub anticipates: Option<bool>,
-    /// Whether pixels that edges run through get more rays; not the host's to choose.
+    /// Whether pixels that edges run through get more rays. The host cannot choose this.
     #[doc(hidden)]
     pub refines: bool,
-    /// Whether a frame with bloom keeps its light instead of being traced twice; `None`: as its size allows. Not the
-    /// host's to choose.
+    /// Whether a frame with bloom keeps its light instead of being traced twice; `None`: as its size allows. The host
+    /// cannot choose this.
     #[doc(hidden)]
     pub keep_light: Option<bool>,
 }

@@ -24,9 +24,9 @@ pub struct HoleInfo {
     /// ISCOs of matter that moves towards +ph and -ph.
     pub isco_prograde: f64,
     pub isco_retrograde: f64,
-    /// Spin 0: 3 sqrt(3) M.
+    /// Critical impact parameter, 3 sqrt(3) M, without spin.
     pub critical_impact_parameter: f64,
-    /// Spin 0, seen by the camera's observer.
+    /// Angular radius of the shadow that the camera's observer sees, without spin.
     pub shadow_angular_radius: f64,
     pub camera_radius: f64,
     /// d tau / d t of the camera's observer.
@@ -204,7 +204,7 @@ fn finite<const N: usize>(components: [f64; N]) -> Result<[f64; N]> {
     Err(Error::argument("position and mass are so large or small that a component is not finite"))
 }
 
-/// How many of the Boyer-Lindquist indices are angles: each carries one length.
+/// The number of angles among the Boyer-Lindquist indices: each carries one length.
 fn angles(indices: &[usize]) -> i32 {
     indices.iter().filter(|&&i| i >= 2).count() as i32
 }
@@ -230,7 +230,7 @@ impl Eye {
     }
 }
 
-/// Where a fall from rest at infinity has come to, M = 1.
+/// The place that a fall from rest at infinity has come to, M = 1.
 struct Fall {
     radius: f64,
     azimuth: f64,

@@ -21,7 +21,7 @@ pub struct Ray {
 pub enum Fate {
     Captured = 0,
     Escaped = 1,
-    /// max_steps ran out.
+    /// `max_steps` ran out before the end.
     Unresolved = 2,
     /// The ray's input is not valid.
     #[default]
@@ -33,7 +33,7 @@ pub enum Fate {
 pub struct Crossing {
     /// Scene lengths.
     pub radius: f64,
-    /// In the chart, (-pi, pi].
+    /// Azimuth in the chart, (-pi, pi].
     pub azimuth: f64,
     /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
     pub redshift: f64,

@@ -16,7 +16,7 @@ pub struct DiskCrossing {
     pub order: u32,
     /// g, the camera's motion included.
     pub g: f64,
-    /// Of use only where shading needs it: for a turbulent disk.
+    /// The place and time; only the shading of a turbulent disk needs them.
     pub place: Place,
     /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
     pub footprint: [Place; 2],

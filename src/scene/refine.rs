@@ -182,7 +182,7 @@ mod tests {
     use glam::DVec2;
     use std::f64::consts::TAU;
 
-    /// By counting points.
+    /// The share by counting points.
     fn counted(level: f64, slope: [f64; 2]) -> f64 {
         const N: u32 = 400;
         let place = |i: u32| (f64::from(i) + 0.5) / f64::from(N) - 0.5;

@@ -153,7 +153,7 @@ fn noise(x: f64, turn: f64, around: u32, key: u32) -> f64 {
     low + (high - low) * sy
 }
 
-/// From 0 to 1 with two continuous derivatives (Perlin 2002).
+/// Goes from 0 to 1 with two continuous derivatives (Perlin 2002).
 fn fade(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }

@@ -33,7 +33,8 @@ impl Star {
         10.0_f64.powf(-0.4 * self.magnitude)
     }
 
-    /// K. F. J. Ballesteros 2012, EPL 97, 34008, eq. 14: the star as a blackbody seen through B and V filters.
+    /// Temperature, K: the star as a blackbody seen through B and V filters (F. J. Ballesteros 2012, EPL 97, 34008, eq.
+    /// 14).
     pub fn temperature(&self) -> f64 {
         let colour = 0.92 * self.colour.clamp(COLOUR_RANGE.0, COLOUR_RANGE.1);
         4600.0 * (1.0 / (colour + 1.7) + 1.0 / (colour + 0.62))

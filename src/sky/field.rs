@@ -12,11 +12,11 @@ use std::sync::{Arc, Weak};
 /// The stars of a sky.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StarField {
-    /// The real ones.
+    /// The real stars.
     Catalogue,
-    /// Random ones: of this seed.
+    /// Random stars of this seed.
     Procedural(u64),
-    /// The real ones, and random ones that are fainter.
+    /// The real stars, and random ones that are fainter.
     Continued(u64),
 }
 
@@ -27,13 +27,13 @@ const ROOM: usize = 300 << 20;
 static MADE: Mutex<Vec<(StarField, Weak<StarIndex>)>> = Mutex::new(Vec::new());
 
 impl StarField {
-    /// Its index; the catalogue's takes milliseconds and stays, others take about a second unless somebody holds them.
-    /// Errors: OUT_OF_MEMORY.
+    /// The field's index. The catalogue's takes milliseconds and stays; others take about a second unless somebody
+    /// holds them. Errors: OUT_OF_MEMORY.
     pub fn index(self) -> Result<Arc<StarIndex>> {
         if self == Self::Catalogue {
             return Self::catalogue();
         }
-        // Held while it is made: who asks for the same one meanwhile is to wait for it.
+        // The lock is held while the index is made: a thread that asks for the same one meanwhile is to wait for it.
         let mut made = MADE.lock();
         if let Some(index) = find(&made, self) {
             return Ok(index);
@@ -56,7 +56,7 @@ impl StarField {
         }
     }
 
-    /// Its index if it is there already; the catalogue's always is. Errors: OUT_OF_MEMORY.
+    /// The field's index if it is there already; the catalogue's always is. Errors: OUT_OF_MEMORY.
     pub fn index_if_made(self) -> Result<Option<Arc<StarIndex>>> {
         if self == Self::Catalogue { Self::catalogue().map(Some) } else { Ok(find(&MADE.lock(), self)) }
     }

@@ -16,9 +16,10 @@ use std::f64::consts::{PI, TAU};
 
 /// Longest line that taps stand on, in minor axes; so there are at most 7, the outer ones at half weight and more.
 pub(crate) const MAX_SPREAD: f64 = 6.0;
-/// sr. A pixel that sees more of the sky than this, or of whose patch nothing is known, gets the mean of all.
+/// Solid angle, sr. A pixel that sees more of the sky than this, or of whose patch nothing is known, gets the mean of
+/// all.
 pub(crate) const WHOLE_SKY: f64 = 100.0;
-/// rad. Keeps divisions finite for cameras of no field of view at all.
+/// The least change of direction by pixel, rad. It keeps divisions finite for cameras of no field of view at all.
 pub(crate) const TINY_AXIS: f64 = 1e-12;
 /// Brightest light: finite in f32, whatever the host multiplies it by.
 pub(crate) const MAX_MAP_LIGHT: f64 = 1e9;
@@ -30,7 +31,7 @@ pub(crate) const HOTTEST_RATIO: f64 = 0.973;
 /// Coefficients of 1000 K / T in powers of ln(blue / red), between those: least squares, at most 0.15 % off.
 const INVERSE_TEMPERATURE: [f64; 6] =
     [0.152_906_4, -0.102_254_5, -0.005_097_082, -0.005_358_591, -0.003_424_309, -0.000_596_459_5];
-/// Least blue and red that have a colour: that of darker light is not looked at.
+/// The least blue and red that have a colour; the colour of darker light is not looked at.
 pub(crate) const TINY_LIGHT: f64 = 1e-9;
 
 /// A line of taps.
@@ -94,13 +95,13 @@ impl SkyMap {
         }
     }
 
-    /// rad. The smaller side of a texel of the finest level at the equator.
+    /// The smaller side of a texel of the finest level at the equator, rad.
     fn texel_angle(&self) -> f64 {
         let [width, height] = self.levels().first().map_or([1, 1], |level| level.size);
         (PI / f64::from(height)).min(TAU / f64::from(width))
     }
 
-    /// Between levels and texels. `towards`: not 0; of any length.
+    /// The light of the map towards a direction, not 0 and of any length, interpolated between levels and texels.
     fn trilinear(&self, towards: DVec3, level: f64) -> [f64; 3] {
         let u = 0.5 - towards.y.atan2(towards.x) / TAU;
         let v = 0.5 - towards.z.atan2(towards.x.hypot(towards.y)) / PI;
@@ -150,7 +151,7 @@ pub fn shifted_map_light(rgb: [f64; 3], g_colour: f64, g_beaming: f64) -> [f64; 
     std::array::from_fn(|c| (rgb[c] * (seen[c] / rest[c])).min(MAX_MAP_LIGHT))
 }
 
-/// K, of the blackbody of this ln(blue / red).
+/// Temperature, K, of the blackbody of this ln(blue / red).
 fn colour_temperature(ln_ratio: f64) -> f64 {
     let x = ln_ratio.clamp(COOLEST_RATIO, HOTTEST_RATIO);
     1000.0 / INVERSE_TEMPERATURE.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
@@ -275,7 +276,7 @@ mod tests {
         let contrast = |map: &SkyMap| {
             let values = (0..64).map(|i| {
                 let d = towards(10.0 + 0.11 * f64::from(i), 0.3 + 0.11 * f64::from(i));
-                // Along right ascension.
+                // Stripes along right ascension.
                 map.light(d, DVec3::new(-d.y, d.x, 0.0).normalize() * (6.0 * texel), DVec3::Z * (0.5 * texel))[0]
             });
             values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)

@@ -17,7 +17,8 @@ pub fn crowded_density(sine: f64) -> f64 {
     2.0 / ((1.0 + sine) * (1.0 + sine))
 }
 
-/// |sin b| below which the share `share` of the stars of `crowded_density` lies: the integral 2 s / (1 + s), turned round.
+/// The |sin b| below which the share `share` of the stars of `crowded_density` lies: the inverse of the integral 2 s /
+/// (1 + s).
 pub fn crowded_sine(share: f64) -> f64 {
     share / (2.0 - share)
 }
@@ -27,7 +28,7 @@ pub fn crowded_sine(share: f64) -> f64 {
 /// (0.7 for the catalogue.)
 pub fn crowding(stars: &[Star]) -> f64 {
     let sum = stars.iter().map(|star| crowded_density(star.direction.dot(GALACTIC_POLE).abs())).sum::<f64>();
-    // Without stars: 0.
+    // Without stars the share is 0.
     (6.0 * (sum / stars.len().max(1) as f64 - 1.0)).clamp(0.0, 1.0)
 }
 

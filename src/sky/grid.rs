@@ -1,25 +1,26 @@
 //! The coordinate grid of the sky axes: lines of constant width on the screen, laid over the sky. The same in both
 //! tracers (`shaders/sky/grid.wgsl`). Knows no cameras and no holes.
 //!
-//! Right ascension every 15 degrees (an hour), from declination +-75 degrees to the poles every 90; declination every
-//! 15. How far a pixel is from a line it knows from the coordinate's distance to the line and the length of its
-//! gradient by pixel. Where the lens squeezes lines together until they would run into each other they fade into an
-//! even tint.
+//! There is a line of right ascension every 15 degrees (an hour), from declination +-75 degrees to the poles every 90,
+//! and a line of declination every 15. The distance of a pixel from a line follows from the coordinate's distance to
+//! the line and the length of its gradient by pixel. Where the lens squeezes lines together until they would run into
+//! each other they fade into an even tint.
 
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// rad. Between lines.
+/// Spacing of the lines, rad.
 pub(crate) const GRID_SPACING: f64 = PI / 12.0;
-/// rad. Between those of right ascension beyond GRID_CAP, the sine of a declination with a line of its own.
+/// Spacing of the lines of right ascension beyond GRID_CAP, rad; GRID_CAP is the sine of a declination with a line of
+/// its own.
 pub(crate) const GRID_CAP_SPACING: f64 = PI / 2.0;
 pub(crate) const GRID_CAP: f64 = 0.965_925_826_289_068_3;
-/// Pixels.
+/// Width of a line, pixels.
 pub(crate) const GRID_WIDTH: f64 = 1.3;
-/// Pixels between lines from which on they are lines, and below which they are a tint.
+/// Distances between lines, pixels, from which on they are lines, and below which they are a tint.
 pub(crate) const GRID_OPEN: f64 = 10.0;
 pub(crate) const GRID_DENSE: f64 = 5.0;
-/// Coverage of that tint: of the lines at GRID_DENSE, and no more where they are denser.
+/// Coverage of that tint: the coverage of lines at GRID_DENSE, and no more where they are denser.
 pub(crate) const GRID_TINT: f64 = GRID_WIDTH / GRID_DENSE;
 /// A pixel that sees more of the sky than this (sr), or of whose patch nothing is known, is a tint.
 pub(crate) const GRID_WHOLE_SKY: f64 = 100.0;

@@ -29,9 +29,9 @@ pub const STAR_REFERENCE_RADIANCE: f64 = 30.0;
 pub const REFERENCE_SOLID_ANGLE: f64 =
     (2.0 * 0.577_350_269_189_625_8 / 720.0) * (2.0 * 0.577_350_269_189_625_8 / 720.0);
 
-/// V of the faintest stars that the lists of each level hold, and beyond the last level none: wide pixels hold so many
-/// faint stars that their mean light stands for them. By the number of stars in the real sky no list is long: about 10
-/// on average, with a million stars too.
+/// V of the faintest stars that the lists of each level hold. Beyond the last level there are none: wide pixels hold so
+/// many faint stars that their mean light stands for them. With the number of stars in the real sky no list is long:
+/// about 10 on average, with a million stars too.
 const FAINTEST: [f64; STAR_LEVELS as usize + 1] = [f64::INFINITY, 9.6, 8.3, 7.0, 5.5, 4.0, f64::NEG_INFINITY];
 
 /// `light_tables` of the GPU begin with the blackbodies; then come, at these places, the mean skies' tables, room for
@@ -44,7 +44,7 @@ pub(crate) const STARS_OFFSET: usize = MEAN_SKY_OFFSET + STAR_LEVELS as usize;
 
 /// Blackbodies that stand for the stars that a level leaves out, before their light is put into one table.
 const MEAN_SKY_PARTS: usize = 6;
-/// K. Upper ends of the temperatures that all but the last gather.
+/// The upper ends, K, of the temperatures that all these blackbodies but the last gather.
 const MEAN_SKY_BOUNDS: [f64; MEAN_SKY_PARTS - 1] = [3900.0, 4800.0, 6500.0, 9000.0, 12500.0];
 
 /// Cells along a cube side.
@@ -100,7 +100,7 @@ pub fn cell_of(direction: DVec3, level: u32) -> u32 {
 struct MeanSkyPart {
     /// K.
     temperature: f64,
-    /// ln Y of it (`BlackbodyTable::ln_luminance`).
+    /// ln Y of the blackbody (`BlackbodyTable::ln_luminance`).
     log_reference: f64,
     /// Luminance at rest, spread over the whole sky.
     radiance: f64,
@@ -118,8 +118,8 @@ pub struct MeanSky {
 
 /// Stars, cells and mean light, ready to draw.
 pub struct StarIndex {
-    /// Two per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. In f32,
-    /// what the GPU has, so that both tracers see the same sky.
+    /// Two entries per star: direction and flux (radiance x solid angle at rest); temperature (K), its ln Y, 0, 0. They
+    /// are in f32, as the GPU has them, so that both tracers see the same sky.
     pub stars: Vec<[f32; 4]>,
     /// For every cell, where its list begins in `star_lists`, times 256, plus its length.
     pub star_cells: Vec<u32>,
@@ -138,7 +138,7 @@ impl std::fmt::Debug for StarIndex {
 }
 
 impl StarIndex {
-    /// The catalogue's. Errors: OUT_OF_MEMORY.
+    /// The index of the catalogue's stars. Errors: OUT_OF_MEMORY.
     pub fn shared() -> Result<Arc<Self>> {
         StarField::catalogue()
     }
@@ -270,10 +270,10 @@ fn visit_cells(star: &Star, visit: &mut impl FnMut(usize)) {
     }
 }
 
-/// Named in out-of-memory errors.
+/// The name of this memory in out-of-memory errors.
 const STARS: &str = "the index of a sky's stars";
 
-/// Stable; in place but for the keys, as `sort_by_cached_key`, which cannot be refused memory.
+/// A stable sort, in place but for the keys; `sort_by_cached_key` cannot be refused memory.
 fn sort_by_cell(stars: &mut [Star]) -> Result<()> {
     let keys = stars.iter().zip(0_u32..).map(|(star, number)| (cell_of(star.direction, 0), number));
     let mut order = collected(keys, STARS)?;

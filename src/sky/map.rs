@@ -23,15 +23,15 @@ const TALL: u32 = 1024;
 
 /// A picture of the whole sky.
 pub struct SkyMap {
-    /// Finest first, at least as wide as high; each has half the columns and rows of the one before, rounded down, and
-    /// the last is one texel: the mean.
+    /// The levels, the finest first, at least as wide as high. Each has half the columns and rows of the one before,
+    /// rounded down, and the last is one texel: the mean.
     levels: Vec<Level>,
 }
 
 /// One level of a [`SkyMap`].
 pub struct Level {
     pub size: [u32; 2],
-    /// Row by row; `pack`.
+    /// The texels row by row, as `pack` makes them.
     pub texels: Vec<u32>,
 }
 
@@ -153,7 +153,7 @@ struct Scratch {
     /// The row, and its sums up to each texel.
     row: Vec<[f64; 3]>,
     up_to: Vec<[f64; 3]>,
-    /// The row to be.
+    /// The row that is being made.
     blurred: Vec<[f64; 3]>,
 }
 
@@ -161,7 +161,7 @@ fn add(sum: &mut [f64; 3], weight: f64, light: [f64; 3]) {
     (0..3).for_each(|c| sum[c] += weight * light[c]);
 }
 
-/// The parts of the source that make up item `index` of `count`: of each its index and how much of it, as a share of
+/// The parts of the source that make up item `index` of `count`: the index of each, and how much of it, as a share of
 /// itself.
 fn parts(index: usize, count: usize, source: usize) -> impl Iterator<Item = (usize, f64, f64)> {
     let scale = source as f64 / count as f64;

@@ -20,20 +20,21 @@ static HEIGHTS: &[u8] = include_bytes!("data/milky_way.png");
 const HIGHEST: f64 = 6.0;
 /// Texels of the map.
 const MAP_SIZE: [u32; 2] = [2048, 1024];
-/// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al. 1998, A&AS 127, 1, section 10:
-/// 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the next, and in the end nothing.
+/// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al.
+/// 1998, A&AS 127, 1, section 10: 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the
+/// next, and in the end nothing.
 const BRIGHTEST: f64 = 20.6;
 const MAGNITUDES_A_HEIGHT: f64 = 0.3;
 /// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer
 /// steps between its white and its black than a dark-adapted eye sees in the sky.
 const MILKY_WAY_GAIN: f64 = 8.0;
-/// sr.
+/// Solid angle, sr.
 const SQUARE_ARC_SECOND: f64 = (PI / 648_000.0) * (PI / 648_000.0);
 
-/// K. Of the light of the bulge, and far from it.
+/// Temperatures, K, of the light of the bulge and of the light far from it.
 const BULGE_TEMPERATURE: f64 = 4700.0;
 const ARM_TEMPERATURE: f64 = 6800.0;
-/// rad. How far the bulge reaches.
+/// The reach of the bulge, rad.
 const BULGE_RADIUS: f64 = 0.45;
 
 /// Octaves of the dust, the cells of the first per radian, and how much smaller the cells of the next are, and its
@@ -65,11 +66,11 @@ impl SkyMap {
     }
 }
 
-/// The picture, and what turns it into light.
+/// The picture, and the numbers that turn it into light.
 struct MilkyWay {
     width: u32,
     height: u32,
-    /// Row by row, of `SkyMap`'s projection.
+    /// The picture's codes row by row, in `SkyMap`'s projection.
     codes: Vec<u8>,
     to_galactic: DMat3,
     colours: &'static BlackbodyTable,
@@ -130,7 +131,7 @@ impl MilkyWay {
         Column { between: [wrapped(left), wrapped(left + 1.0)], share: x - left, right_ascension: [cos_ra, sin_ra] }
     }
 
-    /// Between the outlines at a column and at v of the picture, bilinear.
+    /// The height between the outlines at a column and at v of the picture, bilinear.
     fn outline_height(&self, column: &Column, v: f64) -> f64 {
         let y = v * f64::from(self.height) - 0.5;
         let top = y.floor();

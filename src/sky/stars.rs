@@ -11,9 +11,9 @@ use glam::{DVec2, DVec3};
 /// ordinary frame. Images of higher order are as narrow far from any critical curve, but only cameras with a narrow
 /// field of view see them, whose pixels are small: no less than an f32 can tell.
 const LEAST_PATCH: (f64, f64) = (1e-5, 1e-3);
-/// Keeps the division finite for cameras of no field of view at all.
+/// The least solid angle, which keeps the division finite for cameras of no field of view at all.
 pub(crate) const TINY_AREA: f64 = 1e-30;
-/// Brightest sum: finite in f32, whatever the host multiplies it by.
+/// The brightest sum: finite in f32, whatever the host multiplies it by.
 pub(crate) const MAX_STAR_LIGHT: f64 = 1e9;
 
 /// Quadratic B-spline, support [-1.5, 1.5]: its values at t + integers sum to 1, so a star's light does not depend on
@@ -116,8 +116,8 @@ impl StarIndex {
     }
 }
 
-/// How much is left, at this footprint, of the stars that the next level leaves out: they go over into the mean sky as
-/// the footprint grows through the second half of the level's margin.
+/// The share that is left, at this footprint, of the stars that the next level leaves out: they go over into the mean
+/// sky as the footprint grows through the second half of the level's margin.
 fn fade(level: u32, radius: f64) -> f64 {
     1.0 - smoothstep(0.5 * margin(level), margin(level), radius)
 }

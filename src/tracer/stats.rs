@@ -24,7 +24,7 @@ pub struct FrameStats {
     pub device_bytes: u64,
 }
 
-/// Where the numbers about a renderer's last finished frame stand, whoever made it.
+/// The numbers about a renderer's last finished frame, whoever made it.
 #[derive(Clone, Default)]
 pub struct StatsBoard(Arc<Mutex<FrameStats>>);
 

@@ -1,5 +1,5 @@
-//! Which windows have a surface: one window takes one, since what two would show in turn is up to the driver, if it
-//! does not fail.
+//! The windows that have a surface. A window takes one surface: which of two would show is up to the driver, if it does
+//! not fail.
 
 use crate::error::{Error, Result};
 use std::collections::BTreeSet;
@@ -14,7 +14,7 @@ fn claimed() -> MutexGuard<'static, BTreeSet<Key>> {
     CLAIMED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A window that is taken while this lives.
+/// A window is taken for as long as this value lives.
 pub struct Claim(Key);
 
 impl Claim {

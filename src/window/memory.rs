@@ -9,9 +9,9 @@ use raw_window_handle as rwh;
 use std::num::NonZeroU32;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Longest side of such a window, that of X11's: its requests' coordinates have 16 bits.
+/// The longest side of such a window, in which X11's requests have 16 bits for coordinates.
 pub const MAX_SIDE: u32 = i16::MAX as u32;
-/// Most pixels of one: softbuffer counts the bytes of two frames in an i32.
+/// The most pixels of such a window: softbuffer counts the bytes of two frames in an i32.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
 /// A window that takes frames as memory.
@@ -86,7 +86,7 @@ impl MemoryWindow {
             },
             Self::Other(surface) => {
                 let [Some(width), Some(height)] = size.map(NonZeroU32::new) else { return Ok(()) };
-                // Unwind safe: what fails is not used again.
+                // This is unwind safe: a window that failed is not used again.
                 let put = catch_unwind(AssertUnwindSafe(|| {
                     surface.resize(width, height).map_err(lost)?;
                     let mut buffer = surface.buffer_mut().map_err(lost)?;
@@ -96,7 +96,7 @@ impl MemoryWindow {
                     }
                     buffer.present().map_err(lost)
                 }));
-                // It panics without descriptors, memory, or a connection.
+                // Softbuffer panics without descriptors, memory, or a connection.
                 put.unwrap_or_else(|_| Err(lost("the softbuffer crate gave up")))
             }
         }
@@ -111,7 +111,7 @@ mod x11 {
     use x11rb::connection::{Connection, RequestConnection};
     use x11rb::protocol::xproto::{ConnectionExt, CreateGCAux, Gcontext, ImageFormat, ImageOrder};
 
-    /// Of a PutImage request, before its pixels.
+    /// The bytes of a PutImage request before its pixels.
     const HEAD: usize = 64;
 
     /// Puts images into a window.

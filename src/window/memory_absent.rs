@@ -1,4 +1,4 @@
-//! In the place of `memory` without the feature `window`: no window takes frames.
+//! Takes the place of `memory` without the feature `window`: no window takes frames.
 
 use super::Window;
 use crate::error::{Error, Result};

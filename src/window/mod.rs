@@ -18,21 +18,21 @@ use crate::error::Result;
 /// How frames reach the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PresentMode {
-    /// At the display's rate, never torn.
+    /// Frames wait for the display, and are never torn.
     Vsync,
-    /// At once.
+    /// Frames are shown at once, and may tear.
     Immediate,
-    /// The newest at the display's rate.
+    /// The newest frame is shown at the display's rate.
     Mailbox,
 }
 
-/// What knows when a window takes its next frame, for windows whose VSYNC is not left to the driver.
+/// Tells when a window takes its next frame, for windows whose VSYNC is not left to the driver.
 pub trait Pacer: Send {
     /// Waits until the window takes a frame, a second at most; whether it does. Errors: SURFACE_LOST.
     fn wait(&mut self) -> Result<bool>;
     /// Asks to be told when the window takes the frame after the one that is presented next. Errors: SURFACE_LOST.
     fn ask(&mut self) -> Result<()>;
-    /// What was asked may have been lost: the next frame need not wait.
+    /// Called when the request may have been lost: the next frame need not wait.
     fn forget(&mut self);
 }
 
@@ -52,7 +52,7 @@ impl Window {
         Ok(Self { native, x11: x11::X11Window::open(&native)? })
     }
 
-    /// What to present through.
+    /// The handle to present through.
     pub fn handles(&self) -> Handles {
         self.x11.as_ref().map_or_else(|| self.native.handles(), |window| window.handles())
     }
@@ -72,7 +72,7 @@ impl Window {
         self.x11.as_ref().map(|window| window.depth)
     }
 
-    /// What the window's server had against frames that nobody waited for.
+    /// The complaints of the window's server about frames that nobody waited for.
     pub(crate) fn drop_errors(&self) {
         if let Some(window) = &self.x11 {
             window.drop_errors();
@@ -102,7 +102,7 @@ impl Window {
         Ok(Self { native })
     }
 
-    /// What to present through.
+    /// The handle to present through.
     pub fn handles(&self) -> Handles {
         self.native.handles()
     }
@@ -122,7 +122,7 @@ impl Window {
         None
     }
 
-    /// What the window's server had against frames that nobody waited for.
+    /// The complaints of the window's server about frames that nobody waited for.
     pub(crate) fn drop_errors(&self) {}
 
     /// `None`: the driver's VSYNC is good enough.

@@ -33,7 +33,7 @@ unsafe impl Send for NativeWindow {}
 // SAFETY: as above.
 unsafe impl Sync for NativeWindow {}
 
-/// What a window is presented through.
+/// The handle that a window is presented through.
 #[derive(Clone, Copy, Debug)]
 pub enum Handles {
     Raw(rwh::RawDisplayHandle, rwh::RawWindowHandle),
@@ -42,7 +42,7 @@ pub enum Handles {
 }
 
 impl NativeWindow {
-    /// As `BHR_WINDOW_*`.
+    /// The name in `BHR_WINDOW_*`.
     fn kind(&self) -> &'static str {
         match self {
             Self::Xlib { .. } => "XLIB",
@@ -78,7 +78,7 @@ impl NativeWindow {
         Err(Error::unsupported(format!("window kind is BHR_WINDOW_{}; {platform} has no such windows", self.kind())))
     }
 
-    /// The same as raw-window-handle.
+    /// The window as the raw-window-handle crate describes it.
     pub fn handles(&self) -> Handles {
         match *self {
             Self::Xlib { display, window, visual, screen } => {

@@ -27,10 +27,10 @@ const PATIENCE: Duration = Duration::from_secs(1);
 
 /// The compositor's word on when to draw, for one wl_surface.
 pub struct FramePacer {
-    /// Goes first: with it go its queue and the callback.
+    /// Dropped first: its queue and the callback go with it.
     connection: Connection,
     surface: WlSurface,
-    /// What `surface` points to.
+    /// The memory that `surface` points to.
     _wrapper: Wrapper,
     /// `None`: the next frame waits for nothing.
     asked: Option<Callback>,
@@ -180,8 +180,8 @@ impl Pacer for FramePacer {
 
     fn forget(&mut self) {
         let Some(asked) = self.asked.take() else { return };
-        // One that has come is gone already, which is no error here; after a panic the next use of the connection says
-        // so.
+        // A callback that has come is gone already, which is no error here; after a panic the next use of the
+        // connection says so.
         let _ = guarded(lost, || self.connection.backend().destroy_object(&asked.id).map_err(lost));
     }
 }

@@ -1,6 +1,6 @@
 //! X11 windows, through a connection of bhr's own to the server they are on. Errors of the X server then never reach
 //! the host's connection, whose Xlib handler would end the process, and the host may destroy its window, or close its
-//! connection, before the surface. Reads of the host's connection only where it leads.
+//! connection, before the surface. From the host's connection only its server is read.
 
 use super::claim;
 use super::native::{Handles, NativeWindow};
@@ -70,7 +70,7 @@ impl X11Window {
         self.id.get()
     }
 
-    /// In pixels; `None` once the window, or the server, is gone.
+    /// The size in pixels; `None` once the window, or the server, is gone.
     pub fn size(&self) -> Option<[u32; 2]> {
         geometry(&self.connection, self.id).map(|g| [g.width.into(), g.height.into()])
     }
@@ -86,7 +86,7 @@ impl X11Window {
         (self.server.clone(), self.id.get().into())
     }
 
-    /// Drops what the server had against requests that nobody waited for.
+    /// Drops the server's complaints about requests that nobody waited for.
     pub fn drop_errors(&self) {
         while let Ok(Some(_)) = self.connection.poll_for_event() {}
     }

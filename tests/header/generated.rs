@@ -196,11 +196,36 @@ fn declared(block: &str) -> &str {
 }
 
 /// The blocks of a section, one blank line between them. Constants that follow each other make a table, with their
-/// comments beside them, if each comment fits on its line.
+/// comments beside them, if each comment fits on its line; so do the fields of a struct with short comments.
 fn in_tables(blocks: &[&str]) -> String {
     let is_constant = |block: &&str| block.contains("#define ");
     let groups = blocks.chunk_by(|a, b| is_constant(a) && is_constant(b));
-    groups.map(|group| table(group).unwrap_or_else(|| group.join("\n\n"))).collect::<Vec<_>>().join("\n\n")
+    let written = groups.map(|group| table(group).unwrap_or_else(|| with_fields_in_lines(&group.join("\n\n"))));
+    written.collect::<Vec<_>>().join("\n\n")
+}
+
+/// `text` with the comment of each struct's field beside it where it fits on the line.
+fn with_fields_in_lines(text: &str) -> String {
+    let lines: Vec<&str> = text.lines().collect();
+    let field = |pair: &[&str]| {
+        let comment = pair[0].strip_prefix("    /** ")?.strip_suffix(" */")?;
+        Some((pair[1].to_owned(), format!("/**< {comment} */"))).filter(|_| pair[1].ends_with(';'))
+    };
+    let fits = |(code, comment): &(String, String)| code.len() + 1 + comment.len() <= MAX_LINE;
+    let mut written = Vec::new();
+    let mut rest = lines.as_slice();
+    while let [line, after @ ..] = rest {
+        let run: Vec<_> = rest.chunks_exact(2).map_while(|pair| field(pair).filter(fits)).collect();
+        let width = run.iter().map(|(code, _)| code.len()).max().unwrap_or(0);
+        let aligned = run.iter().all(|(_, comment)| width + 1 + comment.len() <= MAX_LINE);
+        let width = if aligned { width } else { 0 };
+        written.extend(run.iter().map(|(code, comment)| format!("{code:<width$} {comment}")));
+        rest = if run.is_empty() { after } else { &rest[2 * run.len()..] };
+        if run.is_empty() {
+            written.push((*line).to_owned());
+        }
+    }
+    written.join("\n")
 }
 
 /// Constants with short comments, one per line; `None` when `group` is something else.

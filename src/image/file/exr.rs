@@ -22,7 +22,7 @@ use std::cell::Cell;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::ops::Range;
 
-/// Longest headers of all parts together, bytes.
+/// The longest headers of all parts together, bytes.
 const MAX_HEADER_BYTES: u64 = 8 << 20;
 /// Bytes of memory that one byte of header may take: attributes of a few bytes become values of some hundred, in
 /// tables that grow by doubling.
@@ -168,7 +168,7 @@ struct Picture {
     part: usize,
     /// Width and height of the display window.
     size: [usize; 2],
-    /// Place of the data window's first pixel in the display window.
+    /// The place of the data window's first pixel in the display window.
     offset: [i64; 2],
     pixels: Vec<f32>,
     /// The part has no channel A: alpha is 1 where the data window reaches.
@@ -181,7 +181,7 @@ struct Picture {
     columns: Range<usize>,
     rows: Range<usize>,
     seen: Vec<u8>,
-    /// How many of them have not come yet.
+    /// The number of these blocks that have not come yet.
     missing: usize,
 }
 

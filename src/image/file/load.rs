@@ -1,4 +1,4 @@
-//! Reading image files: which kind a file is, by its first bytes, and what all kinds become.
+//! Reading image files: the kind of a file, told by its first bytes, and the image that every kind becomes.
 
 use super::loaded::Loaded;
 use super::replace::without_waiting;
@@ -26,7 +26,8 @@ pub fn decode_png(bytes: &[u8]) -> Result<Loaded> {
 }
 
 fn open(path: &Path) -> Result<BufReader<File>> {
-    // Before it is opened, which devices may take for a command; and then whether it is still so.
+    // The kind is looked at before the file is opened, which devices may take for a command; and then whether it is
+    // still so.
     refuse_as_source(&fs::metadata(path).map_err(io_error)?)?;
     let mut options = OpenOptions::new();
     without_waiting(options.read(true));

@@ -46,7 +46,7 @@ pub(super) fn read(mut file: impl BufRead) -> Result<Loaded> {
     let depth = depth as usize;
     let sample_bytes = if most > 255 { 2 } else { 1 };
     let mut row = zeros::<u8>(width as usize * depth * sample_bytes)?;
-    // Where red, green, blue and alpha are among the samples of a pixel.
+    // The places of red, green, blue and alpha among the samples of a pixel.
     let place = [0, if depth > 2 { 1 } else { 0 }, if depth > 2 { 2 } else { 0 }];
     let alpha = if depth.is_multiple_of(2) { Some(depth - 1) } else { None };
     let pixels = if most > 255 {

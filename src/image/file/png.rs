@@ -9,7 +9,7 @@ use ::png::{
 };
 use std::io::{BufRead, Seek, SeekFrom, Write};
 
-/// Bytes that the decoder may hold besides two rows: its own default.
+/// The bytes that the decoder may hold besides two rows: its own default.
 const MAX_CHUNK_BYTES: usize = 64 << 20;
 
 /// Errors: IO; OUT_OF_MEMORY.
@@ -71,7 +71,7 @@ fn widen<'a>(row: &[u8], color: ColorType, codes: &[f32], out: &'a mut [u8]) -> 
             }
             ColorType::Rgb => pixels.zip(row.as_chunks().0).for_each(|(out, [r, g, b])| *out = [*r, *g, *b, 255]),
             ColorType::Rgba => pixels.zip(row.as_chunks().0).for_each(|(out, rgba)| *out = *rgba),
-            // Expanded by the decoder.
+            // The decoder has expanded the samples.
             ColorType::Indexed => {}
         }
         return &out[..written.min(out.len())];

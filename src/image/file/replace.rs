@@ -9,7 +9,7 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Links to links that are followed, as many as Linux does.
+/// The most links to links that are followed, as many as Linux follows.
 const MAX_LINKS: u32 = 40;
 /// Most names that are tried for the temporary file. Where process numbers repeat, as in containers, files that
 /// earlier processes left have the first names.
@@ -72,7 +72,7 @@ fn end_of_links(path: &Path) -> Result<Cow<'_, Path>> {
 fn may_follow(link: &Metadata, place: &Path) -> io::Result<bool> {
     use std::os::unix::fs::MetadataExt;
     let folder = fs::metadata(folder_of(place))?;
-    // Sticky, and written by all.
+    // The folder is sticky, and all may write in it.
     let shared = folder.mode() & 0o1002 == 0o1002;
     // SAFETY: it has no conditions.
     let user = unsafe { libc::geteuid() };
@@ -93,7 +93,7 @@ fn older(path: &Path, place: &Path) -> Result<Option<Metadata>> {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(io_error(error)),
     };
-    // Before it is opened, which devices may take for a command.
+    // The kind of the file is looked at before it is opened, which devices may take for a command.
     refuse_as_target(&before)?;
     let mut options = OpenOptions::new();
     without_waiting(options.write(true));
@@ -105,7 +105,7 @@ fn older(path: &Path, place: &Path) -> Result<Option<Metadata>> {
     }
 }
 
-/// A FIFO that has come in the file's place just now does not hold the caller up.
+/// Opens without waiting: a FIFO that has come in the file's place just now does not hold the caller up.
 #[cfg(unix)]
 pub(super) fn without_waiting(options: &mut OpenOptions) {
     use std::os::unix::fs::OpenOptionsExt;
@@ -171,7 +171,7 @@ fn create_beside(place: &Path, before: Option<&Metadata>) -> Result<(Temporary, 
 fn never_wider(options: &mut OpenOptions, before: Option<&Metadata>) {
     use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
     if let Some(before) = before {
-        // Until `keep_mode` its group is another one.
+        // The file has another group until `keep_mode`.
         options.mode(before.mode() & 0o707);
     }
 }
@@ -191,8 +191,8 @@ fn finish(file: File, before: Option<&Metadata>) -> io::Result<()> {
 fn keep_mode(file: &File, before: Option<&Metadata>) -> io::Result<()> {
     use std::os::unix::fs::{MetadataExt, PermissionsExt, fchown};
     let Some(before) = before else { return Ok(()) };
-    // Where this process may; else the file becomes its own, as any new file does, and its group's if need be: that is
-    // not given the rights of the group before it.
+    // The owner is set where this process may; else the file becomes its own, as any new file does, and its group's if
+    // need be: that group is not given the rights of the group before it.
     let _ = fchown(file, Some(before.uid()), Some(before.gid())).or_else(|_| fchown(file, None, Some(before.gid())));
     let now = file.metadata()?;
     let mode = before.mode() & if now.gid() == before.gid() { 0o777 } else { 0o707 };

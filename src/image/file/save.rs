@@ -1,4 +1,4 @@
-//! Writing image files: which kind goes with a path and a format.
+//! Writing image files: the kind of file that goes with a path and a format.
 
 use super::support::{about, on_own_thread};
 use super::{png, pnm, replace};

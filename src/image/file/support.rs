@@ -4,13 +4,13 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::memory::{MAX_SIDE, PixelFormat};
 use std::fmt::Display;
 
-/// Most bytes of pixels that a file may become: a 16384 x 16384 RGBA32F image.
+/// The most bytes of pixels that a file may become: those of a 16384 x 16384 RGBA32F image.
 pub(super) const MAX_LOAD_BYTES: u64 = 4 << 30;
 
-/// Bytes for readers, tables and messages: small allocations, which cannot be refused.
+/// The bytes for readers, tables and messages: small allocations, which cannot be refused.
 const SMALL_BYTES: u64 = 1 << 20;
 
-/// Address space that a thread takes as it begins: its stack of 2 MiB, and the heap of 64 MiB that glibc sets apart
+/// The address space that a thread takes as it begins: its stack of 2 MiB, and the heap of 64 MiB that glibc sets apart
 /// for it.
 const THREAD_BYTES: u64 = 72 << 20;
 

@@ -1,4 +1,4 @@
-//! From a spin-0 ray in its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane,
+//! Takes a spin-0 ray from its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane,
 //! and how both change with the look direction. Geometry of great circles; the ray itself comes from `table::Look`.
 //!
 //! The ray lies at N(phi) = e_r cos phi + T sin phi, T the unit vector of (e_th n_th + e_ph n_ph).
