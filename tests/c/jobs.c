@@ -772,6 +772,7 @@ int main(int argc, char **argv) {
     if (small) {
         slow_samples = 16; /* slow enough there */
     }
+    render_expected(context);
     if (brief) {
         progress_is_heard(context);
         progress_cancels(context);
@@ -781,7 +782,6 @@ int main(int argc, char **argv) {
         bhr_context_destroy(context);
         return check_end();
     }
-    render_expected(context);
     snapshots(context);
     mixed_ends(context);
     beside_frames(context);
