@@ -249,7 +249,8 @@ void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *inde
     }
     const char *tracer = info->backend == BHR_BACKEND_CPU ? "the CPU" : "a software driver";
     fprintf(out, "%sNo GPU driver was usable, so %s traces the light; --verbose says why.\n", indent, tracer);
-    fprintf(out, "%sA GPU is many times as fast. Its driver: Debian's and Ubuntu's mesa-vulkan-drivers for AMD\n", indent);
+    fprintf(out, "%sA GPU is many times as fast. Its driver: Debian's and Ubuntu's mesa-vulkan-drivers for AMD\n",
+            indent);
     fprintf(out, "%sand Intel, NVIDIA's own for NVIDIA.\n", indent);
 }
 

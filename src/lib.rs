@@ -1,15 +1,19 @@
 //! bhr, the embeddable black-hole renderer. The map of the crate, from left to right as a frame flows:
 //!
 //! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.
+//! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background. [`surface`]:
+//!   its frames in the host's windows.
+//! - `tracers`: the tracers behind one face. `cpu`, `gpu`: the two of them, with one behaviour: scene -> pixels.
+//! - [`window`]: the host's windows, as their platforms know them.
+//! - [`tracer`]: what tracers take and give: requests, tiles, numbers, adapters.
+//! - [`film`]: radiance -> pixels.
 //! - [`scene`]: what to draw, as plain validated data.
-//! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background.
-//! - `cpu`, `gpu`: the two tracers, with one behaviour: scene -> linear radiance.
-//! - [`film`]: radiance -> pixels. [`image`]: pixels in memory and files. [`sky`]: the stars.
-//! - [`window`]: the host's windows as targets of frames.
-//! - `thread_scope`: what the library's threads take over from the threads that they work for.
-//! - [`physics`]: beside the line: metrics, geodesics, observers, orbits, disk flux, blackbody; f64, usable alone.
-//! - `deferred`: below all: work that waits until a thread holds no lock of the process. `allocate`: memory that may be
-//!   refused.
+//! - [`sky`]: stars and maps. [`image`]: pixels in memory and files.
+//! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
+//! - `random`, `deferred` (work that waits until a thread holds no lock of the process), `allocate` (memory that may be
+//!   refused), `thread_scope` (what the library's threads take over from the threads that they work for), [`error`].
+//!
+//! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms.rs holds it.
 
 mod allocate;
 #[doc(hidden)]

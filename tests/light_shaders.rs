@@ -38,7 +38,8 @@ const ENTRIES: &str = "
     let i = 4u * id.x;
     let d = inputs[i].xyz;
     let g = inputs[i + 3u];
-    outputs[id.x] = bitcast<vec4<u32>>(vec4<f32>(star_light(d, footprint_of(d, inputs[i + 1u].xyz, inputs[i + 2u].xyz), g.x, g.y), 0.0));
+    outputs[id.x] = bitcast<vec4<u32>>(
+        vec4<f32>(star_light(d, footprint_of(d, inputs[i + 1u].xyz, inputs[i + 2u].xyz), g.x, g.y), 0.0));
 }
 @compute @workgroup_size(64) fn run_film(@builtin(global_invocation_id) id: vec3<u32>) {
     if 4u * id.x >= arrayLength(&inputs) { return; }

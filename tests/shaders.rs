@@ -98,7 +98,9 @@ fn every_shader_translates_to_every_language() {
 fn a_shader_that_some_language_cannot_say_is_found() {
     let good = "override size: u32 = 8u;
         @group(0) @binding(0) var<storage, read_write> data: array<f32>;
-        @compute @workgroup_size(size) fn main(@builtin(global_invocation_id) id: vec3<u32>) { data[id.x] = f32(size); }";
+        @compute @workgroup_size(size) fn main(@builtin(global_invocation_id) id: vec3<u32>) {
+            data[id.x] = f32(size);
+        }";
     assert_eq!(translate("good", good), Ok(1));
     let no_type = good.replace("array<f32>", "array<f23>");
     let no_default = good.replace(" = 8u", "");

@@ -1,14 +1,14 @@
 //! The C boundary: the only `extern "C"` of the crate and all code that touches a host's pointers. One file per C
 //! concept; each holds the types, constants and functions of one section of `include/bhr.h`, which
-//! `tests/header/generated.rs` makes from them. Public items that begin with `bhr_`, `Bhr` or `BHR_` are the API, and their comments are
-//! written for the reader of the header. Nothing here knows physics or pixels: a function checks its arguments and
-//! makes one call into `Renderer`, `Scene` or `image`.
+//! `tests/header/generated.rs` makes from them. Public items that begin with `bhr_`, `Bhr` or `BHR_` are the API, and
+//! their comments are written for the reader of the header. Nothing here knows physics or pixels: a function checks its
+//! arguments and makes one call into `Renderer`, `Scene` or `image`.
 //!
-//! Every entry point has one shape: out-parameters are cleared ([`pointer::Out`]), then [`entry`] (or [`call`]) takes a closure,
-//! runs it under the panic guard (with a context: under its lock) and turns its `Result` into a status, a message
-//! and a log line. Structs cross the boundary by value only ([`versioned`]); no pointer of the host's ever becomes
-//! a reference, so misaligned structs and arrays are read and written correctly. (Pixels must be aligned; `image`
-//! checks.)
+//! Every entry point has one shape: out-parameters are cleared ([`pointer::Out`]), then [`entry`] (or [`call`]) takes a
+//! closure, runs it under the panic guard (with a context: under its lock) and turns its `Result` into a status, a
+//! message and a log line. Structs cross the boundary by value only ([`versioned`]); no pointer of the host's ever
+//! becomes a reference, so misaligned structs and arrays are read and written correctly. (Pixels must be aligned;
+//! `image` checks.)
 
 // Item documentation here is the C header: its brackets are cbindgen annotations and C arrays, no links.
 #![allow(rustdoc::broken_intra_doc_links, rustdoc::private_intra_doc_links)]

@@ -25,8 +25,8 @@ const MAX_PATH: usize = 1 << 16;
 pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
     let Some((frame, start)) = scene.start(ray) else {
         return Err(Error::argument(
-            "ray is not valid: position, direction and frequency_ratio (> 0) must be finite, the direction not zero, and \
-             the position outside a spinning hole's horizon",
+            "ray is not valid: position, direction and frequency_ratio (> 0) must be finite, the direction not zero, \
+             and the position outside a spinning hole's horizon",
         ));
     };
     let eye = ray.position;

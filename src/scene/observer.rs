@@ -56,7 +56,8 @@ impl Scene {
         let spin = self.hole.spin;
         if frame.rain && camera.motion != Motion::FreeFall {
             return Err(Error::state(format!(
-                "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {}: there only FREE_FALL is possible",
+                "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {}: there only FREE_FALL is \
+                 possible",
                 frame.r,
                 camera.motion.name()
             )));

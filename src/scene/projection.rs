@@ -26,7 +26,8 @@ impl Mapping {
         let projection = camera.projection;
         if projection == Projection::Cube && u64::from(region.full_width) != 6 * u64::from(region.full_height) {
             return Err(Error::state(format!(
-                "frame is {} x {}; the projection CUBE shows six faces side by side, so its width must be 6 times its height, {}",
+                "frame is {} x {}; the projection CUBE shows six faces side by side, so its width must be 6 times \
+                 its height, {}",
                 region.full_width,
                 region.full_height,
                 6 * u64::from(region.full_height)

@@ -1,6 +1,6 @@
 //! Structure of the disk: the factor by which its turbulence changes the brightness at a place and a time. The pattern,
-//! its motion and the split of the scene's time are here; both tracers use them, and `shaders/emit/turbulence.wgsl` mirrors
-//! `brightness`. Knows no colours and no rays.
+//! its motion and the split of the scene's time are here; both tracers use them, and `shaders/emit/turbulence.wgsl`
+//! mirrors `brightness`. Knows no colours and no rays.
 //!
 //! Octaves of gradient noise (Perlin 2002) in (ln r, azimuth fixed to the matter) multiply: factor = prod (1 + t a_i
 //! n_i), with n_i independent, of mean 0, within [-1, 1]. So the mean is 1 whatever octaves are filtered away, the

@@ -299,7 +299,8 @@ static void cube(Watch *watch, BhrContext *context) {
     for (int i = 0; i < 6; i += 2) {
         const double *a = rays[2 * 6 * SIDE + i * SIDE + 2].direction;
         const double *b = rays[2 * 6 * SIDE + (i + 1) * SIDE + 2].direction;
-        CHECK(fabs(a[0] + b[0]) + fabs(a[1] + b[1]) + fabs(a[2] + b[2]) < 1e-12, "faces %d and %d are not opposite", i, i + 1);
+        CHECK(fabs(a[0] + b[0]) + fabs(a[1] + b[1]) + fabs(a[2] + b[2]) < 1e-12, "faces %d and %d are not opposite", i,
+              i + 1);
     }
     /* The full frame of a region counts; the part that the image holds may have any shape. */
     BhrRegion region = {.struct_size = sizeof region, .full_width = 12 * SIDE, .full_height = 2 * SIDE, .x = 7, .y = 3};
@@ -341,7 +342,8 @@ static void fisheye(Watch *watch, BhrContext *context) {
     }
     CHECK(outside >= 4, "%d pixels lie outside the circle", outside);
     CHECK_OK(bhr_camera_ray(context, SIDE, SIDE, -3.0, 1e8, &one));
-    CHECK(one.direction[0] == 0.0 && one.direction[1] == 0.0 && one.direction[2] == 0.0, "a ray far outside the circle");
+    CHECK(one.direction[0] == 0.0 && one.direction[1] == 0.0 && one.direction[2] == 0.0,
+          "a ray far outside the circle");
     /* An angle does not end a fall: any camera advances. */
     camera.motion = BHR_MOTION_FREE_FALL;
     CHECK_OK(bhr_camera_advance(context, &camera, 0.5, NULL));

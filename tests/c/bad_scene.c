@@ -227,7 +227,9 @@ static void camera(Watch *watch, BhrContext *context) {
         BhrCamera kept = {.struct_size = sizeof kept};
         good = default_camera();
         good.projection = projection;
-        good.fov_y = projection == BHR_PROJECTION_FISHEYE ? 2.0 * PI : projection == BHR_PROJECTION_PERSPECTIVE ? 1.0 : -9.0;
+        good.fov_y = projection == BHR_PROJECTION_FISHEYE       ? 2.0 * PI
+                     : projection == BHR_PROJECTION_PERSPECTIVE ? 1.0
+                                                                : -9.0;
         CHECK_OK(bhr_set_camera(context, &good));
         CHECK_OK(bhr_get_camera(context, &kept));
         CHECK(memcmp(&kept, &good, sizeof kept) == 0, "projection %d is not kept", (int)projection);
@@ -428,7 +430,8 @@ static void sky(Watch *watch, BhrContext *context) {
         BhrSky back;
         CHECK_OK(bhr_sky_init(&back, sizeof back));
         CHECK_OK(bhr_get_sky(context, &back));
-        CHECK(back.flags == value.flags && back.seed == seeds[i], "the procedural sky %zu has flags %#x", i, (unsigned)back.flags);
+        CHECK(back.flags == value.flags && back.seed == seeds[i], "the procedural sky %zu has flags %#x", i,
+              (unsigned)back.flags);
     }
     CHECK_OK(bhr_sky_init(&value, sizeof value));
     CHECK_OK(bhr_set_sky(context, &value));

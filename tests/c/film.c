@@ -21,7 +21,8 @@ static void set_film(BhrContext *context, BhrToneMap tone_map, double exposure_e
     BhrFilm got;
     CHECK_OK(bhr_film_init(&got, sizeof got));
     CHECK_OK(bhr_get_film(context, &got));
-    CHECK(got.bloom == bloom && got.exposure_ev == exposure_ev && got.tone_map == tone_map, "another film than was set");
+    CHECK(got.bloom == bloom && got.exposure_ev == exposure_ev && got.tone_map == tone_map,
+          "another film than was set");
 }
 
 static size_t render(BhrContext *context, BhrFormat format, uint32_t flags, unsigned char *pixels) {

@@ -355,7 +355,8 @@ static void call_back_in(const Progress *progress) {
     CHECK_FAILS(BHR_ERROR_INVALID_STATE, "callback", bhr_job_stats(progress->job, &stats));
     check_mark_message();
     bhr_job_destroy(progress->job);
-    CHECK(strstr(bhr_error_message(), "callback") != NULL, "bhr_job_destroy in a callback says: %s", bhr_error_message());
+    CHECK(strstr(bhr_error_message(), "callback") != NULL, "bhr_job_destroy in a callback says: %s",
+          bhr_error_message());
     check_mark_message();
     bhr_context_destroy(progress->context);
     CHECK(strstr(bhr_error_message(), "callback") != NULL, "bhr_context_destroy in a callback says: %s",
@@ -643,7 +644,8 @@ static void numbers(BhrContext *context) {
           (unsigned)before.frame_index);
     CHECK(stats.rays == 4 * WIDTH * HEIGHT && stats.steps > stats.rays, "%u rays, %u steps", (unsigned)stats.rays,
           (unsigned)stats.steps);
-    CHECK(stats.cpu_ns > 0 && (double)stats.cpu_ns * 1e-9 <= lasted, "%g s of %g s", (double)stats.cpu_ns * 1e-9, lasted);
+    CHECK(stats.cpu_ns > 0 && (double)stats.cpu_ns * 1e-9 <= lasted, "%g s of %g s",
+          (double)stats.cpu_ns * 1e-9, lasted);
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "stats", bhr_job_stats(job, NULL));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_job_stats(job, &small));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "job", bhr_job_stats(NULL, &stats));

@@ -113,7 +113,8 @@ static void shapes(Watch *watch) {
         map.width = sizes[i][0];
         map.height = sizes[i][1];
         CHECK_OK(bhr_set_sky_map(watch->context, &map));
-        CHECK(frame_light(watch->context) > 0.5f, "a map of %u x %u is dark", (unsigned)map.width, (unsigned)map.height);
+        CHECK(frame_light(watch->context) > 0.5f, "a map of %u x %u is dark", (unsigned)map.width,
+              (unsigned)map.height);
         map.row_stride = -(int64_t)(WIDTH * 16);
         map.pixels = map_pixels + (size_t)(map.height - 1) * WIDTH * 4;
         CHECK_OK(bhr_set_sky_map(watch->context, &map));
@@ -152,7 +153,8 @@ static void shapes(Watch *watch) {
 
 /* Every sum of the flags that this version draws gives a frame; quaternions must be of unit length within 1e-3. */
 static void flags_and_orientations(Watch *watch) {
-    static const double bad[][4] = {{0, 0, 0, 0}, {0, 0, 0, 1.002}, {0.5, 0.5, 0.5, 0.4}, {0, 0, NAN, 1}, {INFINITY, 0, 0, 1},
+    static const double bad[][4] = {{0, 0, 0, 0}, {0, 0, 0, 1.002}, {0.5, 0.5, 0.5, 0.4}, {0, 0, NAN, 1},
+                                   {INFINITY, 0, 0, 1},
                                     {1e300, 1e300, 0, 0}, {1e-200, 0, 0, 0}};
     static const double good[][4] = {{0, 0, 0, -1}, {0.5, -0.5, 0.5, 0.5}, {0, 0, 0, 1.0009}, {1, 0, 0, 0}};
     const uint32_t      drawn[] = {0, BHR_SKY_STARS, BHR_SKY_MILKY_WAY, BHR_SKY_MAP, BHR_SKY_GRID,

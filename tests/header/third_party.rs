@@ -47,8 +47,8 @@ const HEAD: &str = "\
 Third-party notices of bhr
 
 A library that is built from this repository (libbhr.so, libbhr.dylib, bhr.dll, libbhr.a) contains the works named
-here, on one platform or another, and these notices go where it goes. Made from Cargo.lock by tests/header/third_party.rs; do
-not edit.
+here, on one platform or another, and these notices go where it goes. Made from Cargo.lock by
+tests/header/third_party.rs; do not edit.
 
 It also contains the Rust standard library, in the version of the compiler that built it: Apache-2.0 OR MIT, copyright
 The Rust Project Developers (https://thanks.rust-lang.org), with parts under Unicode-3.0 (copyright Unicode, Inc.) and,

@@ -219,7 +219,8 @@ impl Errors {
         let [p50, p99, p999, p9999, max] = [0.5, 0.99, 0.999, 0.9999, 1.0].map(|share| self.at(share).0);
         let (_, scene, ray) = self.at(1.0);
         println!(
-            "{what}: n {} 50 % {p50:.1e} 99 % {p99:.1e} 99.9 % {p999:.1e} 99.99 % {p9999:.1e} max {max:.1e} (scene {scene} ray {ray})",
+            "{what}: n {} 50 % {p50:.1e} 99 % {p99:.1e} 99.9 % {p999:.1e} 99.99 % {p9999:.1e} max {max:.1e} \
+             (scene {scene} ray {ray})",
             self.0.len()
         );
         let failed = bars.iter().filter(|(share, bar)| self.at(*share).0 > *bar);

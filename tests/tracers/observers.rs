@@ -131,7 +131,8 @@ fn the_sky_of_a_fall_is_an_independent_integrals() {
                 }
             }
             println!(
-                "{tracer}: r {r}: {escaped} escaped, {captured} captured, direction {:.1e}, redshift {:.1e}, angle {:.1e}",
+                "{tracer}: r {r}: {escaped} escaped, {captured} captured, direction {:.1e}, redshift {:.1e}, \
+                 angle {:.1e}",
                 worst[0], worst[1], worst[2]
             );
             assert!(escaped > 80 && captured > 10, "{tracer}: r {r}: {escaped} {captured}");
@@ -303,7 +304,8 @@ fn a_fast_camera_sees_what_one_at_rest_does_aberrated() {
                     }
                 }
                 println!(
-                    "{tracer}, spin {spin}, {tables:?}: {seen} of the sky, {other} differ; direction by stretch {:.1e}, g {:.1e}",
+                    "{tracer}, spin {spin}, {tables:?}: {seen} of the sky, {other} differ; direction by stretch \
+                     {:.1e}, g {:.1e}",
                     worst[0], worst[1]
                 );
                 assert!(seen > 900 && other == 0, "{tracer}, spin {spin}, {tables:?}: {seen} seen, {other} differ");

@@ -203,7 +203,8 @@ fn edges_of_the_disk_are_filtered_over_the_pixel() {
                 renderer.scene = scene.clone();
                 let (edges, off, worst) = edge_errors(&window(renderer, 240), &truth);
                 println!(
-                    "{tracer} a = {spin} r = {distance} i = {inclination}: {edges} pixels, off {off:.4}, worst {worst:.3}"
+                    "{tracer} a = {spin} r = {distance} i = {inclination}: {edges} pixels, off {off:.4}, \
+                     worst {worst:.3}"
                 );
                 // Rays of thin rings (the disk with its inner edge at 9 M has such) count as they fall.
                 let limit = if inner == 0.0 { 0.01 } else { 0.042 };

@@ -166,7 +166,8 @@ static void input_only(const Scene *scene, const Host *host) {
     if (!CHECK(display != NULL, "no X server")) {
         return;
     }
-    window.id = XCreateWindow(display, DefaultRootWindow(display), 0, 0, WIDTH, HEIGHT, 0, 0, InputOnly, CopyFromParent, 0,
+    window.id = XCreateWindow(display, DefaultRootWindow(display), 0, 0, WIDTH, HEIGHT, 0, 0, InputOnly, CopyFromParent,
+                              0,
                               NULL);
     XSync(display, False);
     refuse(scene, &window, BHR_ERROR_INVALID_ARGUMENT, "window");

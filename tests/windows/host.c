@@ -89,7 +89,8 @@ Host host_open(BhrWindowKind kind, const char *server, uint32_t width, uint32_t 
 
 /* A visual of 32 bits; 0 when the screen has none. */
 static xcb_visualid_t visual_with_alpha(const xcb_screen_t *screen) {
-    for (xcb_depth_iterator_t depth = xcb_screen_allowed_depths_iterator(screen); depth.rem > 0; xcb_depth_next(&depth)) {
+    for (xcb_depth_iterator_t depth = xcb_screen_allowed_depths_iterator(screen); depth.rem > 0;
+         xcb_depth_next(&depth)) {
         if (depth.data->depth == 32 && depth.data->visuals_len > 0) {
             return xcb_depth_visuals(depth.data)->visual_id;
         }
@@ -237,7 +238,8 @@ int host_difference(const Host *host, uint32_t width, uint32_t height, const uns
     unsigned char *seen = malloc(bytes);
     const double   end = seconds_now() + PATIENCE;
     int            difference;
-    while ((difference = host_grab(host, width, height, seen) ? largest_difference(seen, rgba, bytes) : 999) > tolerance &&
+    while ((difference = host_grab(host, width, height, seen) ? largest_difference(seen, rgba, bytes) : 999) >
+               tolerance &&
            seconds_now() < end) {
         pause_ms(10);
     }

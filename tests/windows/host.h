@@ -47,6 +47,7 @@ BhrSurface *check_surface(BhrContext *context, const Host *host, uint32_t width,
 
 /* Starts a thread, or ends the program. <pthread.h>'s types stay out of this header. */
 typedef void *(*ThreadBody)(void *);
-void          run_threads(ThreadBody body, void *arguments, size_t argument_size, int count); /* returns when all ended */
+/* Returns when all have ended. */
+void          run_threads(ThreadBody body, void *arguments, size_t argument_size, int count);
 
 #endif

@@ -121,7 +121,8 @@ static void upscale(const unsigned char *half, unsigned char *full) {
             const int below = top + 1 < height && qy >= 0 ? top + 1 : top;
             const int u = qx < 0 ? 0 : qx % 4, v = qy < 0 ? 0 : qy % 4;
             for (int c = 0; c < 4; c++) {
-                const int upper = (4 - u) * half[4 * (top * width + left) + c] + u * half[4 * (top * width + right) + c];
+                const int upper = (4 - u) * half[4 * (top * width + left) + c] +
+                                  u * half[4 * (top * width + right) + c];
                 const int lower =
                     (4 - u) * half[4 * (below * width + left) + c] + u * half[4 * (below * width + right) + c];
                 full[4 * (y * (int)WIDTH + x) + c] = (unsigned char)(((4 - v) * upper + v * lower + 8) / 16);

@@ -1,5 +1,5 @@
-//! Adapters, devices, and what lies on them: buffers, textures, timers, and the ways to and from the host. Knows no kernel
-//! and no scene.
+//! Adapters, devices, and what lies on them: buffers, textures, timers, and the ways to and from the host. Knows no
+//! kernel and no scene.
 
 pub(in crate::gpu) mod adapter;
 pub(in crate::gpu) mod bindings;

@@ -4,7 +4,7 @@ use super::stages::Stages;
 use super::steps::{Step, Steps};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
-use crate::gpu::kernel::key::{PixelTarget, Source};
+use crate::gpu::kernel::variant::{PixelTarget, Source};
 use crate::scene::Projection;
 use crate::tracer::{FrameRequest, FrameStats};
 

@@ -7,7 +7,7 @@ use super::uniforms::FrameUniform;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::gpu::kernel::key::{FilmLook, Look, PixelTarget, Source, Variant};
+use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, ShadeVariant, Source, TraceVariant};
 use crate::gpu::lens::kerr::Wanted;
 use crate::gpu::lens::records::Making;
 use crate::physics::trace::Settings;
@@ -41,7 +41,7 @@ impl GpuTracer {
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
-        let film_look = FilmLook::new(&scene.film, scene.view, request.format, target);
+        let film_look = FilmVariant::new(&scene.film, scene.view, request.format, target);
         let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, film_look.is_usual());
         // Where one kernel both looks and develops, what is unusual in either is left open in both.
         let both = bloom.is_none() && samples == 1;
@@ -50,7 +50,7 @@ impl GpuTracer {
         let developed = if own_film { film_look } else { film_look.of_any() };
         let projection = own_view.then_some(scene.camera.projection);
         let looks = Looks {
-            look: Look {
+            look: ShadeVariant {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
                 milky_way: scene.shows_milky_way() && !request.transparent,
@@ -63,7 +63,7 @@ impl GpuTracer {
                 projection,
                 refines: scene.view == View::Light && scene.quality.refines,
             },
-            film: if bloom.is_some() { FilmLook::of_light() } else { developed },
+            film: if bloom.is_some() { FilmVariant::of_light() } else { developed },
             developed: bloom.is_some().then_some(developed),
             several_samples: samples > 1,
             rows: target == PixelTarget::Rows,
@@ -97,7 +97,7 @@ impl GpuTracer {
         let disk_u = scene.disk_u();
         Making {
             source,
-            variant: Variant { azimuth: pattern, projection, ..variant(scene, settings, inside) },
+            variant: TraceVariant { azimuth: pattern, projection, ..variant(scene, settings, inside) },
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             eye,

@@ -3,7 +3,8 @@
 
 use super::setup::Setup;
 use super::tracer::GpuTracer;
-use crate::gpu::kernel::key::{KernelKey, PixelTarget, Refined, Source};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::variant::{PixelTarget, Refined, Source};
 use crate::image::PixelFormat;
 use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMap, View};
 use crate::sky::SkyMap;

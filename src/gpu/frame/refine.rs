@@ -6,7 +6,8 @@ use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
-use crate::gpu::kernel::key::{FilmLook, KernelKey, Look, Refined, Source, Variant};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::variant::{FilmVariant, Refined, ShadeVariant, Source, TraceVariant};
 use wgpu::BufferUsages as Usage;
 
 /// `Edges` of refine/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
@@ -62,8 +63,8 @@ impl Refining {
     pub fn new(
         device: &Device,
         kernels: &Kernels,
-        (source, variant): (Source, Variant),
-        (look, film): (Look, Option<FilmLook>),
+        (source, variant): (Source, TraceVariant),
+        (look, film): (ShadeVariant, Option<FilmVariant>),
         shared: &[&[wgpu::BindingResource<'_>]],
         software: bool,
     ) -> Result<Self> {

@@ -14,7 +14,7 @@ use super::tables::Tables;
 use super::tiles::{MEMORY, Plan};
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::kernel::key::{PixelTarget, Source};
+use crate::gpu::kernel::variant::{PixelTarget, Source};
 use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
 use std::collections::VecDeque;

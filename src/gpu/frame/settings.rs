@@ -1,6 +1,6 @@
 //! Settings of the f64 tracer brought to what f32 can do, and what the tracing kernels are compiled with for them.
 
-use crate::gpu::kernel::key::Variant;
+use crate::gpu::kernel::variant::TraceVariant;
 use crate::physics::trace::Settings;
 use crate::scene::{Method, Projection, Scene};
 
@@ -23,9 +23,9 @@ pub(in crate::gpu) fn ray_settings(scene: &Scene) -> Settings {
 }
 
 /// What the tracing kernels of a scene are compiled with; pixels add what their shading needs.
-pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> Variant {
+pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> TraceVariant {
     let spinning = scene.hole.spin != 0.0;
-    Variant {
+    TraceVariant {
         method: settings.method.into(),
         spinning,
         delay: settings.delay,

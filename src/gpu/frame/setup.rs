@@ -5,16 +5,16 @@ use super::uniforms::FrameUniform;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::texture::Texture;
-use crate::gpu::kernel::key::{FilmLook, Look};
+use crate::gpu::kernel::variant::{FilmVariant, ShadeVariant};
 use crate::gpu::lens::records::Making;
 
 /// How a frame's shading is compiled.
 pub(in crate::gpu) struct Looks {
-    pub(in crate::gpu) look: Look,
+    pub(in crate::gpu) look: ShadeVariant,
     /// Of the kernel that ends shading.
-    pub(in crate::gpu) film: FilmLook,
+    pub(in crate::gpu) film: FilmVariant,
     /// Of development, in frames with bloom.
-    pub(in crate::gpu) developed: Option<FilmLook>,
+    pub(in crate::gpu) developed: Option<FilmVariant>,
     pub(in crate::gpu) several_samples: bool,
     /// Whether pixels are put row by row into the host's memory.
     pub(in crate::gpu) rows: bool,

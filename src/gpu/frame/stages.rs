@@ -11,7 +11,8 @@ use super::tables::Tables;
 use crate::error::{Error, Result};
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Compiled, Kernels, Stage};
-use crate::gpu::kernel::key::{KernelKey, Source};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::variant::Source;
 use crate::gpu::lens::records::{Making, RecordStages, Shared};
 use std::slice;
 

@@ -10,7 +10,7 @@ use crate::gpu::device::timer;
 use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{check_groups, pixel_groups};
-use crate::gpu::kernel::key::PixelTarget;
+use crate::gpu::kernel::variant::PixelTarget;
 use crate::gpu::lens::records::STEP_SUM;
 use crate::scene::Projection;
 use crate::scene::frame::sample_offset;

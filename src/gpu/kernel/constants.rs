@@ -1,8 +1,8 @@
 //! The numbers that shaders share with Rust, by their names in WGSL: the fragment `constants` is printed from them, so
 //! that neither side can change alone. What each one means stands where Rust declares it.
 
-use super::key::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
 use super::sizes;
+use super::variant::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
 use crate::film::{self, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};

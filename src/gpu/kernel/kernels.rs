@@ -2,8 +2,9 @@
 //! what each kernel binds ([`KernelKey`]), not what with.
 
 use super::compilers::{Compilers, Wanted};
-use super::key::{GROUP, KernelKey};
+use super::key::KernelKey;
 use super::slots::{Slot, edge_slots};
+use super::variant::GROUP;
 use crate::deferred::hold;
 use crate::error::{Error, Result};
 use crate::gpu::device::pipeline::{Kernel, Loops, ProvenFinite};

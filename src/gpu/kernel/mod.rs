@@ -11,4 +11,5 @@ pub(in crate::gpu) mod layout;
 pub(in crate::gpu) mod preprocess;
 pub(in crate::gpu) mod sizes;
 pub(in crate::gpu) mod slots;
+pub(in crate::gpu) mod variant;
 pub(in crate::gpu) mod wgsl;

@@ -1,7 +1,7 @@
 //! What kernels bind: kinds of bindings, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 
-use super::key::Source;
+use super::variant::{FilmVariant, PixelTarget, Source};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 
 /// What a binding is.
@@ -83,6 +83,18 @@ impl Slot {
                 view_dimension: of.dimension,
             },
         }
+    }
+}
+
+impl FilmVariant {
+    /// The group of film/film.wgsl and what puts the pixels.
+    pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
+        let pixels = match self.target {
+            PixelTarget::Screen => Slot::TextureWrite(SCREEN),
+            PixelTarget::Packed | PixelTarget::Rows => Slot::Write,
+            PixelTarget::Light => Slot::TextureWrite(LIGHT),
+        };
+        vec![Slot::Uniform, pixels]
     }
 }
 

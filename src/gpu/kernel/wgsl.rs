@@ -2,7 +2,7 @@
 //! devices.
 
 use super::fragments::join;
-use super::key::{FilmLook, PixelTarget, Source};
+use super::variant::{FilmVariant, PixelTarget, Source};
 use crate::error::Result;
 
 impl Source {
@@ -51,13 +51,13 @@ pub fn shade_sample(source: Source) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "shade/record", "shade/sample"])
 }
 
-pub fn shade_only(source: Source, film: FilmLook) -> Result<String> {
+pub fn shade_only(source: Source, film: FilmVariant) -> Result<String> {
     let (_, driver) = source.driver(Some(film.target));
     join(&[driver, source.fragment(), "shade/record", "shade/only", film.target.fragment()])
 }
 
 /// `film`: of pixels with one sample.
-pub fn refine(source: Source, film: Option<FilmLook>) -> Result<String> {
+pub fn refine(source: Source, film: Option<FilmVariant>) -> Result<String> {
     let samples = source.sample_fragment();
     match film {
         Some(film) => join(&["refine/refine", samples, "shade/only", film.target.fragment()]),
@@ -69,7 +69,7 @@ pub fn export(source: Source) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "records/export"])
 }
 
-pub fn develop(film: FilmLook, glare: bool) -> Result<String> {
+pub fn develop(film: FilmVariant, glare: bool) -> Result<String> {
     let driver = match film.target {
         PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => "film/develop",
         PixelTarget::Rows => "film/develop_rows",
@@ -82,9 +82,9 @@ pub fn kernel(fragment: &str) -> Result<String> {
     join(&[fragment])
 }
 
-/// Every shader of this tracer, joined as the device gets it: name and WGSL. Errors: as [`join`].
+/// Every shader of this tracer, joined as the device gets it: name and WGSL. Errors: as `join`.
 pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
-    let film = |target| FilmLook { target, ..FilmLook::of_light() };
+    let film = |target| FilmVariant { target, ..FilmVariant::of_light() };
     let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
@@ -109,14 +109,14 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("develop", develop(film(PixelTarget::Packed), false)),
         ("develop for a window", develop(film(PixelTarget::Screen), false)),
         ("develop by rows", develop(film(PixelTarget::Rows), false)),
-        ("develop for bloom", develop(FilmLook::of_light(), false)),
+        ("develop for bloom", develop(FilmVariant::of_light(), false)),
         ("develop with glare", develop(film(PixelTarget::Packed), true)),
         ("develop with glare for a window", develop(film(PixelTarget::Screen), true)),
         ("develop with glare by rows", develop(film(PixelTarget::Rows), true)),
         ("bloom, gather", kernel("bloom/gather")),
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, give back", kernel("bloom/return")),
-        ("shade only for bloom", shade_only(kerr(false), FilmLook::of_light())),
+        ("shade only for bloom", shade_only(kerr(false), FilmVariant::of_light())),
         ("refine, traced", refine(Source::Traced, Some(film(PixelTarget::Packed)))),
         (
             "refine, spin-0 lens",

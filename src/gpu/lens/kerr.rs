@@ -38,7 +38,8 @@ struct KerrUniform {
 
 #[cfg(test)]
 pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
-    crate::gpu::kernel::layout::layout!(KerrUniform as "KerrLens": k, e1, e2, outer_rows = rows + 0, inner_rows = rows + 4, orders,
+    crate::gpu::kernel::layout::layout!(KerrUniform as "KerrLens": k, e1, e2, outer_rows = rows + 0,
+        inner_rows = rows + 4, orders,
         capture_u)
 }
 

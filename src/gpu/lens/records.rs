@@ -8,9 +8,10 @@ use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
-use crate::gpu::kernel::key::{KernelKey, Source, Variant};
+use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::COUNT_RUN;
 use crate::gpu::kernel::slots::{TRACED, TextureKind};
+use crate::gpu::kernel::variant::{Source, TraceVariant};
 use crate::physics::observer::LocalFrame;
 
 /// Bytes of a texel of the record textures.
@@ -20,7 +21,7 @@ const TEXEL: u64 = 16;
 pub struct Making {
     pub source: Source,
     /// How rays are traced.
-    pub variant: Variant,
+    pub variant: TraceVariant,
     /// Of the disk, that a record holds at most.
     pub crossings: u32,
     pub eye: LocalFrame,
@@ -204,7 +205,13 @@ impl TracedRecords {
         Ok(self.resources()?.into())
     }
 
-    fn stages(&self, device: &Device, kernels: &Kernels, variant: Variant, shared: &Shared<'_>) -> Result<TraceStages> {
+    fn stages(
+        &self,
+        device: &Device,
+        kernels: &Kernels,
+        variant: TraceVariant,
+        shared: &Shared<'_>,
+    ) -> Result<TraceStages> {
         let [sky, meta, disk] = self.resources()?;
         let Shared { frame, pass, step_sum } = shared.clone();
         Ok(TraceStages {

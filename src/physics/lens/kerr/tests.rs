@@ -136,7 +136,8 @@ impl Measured {
         let qs = [0.5, 0.99, 0.999, 0.9999, 1.0];
         let line = |v: &mut Vec<f64>| qs.map(|q| format!("{:.0e}", quantile(v, q))).join(" ");
         println!(
-            "{title}: {} rays, core {:.4}, direct about the shadow {:.4}, fates {}, crossings {} of {}; sky px {}; u {}; g {}; az {}; t {}",
+            "{title}: {} rays, core {:.4}, direct about the shadow {:.4}, fates {}, crossings {} of {}; \
+             sky px {}; u {}; g {}; az {}; t {}",
             self.rays,
             self.core as f64 / self.rays as f64,
             self.about_direct as f64 / self.about as f64,

@@ -1,0 +1,176 @@
+//! The variants that kernels are compiled in: how rays are traced, light is shaded, and pixels are put. Plain data.
+
+use crate::image::PixelFormat;
+use crate::physics::integrator::Method;
+use crate::scene::{Film, Projection, ToneMap, View};
+
+/// Threads of a workgroup of the kernels that go over pixels.
+pub const GROUP: [u32; 2] = [8, 16];
+/// The same of those that put them row by row.
+pub(in crate::gpu) const ROWS_GROUP: [u32; 2] = [32, 4];
+/// Threads of a workgroup of the kernels that build spin-0 lenses.
+pub const LENS_GROUP: u32 = 32;
+
+/// Everything that decides how the tracing kernels are compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct TraceVariant {
+    pub method: MethodCode,
+    pub spinning: bool,
+    pub delay: bool,
+    pub step_limit: bool,
+    /// Whether pixels keep where on the disk a crossing is; given rays always do.
+    pub azimuth: bool,
+    /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
+    pub projection: Option<Projection>,
+}
+
+/// Everything that decides how shading is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ShadeVariant {
+    /// Light, not another view.
+    pub light: bool,
+    pub stars: bool,
+    pub milky_way: bool,
+    pub map: bool,
+    pub grid: bool,
+    /// No effect on light is switched off.
+    pub all_effects: bool,
+    pub disk: bool,
+    /// The disk hides what is behind it.
+    pub opaque: bool,
+    /// Whether crossings need their footprint.
+    pub footprints: bool,
+    /// `None`: any, which the kernel asks while it runs.
+    pub projection: Option<Projection>,
+    /// Whether pixels with edges get more rays; values of views are not to be averaged.
+    pub refines: bool,
+}
+
+/// Everything that decides how development is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct FilmVariant {
+    /// `None`: any, which the kernel asks while it runs.
+    pub(in crate::gpu) pixels: Option<PixelKind>,
+    /// Pixels show a view other than light in false colour.
+    pub(in crate::gpu) false_colour: bool,
+    /// `None`: any, which the kernel asks while it runs. `ToneMap::None` where it does not matter.
+    pub(in crate::gpu) tone_map: Option<ToneMap>,
+    pub(in crate::gpu) target: PixelTarget,
+}
+
+/// Pixel formats that one kernel serves: `PIXELS` of film/film.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PixelKind {
+    /// RGBA8 and BGRA8.
+    EightBit,
+    /// RGBA16F and RGBA32F.
+    Float,
+    R32F,
+}
+
+/// Where the last kernel of a frame puts pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PixelTarget {
+    /// Into a window's texture.
+    Screen,
+    /// Into a buffer on the device, packed.
+    Packed,
+    /// Into a buffer in the host's memory, packed, row by row.
+    Rows,
+    /// Not pixels yet: exposed light, for bloom to spread.
+    Light,
+}
+
+/// The value of a constant whose choice the kernel asks the uniform for while it runs.
+pub(in crate::gpu) const FROM_UNIFORM: u32 = u32::MAX;
+
+impl FilmVariant {
+    /// For `film` in pixels of `format`.
+    pub fn new(film: &Film, view: View, format: PixelFormat, target: PixelTarget) -> Self {
+        let pixels = match format {
+            PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => PixelKind::EightBit,
+            PixelFormat::Rgba16F | PixelFormat::Rgba32F => PixelKind::Float,
+            PixelFormat::R32F => PixelKind::R32F,
+        };
+        let shows_light = view == View::Light;
+        let tone_map = if shows_light && pixels == PixelKind::EightBit { film.tone_map } else { ToneMap::None };
+        Self { pixels: Some(pixels), false_colour: !shows_light, tone_map: Some(tone_map), target }
+    }
+
+    /// The same for every tone map, and, but in windows, which have one kind of pixels, for every format. Views other
+    /// than light have no tone map.
+    pub fn of_any(self) -> Self {
+        let pixels = self.pixels.filter(|_| self.target == PixelTarget::Screen);
+        Self { pixels, tone_map: self.false_colour.then_some(ToneMap::None), ..self }
+    }
+
+    /// Whether hosts begin with such pixels, which have kernels of their own (`GpuTracer::set_up`): light in 8 bits by
+    /// ACES, the default.
+    pub fn is_usual(self) -> bool {
+        self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces)
+    }
+
+    /// Of light that bloom is to spread.
+    pub fn of_light() -> Self {
+        let (tone_map, target) = (Some(ToneMap::None), PixelTarget::Light);
+        Self { pixels: Some(PixelKind::Float), false_colour: false, tone_map, target }
+    }
+
+    /// For kernels that go over what `source` makes: deferred pixels lie scattered.
+    pub(in crate::gpu) fn over(self, source: Source) -> Self {
+        match source {
+            Source::Kerr { rest: true, .. } => self.scattered(),
+            _ => self,
+        }
+    }
+
+    /// For kernels over pixels that make no rows.
+    pub(in crate::gpu) fn scattered(self) -> Self {
+        match self.target {
+            PixelTarget::Rows => Self { target: PixelTarget::Packed, ..self },
+            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => self,
+        }
+    }
+
+    /// Threads of a workgroup of the kernels that put pixels.
+    pub(in crate::gpu) fn group(self) -> [u32; 2] {
+        match self.target {
+            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => GROUP,
+            PixelTarget::Rows => ROWS_GROUP,
+        }
+    }
+}
+
+/// The maker of the ray records that a kernel reads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Source {
+    /// traced/record.wgsl
+    Traced,
+    /// lens/schwarzschild_record.wgsl
+    Schwarzschild { delay: bool, moving: bool },
+    /// lens/kerr_pixel.wgsl, and of the pixels it defers lens/kerr_rest.wgsl
+    Kerr { delay: bool, pattern: bool, moving: bool, rest: bool },
+}
+
+/// How refine/refine.wgsl finds its samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Refined {
+    /// Of the pixels' own records.
+    pub source: Source,
+    /// How rays are traced that no table holds.
+    pub variant: TraceVariant,
+}
+
+/// `METHOD_*` of geodesic/integrator.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MethodCode(pub(in crate::gpu) u32);
+
+impl From<Method> for MethodCode {
+    fn from(method: Method) -> Self {
+        Self(match method {
+            Method::Nystrom => 0,
+            Method::Rk4 => 1,
+            Method::DormandPrince => 2,
+        })
+    }
+}
