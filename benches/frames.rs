@@ -21,12 +21,12 @@ struct Stage {
     layout: Layout,
     /// Time by the GPU's timestamps instead of the wall clock.
     timestamps: bool,
-    /// What changes from frame to frame.
+    /// The change from frame to frame.
     change: Change,
     frames: u32,
 }
 
-/// What a host moves from frame to frame.
+/// The things that a host moves from frame to frame.
 #[derive(Clone, Copy)]
 enum Change {
     Nothing,

@@ -66,7 +66,7 @@ impl log::Log for Printer {
     fn flush(&self) {}
 }
 
-/// What a display asks for.
+/// The frame time that a display asks for.
 const FRAME_TIME: Duration = Duration::from_nanos(16_666_667);
 
 fn main() {

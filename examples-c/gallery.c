@@ -20,7 +20,7 @@
 
 /* ---- parts of scenes ---- */
 
-/* What the scenes begin with. */
+/* The scenes begin with this. */
 static const SceneOptions BEGINNING = {
     .mass = 1.0,
     .distance = 30.0,

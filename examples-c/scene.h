@@ -22,7 +22,7 @@ typedef struct Scene {
     BhrQuality quality;
 } Scene;
 
-/* What the command line says about the first scene. Lengths in units of M, angles in degrees. */
+/* The first scene, as the command line describes it. Lengths in units of M, angles in degrees. */
 typedef struct SceneOptions {
     double  mass, spin;
     double  distance, azimuth, elevation, fov;

@@ -138,7 +138,7 @@ static int present(Program *p) {
 
 /* ---- the scene ---- */
 
-/* What stays. */
+/* Set once, for all frames. */
 static int begin_scene(const Program *p) {
     BhrDisk disk;
     if (bhr_disk_init(&disk, sizeof disk) < 0) {
@@ -148,7 +148,7 @@ static int begin_scene(const Program *p) {
     return (bhr_set_spin(p->context, 0.9) >= 0 && bhr_set_disk(p->context, &disk) >= 0) || complain("begin the scene");
 }
 
-/* What changes from frame to frame. */
+/* Set anew for each frame. */
 static int move_scene(const Program *p) {
     BhrCamera camera;
     return (bhr_camera_init(&camera, sizeof camera) >= 0 &&

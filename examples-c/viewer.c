@@ -122,7 +122,7 @@ static void move(Viewer *v) {
     }
 }
 
-/* What a presented frame cost: the governor and the title want to know. */
+/* The cost of a presented frame: the governor and the title want to know. */
 static void account(Viewer *v, int moving) {
     BhrFrameStats stats = {.struct_size = sizeof stats};
     double        now = wall_seconds(), seconds = v->presented_at > 0.0 ? now - v->presented_at : 0.0;

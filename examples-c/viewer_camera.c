@@ -12,7 +12,7 @@
 #define EASE_THRUST 0.25 /* long: a ship has weight */
 #define EASE_VIEW 0.35   /* turning to the hole, levelling */
 
-/* What is asked for is done when less than this is left: */
+/* A motion that is asked for is done when less than this is left: */
 #define SETTLED 1e-5  /* radians, and of ln r: far below a pixel */
 #define IN_PLANE 1e-3 /* radians, about a pixel: the way into the plane of an orbit */
 #define STOPPED 3e-4  /* of free flight's speed */

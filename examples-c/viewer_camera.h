@@ -5,7 +5,8 @@
 
 #include "scene.h"
 
-/* What the user's hand has asked for and is not done yet, and how the observer moves. All zero is a camera at rest. */
+/* Motions that the user's hand has asked for and that are not done yet, and how the observer moves. All zero is a
+ * camera at rest. */
 typedef struct Pilot {
     double    turn[2];     /* about the hole: azimuth, elevation, radians */
     double    zoom;        /* change of ln(r - r_horizon) */

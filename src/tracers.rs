@@ -17,14 +17,14 @@ pub fn adapters() -> Vec<AdapterInfo> {
     list
 }
 
-/// What traces: one frame at a time.
+/// A tracer, which renders one frame at a time.
 pub enum Tracer {
     Cpu(CpuTracer),
     Gpu(Box<GpuTracer>),
     Gl(Box<GlTracer>),
 }
 
-/// What a tracer runs on, as far as it can be asked while the tracer is at work.
+/// The device that a tracer runs on, as far as it can be asked while the tracer is at work.
 pub enum RunsOn {
     Cpu,
     Gpu(Arc<Adapter>, Arc<gpu::Device>),

@@ -104,7 +104,8 @@ fn expanded(tree: &str) -> Vec<String> {
     items.iter().filter(|item| !item.is_empty()).flat_map(|item| expanded(&format!("{head}{item}"))).collect()
 }
 
-/// What a module imports: the paths behind its `use`, and whether they are exported. Inline modules lie in their file.
+/// The imports of a module: the paths behind its `use`, and whether they are exported. Inline modules lie in their
+/// file.
 fn imports(code: &str) -> Vec<(String, bool)> {
     let mut found = Vec::new();
     for (at, _) in code.match_indices("use ") {
@@ -165,7 +166,7 @@ fn resolved(all: &BTreeMap<Module, String>, from: &Module, path: &str, depth: u3
     Some(module)
 }
 
-/// Who imports from whom.
+/// The modules that each module imports from.
 fn arrows() -> BTreeMap<Module, BTreeSet<Module>> {
     let all = modules();
     let of = |module: &Module, code: &str| {
@@ -242,6 +243,41 @@ fn no_source_is_long_or_wide() {
             }
             let wide = text.lines().zip(1..).filter(|(line, _)| line.chars().count() > WIDEST_LINE);
             wrong.extend(wide.map(|(_, number)| format!("{}:{number} is wide", name.display())));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Words that leave a reader asking for the noun that they belong to.
+const DANGLING: [&str; 4] = ["Of ", "What ", "Who ", "Which "];
+
+#[test]
+fn no_comment_begins_with_a_dangling_word() {
+    let mut wrong = Vec::new();
+    for folder in ["benches", "examples-c", "include", "src", "tests"] {
+        let mut found = Vec::new();
+        files(&root().join(folder), &mut found);
+        let source = |path: &Path| path.extension().is_some_and(|e| ["rs", "c", "cpp", "h"].iter().any(|s| e == *s));
+        for path in found.iter().filter(|path| source(path)) {
+            let name = path.strip_prefix(root()).unwrap();
+            if AS_THEY_ARE.iter().any(|kept| name.starts_with(kept)) {
+                continue;
+            }
+            let text = fs::read_to_string(path).unwrap();
+            let comment = |line: &str| {
+                let line = line.trim_start();
+                let marks = ["///", "//!", "//", "/*", "* "];
+                marks.iter().find_map(|mark| line.strip_prefix(mark)).map(|rest| rest.trim_start().to_owned())
+            };
+            let mut before = None;
+            for (line, number) in text.lines().zip(1..) {
+                let said = comment(line);
+                if before.is_none() && said.as_deref().is_some_and(|said| DANGLING.iter().any(|w| said.starts_with(w)))
+                {
+                    wrong.push(format!("{}:{number} {}", name.display(), line.trim()));
+                }
+                before = said;
+            }
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");

@@ -356,7 +356,7 @@ void App::move_camera(const Picture::Input &input) {
     orbit.elevation += static_cast<double>(input.drag_y) * DEGREES_PER_UNIT * DEGREE;
     orbit.elevation = std::clamp(orbit.elevation, -90.0 * DEGREE, 90.0 * DEGREE);
     if (input.wheel != 0.0F) {
-        // What is inside already, falling, is left there.
+        // A camera that is inside already, falling, is left there.
         const double nearest = std::min(NEAREST * inspector_.numbers().horizon_radius, orbit.distance);
         orbit.distance = std::max(orbit.distance * std::pow(ZOOM_PER_NOTCH, static_cast<double>(input.wheel)), nearest);
     }

@@ -16,8 +16,8 @@ struct EndJob {
 using Context = std::unique_ptr<BhrContext, EndContext>;
 using Job = std::unique_ptr<BhrJob, EndJob>;
 
-// What a call said. bhr_error_message lives until the thread's next failure only: a program that shows messages for
-// longer must copy them at once.
+// The message of a call. bhr_error_message lives until the thread's next failure only: a program that shows messages
+// for longer must copy them at once.
 struct Result {
     BhrStatus   status = BHR_OK;
     std::string message; // "" unless the call failed

@@ -37,7 +37,7 @@ public:
     double             mass() const { return mass_; }
     double             spin() const { return spin_; }
     bool               has_disk() const { return has_disk_; }
-    // Of the disk, scene lengths: BhrDisk's with 0 replaced by the ISCO of its matter.
+    // The disk's radii, scene lengths: BhrDisk's with 0 replaced by the ISCO of its matter.
     double disk_inner() const;
     double disk_outer() const { return disk_.outer_radius * mass_; }
     bool   retrograde() const { return (disk_.flags & BHR_DISK_RETROGRADE) != 0; }

@@ -21,7 +21,7 @@ public:
     Input draw(double pixel_ratio, bool bare, const std::string &news, const std::string &error);
 
     const Pixels &pixels() const { return pixels_; }
-    // Of its place in the window, in pixels; 0 before it was first drawn.
+    // Its place in the window, in pixels; 0 before it was first drawn.
     uint32_t width() const { return width_; }
     uint32_t height() const { return height_; }
     // The pixel that was last clicked on.

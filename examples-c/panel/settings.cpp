@@ -255,7 +255,7 @@ void SettingsPanel::sky(Scene &scene) {
         sky.map_brightness = brightness;
         return scene.set_sky(sky);
     });
-    // Of the orientation, the part that a slider can show: a turn about the scene's z.
+    // The part of the orientation that a slider can show: a turn about the scene's z.
     const double turn = 2.0 * std::atan2(sky.orientation[2], sky.orientation[3]) / DEGREE;
     number("turned by", turn, -180.0, 180.0, "%.1f\xC2\xB0", false, [&](double degrees) {
         sky.orientation[2] = std::sin(0.5 * degrees * DEGREE);

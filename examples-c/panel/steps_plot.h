@@ -15,7 +15,7 @@ public:
     void   take(const FinishedFrame &frame);
     // Whether both frames of this version of the light's ways have come.
     bool settled(uint64_t geometry_version, uint32_t width, uint32_t height, uint32_t row) const;
-    // What was asked for will not come.
+    // The answer that was asked for will not come.
     void forget() { asked_row_ = asked_frame_ = Wanted{}; }
 
     void draw(const Scene &scene, uint32_t column, uint32_t picture_width) const;

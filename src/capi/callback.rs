@@ -1,4 +1,4 @@
-//! Which callbacks of the host's, and which calls of its, a thread is inside of.
+//! Counts, for each thread, the calls and the callbacks of the host's that it is inside of.
 
 use std::cell::Cell;
 use std::thread::LocalKey;

@@ -36,7 +36,7 @@ impl GlTracer {
         &self.info
     }
 
-    /// What tells of the device's loss, also while the tracer is at work.
+    /// Tells of the device's loss, also while the tracer is at work.
     pub fn loss(&self) -> &Loss {
         &self.loss
     }

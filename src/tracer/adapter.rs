@@ -24,7 +24,7 @@ impl std::fmt::Display for Backend {
     }
 }
 
-/// What a tracer runs on.
+/// The adapter that a tracer runs on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterInfo {
     pub backend: Backend,

@@ -1,5 +1,5 @@
-//! What tracers take and give: frames asked for, tiles, numbers, and the adapters that they run on. The tracers
-//! themselves (`cpu`, `gpu`) lie above this room; nothing here knows them.
+//! The values that tracers take and give: frames asked for, tiles, numbers, and the adapters that they run on. The
+//! tracers themselves (`cpu`, `gpu`) lie above this room; nothing here knows them.
 
 mod adapter;
 mod request;

@@ -1,4 +1,4 @@
-//! What is asked of a tracer: a frame, whose tiles go to a sink as they are finished. Knows no target.
+//! Requests for a tracer: a frame, whose tiles go to a sink as they are finished. Knows no target.
 
 use crate::error::Result;
 use crate::image::PixelFormat;
@@ -13,7 +13,7 @@ pub struct Tile {
     pub height: u32,
 }
 
-/// What a tracer is asked for: a width x height image, part of the frame that `region` describes.
+/// A request for a frame: a width x height image, part of the frame that `region` describes.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameRequest {
     pub width: u32,

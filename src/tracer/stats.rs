@@ -17,7 +17,7 @@ pub struct FrameStats {
     pub cpu_ns: u64,
     /// 0: the adapter has no timestamps.
     pub gpu_ns: u64,
-    /// What `gpu_ns` is the sum of: tracing and shading, without bloom with development; bloom; development.
+    /// The parts of `gpu_ns`: tracing and shading, without bloom with development; bloom; development.
     pub pass_ns: [u64; PASSES],
     pub readback_ns: u64,
     /// Device memory held by this renderer.

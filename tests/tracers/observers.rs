@@ -1,4 +1,4 @@
-//! What falling and fast observers see, against integrals and formulas that share nothing with the tracers: the sky
+//! The view of falling and fast observers, against integrals and formulas that share nothing with the tracers: the sky
 //! from inside the horizon, the shadow's size, aberration and Doppler shift at 0.999 c.
 
 use crate::frames::{both, floats, picture};

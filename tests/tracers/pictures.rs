@@ -97,7 +97,7 @@ fn scenes() -> Vec<NamedScene> {
     list
 }
 
-/// Of the turbulent scenes, pixels that change by more than a few steps.
+/// The pixels of the turbulent scenes that change by more than a few steps.
 #[test]
 fn turbulence_shows_its_seed_and_its_time() {
     let size = [192, 108];

@@ -1,7 +1,7 @@
 /* host.h -- a host's X11 window for the tests of surfaces, by Xlib or by XCB, and what a person would see in it. Knows
  * bhr's image and window structs only; tests nothing by itself, but ends the program when there is no X server.
  *
- * What is seen is read through a connection of its own, as another program would, so that it can be asked for
+ * Pixels on the screen are read through a connection of its own, as another program would, so that it can be asked for
  * whatever has become of the host's. */
 #ifndef BHR_HOST_H
 #define BHR_HOST_H

@@ -33,7 +33,7 @@ impl Adapter {
         self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
     }
 
-    /// What makes surfaces for windows; `None` for GL, whose instances are tied to a display.
+    /// The instance that makes surfaces for windows; `None` for GL, whose instances are tied to a display.
     pub(in crate::gpu) fn instance(&self) -> Option<&wgpu::Instance> {
         self.handle.instance.as_ref()
     }
@@ -54,7 +54,7 @@ impl Adapter {
 struct Handle {
     /// `None` only while it is being dropped.
     raw: Option<wgpu::Adapter>,
-    /// What makes surfaces for windows; `None` for GL.
+    /// The instance that makes surfaces for windows; `None` for GL.
     instance: Option<wgpu::Instance>,
     /// Adapters of GL have a thread on which alone they may be used, and the display's age when they were found.
     gl: Option<(Arc<GlThread>, DisplayAge)>,
@@ -150,7 +150,7 @@ fn found() -> MutexGuard<'static, [Found; 2]> {
 fn native(validation: bool) -> Found {
     let kept = || Some(found()[usize::from(validation)].clone()).filter(|(_, list)| !list.is_empty());
     kept().unwrap_or_else(|| {
-        // Who comes second waits for what the first one finds.
+        // A second thread waits for what the first one finds.
         let _alone = driver_lock::lock();
         kept().unwrap_or_else(|| {
             let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
@@ -176,7 +176,7 @@ fn gl() -> Option<Vec<Usable>> {
         // wgpu makes the contexts of adapters when it searches for them.
         let (thread, age) = (GlThread::start()?, DisplayAge::now());
         thread.run(|| {
-            // What is not wanted is dropped here.
+            // Adapters that are not wanted are dropped here.
             let _alone = driver_lock::lock();
             let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
             keep_display(instance);
@@ -197,7 +197,7 @@ fn gl_hardware() -> Vec<Usable> {
     list
 }
 
-/// What the last search by [`gl_hardware`] came to.
+/// The result of the last search by [`gl_hardware`].
 static NO_GL_HARDWARE: AtomicBool = AtomicBool::new(false);
 
 /// With its last instance on an EGL display wgpu terminates the display, which is one for the whole process: with it go

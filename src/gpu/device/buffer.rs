@@ -45,7 +45,7 @@ impl Device {
         buffer: &wgpu::Buffer,
         work: impl FnOnce() -> Result<T>,
     ) -> Result<T> {
-        // What `work` logs goes to a host, whose callback may wait for a thread that asks wgpu.
+        // The messages of `work` go to a host, whose callback may wait for a thread that asks wgpu.
         let holding = hold();
         let done = match self.backend() {
             #[cfg(not(target_vendor = "apple"))]

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
-/// What keeps the loops of a shader finite, which drivers rely on.
+/// The reason why the loops of a shader are finite, which drivers rely on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Loops {
     /// wgpu counts each loop's turns and ends it after 2^64: safe for every shader, and slow in short loops.

@@ -50,7 +50,8 @@ impl Readback {
         Self::default()
     }
 
-    /// Of staging buffers that kernels can write and queries can be resolved to, for devices that map storage.
+    /// A readback through staging buffers that kernels can write and queries can be resolved to, for devices that map
+    /// storage.
     pub fn of_kernels() -> Self {
         let more = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::QUERY_RESOLVE;
         let plain = Self::default();

@@ -12,7 +12,7 @@ pub struct TextureKind {
     pub dimension: wgpu::TextureViewDimension,
 }
 
-/// What a window is filled from: 8-bit codes, whatever curve they follow.
+/// The texture that a window is filled from: 8-bit codes, whatever curve they follow.
 pub const SCREEN: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
 
@@ -39,7 +39,7 @@ impl Device {
         self.any_texture(label, format, dimension, size, layers, usage)
     }
 
-    /// What a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as
+    /// The texture that a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as
     /// [`Device::scoped`].
     pub fn screen(&self, size: [u32; 2], host_fills: bool) -> Result<Texture> {
         let TextureKind { format, dimension } = SCREEN;

@@ -33,7 +33,7 @@ impl GpuTimer {
         Ok(Some(Self { queries, resolved, readback: Readback::new(), capacity, passes: 0 }))
     }
 
-    /// What a pass's descriptor needs to be timed; `None` beyond the capacity.
+    /// The entry in a pass's descriptor that has it timed; `None` beyond the capacity.
     pub fn next_pass(&mut self) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         if self.passes == self.capacity {
             return None;

@@ -56,13 +56,13 @@ pub struct Device {
 pub(in crate::gpu) struct Uploads(pub(in crate::gpu) Mutex<Option<wgpu::CommandEncoder>>);
 
 impl Uploads {
-    /// What is to be submitted first.
+    /// Takes the commands that are to be submitted first.
     pub fn take(&self) -> Option<wgpu::CommandEncoder> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
-/// What wgpu's callbacks, which come from any thread, say about a device.
+/// The state of a device as wgpu's callbacks, which come from any thread, tell it.
 #[derive(Default)]
 struct Health {
     lost: Mutex<Option<String>>,
@@ -123,7 +123,7 @@ impl Device {
         })
     }
 
-    /// What tells of the device's loss without asking wgpu for anything.
+    /// Tells of the device's loss without asking wgpu for anything.
     pub(in crate::gpu) fn loss(&self) -> Loss {
         Loss(self.health.clone())
     }
@@ -243,7 +243,7 @@ impl Device {
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
         let done = work(&self.raw);
-        // What is missing for want of memory is not valid either: the cause first.
+        // A resource that is missing for want of memory is not valid either: the cause comes first.
         let errors = [validation, internal, memory].map(|scope| pollster::block_on(scope.pop()));
         (done, errors.into_iter().rev().flatten().next())
     }

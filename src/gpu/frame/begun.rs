@@ -26,7 +26,7 @@ pub struct BegunFrame {
 pub type Recording<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
 
 impl BegunFrame {
-    /// Of steps.
+    /// The number of steps.
     pub fn count(&self) -> u64 {
         self.steps.count()
     }
@@ -36,7 +36,7 @@ impl BegunFrame {
         self.submitted == self.count()
     }
 
-    /// Of a frame of which nothing has run yet.
+    /// The numbers about the frame before anything of it has run.
     pub fn stats(&self) -> FrameStats {
         let rays = u64::from(self.request.width) * u64::from(self.request.height) * u64::from(self.samples);
         FrameStats { rays, ..FrameStats::default() }

@@ -47,7 +47,7 @@ struct Made {
     light: Texture,
     /// Mean light, from the finest grid on.
     gathered: Vec<Texture>,
-    /// What each grid but the last and those above it spread.
+    /// Light that each grid but the last, and those above it, spread.
     spread: Vec<Texture>,
     /// Linear between the centres of cells.
     smooth: wgpu::Sampler,
@@ -161,7 +161,7 @@ impl BloomBuffers {
         }
     }
 
-    /// What shading is given to.
+    /// The texture that takes the shaded light.
     pub fn light(&self) -> Result<wgpu::BindingResource<'_>> {
         Ok(view(&self.made()?.light))
     }

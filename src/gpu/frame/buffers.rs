@@ -31,7 +31,7 @@ pub struct FrameBuffers {
     pub timer: Option<GpuTimer>,
 }
 
-/// What does not depend on a frame's size.
+/// The buffers that do not depend on a frame's size.
 pub struct FixedBuffers {
     pub frame: Written,
     pub film: Written,
@@ -58,7 +58,7 @@ pub struct Written {
     bytes: Vec<u8>,
 }
 
-/// What does.
+/// The buffers and textures that depend on a frame's size.
 pub struct SizedBuffers {
     size: Size,
     /// Samples are added by turns: from one to the other; as large as a tile only for several samples.
@@ -66,7 +66,7 @@ pub struct SizedBuffers {
     pub packed: Buffer,
 }
 
-/// What the sized buffers serve: largest tile, bytes of a packed pixel (0: none are packed there).
+/// The frames that the sized buffers serve: largest tile, bytes of a packed pixel (0: none are packed there).
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Size {
     pub tile: [u32; 2],

@@ -22,7 +22,7 @@ pub(in crate::gpu) fn ray_settings(scene: &Scene) -> Settings {
     settings
 }
 
-/// What the tracing kernels of a scene are compiled with; pixels add what their shading needs.
+/// The variant in which the tracing kernels of a scene are compiled; pixels add what their shading needs.
 pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon: bool) -> TraceVariant {
     let spinning = scene.hole.spin != 0.0;
     TraceVariant {

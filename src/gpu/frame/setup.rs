@@ -1,4 +1,4 @@
-//! What a frame is set up with before its tiles run: how its records are made, its light shaded and its pixels put.
+//! The setup of a frame, made before its tiles run: how its records are made, its light shaded and its pixels put.
 //! Plain data; configure.rs fills it from a scene.
 
 use super::uniforms::FrameUniform;
@@ -11,9 +11,9 @@ use crate::gpu::lens::records::Making;
 /// How a frame's shading is compiled.
 pub(in crate::gpu) struct Looks {
     pub(in crate::gpu) look: ShadeVariant,
-    /// Of the kernel that ends shading.
+    /// The film of the kernel that ends shading.
     pub(in crate::gpu) film: FilmVariant,
-    /// Of development, in frames with bloom.
+    /// The film of development, in frames with bloom.
     pub(in crate::gpu) developed: Option<FilmVariant>,
     pub(in crate::gpu) several_samples: bool,
     /// Whether pixels are put row by row into the host's memory.
@@ -29,7 +29,7 @@ pub enum FrameTarget<'a> {
     Screen(&'a Texture),
 }
 
-/// What a frame is set up with before its tiles run.
+/// A frame's setup, made before its tiles run.
 pub(in crate::gpu) struct Setup {
     pub(in crate::gpu) making: Making,
     pub(in crate::gpu) looks: Looks,

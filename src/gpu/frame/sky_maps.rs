@@ -98,7 +98,7 @@ fn upload(device: &Device, map: &SkyMap) -> Result<MapTexture> {
     Ok(MapTexture { texture, finest })
 }
 
-/// Of the texture of a map whose finest level has this size.
+/// The height of the texture of a map whose finest level has this size.
 fn texture_height([width, height]: [u32; 2]) -> u32 {
     if width > 1 { height + (height / 2).max(1) } else { height }
 }

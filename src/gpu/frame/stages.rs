@@ -35,12 +35,12 @@ struct Shades {
     refining: Option<Refining>,
 }
 
-/// What turns ray records into packed pixels.
+/// The stages that turn ray records into packed pixels.
 enum Shading {
-    /// Of the only sample.
+    /// The stage for the only sample.
     Only(Shades),
     Samples {
-        /// Of even and of odd samples.
+        /// The stages for even and for odd samples.
         shade: Box<[Shades; 2]>,
         /// After an even and after an odd last sample.
         develop: [Stage; 2],
@@ -58,7 +58,7 @@ pub struct Stages {
     pub glare: Option<GlareStages>,
 }
 
-/// What spreads light, and turns it into pixels.
+/// The stages that spread light and turn it into pixels.
 pub struct GlareStages {
     pub bloom: BloomStages,
     pub develop: Stage,

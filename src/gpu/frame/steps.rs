@@ -7,18 +7,18 @@ use crate::scene::Region;
 use crate::tracer::{FrameRequest, Tile};
 use std::ops::Range;
 
-/// What a submission does, in this order.
+/// The work of one submission, in this order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// What is shaded.
+    /// The tile that is shaded.
     pub shades: Tile,
-    /// Which samples of it; none: nothing is shaded.
+    /// The samples of it that are shaded; none: nothing is.
     pub samples: Range<u32>,
     /// With bloom: the cells of the finest grid that then have all their light.
     pub gathers: Option<Tile>,
     /// With bloom: whether all have it, so that it spreads.
     pub spreads: bool,
-    /// What becomes pixels.
+    /// The part that becomes pixels.
     pub develops: Option<Tile>,
     /// Where the texture of light begins.
     pub light_origin: [u32; 2],
@@ -32,7 +32,7 @@ pub struct Steps {
     way: Way,
 }
 
-/// What becomes of light.
+/// The use that is made of light.
 #[derive(Debug)]
 enum Way {
     /// A tile's is developed at once.
@@ -149,7 +149,7 @@ impl Steps {
     }
 }
 
-/// Of the finest grid.
+/// The size of the finest grid, in cells.
 fn base(bloom: &Bloom) -> [u32; 2] {
     bloom.levels.first().map_or([1, 1], |level| level.size)
 }

@@ -27,7 +27,7 @@ enum PassKind {
     Development,
 }
 
-/// Of a step that gathers none.
+/// The cells of a step that gathers none.
 const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 
 /// A submission that has not been read yet.
@@ -152,7 +152,7 @@ impl FrameBuffers {
 }
 
 impl Submitted {
-    /// What to wait for.
+    /// The submission to wait for.
     pub fn submission(&self) -> &wgpu::SubmissionIndex {
         &self.submission
     }
@@ -195,7 +195,7 @@ impl Submitted {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Band {
     tile: Tile,
-    /// Of the whole tile.
+    /// The band's first row in the whole tile.
     first_row: u32,
 }
 
@@ -208,13 +208,13 @@ fn bands(tile: Tile, row_bytes: usize) -> impl Iterator<Item = Band> {
     })
 }
 
-/// Of the numbers that a submission left in its staging buffer.
+/// A part of the numbers that a submission left in its staging buffer.
 fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
     let found = bytes.get(begin as usize..(begin + size) as usize);
     found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
 }
 
-/// Of the sample of so many, the `slot`th of its submission.
+/// The uniform of a sample (its number, and how many there are), the `slot`th of its submission.
 pub fn pass_of(
     request: &FrameRequest,
     tile: Tile,

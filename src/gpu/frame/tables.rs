@@ -22,7 +22,7 @@ const _: () = assert!(PROFILE_OFFSET.is_multiple_of(TABLE_WIDTH) && PROFILE_SIZE
 const _: () = assert!(PROFILE_SIZE == TemperatureProfile::SIZE);
 
 pub struct Tables {
-    /// What the textures hold.
+    /// The stars that the textures hold.
     stars: Arc<StarIndex>,
     /// Blackbodies, mean sky, profile, stars: `light_tables` of the shaders.
     light: Texture,

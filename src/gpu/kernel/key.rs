@@ -17,7 +17,7 @@ pub enum KernelKey {
     ShadeSample(Source, ShadeVariant),
     ShadeOnly(Source, ShadeVariant, FilmVariant),
     Refine(Refined, ShadeVariant, Option<FilmVariant>),
-    /// Of a sum of samples; or of light that has spread over a grid of cells of so many pixels' side.
+    /// Develops a sum of samples, or light that has spread over a grid of cells of so many pixels' side.
     Develop(FilmVariant, Option<u32>),
     /// Finer cells, or pixels, along a cell's side; whether they are cells.
     Gather(u32, bool),

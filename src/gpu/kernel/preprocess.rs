@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 
 type Text = Cow<'static, str>;
 
-/// What one line of a fragment is.
+/// The meaning of one line of a fragment.
 enum Line<'a> {
     Import(&'a str),
     Requires(&'a str),
@@ -38,7 +38,7 @@ pub struct Joined<'a> {
     open: Vec<String>,
 }
 
-/// What a fragment requires, and what there is instead: nothing, or another declaration of the name.
+/// A requirement of a fragment that is not met, and what there is instead: nothing, or another declaration of the name.
 pub struct Unmet<'a> {
     pub fragment: &'a str,
     pub required: &'a str,

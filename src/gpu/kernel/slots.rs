@@ -1,10 +1,10 @@
-//! What kernels bind: kinds of bindings, the formats of textures as the shaders declare them, and groups that kernels
+//! The bindings of kernels: their kinds, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 
 use super::variant::{FilmVariant, PixelTarget, Source};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 
-/// What a binding is.
+/// The kind of a binding.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Slot {
     Uniform,

@@ -110,7 +110,7 @@ impl FilmVariant {
         self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces)
     }
 
-    /// Of light that bloom is to spread.
+    /// For light that bloom is to spread.
     pub fn of_light() -> Self {
         let (tone_map, target) = (Some(ToneMap::None), PixelTarget::Light);
         Self { pixels: Some(PixelKind::Float), false_colour: false, tone_map, target }
@@ -155,7 +155,7 @@ pub enum Source {
 /// How refine/refine.wgsl finds its samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Refined {
-    /// Of the pixels' own records.
+    /// The source of the pixels' own records.
     pub source: Source,
     /// How rays are traced that no table holds.
     pub variant: TraceVariant,

@@ -43,17 +43,17 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
         capture_u)
 }
 
-/// What is asked of the tables.
+/// The contents that are asked of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wanted {
-    /// Of crossings; 0 without a disk.
+    /// Orders of crossings; 0 without a disk.
     pub orders: u32,
     pub disk_u: [f64; 2],
     pub pattern: bool,
     pub delay: bool,
 }
 
-/// What decides the nodes' content.
+/// Everything that decides the nodes' content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Eye {
     a: f64,
@@ -86,7 +86,7 @@ pub struct KerrTables {
 }
 
 struct Made {
-    /// Of outer and of all rows.
+    /// Counts of the outer rows and of all rows.
     rows: [u32; 2],
     layers: u32,
     uniform: Buffer,

@@ -22,7 +22,7 @@ pub struct Making {
     pub source: Source,
     /// How rays are traced.
     pub variant: TraceVariant,
-    /// Of the disk, that a record holds at most.
+    /// Crossings of the disk that a record holds at most.
     pub crossings: u32,
     pub eye: LocalFrame,
     pub wanted: Wanted,
@@ -54,7 +54,7 @@ impl Making {
         }
     }
 
-    /// What makes the records of the pixels that the source leaves pending.
+    /// The source of the records of those pixels that this one leaves pending.
     pub fn rest(&self) -> Option<Source> {
         match self.source {
             Source::Kerr { delay, pattern, moving, .. } => Some(Source::Kerr { delay, pattern, moving, rest: true }),
@@ -166,7 +166,7 @@ pub struct Shared<'a> {
     pub step_sum: wgpu::BindingResource<'a>,
 }
 
-/// What makes the records of a tile before they are shaded.
+/// The stages that make the records of a tile before they are shaded.
 pub struct TraceStages {
     trace: Stage,
     count: Stage,

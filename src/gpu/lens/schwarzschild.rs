@@ -58,7 +58,7 @@ impl SchwarzschildUniform {
     }
 }
 
-/// What decides the tables' content.
+/// Everything that decides the tables' content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Eye {
     r: f64,

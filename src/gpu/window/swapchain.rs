@@ -23,7 +23,7 @@ pub struct Swapchain {
     device: Arc<Device>,
 }
 
-/// What asking for the next image gave.
+/// The answer of a swapchain that was asked for its next image.
 pub enum Acquired {
     Image(wgpu::SurfaceTexture),
     /// None now: the window is hidden or busy.

@@ -1,4 +1,4 @@
-//! What every kind of file becomes when it is read.
+//! A file's pixels in memory, which every kind of file becomes when it is read.
 
 use super::support::reserve;
 use crate::error::Result;

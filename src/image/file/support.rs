@@ -1,4 +1,5 @@
-//! What the readers and writers of all kinds of files share: limits, errors, memory, and the thread that they run on.
+//! The things that the readers and writers of all kinds of files share: limits, errors, memory, and the thread that
+//! they run on.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::memory::{MAX_SIDE, PixelFormat};

@@ -1,4 +1,5 @@
-//! Which cells of a Kerr lens table are good enough to be interpolated, and which crossings their rays may have.
+//! Judges the cells of a Kerr lens table: whether they are good enough to be interpolated, and which crossings their
+//! rays may have.
 
 use super::grid::*;
 
