@@ -134,7 +134,6 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
     ("emit/turbulence", "turbulent_octaves", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
-    ("film/packed_rows", "keep_words", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
     ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
     ("geodesic/integrator", "quintic_root", "for (var i = 0; i < 4; i++)", CONSTANT),
     ("geodesic/trace", "tau_at_horizon", "for (var i = 0; i < 4; i++)", CONSTANT),
