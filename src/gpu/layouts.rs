@@ -1,4 +1,5 @@
-//! Tests that the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has them.
+//! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
+//! them.
 
 use super::frame::{bloom, rays, uniforms};
 use super::kernel::layout::{Layout, layout};

@@ -180,7 +180,8 @@ panel_saves() {
             --picture "$scratch/panel-picture-$run.png" && panel_ends || return 1
     done
     # By itself it may take the CPU tracer, where that is done sooner.
-    "$render_frame" --backend vulkan --size 480x300 --spin 0.7 --distance 30 --azimuth -90 --elevation 10 --fov 45 --turbulence 0.6 \
+    "$render_frame" --backend vulkan --size 480x300 --spin 0.7 --distance 30 --azimuth -90 --elevation 10 --fov 45 \
+        --turbulence 0.6 \
         --output "$scratch/panel-frame.png" || return 1
     panel_expect "$(panel_compare AE window-one picture-one)" 0 || return 1
     panel_expect "$(panel_compare AE picture-one picture-two)" 0 || return 1

@@ -3,7 +3,8 @@
 # $sdl_window, the program; $scratch, a folder; XDG_RUNTIME_DIR; an X server in DISPLAY without a window manager.
 # shellcheck shell=bash disable=SC2154
 
-# sdl_until SECONDS COMMAND...: asks again and again until it succeeds; fails after the time, or when the program is gone.
+# sdl_until SECONDS COMMAND...: asks again and again until it succeeds; fails after the time, or when the program is
+# gone.
 sdl_until() {
     local end=$((SECONDS + $1))
     shift
@@ -69,7 +70,8 @@ sdl_shows() { import -window "$sdl_window_id" "$1" && [ "$(identify -format '%k'
 # sdl_shows_held AREA: what the window shows now is the screenshot, in an area of both.
 sdl_shows_held() {
     sdl_shows "$scratch/sdl-shown.png" 200 &&
-        [ "$(identify -format '%wx%h' "$scratch/sdl-shown.png")" = "$(identify -format '%wx%h' "$scratch/sdl-held.png")" ] || return 1
+        [ "$(identify -format '%wx%h' "$scratch/sdl-shown.png")" = \
+            "$(identify -format '%wx%h' "$scratch/sdl-held.png")" ] || return 1
     local name
     for name in held shown; do
         convert "$scratch/sdl-$name.png" -crop "$1" +repage "$scratch/sdl-$name-area.png" || return 1
@@ -137,7 +139,8 @@ sdl_on_wayland() {
     xdotool mousemove --window "$sdl_window_id" 638 398 && sleep 0.5
     sdl_open wayland --size 320x180 --frames 20 --screenshot "$scratch/sdl-held.png" --hold 60 || return 1
     sdl_until 60 sdl_says '^holding' && sdl_says '^frames 20$' || return 1
-    [ "$(identify -format '%wx%h' "$scratch/sdl-held.png")" = 640x400 ] || { identify "$scratch/sdl-held.png"; return 1; }
+    [ "$(identify -format '%wx%h' "$scratch/sdl-held.png")" = 640x400 ] ||
+        { identify "$scratch/sdl-held.png"; return 1; }
     # The compositor may not be done with the last frame.
     sdl_until 60 sdl_shows_held 600x360+0+0 && sdl_close
 }
