@@ -8,7 +8,7 @@
 //! - [`tracer`]: what tracers take and give: requests, tiles, numbers, adapters.
 //! - [`film`]: radiance -> pixels.
 //! - [`scene`]: what to draw, as plain validated data.
-//! - [`sky`]: stars and maps. [`image`]: pixels in memory and files.
+//! - [`emit`]: what shines or absorbs near the hole. [`sky`]: stars and maps. [`image`]: pixels in memory and files.
 //! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
 //! - `random`, `deferred` (work that waits until a thread holds no lock of the process), `allocate` (memory that may be
 //!   refused), `thread_scope` (what the library's threads take over from the threads that they work for), [`error`].
@@ -20,6 +20,7 @@ mod allocate;
 pub mod capi;
 pub mod cpu;
 mod deferred;
+pub mod emit;
 pub mod error;
 pub mod film;
 pub mod gpu;

@@ -10,7 +10,7 @@ const ROOMS: [&[&str]; 15] = [
     &["error"],
     &["allocate", "deferred", "random", "thread_scope"],
     &["physics"],
-    &["image"],
+    &["emit", "image"],
     &["sky"],
     &["scene"],
     &["film"],

@@ -1,4 +1,4 @@
-// The structure of the disk. Mirrors src/scene/turbulence.rs, where the reasons are. Knows no colours.
+// The structure of the disk. Mirrors src/emit/turbulence.rs, where the reasons are. Knows no colours.
 
 #import constants
 #import records/record

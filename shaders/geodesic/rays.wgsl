@@ -47,6 +47,10 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         vec4<u32>(bitcast<u32>(crossing.u), bitcast<u32>(crossing.delay), crossing.order, 0u));
 }
 
+// Hosts' rays meet no emitter.
+fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+}
+
 @compute @workgroup_size(64)
 fn trace_rays(@builtin(global_invocation_id) id: vec3<u32>) {
     if id.x >= rays.count {

@@ -8,6 +8,11 @@
 #import geodesic/geodesic
 #import geodesic/integrator
 #requires fn on_crossing(c: Constants, crossing: PlaneCrossing)
+#requires fn on_part(c: Constants, from_state: State, begin: f32, end: f32)
+
+// Whether on_part is told of every part of the ray in which it crosses no plane: a step that begins at `from_state`,
+// or what lies of it on one side of a crossing, from `begin` to `end` in tau since then.
+override PARTS: bool = false;
 
 struct Settings {
     // Step in sigma.
@@ -26,6 +31,8 @@ struct PlaneCrossing {
     drag: f32,
     delay: f32,
     order: u32,
+    // Tau from the begin of the step in which it lies.
+    tau: f32,
 }
 
 struct RayTrace {
@@ -81,14 +88,22 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
             if crossed || fate != FATE_UNRESOLVED {
                 break;
             }
+            if PARTS {
+                on_part(c, state, 0.0, h);
+            }
             tau += h;
             state = next;
         }
+        var begin = 0.0;
         if crossed {
             side = next.n.z;
             if order < settings.max_crossings {
                 let crossing = find_crossing(c, start, state, next, h, order);
                 if crossing.u > 0.0 && crossing.u <= 1.0 / (c.r_plus * (1.0 + 1e-5)) {
+                    if PARTS {
+                        on_part(c, state, 0.0, crossing.tau);
+                        begin = crossing.tau;
+                    }
                     on_crossing(c, crossing);
                     if crossing.u >= settings.opaque_u.x && crossing.u <= settings.opaque_u.y {
                         fate = FATE_HIDDEN;
@@ -96,6 +111,9 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
                 }
             }
             order += 1u;
+        }
+        if PARTS && fate != FATE_HIDDEN && (crossed || fate != FATE_UNRESOLVED) {
+            on_part(c, state, begin, h);
         }
         // Ended, or out of steps.
         if fate != FATE_UNRESOLVED || !crossed {
@@ -129,8 +147,14 @@ fn tau_at_horizon(c: Constants, traced: RayTrace) -> f32 {
     return traced.tau + t;
 }
 
+struct CrossingState {
+    at: State,
+    // Tau from the step's begin.
+    tau: f32,
+}
+
 // The state where N_z is 0 within the step from `start` to `to`.
-fn crossing_state(c: Constants, start: State, to: State, h: f32) -> State {
+fn crossing_state(c: Constants, start: State, to: State, h: f32) -> CrossingState {
     let partial = h * quintic_root(quintic_of_n_z(c, start, to, h));
     var there = step_ray(c, start, partial).state;
     // The rest of N_z that rounding left, to first order.
@@ -138,12 +162,13 @@ fn crossing_state(c: Constants, start: State, to: State, h: f32) -> State {
     there.drag += drag_rate(c, there.u) * rest;
     there.u += there.du * rest;
     there.n += there.dn * rest;
-    return there;
+    return CrossingState(there, partial + rest);
 }
 
 fn find_crossing(c: Constants, eye: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {
-    let there = crossing_state(c, start, to, h);
-    var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order);
+    let found = crossing_state(c, start, to, h);
+    let there = found.at;
+    var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order, found.tau);
     if DELAY {
         crossing.delay = retardation(c, eye.u, eye.du, there.u, there.du, there.delay - eye.delay);
     }

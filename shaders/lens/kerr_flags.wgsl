@@ -120,8 +120,8 @@ fn sky_is_good() -> bool {
 fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     let margin = 0.25 * max(p.finite_high[k] - p.finite_low[k], 0.0);
     // Pixels beside an edge look for it, too; as `REACHED_U` of scene/refine.rs.
-    let near = frame.disk_u.y * 1.15;
-    let far = frame.disk_u.x / 1.5;
+    let near = frame.plane_u.y * 1.15;
+    let far = frame.plane_u.x / 1.5;
     if near < far || p.low[k] - margin > near || p.high[k] + margin < far {
         return 0u;
     }
@@ -145,7 +145,7 @@ fn pattern_is_good(p: Patch) -> bool {
     let delay_stretch =
         stretch_of(abs(vec2<f32>(p.by_row[0].w, p.by_row[1].w)), abs(vec2<f32>(p.by_column[0].w, p.by_column[1].w)));
     // d ph = Omega dt, Omega = r^(-3/2) (Kepler).
-    let u = clamp(p.high.x, frame.disk_u.x, frame.disk_u.y);
+    let u = clamp(p.high.x, frame.plane_u.x, frame.plane_u.y);
     let turn = u * sqrt(u);
     return length(p.error.yz) <= KERR_PATTERN_TOLERANCE * (1.0 + critical * azimuth_stretch)
         && turn * p.error.w <= KERR_PATTERN_TOLERANCE * (1.0 + critical * turn * delay_stretch);

@@ -56,7 +56,7 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
         if side * next.n.z < 0.0 {
             side = next.n.z;
             if found < lens.orders {
-                var there = crossing_state(c, state, next, h);
+                var there = crossing_state(c, state, next, h).at;
                 if inside {
                     there.drag = state.drag;
                     there.delay = state.delay;
@@ -93,6 +93,9 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
 
 // Nodes keep their crossings by themselves.
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
+}
+
+fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
 }
 
 fn put_crossing(c: Constants, eye: State, there: State) {

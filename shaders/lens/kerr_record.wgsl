@@ -186,7 +186,7 @@ fn edges_of_pixel(through: f32) -> u32 {
 // The next crossing of the disk in the tables.
 fn next_looked_up() -> Crossing {
     var crossing: Crossing;
-    if !DISK {
+    if !PLANE {
         return crossing;
     }
     var orders = looked.flags & 0xffffu;

@@ -33,6 +33,14 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
+// Scenes with emitters that have depth use no tables.
+fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+}
+
+fn medium_before(k: u32) -> vec4<f32> {
+    return vec4<f32>(0.0, 0.0, 0.0, 1.0);
+}
+
 fn ray_record(id: vec2<u32>) -> Record {
     var record = look_up(id);
     let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u,
@@ -72,7 +80,7 @@ fn next_crossing() -> Crossing {
             let change = looked_up_change(at, select(rest_order % 4u, 0u, PATTERN));
             looked.on_edge = looked.on_edge || near_disk_edge(u, change);
         }
-        if u >= frame.disk_u.x && u <= frame.disk_u.y {
+        if u >= frame.plane_u.x && u <= frame.plane_u.y {
             crossing.u = u;
             crossing.order = rest_order;
         }

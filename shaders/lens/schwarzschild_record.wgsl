@@ -89,7 +89,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     looked.first = first_crossing_angle(tangent.x);
     looked.on_edge = false;
     looked.beyond = beyond_right_angle(t);
-    if DISK {
+    if PLANE {
         // N_z stays 0 (OrbitPlane::image_change); both factors change sign from crossing to crossing.
         let turn = sincos(min(looked.first, PI));
         let rise = looked.along.z * turn.y - frame.e_r.z * turn.x;
@@ -133,7 +133,7 @@ fn first_crossing_angle(n_theta: f32) -> f32 {
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
-    if !DISK {
+    if !PLANE {
         return crossing;
     }
     if looked.first >= looked.swept {
@@ -164,6 +164,11 @@ fn next_crossing() -> Crossing {
         complete(&crossing, looked.first + PI * f32(crossing.order));
     }
     return crossing;
+}
+
+// Scenes with emitters that have depth use no tables.
+fn medium_before(k: u32) -> vec4<f32> {
+    return vec4<f32>(0.0, 0.0, 0.0, 1.0);
 }
 
 // Whether there is one only next_crossing finds out.

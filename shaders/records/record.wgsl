@@ -2,8 +2,10 @@
 // However records are made, the fragment that makes them (one of traced/, lens/ or refine/) declares
 //
 //     fn ray_record(id: vec2<u32>) -> Record   gives the record of the tile's pixel `id`;
-//     fn next_crossing() -> Crossing           gives its crossings one by one, front to back, within the disk's radii;
+//     fn next_crossing() -> Crossing           gives its crossings one by one, front to back, where emitters shine;
 //     fn more_crossings() -> bool              says whether next_crossing may give one more;
+//     fn medium_before(k: u32) -> vec4<f32>    gives, with VOLUMES, the medium (emit/medium.wgsl) before the crossing
+//                                              given as number k, or behind the last if k is their count;
 //     fn rewind_crossings()                    begins with the first crossing again (for samples);
 //     fn defer_pixel(id: vec2<u32>)            leaves a pixel whose record is FATE_PENDING to a later kernel;
 //     fn edges_of_pixel(through: f32) -> u32   says which edge, EDGE_*, runs through the pixel, once its crossings have
@@ -59,7 +61,7 @@ fn footprint_of(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> Footprint {
     return Footprint(p, q, vec2<f32>(dot(dx, p), dot(dx, q)), vec2<f32>(dot(dy, p), dot(dy, q)));
 }
 
-// A crossing within the disk's radii; u is 0 when there is no further one.
+// A crossing where emitters shine; u is 0 when there is no further one.
 struct Crossing {
     u: f32,
     g: f32,
@@ -92,19 +94,21 @@ fn beyond_right_angle(t: f32) -> f32 {
 
 // EDGE_* of a looked-up pixel that lies `curve` pixels from the critical curve; the rings lie outside it.
 fn edges_looked_up(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
-    let near_ring = DISK && outside && through > 0.0 && curve < RINGS_REACH;
+    let near_ring = PLANE && outside && through > 0.0 && curve < RINGS_REACH;
     let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);
     return select(kind, EDGE_CURVE, through > 0.0 && curve < CURVE_REACH);
 }
 
-// Whether there is a disk, and whether shading needs the footprint of crossings.
-override DISK: bool = true;
+// Whether anything shines in the plane, whether shading needs the footprint of crossings, and whether emitters with
+// depth lie between crossings.
+override PLANE: bool = true;
 override FOOTPRINTS: bool = true;
-// Whether next_crossing can give crossings of the plane outside the disk's radii as well, and whether it is to.
+override VOLUMES: bool = false;
+// Whether next_crossing can give crossings of the plane where nothing shines as well, and whether it is to.
 override WHOLE_PLANE: bool = false;
 var<private> whole_plane: bool;
 
 // Whether next_crossing gives one at u.
 fn is_wanted(u: f32) -> bool {
-    return (WHOLE_PLANE && whole_plane && u > 0.0) || (u >= frame.disk_u.x && u <= frame.disk_u.y);
+    return (WHOLE_PLANE && whole_plane && u > 0.0) || (u >= frame.plane_u.x && u <= frame.plane_u.y);
 }

@@ -4,6 +4,7 @@
 #import constants
 #import camera/observer
 #import camera/projection
+#import emit/volumes
 #import geodesic/geodesic
 #import geodesic/trace
 #import records/record
@@ -16,6 +17,9 @@ var<private> kept_crossings: array<vec3<f32>, CROSSINGS_KEPT>;
 var<private> kept_order: u32;
 // Orders up to that of the last crossing.
 var<private> kept_count: u32;
+// With PARTS: the media before the crossings that are given, and behind the last; the number of those crossings.
+var<private> kept_media: array<vec4<f32>, CROSSINGS_KEPT + 1u>;
+var<private> kept_given: u32;
 // The constants of the ray.
 var<private> kept_constants: Constants;
 var<private> kept_ratio: f32;
@@ -25,8 +29,21 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if FOOTPRINTS {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
+    if PARTS && is_wanted(crossing.u) {
+        kept_media[min(kept_given, CROSSINGS_KEPT)] = medium;
+        kept_given += 1u;
+        medium = NO_MEDIUM;
+    }
     kept_count = min(crossing.order + 1u, CROSSINGS_KEPT);
     kept_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+}
+
+fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+    add_part(c, from_state, begin, end, kept_ratio);
+}
+
+fn medium_before(k: u32) -> vec4<f32> {
+    return kept_media[min(k, CROSSINGS_KEPT)];
 }
 
 // The record of the sample at pixel_place(id), without footprints.
@@ -36,6 +53,10 @@ fn integrated_record(id: vec2<u32>) -> Record {
     }
     kept_order = 0u;
     kept_count = 0u;
+    if PARTS {
+        kept_given = 0u;
+        medium = NO_MEDIUM;
+    }
     let place = pixel_place(id);
     let begin = begin_ray(camera_look(place.x, place.y));
     kept_constants = begin.c;
@@ -59,6 +80,9 @@ fn integrated_record(id: vec2<u32>) -> Record {
             record.footprint.dy = vec2<f32>(1e30);
         }
     }
+    if PARTS {
+        kept_media[min(kept_given, CROSSINGS_KEPT)] = medium;
+    }
     return record;
 }
 
@@ -69,7 +93,7 @@ fn more_integrated() -> bool {
 // Without footprint.
 fn next_integrated() -> Crossing {
     var crossing: Crossing;
-    if !DISK {
+    if !PLANE {
         return crossing;
     }
     while more_integrated() && crossing.u <= 0.0 {

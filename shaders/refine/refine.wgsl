@@ -151,12 +151,13 @@ fn mean_light() -> vec4<f32> {
 
 fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
-    crossing.share = 1.0;
+    crossing.share = disk_covers(crossing.u);
     if whole_plane {
         crossing.share = covered_share(crossing.u, min(crossing.order, CROSSINGS_KEPT - 1u));
-        // Far from the disk g may be no number at all.
-        crossing.g = select(1.0, crossing.g, crossing.share > 0.0);
-        crossing.u = select(0.0, clamp(crossing.u, frame.disk_u.x, frame.disk_u.y), crossing.u > 0.0);
+        // Where nothing shines g may be no number at all.
+        let shines = crossing.share > 0.0 || (crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y);
+        crossing.g = select(1.0, crossing.g, shines);
+        crossing.u = select(0.0, clamp(crossing.u, frame.plane_u.x, frame.plane_u.y), crossing.u > 0.0);
     }
     return crossing;
 }

@@ -19,6 +19,6 @@ fn take_record(id: vec2<u32>, record: Record) {
 
 fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
-    crossing.share = 1.0;
+    crossing.share = disk_covers(crossing.u);
     return crossing;
 }

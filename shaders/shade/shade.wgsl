@@ -3,8 +3,8 @@
 
 #import constants
 #import camera/projection
-#import emit/disk
-#import emit/turbulence
+#import emit/plane
+#import emit/shift
 #import records/record
 #import shared/deciding
 #import shared/frame
@@ -14,6 +14,7 @@
 #import sky/map
 #import sky/stars
 #requires fn next_crossing() -> Crossing
+#requires fn medium_before(k: u32) -> vec4<f32>
 #requires fn more_crossings() -> bool
 #requires fn seen_crossing() -> Crossing
 
@@ -67,30 +68,38 @@ fn least_patch() -> f32 {
     return frame.sky_z.w;
 }
 
-// The share of the light behind the disk that the disk lets pass at the pixel shaded last.
+// The share of the light from behind that matter lets pass at the pixel shaded last.
 var<private> seen_through: f32;
 
 // Light and alpha of a record. seen_crossing gives next_crossing with its share.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
-    // max_crossings bounds what next_crossing gives; behind the first crossing of an opaque disk nothing is seen.
+    var given = 0u;
+    // max_crossings bounds what next_crossing gives; behind an opaque crossing nothing is seen.
     for (var k = 0u; k < select(deciding(frame.max_crossings), 1u, OPAQUE); k += 1u) {
         let crossing = seen_crossing();
         if crossing.u <= 0.0 {
             break;
         }
-        var structure = 1.0;
-        if FOOTPRINTS {
-            structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
+        if VOLUMES {
+            let medium = medium_before(k);
+            light += open * medium.xyz;
+            open *= medium.w;
+            given = k + 1u;
         }
-        let opacity = frame.disk.z * crossing.share;
-        light += open * opacity * structure * disk_light(crossing.u, crossing_shift(here, crossing));
-        open *= 1.0 - opacity;
+        let emission = emitted_at_crossing(crossing, crossing_shift(here, crossing), open);
+        light += emission.xyz;
+        open *= 1.0 - emission.w;
         // If the loop found at its begin that there is none, lavapipe would run all of the body once more.
         if !more_crossings() {
             break;
         }
+    }
+    if VOLUMES {
+        let medium = medium_before(given);
+        light += open * medium.xyz;
+        open *= medium.w;
     }
     seen_through = open;
     if (SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID) && here.fate == FATE_ESCAPED && open > 0.0 {
@@ -103,7 +112,7 @@ fn crossing_shift(here: Record, crossing: Crossing) -> Shift {
     if ALL_EFFECTS {
         return Shift(crossing.g, crossing.g);
     }
-    let gravity = nu_static_eye(here.energy) / nu_zamo_in_plane(crossing.u, here.energy, here.angular_momentum);
+    let gravity = nu_static_eye(here.energy) / zamo_frequency(crossing.u, 0.0, here.energy, here.angular_momentum);
     return visible_shift(crossing.g, gravity);
 }
 

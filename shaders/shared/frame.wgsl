@@ -31,8 +31,10 @@ struct Frame {
     disk: vec4<f32>,
     // The size of the full frame, pixels; then the step in sigma and the tolerance.
     size: vec4<f32>,
-    // Strength, age at the reference time, delay of light of that time (M), 0 of Turbulence in turbulence.rs.
+    // Strength, age at the reference time, delay of light of that time (M), 0 of Turbulence in src/emit/turbulence.rs.
     turbulence: vec4<f32>,
+    // Radius, brightness, absorption of Haze in src/emit/haze.rs, 0.
+    haze: vec4<f32>,
     // 1/r of the disk's outer and inner edge, (1, 0) without one; the same if nothing behind it matters, else (1, 0).
     disk_u: vec2<f32>,
     opaque_u: vec2<f32>,
@@ -50,6 +52,10 @@ struct Frame {
     map_sizes: vec4<u32>,
     // BHR_PROJECTION_*, for kernels that serve all.
     projection: u32,
+    // The layer of traced records that holds the medium before the first crossing (traced/layout.wgsl).
+    medium_layer: u32,
+    // 1/r between which crossings of the plane are kept: all emitters of the plane lie there. (1, 0) without any.
+    plane_u: vec2<f32>,
 }
 
 const RAIN_CLOCK: u32 = 2u;

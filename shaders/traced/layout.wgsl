@@ -3,8 +3,9 @@
 //
 //     record_sky    xyz: sky direction, chart; w: sky_redshift, 0 unless the ray escaped.
 //     record_meta   TracedMeta.
-//     record_disk   a layer for each crossing within the disk, in order: u, g, azimuth (with AZIMUTH, else 0), delay
-//                   (with DELAY, else 0).
+//     record_disk   a layer for each crossing where emitters shine, in order: u, g, azimuth (with AZIMUTH, else 0),
+//                   delay (with DELAY, else 0). With PARTS, from layer frame.medium_layer on, the medium before each
+//                   crossing and behind the last (emit/medium.wgsl).
 
 // x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge; bit 16 + k:
 // it is the disk's. y: steps. z, w: E and L; in the METRIC view z is plane_u.

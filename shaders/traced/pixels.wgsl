@@ -3,6 +3,7 @@
 #import constants
 #import camera/observer
 #import camera/projection
+#import emit/volumes
 #import geodesic/geodesic
 #import geodesic/trace
 #import shared/deciding
@@ -31,19 +32,32 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if crossing.order == 0u {
         plane_u = crossing.u;
     }
-    // Without a disk its radii are (1, 0).
+    // Without a disk its edges are (1, 0).
     if crossing.u > max(frame.disk_u.x, frame.disk_u.y) {
         inside_orders |= 1u << crossing.order;
     }
-    if crossing.u >= frame.disk_u.x && crossing.u <= frame.disk_u.y {
+    if crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y {
         var azimuth = 0.0;
         if AZIMUTH {
             azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
         }
         let g = frequency_ratio * redshift_of(c, crossing.u);
+        if PARTS {
+            keep_medium();
+        }
         textureStore(record_disk, pixel, countOneBits(disk_orders), vec4<f32>(crossing.u, g, azimuth, crossing.delay));
         disk_orders |= 1u << crossing.order;
     }
+}
+
+fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+    add_part(c, from_state, begin, end, frequency_ratio);
+}
+
+// Leaves the medium since the crossing before.
+fn keep_medium() {
+    textureStore(record_disk, pixel, frame.medium_layer + countOneBits(disk_orders), medium);
+    medium = NO_MEDIUM;
 }
 
 @compute @workgroup_size(8, 16)
@@ -60,6 +74,7 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     disk_orders = 0u;
     inside_orders = 0u;
     plane_u = 0.0;
+    medium = NO_MEDIUM;
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
     if begin.light {
@@ -72,6 +87,9 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
             let end = escape(c, traced);
             sky = vec4<f32>(chart_direction(end.n, end.drag), frequency_ratio / m.energy);
         }
+    }
+    if PARTS {
+        keep_medium();
     }
     textureStore(record_sky, pixel, sky);
     m.orders = disk_orders;

@@ -27,7 +27,7 @@ fn ray_record(id: vec2<u32>) -> Record {
 
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
-    if !DISK || traced_orders == 0u {
+    if !PLANE || traced_orders == 0u {
         return crossing;
     }
     crossing.order = firstTrailingBit(traced_orders);
@@ -42,6 +42,10 @@ fn next_crossing() -> Crossing {
         crossing.dy = derivative_of_place(here, crossing.order, vec2<u32>(0u, 1u));
     }
     return crossing;
+}
+
+fn medium_before(k: u32) -> vec4<f32> {
+    return textureLoad(record_disk, traced_pixel, frame.medium_layer + k, 0);
 }
 
 fn more_crossings() -> bool {
@@ -63,7 +67,7 @@ fn edges_of_pixel(through: f32) -> u32 {
 
 // Whether u of the first of a pixel's crossings, whose orders are the bits, changes steeply to the next pixels.
 fn is_steep(orders: u32) -> bool {
-    if !DISK || orders == 0u {
+    if !PLANE || orders == 0u {
         return false;
     }
     let order = firstTrailingBit(orders);

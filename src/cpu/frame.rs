@@ -122,7 +122,7 @@ impl<'a> Frame<'a> {
         let eye = &lens.observer.frame;
         let tables = cache.tables(scene, eye, scene.lensing(eye, pixels, KerrWorth::CPU))?;
         let source = |recorder| match tables {
-            Some(tables) => Source::LookedUp(LookedUp::new(scene, recorder, tables)),
+            Some(tables) => Source::LookedUp(LookedUp::new(recorder, tables)),
             None => Source::Traced(recorder),
         };
         let samples = if light { scene.quality.samples_per_pixel } else { 1 };

@@ -4,6 +4,7 @@
 
 use super::record::{Neighbours, Recorder};
 use crate::allocate::{filled, with_room};
+use crate::emit::{Crossing, Place};
 use crate::error::Result;
 use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
@@ -11,9 +12,8 @@ use crate::physics::lens::{LENS, OrbitPlane, PlaneImage, SchwarzschildLens};
 use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
-use crate::scene::record::{DiskCrossing, Record, UNKNOWN_PLACE};
+use crate::scene::record::{Record, UNKNOWN_PLACE};
 use crate::scene::refine::{LIKE, looked_up_edge, near_disk_edge, reached_u};
-use crate::scene::turbulence::Place;
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -55,7 +55,9 @@ impl LensCache {
         Ok(match lensing {
             Lensing::Traced => None,
             Lensing::Kerr => self.kerr(frame, wanted(scene))?.map(Tables::Kerr),
-            Lensing::Schwarzschild => self.schwarzschild(frame, scene.needs_delay())?.map(Tables::Schwarzschild),
+            Lensing::Schwarzschild => {
+                self.schwarzschild(frame, scene.emitters().needs().delays)?.map(Tables::Schwarzschild)
+            }
         })
     }
 
@@ -84,9 +86,10 @@ impl LensCache {
 /// The contents that a frame of `scene` asks of tables.
 fn wanted(scene: &Scene) -> Crossings {
     let orders = scene.pixel_settings().max_crossings;
-    match scene.disk_u() {
-        Some(disk_u) => Crossings { orders, disk_u: reached_u(disk_u), pattern: scene.turbulence().is_some() },
-        None => Crossings { orders: 0, disk_u: [1.0, 0.0], pattern: false },
+    let emitters = scene.emitters();
+    match emitters.plane_u() {
+        Some(plane_u) => Crossings { orders, plane_u: reached_u(plane_u), pattern: emitters.needs().places },
+        None => Crossings { orders: 0, plane_u: [1.0, 0.0], pattern: false },
     }
 }
 
@@ -150,9 +153,9 @@ struct Seen {
 }
 
 impl<'a> LookedUp<'a> {
-    pub fn new(scene: &Scene, recorder: Recorder<'a>, tables: Tables<'a>) -> Self {
+    pub fn new(recorder: Recorder<'a>, tables: Tables<'a>) -> Self {
         let momenta = recorder.lens.observer.frame.momenta();
-        Self { recorder, tables, momenta, pattern: scene.turbulence().is_some() }
+        Self { pattern: recorder.emitters.needs().places, recorder, tables, momenta }
     }
 
     /// Makes `record` that of position (x, y) of the full frame, with footprints.
@@ -206,7 +209,9 @@ impl<'a> LookedUp<'a> {
             record.footprint = steps.map(|step| sky.change(&step));
         }
         let orders = 0..self.recorder.settings.max_crossings;
-        let on_edge = orders.filter_map(|order| found.crossing(order)).any(|c| self.is_near_edge(&c, &steps));
+        let on_edge = orders
+            .filter_map(|order| found.crossing(order))
+            .any(|c| self.is_near_disk_edge(c.image.u, steps.each_ref().map(|step| c.change(step).u)));
         self.note_edge(&mut record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
         if !self.pattern {
             return (record, true);
@@ -228,8 +233,8 @@ impl<'a> LookedUp<'a> {
         let mut on_edge = false;
         for crossing in found.crossings() {
             let u = crossing.image.u;
-            on_edge |= self.is_near_edge(&crossing, &steps);
-            if !self.recorder.disk_u.is_some_and(|[outer, inner]| u >= outer && u <= inner) {
+            on_edge |= self.is_near_disk_edge(u, steps.each_ref().map(|step| crossing.change(step).u));
+            if !self.recorder.plane_u.is_some_and(|[outer, inner]| u >= outer && u <= inner) {
                 continue;
             }
             let place = self.pattern.then(|| {
@@ -246,9 +251,9 @@ impl<'a> LookedUp<'a> {
         }
     }
 
-    fn is_near_edge(&self, crossing: &kerr::Crossing, steps: &[kerr::Step; 2]) -> bool {
-        let change = [0, 1].map(|i| crossing.change(&steps[i]).u);
-        self.recorder.disk_u.is_some_and(|disk_u| near_disk_edge(crossing.image.u, change, disk_u))
+    /// `change`: of u to the next pixel right and down.
+    fn is_near_disk_edge(&self, u: f64, change: [f64; 2]) -> bool {
+        self.recorder.disk_u.is_some_and(|disk_u| near_disk_edge(u, change, disk_u))
     }
 
     /// `curve`: distance to the critical curve, pixels; `outside`: the ray escapes.
@@ -271,11 +276,11 @@ impl<'a> LookedUp<'a> {
         let plane = OrbitPlane::new(frame, seen.n);
         let turns = seen.changes.map(|change| plane.turn(frame, &look, change));
         let mut on_edge = false;
-        if let (Some([outer, inner]), Some(first)) = (self.recorder.disk_u, plane.crossing_angle(0)) {
+        if let (Some([outer, inner]), Some(first)) = (self.recorder.plane_u, plane.crossing_angle(0)) {
             for order in 0..self.recorder.settings.max_crossings as u32 {
                 let Some(crossing) = look.crossing(first + PI * f64::from(order)) else { break };
                 let change = turns.map(|turn| plane.u_change(&look, &crossing, &turn));
-                on_edge |= near_disk_edge(crossing.u, change, [outer, inner]);
+                on_edge |= self.is_near_disk_edge(crossing.u, change);
                 if !(crossing.u >= outer && crossing.u <= inner) {
                     continue;
                 }
@@ -297,15 +302,16 @@ impl<'a> LookedUp<'a> {
         }
     }
 
-    /// Adds a crossing within the disk, with its place and footprint if known; true if nothing behind it can be seen.
+    /// Adds a crossing where emitters shine, with its place and footprint if known; true if nothing behind it can be seen.
     fn cross(&self, record: &mut Record, ratio: f64, u: f64, order: u32, place: Option<(Place, [Place; 2])>) -> bool {
         let spin = self.recorder.lens.observer.frame.a;
         let g = redshift(spin, u, self.recorder.retrograde, record.energy, record.angular_momentum, 1.0);
         let nowhere = Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
         let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_PLACE; 2]));
         // Tables hold no more crossings than a record does.
-        let _ = record.crossings.try_push(DiskCrossing { u, order, g: ratio * g, place, footprint, share: 1.0 });
-        let hidden = self.recorder.settings.opaque_u.is_some();
+        let share = self.recorder.emitters.covered(u);
+        let _ = record.crossings.try_push(Crossing { u, order, g: ratio * g, place, footprint, share });
+        let hidden = self.recorder.settings.opaque_u.is_some_and(|[outer, inner]| u >= outer && u <= inner);
         if hidden {
             record.fate = Fate::Hidden;
         }
@@ -406,7 +412,7 @@ mod tests {
             assert!((found.sky_redshift / truth.sky_redshift - 1.0).abs() < 1e-12);
         }
 
-        fn crossing(&mut self, found: &DiskCrossing, truth: &DiskCrossing, look_step: f64, sin_critical: f64) {
+        fn crossing(&mut self, found: &Crossing, truth: &Crossing, look_step: f64, sin_critical: f64) {
             let turn = truth.u * truth.u.sqrt();
             let by = |f: fn(&Place) -> f64| {
                 found.footprint.iter().map(|change| f(change).abs()).fold(0.0, f64::max) / look_step * sin_critical
@@ -456,7 +462,7 @@ mod tests {
         let lensing = scene.lensing(frame, 1, KerrWorth::CPU);
         assert_ne!(lensing, Lensing::Traced);
         let tables = cache.tables(scene, frame, lensing).unwrap().unwrap();
-        let lookup = LookedUp::new(scene, Recorder::new(scene, &lens), tables);
+        let lookup = LookedUp::new(Recorder::new(scene, &lens), tables);
         let truth = exact(scene, &lens);
         let mut sequence = Sequence(11);
         let mut errors = Errors { pixels: count, ..Errors::default() };
@@ -502,7 +508,7 @@ mod tests {
     }
 
     fn beside_edge(scene: &Scene, u: f64) -> bool {
-        scene.disk_u().is_some_and(|edges| edges.iter().any(|edge| (u / edge - 1.0).abs() < 1e-4))
+        scene.emitters().disk_u().is_some_and(|edges| edges.iter().any(|edge| (u / edge - 1.0).abs() < 1e-4))
     }
 
     fn schwarzschild_scenes() -> Vec<Scene> {

@@ -1,20 +1,24 @@
 //! Ray records of pixels, made by tracing each ray in f64; derivatives come from the neighbours' rays.
 
+use crate::emit::medium::{Media, MediaAlong, Medium};
+use crate::emit::{Crossing, Emitters, Place};
 use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::orbit::redshift;
-use crate::physics::trace::{Fate, RayTrace, Settings, trace_look};
+use crate::physics::trace::{Fate, RayTrace, Settings, trace_look, trace_look_visited};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::projection::Mapping;
-use crate::scene::record::{DiskCrossing, Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
+use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
 use crate::scene::refine::{Edge, is_steep};
-use crate::scene::turbulence::Place;
 use glam::DVec3;
 
 /// Traces the records of a frame.
 pub struct Recorder<'a> {
     pub lens: &'a Lens,
     pub(super) settings: Settings,
+    pub(super) emitters: Emitters,
+    /// 1/r between which crossings are kept, and of the disk's edges.
+    pub(super) plane_u: Option<[f64; 2]>,
     pub(super) disk_u: Option<[f64; 2]>,
     pub(super) retrograde: bool,
 }
@@ -29,15 +33,24 @@ pub struct Neighbours<'a> {
 
 impl<'a> Recorder<'a> {
     pub fn new(scene: &Scene, lens: &'a Lens) -> Self {
-        Self { lens, settings: scene.pixel_settings(), disk_u: scene.disk_u(), retrograde: scene.retrograde() }
+        let emitters = scene.emitters();
+        Self {
+            lens,
+            settings: scene.pixel_settings(),
+            emitters,
+            plane_u: emitters.plane_u(),
+            disk_u: emitters.disk_u(),
+            retrograde: scene.retrograde(),
+        }
     }
 
-    /// A recorder that gives crossings of the whole plane, unless there is no disk, and goes on behind those that would
+    /// A recorder that gives crossings of the whole plane, unless nothing shines in it, and goes on behind those that would
     /// hide the rest.
     pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
         let mut recorder = Self::new(scene, lens);
         recorder.settings.opaque_u = None;
-        recorder.disk_u = recorder.disk_u.map(|_| [0.0, f64::INFINITY]);
+        recorder.plane_u = recorder.plane_u.map(|_| [0.0, f64::INFINITY]);
+        recorder.disk_u = recorder.plane_u;
         recorder
     }
 
@@ -45,12 +58,22 @@ impl<'a> Recorder<'a> {
     pub fn trace(&self, x: f64, y: f64) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.look(self.lens.look(x, y));
-        let (constants, traced) = trace_look(&observer.frame, n, &self.settings);
+        let (constants, traced, media) = if self.emitters.needs().parts {
+            let (emitters, plane_u) = (&self.emitters, self.plane_u);
+            let (media, medium) = (Media::new(), Medium::default());
+            let mut along = MediaAlong { emitters, frequency_ratio, plane_u, media, medium };
+            let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);
+            (constants, traced, along.finish())
+        } else {
+            let (constants, traced) = trace_look(&observer.frame, n, &self.settings);
+            (constants, traced, Media::new())
+        };
         let mut record = Record {
             fate: traced.fate,
             direction: traced.direction,
             steps: traced.steps,
             plane_u: traced.crossings.first().map_or(0.0, |c| c.u),
+            media,
             ..Record::captured()
         };
         if let Some(c) = constants {
@@ -65,16 +88,17 @@ impl<'a> Recorder<'a> {
         if record.fate == Fate::Escaped {
             record.sky_redshift = frequency_ratio / record.energy;
         }
-        let Some([outer, inner]) = self.disk_u else { return };
+        let Some([outer, inner]) = self.plane_u else { return };
         let within = |u: f64| u >= outer && u <= inner;
-        record.inside = traced.crossings.iter().filter(|x| x.u > inner).fold(0, |bits, x| bits | 1 << (x.order & 15));
-        record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| DiskCrossing {
+        let edge = self.disk_u.map_or(inner, |[_, inner]| inner);
+        record.inside = traced.crossings.iter().filter(|x| x.u > edge).fold(0, |bits, x| bits | 1 << (x.order & 15));
+        record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| Crossing {
             u: x.u,
             order: x.order,
             g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
             place: Place { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
             footprint: [UNKNOWN_PLACE; 2],
-            share: 1.0,
+            share: self.emitters.covered(x.u),
         }));
     }
 }
@@ -138,7 +162,7 @@ fn derivative_of_direction(here: &Record, before: Option<&Record>, after: Option
 }
 
 /// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
-fn derivative_of_place(here: &DiskCrossing, before: Option<&Record>, after: Option<&Record>) -> Place {
+fn derivative_of_place(here: &Crossing, before: Option<&Record>, after: Option<&Record>) -> Place {
     let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(|c| c.place);
     let (before, after) = (before.and_then(same), after.and_then(same));
     if before.is_none() && after.is_none() {

@@ -15,6 +15,7 @@ use glam::DVec3;
 pub struct Refiner<'a> {
     /// Gives crossings of the whole plane; nothing is hidden in it.
     plane: Source<'a>,
+    plane_u: Option<[f64; 2]>,
     disk_u: Option<[f64; 2]>,
     opaque: bool,
     lens: &'a Lens,
@@ -25,8 +26,10 @@ pub struct Refiner<'a> {
 impl<'a> Refiner<'a> {
     /// `plane`: of records of the whole plane (`Recorder::whole_plane`).
     pub fn new(scene: &Scene, lens: &'a Lens, plane: Source<'a>) -> Self {
-        let opaque = scene.disk.is_some_and(|disk| disk.opacity >= 1.0);
-        Self { plane, disk_u: scene.disk_u(), opaque, lens, shadow: shadow_centre(&lens.observer.frame) }
+        let emitters = scene.emitters();
+        let (plane_u, disk_u) = (emitters.plane_u(), emitters.disk_u());
+        let opaque = emitters.opaque_u().is_some();
+        Self { plane, plane_u, disk_u, opaque, lens, shadow: shadow_centre(&lens.observer.frame) }
     }
 
     /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`:
@@ -53,11 +56,10 @@ impl<'a> Refiner<'a> {
             for crossing in &mut record.crossings {
                 let of_order = orders.as_ref().and_then(|orders| orders.get(crossing.order as usize));
                 crossing.share = of_order.map_or(0.0, |crossings| crossings.covered_share(index));
-                if let Some([outer, inner]) = self.disk_u {
+                if let Some([outer, inner]) = self.plane_u {
                     crossing.u = crossing.u.clamp(outer, inner);
                 }
             }
-            record.crossings.retain(|crossing| crossing.share > 0.0);
         }
         Some(mean(records.iter().zip(places).map(|(record, [x, y])| shader.shade_record(record, x, y))))
     }

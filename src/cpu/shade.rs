@@ -1,35 +1,21 @@
-//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl` and
-//! `shaders/emit/disk.wgsl`. Does not know how the records were made.
+//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl`. Does not know how the records were made.
 
+use crate::emit::{PlaneLight, Shift};
 use crate::error::Result;
-use crate::physics::blackbody::BlackbodyTable;
-use crate::physics::disk_flux::TemperatureProfile;
-use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
+use crate::physics::orbit::zamo_frequency;
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION};
-use crate::scene::turbulence::Turbulence;
-use crate::scene::{Disk, Effects, Scene, View};
+use crate::scene::{Effects, Scene, View};
 use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
-
-/// How the effects let frequency shifts show: the shift that colours, and the one that beams.
-#[derive(Clone, Copy)]
-struct Shift {
-    colour: f64,
-    beaming: f64,
-}
 
 /// The part of a scene that shading needs.
 pub struct Shader<'a> {
     scene: &'a Scene,
     lens: &'a Lens,
-    colours: &'static BlackbodyTable,
-    /// ln Y of the disk's hottest place.
-    log_reference: f64,
-    profile: TemperatureProfile,
-    turbulence: Option<Turbulence>,
+    plane: PlaneLight,
     /// `None`: no stars.
     stars: Option<Arc<StarIndex>>,
     least_patch: f64,
@@ -47,10 +33,7 @@ impl<'a> Shader<'a> {
         Ok(Self {
             scene,
             lens,
-            colours: BlackbodyTable::shared(),
-            log_reference: scene.disk.map_or(0.0, |d| BlackbodyTable::shared().ln_luminance(d.temperature)),
-            profile: TemperatureProfile::new(scene.matter_spin()),
-            turbulence: scene.turbulence(),
+            plane: PlaneLight::new(&scene.emitters()),
             stars: scene.shows_stars().then_some(stars),
             least_patch: least_patch(lens.mapping.pixel_angle),
             maps: [milky_way, scene.shown_map().map(|map| &**map)],
@@ -75,19 +58,24 @@ impl<'a> Shader<'a> {
     pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
         let mut light = [0.0; 3];
         let mut open = 1.0;
-        if let Some(disk) = &self.scene.disk {
-            for crossing in &here.crossings {
-                if open <= 0.0 {
-                    break;
-                }
-                let gravity = || nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
-                let rgb = self.disk_light(disk, crossing.u, self.visible_shift(crossing.g, gravity));
-                let structure = self.turbulence.map_or(1.0, |t| t.brightness(crossing.place, crossing.footprint));
-                let opacity = disk.opacity * crossing.share;
-                (0..3).for_each(|c| light[c] += open * opacity * structure * rgb[c]);
-                open *= 1.0 - opacity;
+        let mut media = here.media.iter();
+        let mut pass = |light: &mut [f64; 3], open: &mut f64| {
+            if let Some(medium) = media.next() {
+                (0..3).for_each(|c| light[c] += *open * medium.light[c]);
+                *open *= medium.through;
             }
+        };
+        for crossing in &here.crossings {
+            pass(&mut light, &mut open);
+            if open <= 0.0 {
+                break;
+            }
+            let gravity = || nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
+            let emission = self.plane.at_crossing(crossing, self.visible_shift(crossing.g, gravity), open);
+            (0..3).for_each(|c| light[c] += emission.light[c]);
+            open *= 1.0 - emission.opacity;
         }
+        pass(&mut light, &mut open);
         if here.fate != Fate::Escaped {
             return [light[0], light[1], light[2], 1.0];
         }
@@ -114,18 +102,7 @@ impl<'a> Shader<'a> {
 
     /// nu(ZAMO at a place of the plane).
     fn nu_zamo_in_plane(&self, u: f64, ray: &Record) -> f64 {
-        let (a, r) = (self.scene.hole.spin, 1.0 / u);
-        let sum = r * r + a * a;
-        let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
-        let lapse = (r * r * delta / (sum * sum - delta * a * a)).sqrt();
-        (ray.energy - zamo_omega(a, r, 1.0) * ray.angular_momentum) / lapse
-    }
-
-    fn disk_light(&self, disk: &Disk, u: f64, shift: Shift) -> [f64; 3] {
-        let temperature = disk.temperature * self.profile.at(1.0 / u);
-        self.colours
-            .shifted_blackbody(temperature, self.log_reference, shift.colour, shift.beaming)
-            .map(|v| v * disk.brightness)
+        zamo_frequency(self.scene.hole.spin, u, 0.0, ray.energy, ray.angular_momentum)
     }
 
     fn sky_light(&self, here: &Record) -> [f64; 3] {

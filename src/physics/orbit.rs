@@ -39,6 +39,17 @@ pub fn zamo_omega(a: f64, r: f64, sin: f64) -> f64 {
     2.0 * a * r / big_a
 }
 
+/// nu measured by the ZAMO at (1/r, cos th), of a photon with constants E, L: (E - omega L) / lapse. (Bardeen, Press &
+/// Teukolsky 1972, eq. 2.6, 3.2.)
+pub fn zamo_frequency(a: f64, u: f64, cos: f64, energy: f64, angular_momentum: f64) -> f64 {
+    let r = 1.0 / u;
+    let sum = r * r + a * a;
+    let delta = (r - horizon_outer(a)) * (r - horizon_inner(a));
+    let sin2 = 1.0 - cos * cos;
+    let lapse = ((r * r + (a * cos).powi(2)) * delta / (sum * sum - delta * a * a * sin2)).sqrt();
+    (energy - zamo_omega(a, r, sin2.sqrt()) * angular_momentum) / lapse
+}
+
 /// Matter on a circular equatorial geodesic of radius `r`, moving towards +ph.
 #[derive(Clone, Copy, Debug)]
 pub struct CircularOrbit {

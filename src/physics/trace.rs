@@ -92,6 +92,48 @@ pub struct Segment<'a> {
     pub h: f64,
 }
 
+/// A part of a ray in which it crosses no plane: a step, or what lies of it on one side of a crossing. The momentum of
+/// the light is that of `constants` and of the states.
+pub struct Part<'a> {
+    pub constants: &'a Constants,
+    /// The state at the observer.
+    pub eye: &'a State,
+    from: &'a State,
+    /// Tau from `from` to the part's begin and end.
+    begin: f64,
+    end: f64,
+    settings: &'a Settings,
+}
+
+impl Part<'_> {
+    /// The state at the share `x` of the part's tau, 0 .. 1. Beyond infinity u is negative.
+    pub fn at(&self, x: f64) -> State {
+        let tau = self.begin + (self.end - self.begin) * x;
+        step(self.settings.method, self.constants, self.from, tau, self.settings.delay).0
+    }
+
+    /// The affine length of the part were it everywhere as at `there`, M, in the parameter by which the observer of
+    /// the local frame measures frequency 1: d lambda / d tau = Sigma = r^2 + a^2 cos^2 theta (Carter 1968).
+    pub fn length(&self, there: &State) -> f64 {
+        let a_cos = self.constants.a * there.n.z;
+        (self.end - self.begin) * self.constants.nu_local * (1.0 / (there.u * there.u) + a_cos * a_cos)
+    }
+}
+
+/// Someone who is told of a ray's course while it is traced.
+pub trait Visitor {
+    /// The next part of the ray.
+    fn part(&mut self, part: &Part<'_>);
+    /// The ray crosses the plane here.
+    fn crossing(&mut self, crossing: &PlaneCrossing);
+}
+
+/// No one.
+impl Visitor for () {
+    fn part(&mut self, _: &Part<'_>) {}
+    fn crossing(&mut self, _: &PlaneCrossing) {}
+}
+
 /// Why the stepping loop ended: the last segment, in which the end lies.
 enum End {
     Escaped,
@@ -180,6 +222,16 @@ pub(super) fn land(
 
 /// Traces the backward ray (`constants`, `start`) to its fate.
 pub fn trace(constants: &Constants, start: &State, settings: &Settings) -> RayTrace {
+    trace_visited(constants, start, settings, &mut ())
+}
+
+/// [`trace`], of which `visitor` is told: of all parts of the ray and of the crossings that are kept, in order.
+pub fn trace_visited(
+    constants: &Constants,
+    start: &State,
+    settings: &Settings,
+    visitor: &mut impl Visitor,
+) -> RayTrace {
     let c = constants;
     let mut crossings = ArrayVec::<PlaneCrossing, CROSSINGS_KEPT>::new();
     let mut order = 0;
@@ -189,16 +241,23 @@ pub fn trace(constants: &Constants, start: &State, settings: &Settings) -> RayTr
     let crossing_limit = settings.max_crossings.min(CROSSINGS_KEPT);
     let (end, steps) = follow(c, start, settings, &mut |segment| {
         last = (*segment.from, *segment.to, segment.tau, segment.h);
+        let mut part = Part { constants: c, eye: start, from: segment.from, begin: 0.0, end: segment.h, settings };
         if side * segment.to.n.z < 0.0 {
             side = segment.to.n.z;
             order += 1;
             if order as usize <= crossing_limit
-                && let Some(crossing) = find_crossing(c, start, settings, segment, order - 1)
+                && let Some((crossing, h)) = find_crossing(c, start, settings, segment, order - 1)
             {
+                visitor.part(&Part { end: h, ..part });
+                visitor.crossing(&crossing);
+                part.begin = h;
                 crossings.push(crossing);
-                return !settings.opaque_u.is_some_and(|[low, high]| crossing.u >= low && crossing.u <= high);
+                if settings.opaque_u.is_some_and(|[low, high]| crossing.u >= low && crossing.u <= high) {
+                    return false;
+                }
             }
         }
+        visitor.part(&part);
         true
     });
     let (from, to, tau, h) = last;
@@ -234,24 +293,41 @@ fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
     land(c, &no_delay, end, (u_plus - end.u) / end.du, ROUNDING, |s| (s.u - u_plus, s.du)).1
 }
 
-fn find_crossing(c: &Constants, eye: &State, s: &Settings, segment: &Segment, order: u32) -> Option<PlaneCrossing> {
-    let (from, to, h) = (segment.from, segment.to, segment.h);
-    let guess = h * Quintic::of_n_z(c, from, to, h).root();
-    let (state, _) = land(c, s, from, guess, ROUNDING, |s| (s.n.z, s.dn.z));
+/// The crossing of the plane within a step, and its tau from the step's begin.
+fn find_crossing(
+    c: &Constants,
+    eye: &State,
+    s: &Settings,
+    segment: &Segment,
+    order: u32,
+) -> Option<(PlaneCrossing, f64)> {
+    let (from, to) = (segment.from, segment.to);
+    let guess = segment.h * Quintic::of_n_z(c, from, to, segment.h).root();
+    let (state, h) = land(c, s, from, guess, ROUNDING, |s| (s.n.z, s.dn.z));
     // The ray is outside the horizon, by the contract's margin, and on this side of infinity.
     let outermost = 1.0 / (c.r_plus * (1.0 + 1e-5));
     if !(state.u > 0.0 && state.u <= outermost) {
         return None;
     }
     let delay = if s.delay { c.retardation(eye, &state) } else { 0.0 };
-    Some(PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order })
+    Some((PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order }, h))
 }
 
 /// Traces the look direction `n` (components, unit) of `frame`; the ray that no light can come from is captured.
 pub fn trace_look(frame: &LocalFrame, n: DVec3, settings: &Settings) -> (Option<Constants>, RayTrace) {
+    trace_look_visited(frame, n, settings, &mut ())
+}
+
+/// [`trace_look`], of which `visitor` is told.
+pub fn trace_look_visited(
+    frame: &LocalFrame,
+    n: DVec3,
+    settings: &Settings,
+    visitor: &mut impl Visitor,
+) -> (Option<Constants>, RayTrace) {
     match frame.start(n) {
         Some((c, state)) => {
-            let result = trace(&c, &state, settings);
+            let result = trace_visited(&c, &state, settings, visitor);
             (Some(c), result)
         }
         None => {

@@ -1,11 +1,16 @@
 //! The scene itself: everything that a frame depends on but its size.
 
 use super::camera::Camera;
-use super::disk::Disk;
 use super::film::Film;
 use super::hole::Hole;
 use super::quality::Quality;
 use super::sky::Sky;
+use crate::emit::Emitters;
+use crate::emit::disk::{Disk, ThinDisk};
+use crate::emit::haze::Haze;
+use crate::emit::turbulence::{Turbulence, When};
+use crate::physics::geodesic::{Clock, rain_offset};
+use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarIndex};
 use std::sync::Arc;
 
@@ -74,6 +79,9 @@ pub struct Scene {
     pub time: f64,
     pub quality: Quality,
     pub view: View,
+    /// A haze about the hole: for tests.
+    #[doc(hidden)]
+    pub haze: Option<Haze>,
     /// Stars instead of the sky's: for tests.
     #[doc(hidden)]
     pub given_stars: Option<Arc<StarIndex>>,
@@ -92,7 +100,37 @@ impl Default for Scene {
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
+            haze: None,
             given_stars: None,
         }
     }
+}
+
+impl Scene {
+    /// What shines and absorbs near the hole, as the scene's view shows it.
+    pub fn emitters(&self) -> Emitters {
+        let light = self.view == View::Light;
+        let disk = self
+            .disk
+            .and_then(|disk| ThinDisk::new(&disk, self.hole.spin))
+            .map(|disk| ThinDisk { turbulence: Turbulence::new(&disk, &self.when()).filter(|_| light), ..disk });
+        Emitters { disk, haze: self.haze.filter(|_| light) }
+    }
+
+    /// When the frame shows its emitters.
+    fn when(&self) -> When {
+        let delayed = self.effects.has(Effects::LIGHT_DELAY);
+        let eye = self.observer().ok().map(|o| o.frame).filter(|_| delayed);
+        let reference_delay = eye.map_or(0.0, |eye| eye.r);
+        // A tiny mass can make the time infinite.
+        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay
+            + eye.map_or(0.0, |eye| clock_advance(&eye));
+        When { time, reference_delay, delayed }
+    }
+}
+
+/// The clock of the eye's delays less the scene's time there: H where that is still t.
+fn clock_advance(eye: &LocalFrame) -> f64 {
+    let outside = eye.clock() == Clock::Rain && eye.r > 2.0;
+    if outside { rain_offset(1.0 / eye.r, (eye.r - 2.0) / eye.r) } else { 0.0 }
 }

@@ -44,8 +44,9 @@ impl Scene {
     /// How the rays of a frame of `pixels` pixels (the full frame's, of which an image may be a part) are found by an
     /// eye at `frame`.
     pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_worth: KerrWorth) -> Lensing {
-        // METRIC shows places where no disk is; tables end before.
-        if self.quality.method != Method::Auto || self.view == View::Metric {
+        let needs = self.emitters().needs();
+        // METRIC shows places where no disk is; tables end before. They hold no steps.
+        if self.quality.method != Method::Auto || self.view == View::Metric || needs.parts {
             return Lensing::Traced;
         }
         let work = pixels.saturating_mul(self.quality.samples_per_pixel.into());
@@ -59,7 +60,7 @@ impl Scene {
             return Lensing::Schwarzschild;
         }
         let settings = self.pixel_settings();
-        let layers = settings.max_crossings.div_ceil(if self.turbulence().is_some() { 1 } else { 4 });
+        let layers = settings.max_crossings.div_ceil(if needs.places { 1 } else { 4 });
         let fits = layers <= if frame.r <= KERR_NEAR { KERR_ORDERS_NEAR } else { KERR_ORDERS };
         if frame.a != 0.0 && critical::reaches(frame) && fits && pays(kerr_worth.0) {
             return Lensing::Kerr;

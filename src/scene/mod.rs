@@ -1,9 +1,8 @@
 //! The scene as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
-//! May use `physics` and `sky`; may not know of C, of pointers or of the GPU.
+//! May use `physics`, `sky` and `emit`; may not know of C, of pointers or of the GPU.
 
 pub mod camera;
 mod content;
-pub mod disk;
 pub mod film;
 pub mod frame;
 pub mod hole;
@@ -18,11 +17,10 @@ pub mod record;
 pub mod refine;
 pub mod sky;
 pub mod trace;
-pub mod turbulence;
 
+pub use crate::emit::disk::Disk;
 pub use camera::{Camera, Motion, Projection};
 pub use content::{Effects, Scene, View};
-pub use disk::Disk;
 pub use film::{Film, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;

@@ -2,27 +2,11 @@
 //! (shaders/records/record.wgsl has the same fields). However it was made, shading cannot tell. Plain data.
 
 use super::refine::Edge;
-use super::turbulence::Place;
+use crate::emit::medium::Media;
+use crate::emit::{Crossing, Place};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use arrayvec::ArrayVec;
 use glam::DVec3;
-
-/// A crossing within the disk's radii.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DiskCrossing {
-    /// 1/r.
-    pub u: f64,
-    /// Number of the crossing of the plane, from 0.
-    pub order: u32,
-    /// g, the camera's motion included.
-    pub g: f64,
-    /// The place and time; only the shading of a turbulent disk needs them.
-    pub place: Place,
-    /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
-    pub footprint: [Place; 2],
-    /// How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1.
-    pub share: f64,
-}
 
 /// The end of a pixel's ray. Directions are in the chart.
 #[derive(Clone, Debug)]
@@ -45,7 +29,9 @@ pub struct Record {
     pub inside: u16,
     /// The edge that runs through the pixel.
     pub edge: Edge,
-    pub crossings: ArrayVec<DiskCrossing, CROSSINGS_KEPT>,
+    pub crossings: ArrayVec<Crossing, CROSSINGS_KEPT>,
+    /// The matter before each crossing and behind the last; empty where no emitter has depth.
+    pub media: Media,
 }
 
 impl Record {
@@ -63,12 +49,14 @@ impl Record {
             inside: 0,
             edge: Edge::None,
             crossings: ArrayVec::new(),
+            media: Media::new(),
         }
     }
 
     /// Makes it `captured`, in place.
     pub fn clear(&mut self) {
         self.crossings.clear();
+        self.media.clear();
         self.fate = Fate::Captured;
         self.direction = DVec3::ZERO;
         self.footprint = [UNKNOWN_DIRECTION; 2];

@@ -48,19 +48,11 @@ impl Scene {
             settings.step = PIXEL_STEP;
         }
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
-        settings.delay = self.needs_delay();
+        let emitters = self.emitters();
+        settings.delay = emitters.needs().delays;
         settings.capture_u = self.pixel_capture_u();
-        let opaque = self.view == super::View::Light && self.disk.is_some_and(|d| d.opacity == 1.0);
-        settings.opaque_u = self.disk_u().filter(|_| opaque);
+        settings.opaque_u = emitters.opaque_u().filter(|_| self.view == super::View::Light);
         settings
-    }
-
-    /// 1/r of the disk's outer and inner edge; no matter orbits inside the ISCO. `None` without a disk, or with all of
-    /// it inside.
-    pub fn disk_u(&self) -> Option<[f64; 2]> {
-        let disk = self.disk?;
-        let inner = disk.inner_radius.max(self.disk_isco());
-        (inner < disk.outer_radius).then(|| [1.0 / disk.outer_radius, 1.0 / inner])
     }
 
     pub fn shows_stars(&self) -> bool {

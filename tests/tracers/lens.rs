@@ -58,10 +58,10 @@ impl<'a> Truth<'a> {
         let settings = Settings {
             step: TRUE_STEP,
             max_crossings: scene.quality.max_disk_order as usize + 1,
-            delay: scene.needs_delay(),
+            delay: scene.emitters().needs().delays,
             ..Settings::exact(scene.hole.spin)
         };
-        Self { scene, lens: scene.lens(&region).unwrap(), settings, disk_u: scene.disk_u().unwrap() }
+        Self { scene, lens: scene.lens(&region).unwrap(), settings, disk_u: scene.emitters().disk_u().unwrap() }
     }
 
     /// Through the centre of pixel `index`, counted row by row.
@@ -439,7 +439,7 @@ impl Frame<'_> {
             };
             found.radius.add((x.u / crossing.u - 1.0).abs() * share, index, ray);
             found.g.add((x.g / g - 1.0).abs() * share, index, ray);
-            if self.truth.scene.turbulence().is_some() {
+            if self.truth.scene.emitters().needs().places {
                 found.azimuth.add(wrap_angle(x.place.azimuth - crossing.azimuth).abs() * share, index, ray);
             }
         }

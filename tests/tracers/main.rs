@@ -19,3 +19,4 @@ mod rings;
 mod sky;
 mod stars;
 mod supersampling;
+mod volumes;

@@ -33,6 +33,7 @@ impl GpuTracer {
 
     pub(in crate::gpu) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
+        let emitters = scene.emitters();
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
@@ -57,9 +58,10 @@ impl GpuTracer {
                 map: scene.shown_map().is_some() && !request.transparent,
                 grid: scene.shows_grid() && !request.transparent,
                 all_effects: scene.effects.all_light(),
-                disk: scene.disk_u().is_some(),
-                opaque: scene.disk.is_some_and(|disk| disk.opacity == 1.0),
-                footprints: scene.turbulence().is_some(),
+                plane: emitters.plane_u().is_some(),
+                opaque: emitters.hides_all(),
+                footprints: emitters.needs().places,
+                volumes: emitters.needs().parts,
                 projection,
                 refines: scene.view == View::Light && scene.quality.refines,
             },
@@ -69,7 +71,7 @@ impl GpuTracer {
             rows: target == PixelTarget::Rows,
         };
         let making = self.making(scene, &lens, &settings, &request.region, projection);
-        let uniform = FrameUniform::new(scene, &lens, &settings)?;
+        let uniform = FrameUniform::new(scene, &lens, &settings, making.crossings)?;
         Ok(Setup { making, looks, samples, uniform, film, bloom })
     }
 
@@ -83,7 +85,8 @@ impl GpuTracer {
         projection: Option<Projection>,
     ) -> Making {
         let eye = lens.observer.frame;
-        let pattern = scene.turbulence().is_some();
+        let emitters = scene.emitters();
+        let pattern = emitters.needs().places;
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
         let source = match scene.lensing(&eye, pixels, KerrWorth::GPU) {
@@ -91,19 +94,24 @@ impl GpuTracer {
             Lensing::Schwarzschild => Source::Schwarzschild { delay, moving },
             Lensing::Kerr => Source::Kerr { delay, pattern, moving, rest: false },
         };
-        // An opaque disk hides all but its first crossing.
-        let crossings = if settings.opaque_u.is_some() { 1 } else { settings.max_crossings as u32 };
+        let hidden = settings.opaque_u.is_some() && emitters.hides_all();
+        let crossings = if hidden { 1 } else { settings.max_crossings as u32 };
         let inside = eye.r <= 2.0;
-        let disk_u = scene.disk_u();
+        let plane_u = emitters.plane_u();
         Making {
             source,
-            variant: TraceVariant { azimuth: pattern, projection, ..variant(scene, settings, inside) },
+            variant: TraceVariant {
+                azimuth: pattern,
+                parts: emitters.needs().parts,
+                projection,
+                ..variant(scene, settings, inside)
+            },
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             eye,
             wanted: Wanted {
-                orders: if disk_u.is_some() { settings.max_crossings as u32 } else { 0 },
-                disk_u: disk_u.unwrap_or([1.0, 0.0]),
+                orders: if plane_u.is_some() { settings.max_crossings as u32 } else { 0 },
+                plane_u: plane_u.unwrap_or([1.0, 0.0]),
                 pattern,
                 delay,
             },

@@ -5,6 +5,8 @@ use super::stages::Taking;
 use super::submission::pass_of;
 use super::tracer::GpuTracer;
 use crate::allocate::collected;
+use crate::emit::medium::Media;
+use crate::emit::{Crossing, Place};
 use crate::error::{Error, Result};
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
@@ -13,9 +15,8 @@ use crate::gpu::kernel::variant::PixelTarget;
 use crate::gpu::lens::records::Shared;
 use crate::physics::trace::Fate;
 use crate::scene::Scene;
-use crate::scene::record::{DiskCrossing, Record};
+use crate::scene::record::Record;
 use crate::scene::refine::Edge;
-use crate::scene::turbulence::Place;
 use crate::tracer::{FrameRequest, Tile};
 use glam::DVec3;
 
@@ -37,7 +38,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         _ => Fate::Hidden,
     };
     let place = |[ln_r, azimuth, delay, _]: [f64; 4]| Place { ln_r, azimuth, delay };
-    let crossing = |[at, dx, dy]: &[[f64; 4]; 3]| DiskCrossing {
+    let crossing = |[at, dx, dy]: &[[f64; 4]; 3]| Crossing {
         u: dx[3],
         order: at[3] as u32,
         g: dy[3],
@@ -57,6 +58,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         inside: 0,
         edge: Edge::None,
         crossings: rest.as_chunks().0.iter().take(count as usize).map(crossing).collect(),
+        media: Media::new(),
     }
 }
 

@@ -31,6 +31,7 @@ pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
         azimuth: false,
+        parts: false,
         projection: Some(Projection::Perspective),
     }
 }

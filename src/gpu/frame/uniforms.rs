@@ -33,6 +33,7 @@ pub struct FrameUniform {
     disk: Vec4,
     size: Vec4,
     turbulence: Vec4,
+    haze: Vec4,
     disk_u: [f32; 2],
     opaque_u: [f32; 2],
     capture_u: f32,
@@ -45,7 +46,8 @@ pub struct FrameUniform {
     /// Known once the textures are there (`Tables::map_sizes`).
     pub map_sizes: [u32; 4],
     projection: u32,
-    padding: [u32; 3],
+    medium_layer: u32,
+    plane_u: [f32; 2],
 }
 
 #[repr(C)]
@@ -66,8 +68,9 @@ pub struct PassUniform {
 pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     use crate::gpu::kernel::layout::layout;
     let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
-        sky_x, sky_y, sky_z, disk, size, turbulence, disk_u, opaque_u, capture_u, max_steps, max_crossings, rain,
-        effects, view, pattern, map_sizes, projection);
+        sky_x, sky_y, sky_z, disk, size, turbulence, haze, disk_u, opaque_u, capture_u, max_steps, max_crossings, rain,
+        effects, view, pattern, map_sizes, projection,
+        medium_layer, plane_u);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
     [frame, pass]
 }
@@ -99,14 +102,15 @@ fn range(u: Option<[f64; 2]>) -> [f32; 2] {
 }
 
 impl FrameUniform {
-    /// `settings`: those of f32 pixels. Errors: as `Scene::lens`.
-    pub fn new(scene: &Scene, lens: &Lens, settings: &Settings) -> Result<Self> {
+    /// `settings`: those of f32 pixels; `crossings`: most that a traced record holds. Errors: as `Scene::lens`.
+    pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
         let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let isco = scene.disk_isco();
-        let turbulence = scene.turbulence();
+        let emitters = scene.emitters();
+        let turbulence = emitters.disk.and_then(|disk| disk.turbulence);
         let u = 1.0 / frame.r;
         let shadow = shadow_centre(frame);
         Ok(Self {
@@ -131,7 +135,8 @@ impl FrameUniform {
             ),
             size: four(lens.mapping.width, lens.mapping.height, settings.step, settings.tolerance),
             turbulence: turbulence.map_or(Vec4::ZERO, |t| four(t.strength, t.age, t.reference_delay, 0.0)),
-            disk_u: range(scene.disk_u()),
+            haze: emitters.haze.map_or(Vec4::ZERO, |h| four(h.radius, h.brightness, h.absorption, 0.0)),
+            disk_u: range(emitters.disk_u()),
             opaque_u: range(settings.opaque_u),
             capture_u: settings.capture_u as f32,
             max_steps: settings.max_steps,
@@ -142,7 +147,8 @@ impl FrameUniform {
             pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
             map_sizes: [1; 4],
             projection: scene.camera.projection as u32,
-            padding: [0; 3],
+            medium_layer: crossings,
+            plane_u: range(emitters.plane_u()),
         })
     }
 }

@@ -3,6 +3,7 @@
 
 use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
+use crate::emit::{medium, turbulence};
 use crate::film::{self, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
@@ -10,7 +11,7 @@ use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, geodesic};
 use crate::scene::refine::{self, Edge};
-use crate::scene::{Effects, MAX_CROSSINGS, Projection, ToneMap, View, turbulence};
+use crate::scene::{Effects, MAX_CROSSINGS, Projection, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, stars};
 use std::fmt::Debug;
 
@@ -125,6 +126,8 @@ fn all() -> Vec<(&'static str, String)> {
         CELLS_PER_E_FOLD: f32 = turbulence::CELLS_PER_E_FOLD;
         AMPLITUDES: vec4 = turbulence::AMPLITUDES;
         GAIN: f32 = turbulence::GAIN;
+        MOST_PIECES: u32 = medium::MOST_PIECES;
+        PIECE: f32 = medium::PIECE;
 
         TABLE_WIDTH: u32 = sizes::TABLE_WIDTH;
         MEAN_SKY_TABLES: u32 = index::MEAN_SKY_TABLES;

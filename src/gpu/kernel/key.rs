@@ -218,6 +218,7 @@ fn trace_constants(variant: TraceVariant) -> Vec<(&'static str, f64)> {
         ("SPINNING", flag(variant.spinning)),
         ("DELAY", flag(variant.delay)),
         ("STEP_LIMIT", flag(variant.step_limit)),
+        ("PARTS", flag(variant.parts)),
     ]
 }
 
@@ -233,9 +234,10 @@ fn look_constants(look: ShadeVariant) -> Vec<(&'static str, f64)> {
         ("SHOWS_MAP", flag(look.map)),
         ("SHOWS_GRID", flag(look.grid)),
         ("ALL_EFFECTS", flag(look.all_effects)),
-        ("DISK", flag(look.disk)),
+        ("PLANE", flag(look.plane)),
         ("OPAQUE", flag(look.opaque)),
         ("FOOTPRINTS", flag(look.footprints)),
+        ("VOLUMES", flag(look.volumes)),
         projection_constant(look.projection),
         ("REFINES", flag(look.refines)),
     ]

@@ -20,6 +20,8 @@ pub struct TraceVariant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
+    /// Whether emitters with depth are asked along the parts of a pixel's ray.
+    pub parts: bool,
     /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
     pub projection: Option<Projection>,
 }
@@ -35,11 +37,14 @@ pub struct ShadeVariant {
     pub grid: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
-    pub disk: bool,
-    /// The disk hides what is behind it.
+    /// Something shines in the equatorial plane.
+    pub plane: bool,
+    /// Each crossing hides what is behind it.
     pub opaque: bool,
     /// Whether crossings need their footprint.
     pub footprints: bool,
+    /// Emitters with depth lie between crossings.
+    pub volumes: bool,
     /// `None`: any, which the kernel asks while it runs.
     pub projection: Option<Projection>,
     /// Whether pixels with edges get more rays; values of views are not to be averaged.

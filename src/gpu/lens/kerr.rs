@@ -48,7 +48,7 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
 pub struct Wanted {
     /// Orders of crossings; 0 without a disk.
     pub orders: u32,
-    pub disk_u: [f64; 2],
+    pub plane_u: [f64; 2],
     pub pattern: bool,
     pub delay: bool,
 }
@@ -144,7 +144,7 @@ impl KerrTables {
     ) -> Result<Option<KerrStages>> {
         let eye = Eye::new(frame, wanted);
         let current = self.made.as_ref().and_then(|m| m.traced).filter(|(traced, _)| *traced == eye);
-        if current.is_some() && self.made.as_ref().is_some_and(|m| m.flagged == Some(wanted.disk_u)) {
+        if current.is_some() && self.made.as_ref().is_some_and(|m| m.flagged == Some(wanted.plane_u)) {
             return Ok(None);
         }
         let uniform = match current {
@@ -153,7 +153,7 @@ impl KerrTables {
         };
         let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
         made.traced = Some((eye, uniform));
-        made.flagged = Some(wanted.disk_u);
+        made.flagged = Some(wanted.plane_u);
         let view = |texture: &Texture| texture.view.clone();
         let (curve, sky, crossings, flags) =
             (view(&made.curve), view(&made.sky), view(&made.crossings), view(&made.flags));
@@ -176,7 +176,7 @@ impl KerrTables {
     /// Makes room for the eye's tables and writes what the host knows of them.
     fn remake(&mut self, device: &Device, frame: &LocalFrame, wanted: &Wanted) -> Result<KerrUniform> {
         let resolution = Resolution { chi_nodes: KERR_COLUMNS as usize, nodes_per_octave: [KERR_PER_OCTAVE; 2] };
-        let crossings = Crossings { orders: wanted.orders as usize, disk_u: wanted.disk_u, pattern: wanted.pattern };
+        let crossings = Crossings { orders: wanted.orders as usize, plane_u: wanted.plane_u, pattern: wanted.pattern };
         let grid = Grid::new(frame, resolution, crossings)
             .ok_or_else(|| Error::internal(format!("no lens tables for an eye at r = {} M", frame.r)))?;
         let rows = [Branch::Outer, Branch::Inner].map(|branch| grid.rows(branch) as u32);

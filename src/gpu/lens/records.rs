@@ -22,7 +22,7 @@ pub struct Making {
     pub source: Source,
     /// How rays are traced.
     pub variant: TraceVariant,
-    /// Crossings of the disk that a record holds at most.
+    /// Crossings that a record holds at most.
     pub crossings: u32,
     pub eye: LocalFrame,
     pub wanted: Wanted,
@@ -45,10 +45,15 @@ pub enum RecordStages {
 }
 
 impl Making {
+    /// The layers in which traced records keep crossings and, behind those, the media before each and behind the last.
+    fn layers(&self) -> u32 {
+        self.crossings + if self.variant.parts { self.crossings + 1 } else { 0 }
+    }
+
     /// Bytes of a tile's pixel on the device.
     pub fn bytes_per_pixel(&self) -> u64 {
         match self.source {
-            Source::Traced => TEXEL * (2 + u64::from(self.crossings)),
+            Source::Traced => TEXEL * (2 + u64::from(self.layers())),
             Source::Schwarzschild { .. } => 0,
             Source::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
         }
@@ -67,7 +72,7 @@ impl RecordMakers {
     /// Makes room for a tile.
     pub fn prepare(&mut self, device: &Device, making: &Making, tile: [u32; 2]) -> Result<()> {
         match making.source {
-            Source::Traced => self.traced.prepare(device, tile, making.crossings),
+            Source::Traced => self.traced.prepare(device, tile, making.layers()),
             Source::Schwarzschild { .. } => Ok(()),
             Source::Kerr { .. } => self.kerr.prepare(device, tile),
         }
@@ -153,7 +158,7 @@ struct TracedRecords {
 
 struct Made {
     size: [u32; 2],
-    crossings: u32,
+    layers: u32,
     textures: [Texture; 3],
 }
 
@@ -173,10 +178,10 @@ pub struct TraceStages {
 }
 
 impl TracedRecords {
-    /// Makes room for tiles of `tile` pixels with at most `crossings` crossings of the disk.
-    fn prepare(&mut self, device: &Device, tile: [u32; 2], crossings: u32) -> Result<()> {
+    /// Makes room for tiles of `tile` pixels with so many layers.
+    fn prepare(&mut self, device: &Device, tile: [u32; 2], layers: u32) -> Result<()> {
         let size = tile.map(|side| side + 2);
-        let serves = |m: &Made| (0..2).all(|i| m.size[i] >= size[i]) && m.crossings >= crossings;
+        let serves = |m: &Made| (0..2).all(|i| m.size[i] >= size[i]) && m.layers >= layers;
         if self.made.as_ref().is_some_and(serves) {
             return Ok(());
         }
@@ -186,12 +191,9 @@ impl TracedRecords {
             device.texture(label, kind.format, kind.dimension, size, layers)
         };
         let [sky, meta, disk] = TRACED;
-        let textures = [
-            texture(sky, "record sky", 1)?,
-            texture(meta, "record meta", 1)?,
-            texture(disk, "record disk", crossings)?,
-        ];
-        self.made = Some(Made { size, crossings, textures });
+        let textures =
+            [texture(sky, "record sky", 1)?, texture(meta, "record meta", 1)?, texture(disk, "record disk", layers)?];
+        self.made = Some(Made { size, layers, textures });
         Ok(())
     }
 

@@ -3,8 +3,8 @@
 
 use super::{both, camera, cpu, hits, light, luminance, whole};
 use crate::frames::Lent;
+use bhr::emit::Place;
 use bhr::renderer::Renderer;
-use bhr::scene::turbulence::Place;
 use bhr::scene::{Disk, Effects, Region, Sky};
 
 const SIZE: [u32; 2] = [160, 160];
@@ -189,7 +189,7 @@ fn pattern_is_seen_at_its_retarded_time() {
                     then.time = if delayed { time - crossing.delay } else { time };
                     let still = Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
                     let at = Place { ln_r: crossing.radius.ln(), azimuth: crossing.azimuth, delay: 0.0 };
-                    let expected = then.turbulence().unwrap().brightness(at, [still; 2]);
+                    let expected = then.emitters().disk.unwrap().turbulence.unwrap().brightness(at, [still; 2]);
                     let found = luminance(seen) / luminance(smooth);
                     assert!(
                         (found - expected).abs() < 2e-3,

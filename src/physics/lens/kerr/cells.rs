@@ -70,7 +70,7 @@ impl Patch<'_> {
 
     fn crossing(&self, channel: usize, wanted: &Crossings) -> Hit {
         let [low, high] = self.range(channel);
-        let [near, far] = [wanted.disk_u[1], wanted.disk_u[0]];
+        let [near, far] = [wanted.plane_u[1], wanted.plane_u[0]];
         if low > near || high < far {
             return Hit::No;
         }

@@ -90,7 +90,7 @@ pub struct Crossings {
     /// Orders 0 .. `orders`, at most `CROSSINGS_KEPT`; 0: the sky alone.
     pub orders: usize,
     /// Only crossings with 1 / r in [low, high] matter; high at most 1 / (0.99 photon orbit).
-    pub disk_u: [f64; 2],
+    pub plane_u: [f64; 2],
     /// Azimuth and delay too.
     pub pattern: bool,
 }

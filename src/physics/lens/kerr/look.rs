@@ -183,7 +183,7 @@ impl Seen<'_> {
         let lane = if wanted.pattern { 0 } else { order % PER_QUAD };
         let inverse_side = 1.0 / self.place.side;
         let u = f64::from(at.value[lane]) * inverse_side;
-        if !(u >= wanted.disk_u[0] && u <= wanted.disk_u[1]) {
+        if !(u >= wanted.plane_u[0] && u <= wanted.plane_u[1]) {
             return None;
         }
         let order = order as u32;

@@ -204,7 +204,7 @@ fn compare_ray(frame: &LocalFrame, grid: &Grid, n: DVec3, seen: &Seen, m: &mut M
         }
         m.sky.push(error);
     }
-    let [far, near] = grid.wanted.disk_u;
+    let [far, near] = grid.wanted.plane_u;
     let p = grid.curve.at(grid.columns.chi[place.column]).0;
     let critical = 2.0 * p / (1.0 + p * p);
     for crossing in truth.crossings.iter().filter(|x| (x.order as usize) < grid.wanted.orders) {
@@ -268,7 +268,7 @@ fn eye(i: usize, random: &mut Random) -> LocalFrame {
 }
 
 fn wanted(a: f64, pattern: bool) -> Crossings {
-    Crossings { orders: 4, disk_u: [1.0 / 30.0, 1.0 / isco(a)], pattern }
+    Crossings { orders: 4, plane_u: [1.0 / 30.0, 1.0 / isco(a)], pattern }
 }
 
 fn measure(eyes: std::ops::Range<usize>, rays: usize, resolution: Option<Resolution>, pattern: bool) -> Measured {

@@ -12,9 +12,8 @@
 //! seed of its own, sheared by its own age only, and with weight sin(pi age / LIFETIME): the squares of the two alive
 //! add up to 1, which keeps the variance, and a generation is invisible when it comes and goes.
 
-use super::{Effects, Scene, View};
-use crate::physics::geodesic::{Clock, rain_offset};
-use crate::physics::observer::LocalFrame;
+use super::Place;
+use super::disk::ThinDisk;
 use crate::random::mix;
 use std::f64::consts::{PI, TAU};
 
@@ -31,14 +30,15 @@ pub(crate) const AMPLITUDES: [f64; 4] = [0.8, 0.7, 0.6, 0.5];
 /// Gradient noise has a standard deviation of about 0.2; more than doubled, hardly any of it is cut off at 1.
 pub(crate) const GAIN: f64 = 2.2;
 
-/// The place and time at which the light of a crossing left, or the change of both from pixel to pixel.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    pub ln_r: f64,
-    /// Azimuth in the chart.
-    pub azimuth: f64,
-    /// M (`Constants::retardation`); 0 where light is not delayed.
-    pub delay: f64,
+/// When a frame shows its emitters. Times in M.
+#[derive(Clone, Copy, Debug)]
+pub struct When {
+    /// The time at which light leaves emitters whose delay is `reference_delay`.
+    pub time: f64,
+    /// 0 where light is not delayed.
+    pub reference_delay: f64,
+    /// Whether light is seen as it left, each ray's by its own delay.
+    pub delayed: bool,
 }
 
 /// The turbulence of a frame. Times in M.
@@ -49,6 +49,8 @@ pub struct Turbulence {
     pub seed: u32,
     /// Delay of light that left at the reference time; 0 where light is not delayed.
     pub reference_delay: f64,
+    /// Whether the delays of crossings are to be known.
+    pub needs_delay: bool,
     /// The youngest generation at the reference time (counted modulo 2^32), and its age: small numbers that f32 can
     /// hold, however large the scene's time is.
     pub generation: u32,
@@ -58,44 +60,24 @@ pub struct Turbulence {
     sense: f64,
 }
 
-impl Scene {
-    /// The turbulence of a scene; `None` where none is seen.
-    pub fn turbulence(&self) -> Option<Turbulence> {
-        let disk = self.disk.filter(|d| d.turbulence > 0.0 && self.view == View::Light)?;
-        self.disk_u()?;
-        let eye = self.observer().ok().map(|o| o.frame).filter(|_| self.needs_delay());
-        let reference_delay = eye.map_or(0.0, |eye| eye.r);
-        // A tiny mass can make the time infinite.
-        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay
-            + eye.map_or(0.0, |eye| clock_advance(&eye));
-        let age = time.rem_euclid(0.5 * LIFETIME);
-        let births = ((time - age) / (0.5 * LIFETIME)).round();
-        Some(Turbulence {
+impl Turbulence {
+    /// The turbulence of `disk` as a frame shows it. `None`: there is none.
+    pub fn new(disk: &ThinDisk, when: &When) -> Option<Self> {
+        let ThinDisk { disk, matter_spin, .. } = disk;
+        let age = when.time.rem_euclid(0.5 * LIFETIME);
+        let births = ((when.time - age) / (0.5 * LIFETIME)).round();
+        (disk.turbulence > 0.0).then(|| Self {
             strength: disk.turbulence,
             seed: mix((disk.seed as u32).wrapping_add(mix((disk.seed >> 32) as u32))),
-            reference_delay,
+            reference_delay: when.reference_delay,
+            needs_delay: when.delayed,
             generation: births.rem_euclid(4_294_967_296.0) as u32,
             age,
-            matter_spin: self.matter_spin(),
+            matter_spin: *matter_spin,
             sense: if disk.retrograde { -1.0 } else { 1.0 },
         })
     }
 
-    /// Whether light shows when it left the disk: only structure that moves does.
-    pub fn needs_delay(&self) -> bool {
-        self.view == View::Light
-            && self.disk.is_some_and(|d| d.turbulence > 0.0)
-            && self.effects.has(Effects::LIGHT_DELAY)
-    }
-}
-
-/// The clock of the eye's delays less the scene's time there: H where that is still t.
-fn clock_advance(eye: &LocalFrame) -> f64 {
-    let outside = eye.clock() == Clock::Rain && eye.r > 2.0;
-    if outside { rain_offset(1.0 / eye.r, (eye.r - 2.0) / eye.r) } else { 0.0 }
-}
-
-impl Turbulence {
     /// The factor on the disk's radiance: mean 1, within 0 .. prod (1 + a_i) = 7.4. `per_pixel`: change of `at` to the
     /// next pixel in x and in y; octaves whose cells are narrower than that fade out.
     pub fn brightness(&self, at: Place, per_pixel: [Place; 2]) -> f64 {
@@ -161,7 +143,8 @@ fn fade(t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Disk;
+    use crate::emit::disk::Disk;
+    use crate::scene::{Effects, Scene};
 
     const STILL: [Place; 2] = [Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];
 
@@ -173,8 +156,12 @@ mod tests {
         scene
     }
 
+    fn of_scene(scene: &Scene) -> Turbulence {
+        scene.emitters().disk.unwrap().turbulence.unwrap()
+    }
+
     fn turbulence(spin: f64, retrograde: bool, time: f64, seed: u64) -> Turbulence {
-        scene(spin, retrograde, time, seed).turbulence().unwrap()
+        of_scene(&scene(spin, retrograde, time, seed))
     }
 
     fn at(ln_r: f64, azimuth: f64) -> Place {
@@ -282,7 +269,8 @@ mod tests {
     fn delay_is_time() {
         let mut late = scene(0.0, false, 1e6, 5);
         late.effects = Effects(Effects::ALL);
-        let late = late.turbulence().unwrap();
+        let late = of_scene(&late);
+        assert!(late.needs_delay);
         for delay in [3.0, 31.0, 500.0] {
             let then = turbulence(0.0, false, 1e6 - delay, 5);
             for p in places(10) {
@@ -291,8 +279,8 @@ mod tests {
             }
         }
         let still = scene(0.0, false, 0.0, 0);
-        assert!(!still.needs_delay());
-        assert_eq!(still.turbulence().unwrap().reference_delay, 0.0);
+        assert!(!still.emitters().needs().delays);
+        assert_eq!(of_scene(&still).reference_delay, 0.0);
     }
 
     #[test]
@@ -300,7 +288,7 @@ mod tests {
         for time in [0.0, -1e-300, 1e300, f64::MAX, f64::MIN] {
             let mut scene = scene(0.9, true, time, u64::MAX);
             scene.hole.mass = 1e-3;
-            let t = scene.turbulence().unwrap();
+            let t = of_scene(&scene);
             assert!((0.0..=60.0).contains(&t.age), "{time}: {}", t.age);
             assert!(places(5).all(|p| t.brightness(p, STILL).is_finite()));
         }

@@ -1,0 +1,12 @@
+// The light of the emitters in the equatorial plane. Mirrors `PlaneLight` of src/emit/mod.rs; an emitter more is called
+// here.
+
+#import emit/disk
+#import emit/shift
+#import records/record
+
+// The light that a crossing adds to a ray of which the share `open` comes this far; w: the share of the light behind
+// that it hides.
+fn emitted_at_crossing(crossing: Crossing, shift: Shift, open: f32) -> vec4<f32> {
+    return disk_at_crossing(crossing, shift, open);
+}

@@ -1,0 +1,123 @@
+//! The matter that a ray passes between two crossings of the plane, summed up: the light that it sends to the observer
+//! and the share of the light from behind that it lets through. Knows no kind of matter.
+
+use super::Emitters;
+use crate::physics::geodesic::State;
+use crate::physics::trace::{CROSSINGS_KEPT, Part, PlaneCrossing, Visitor};
+use arrayvec::ArrayVec;
+
+/// A stretch of a ray, from the observer's end of it to the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Medium {
+    pub light: [f64; 3],
+    /// The share of the light from behind that passes, 0 .. 1.
+    pub through: f64,
+}
+
+/// A stretch with nothing in it.
+impl Default for Medium {
+    fn default() -> Self {
+        Self { light: [0.0; 3], through: 1.0 }
+    }
+}
+
+impl Medium {
+    /// Adds matter behind what is there: the light that it sends were it transparent, and its optical depth. Within it
+    /// emission and absorption are even, so that exp(-depth) of what is behind passes, and of its own light the mean of
+    /// exp(-x depth) over x in 0 .. 1. (Rybicki & Lightman 1979, eq. 1.30.)
+    pub fn add(&mut self, emitted: [f64; 3], depth: f64) {
+        // The series is for depths at which the quotient would be rounding.
+        let own = if depth > 1e-5 { -(-depth).exp_m1() / depth } else { 1.0 - 0.5 * depth };
+        (0..3).for_each(|c| self.light[c] += self.through * own * emitted[c]);
+        self.through *= (-depth).exp();
+    }
+
+    /// Adds the matter along a part of a ray. `matter` gives its emission and its absorption, per unit of affine
+    /// length (`Part::length`), at a place. The part is cut into pieces over which 1/r changes little, each with the
+    /// three places of Gauss and Legendre (Abramowitz & Stegun 1964, table 25.4).
+    pub fn add_part(&mut self, part: &Part<'_>, matter: impl Fn(&State) -> ([f64; 3], f64)) {
+        let pieces = pieces(part.at(0.0).u, part.at(1.0).u);
+        let size = 1.0 / f64::from(pieces);
+        let offset = 0.6_f64.sqrt() / 2.0;
+        for piece in 0..pieces {
+            for (x, weight) in [(0.5 - offset, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + offset, 5.0 / 18.0)] {
+                let there = part.at((f64::from(piece) + x) * size);
+                // Beyond infinity, and at the horizon, is nothing.
+                if there.u > 0.0 && there.u < 1.0 / part.constants.r_plus {
+                    let (emission, absorption) = matter(&there);
+                    let length = weight * size * part.length(&there);
+                    self.add(emission.map(|e| e * length), absorption * length);
+                }
+            }
+        }
+    }
+}
+
+/// Most pieces that a part is cut into, and the change of ln u in each up to which it takes no more.
+pub(crate) const MOST_PIECES: u32 = 24;
+pub(crate) const PIECE: f64 = 0.15;
+
+/// The number of pieces for a part between two places. Those farther out than a hundred times the nearer place count
+/// as there: infinity is as near as that.
+fn pieces(u: f64, v: f64) -> u32 {
+    let least = 0.01 * u.max(v).max(f64::MIN_POSITIVE);
+    let change = (u.max(least) / v.max(least)).ln().abs();
+    (change / PIECE).ceil().clamp(1.0, f64::from(MOST_PIECES)) as u32
+}
+
+/// The media between the crossings of a ray that are kept, and the one behind the last.
+pub type Media = ArrayVec<Medium, { CROSSINGS_KEPT + 1 }>;
+
+/// Gathers the media along a ray while it is traced.
+pub struct MediaAlong<'a> {
+    pub emitters: &'a Emitters,
+    /// nu(camera) / nu(local frame).
+    pub frequency_ratio: f64,
+    /// The interval of 1/r in which crossings are kept.
+    pub plane_u: Option<[f64; 2]>,
+    pub media: Media,
+    /// The medium since the last crossing that was kept.
+    pub medium: Medium,
+}
+
+impl MediaAlong<'_> {
+    /// All media, the one behind the last crossing among them.
+    pub fn finish(mut self) -> Media {
+        let _ = self.media.try_push(self.medium);
+        self.media
+    }
+}
+
+impl Visitor for MediaAlong<'_> {
+    fn part(&mut self, part: &Part<'_>) {
+        self.emitters.along(part, self.frequency_ratio, &mut self.medium);
+    }
+
+    fn crossing(&mut self, crossing: &PlaneCrossing) {
+        if self.plane_u.is_some_and(|[outer, inner]| crossing.u >= outer && crossing.u <= inner) {
+            // There is room for one more than there are crossings.
+            let _ = self.media.try_push(std::mem::take(&mut self.medium));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Even matter in front of light: I = I0 e^-t + S (1 - e^-t), however it is cut into pieces.
+    #[test]
+    fn even_matter_is_the_textbook_one() {
+        for depth in [0.0, 1e-9, 1e-4, 0.3, 5.0, 100.0] {
+            let source = 2.0;
+            for pieces in [1, 7] {
+                let mut medium = Medium::default();
+                let part = depth / f64::from(pieces);
+                (0..pieces).for_each(|_| medium.add([source * part; 3], part));
+                let expected = source * -f64::exp_m1(-depth);
+                assert!((medium.light[1] - expected).abs() <= 1e-12 * expected, "{depth}: {medium:?}");
+                assert!((medium.through - f64::exp(-depth)).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! The matter that shines or absorbs near the hole: what a scene's emitters are, what each needs to know of a ray, and
+//! the light that it sends along it. Mirrored by `shaders/emit/`. Knows no cameras, no pixels and no tracer.
+//!
+//! A ray meets emitters in two ways. Those in the equatorial plane are asked at each crossing of the plane
+//! ([`PlaneLight::at_crossing`]); those with depth are asked along every part of the ray between two crossings
+//! ([`Emitters::along`]), and only scenes that have one pay for it: their rays are traced one by one.
+//!
+//! To add an emitter: a file here and one in `shaders/emit/`, a field in [`Emitters`], its values in the uniform, and
+//! the call in [`PlaneLight::at_crossing`] and `shaders/emit/plane.wgsl`, or in [`Emitters::along`] and
+//! `shaders/emit/volumes.wgsl`.
+
+pub mod disk;
+pub mod haze;
+pub mod medium;
+pub mod turbulence;
+
+use crate::physics::trace::Part;
+use disk::{DiskLight, ThinDisk};
+use haze::Haze;
+use medium::Medium;
+
+/// The place and time at which the light of a crossing left, or the change of both from pixel to pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    pub ln_r: f64,
+    /// Azimuth in the chart.
+    pub azimuth: f64,
+    /// M (`Constants::retardation`); 0 where light is not delayed.
+    pub delay: f64,
+}
+
+/// A crossing of the equatorial plane where emitters shine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// 1/r.
+    pub u: f64,
+    /// Number of the crossing of the plane, from 0.
+    pub order: u32,
+    /// g of matter on the circular geodesic there, the camera's motion included.
+    pub g: f64,
+    /// The place and time; known where an emitter needs them ([`Needs`]).
+    pub place: Place,
+    /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
+    pub footprint: [Place; 2],
+    /// How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1.
+    pub share: f64,
+}
+
+/// How the effects let frequency shifts show: the shift that colours, and the one that beams.
+#[derive(Clone, Copy, Debug)]
+pub struct Shift {
+    pub colour: f64,
+    pub beaming: f64,
+}
+
+/// What emitters must be told of a ray, beside where it crosses the plane and with which g.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Azimuths of crossings, and how the place of a crossing changes to the next pixel.
+    pub places: bool,
+    /// When the light of a crossing left.
+    pub delays: bool,
+    /// Every part of the ray between crossings.
+    pub parts: bool,
+}
+
+/// The light that an emitter in the plane sends along a ray, and the share of the light behind that it hides.
+#[derive(Clone, Copy, Debug)]
+pub struct Emission {
+    pub light: [f64; 3],
+    pub opacity: f64,
+}
+
+/// The emitters of a scene, in units of M (`Scene::emitters`).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Emitters {
+    /// `None`: there is none, or all of it lies where nothing shines.
+    pub disk: Option<ThinDisk>,
+    pub haze: Option<Haze>,
+}
+
+impl Emitters {
+    pub fn needs(&self) -> Needs {
+        let turbulence = self.disk.and_then(|disk| disk.turbulence);
+        Needs {
+            places: turbulence.is_some(),
+            delays: turbulence.is_some_and(|turbulence| turbulence.needs_delay),
+            parts: self.haze.is_some(),
+        }
+    }
+
+    /// The interval of 1/r, outer end first, in which crossings of the plane are to be kept: all emitters of the plane
+    /// lie in it. `None`: there are none.
+    pub fn plane_u(&self) -> Option<[f64; 2]> {
+        self.disk.map(|disk| disk.u)
+    }
+
+    /// 1/r of the disk's outer and inner edge, the only sharp edges that pixels are refined for. Other emitters of the
+    /// plane fade out towards the ends of their range.
+    pub fn disk_u(&self) -> Option<[f64; 2]> {
+        self.disk.map(|disk| disk.u)
+    }
+
+    /// The interval of 1/r in which a crossing of the plane hides all that is behind it.
+    pub fn opaque_u(&self) -> Option<[f64; 2]> {
+        self.disk.filter(ThinDisk::is_opaque).map(|disk| disk.u)
+    }
+
+    /// Whether each crossing that is kept hides all that is behind it, so that one is enough.
+    pub fn hides_all(&self) -> bool {
+        self.opaque_u().is_some_and(|u| self.plane_u() == Some(u))
+    }
+
+    /// The share of a crossing at 1/r = `u` that the disk covers: all or nothing.
+    pub fn covered(&self, u: f64) -> f64 {
+        f64::from(u8::from(self.disk_u().is_some_and(|[outer, inner]| u >= outer && u <= inner)))
+    }
+
+    /// Adds the matter along a part of a ray to the medium between two crossings. `frequency_ratio`: nu(camera) /
+    /// nu(local frame).
+    pub fn along(&self, part: &Part<'_>, frequency_ratio: f64, medium: &mut Medium) {
+        if let Some(haze) = &self.haze {
+            haze.along(part, frequency_ratio, medium);
+        }
+    }
+}
+
+/// The emitters of the plane with the tables of their light.
+pub struct PlaneLight {
+    disk: Option<DiskLight>,
+}
+
+impl PlaneLight {
+    pub fn new(emitters: &Emitters) -> Self {
+        Self { disk: emitters.disk.map(DiskLight::new) }
+    }
+
+    /// The light that a crossing adds to a ray of which the share `open` comes this far.
+    pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, open: f64) -> Emission {
+        match &self.disk {
+            Some(disk) if crossing.share > 0.0 => disk.at_crossing(crossing, shift, open),
+            _ => Emission { light: [0.0; 3], opacity: 0.0 },
+        }
+    }
+}
