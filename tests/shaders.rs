@@ -126,6 +126,7 @@ const CROSSINGS: Because = Because("it counts crossings, of which the host allow
 const ORDERS: Because = Because("it counts crossings that a table holds, of which the host asks for 16 at most");
 const SAMPLES: Because = Because("it counts a pixel's samples, of which the host asks for 4 or 32");
 const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most");
+const PIECES: Because = Because("it counts three times the pieces of a part of a ray, of which there are 24 at most");
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
 
@@ -134,6 +135,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
     ("emit/turbulence", "turbulent_octaves", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("emit/volumes", "add_part", "for (var i = 0u; i < 3u * count; i += 1u)", PIECES),
     ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
     ("geodesic/integrator", "quintic_root", "for (var i = 0; i < 4; i++)", CONSTANT),
     ("geodesic/trace", "tau_at_horizon", "for (var i = 0; i < 4; i++)", CONSTANT),

@@ -1,4 +1,4 @@
-// The disk's light at a crossing. Mirrors src/emit/disk.rs. The table of the temperature profile comes from
+// The disk's light at a crossing. Mirrors src/emit/thin_disk.rs. The table of the temperature profile comes from
 // src/physics/disk_flux.rs and lies at PROFILE_OFFSET; an entry is the value and the step to the next one.
 
 #import constants

@@ -46,5 +46,6 @@ fn add_part(c: Constants, from_state: State, begin: f32, end: f32, ratio: f32) {
 fn pieces(u: f32, v: f32) -> u32 {
     let least = 0.01 * max(max(u, v), 1e-30);
     let change = abs(log(max(u, least) / max(v, least)));
-    return u32(clamp(ceil(change / PIECE), 1.0, f32(MOST_PIECES)));
+    // u32 of NaN may be any number.
+    return clamp(u32(min(ceil(change / PIECE), f32(MOST_PIECES))), 1u, MOST_PIECES);
 }

@@ -302,7 +302,7 @@ impl<'a> LookedUp<'a> {
         }
     }
 
-    /// Adds a crossing where emitters shine, with its place and footprint if known; true if nothing behind it can be seen.
+    /// Adds a crossing where emitters shine, with its place and footprint if known; true if it hides all behind it.
     fn cross(&self, record: &mut Record, ratio: f64, u: f64, order: u32, place: Option<(Place, [Place; 2])>) -> bool {
         let spin = self.recorder.lens.observer.frame.a;
         let g = redshift(spin, u, self.recorder.retrograde, record.energy, record.angular_momentum, 1.0);

@@ -1,6 +1,7 @@
 //! Ray records of pixels, made by tracing each ray in f64; derivatives come from the neighbours' rays.
 
-use crate::emit::medium::{Media, MediaAlong, Medium};
+use crate::emit::along::MediaAlong;
+use crate::emit::medium::{Media, Medium};
 use crate::emit::{Crossing, Emitters, Place};
 use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::orbit::redshift;
@@ -44,8 +45,8 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// A recorder that gives crossings of the whole plane, unless nothing shines in it, and goes on behind those that would
-    /// hide the rest.
+    /// A recorder that gives crossings of the whole plane, unless nothing shines in it, and goes on behind those that
+    /// would hide the rest.
     pub fn whole_plane(scene: &Scene, lens: &'a Lens) -> Self {
         let mut recorder = Self::new(scene, lens);
         recorder.settings.opaque_u = None;

@@ -1,4 +1,5 @@
-//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl`. Does not know how the records were made.
+//! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl`. Does not
+//! know how the records were made.
 
 use crate::emit::{PlaneLight, Shift};
 use crate::error::Result;

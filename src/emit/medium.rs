@@ -1,9 +1,8 @@
 //! The matter that a ray passes between two crossings of the plane, summed up: the light that it sends to the observer
 //! and the share of the light from behind that it lets through. Knows no kind of matter.
 
-use super::Emitters;
 use crate::physics::geodesic::State;
-use crate::physics::trace::{CROSSINGS_KEPT, Part, PlaneCrossing, Visitor};
+use crate::physics::trace::{CROSSINGS_KEPT, Part};
 use arrayvec::ArrayVec;
 
 /// A stretch of a ray, from the observer's end of it to the other.
@@ -67,39 +66,6 @@ fn pieces(u: f64, v: f64) -> u32 {
 
 /// The media between the crossings of a ray that are kept, and the one behind the last.
 pub type Media = ArrayVec<Medium, { CROSSINGS_KEPT + 1 }>;
-
-/// Gathers the media along a ray while it is traced.
-pub struct MediaAlong<'a> {
-    pub emitters: &'a Emitters,
-    /// nu(camera) / nu(local frame).
-    pub frequency_ratio: f64,
-    /// The interval of 1/r in which crossings are kept.
-    pub plane_u: Option<[f64; 2]>,
-    pub media: Media,
-    /// The medium since the last crossing that was kept.
-    pub medium: Medium,
-}
-
-impl MediaAlong<'_> {
-    /// All media, the one behind the last crossing among them.
-    pub fn finish(mut self) -> Media {
-        let _ = self.media.try_push(self.medium);
-        self.media
-    }
-}
-
-impl Visitor for MediaAlong<'_> {
-    fn part(&mut self, part: &Part<'_>) {
-        self.emitters.along(part, self.frequency_ratio, &mut self.medium);
-    }
-
-    fn crossing(&mut self, crossing: &PlaneCrossing) {
-        if self.plane_u.is_some_and(|[outer, inner]| crossing.u >= outer && crossing.u <= inner) {
-            // There is room for one more than there are crossings.
-            let _ = self.media.try_push(std::mem::take(&mut self.medium));
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {

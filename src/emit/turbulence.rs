@@ -12,8 +12,8 @@
 //! seed of its own, sheared by its own age only, and with weight sin(pi age / LIFETIME): the squares of the two alive
 //! add up to 1, which keeps the variance, and a generation is invisible when it comes and goes.
 
-use super::Place;
-use super::disk::ThinDisk;
+use super::crossing::Place;
+use super::disk::Disk;
 use crate::random::mix;
 use std::f64::consts::{PI, TAU};
 
@@ -61,9 +61,8 @@ pub struct Turbulence {
 }
 
 impl Turbulence {
-    /// The turbulence of `disk` as a frame shows it. `None`: there is none.
-    pub fn new(disk: &ThinDisk, when: &When) -> Option<Self> {
-        let ThinDisk { disk, matter_spin, .. } = disk;
+    /// The turbulence of `disk` as a frame shows it; `matter_spin`: spin as its matter meets it. `None`: there is none.
+    pub fn new(disk: &Disk, matter_spin: f64, when: &When) -> Option<Self> {
         let age = when.time.rem_euclid(0.5 * LIFETIME);
         let births = ((when.time - age) / (0.5 * LIFETIME)).round();
         (disk.turbulence > 0.0).then(|| Self {
@@ -73,7 +72,7 @@ impl Turbulence {
             needs_delay: when.delayed,
             generation: births.rem_euclid(4_294_967_296.0) as u32,
             age,
-            matter_spin: *matter_spin,
+            matter_spin,
             sense: if disk.retrograde { -1.0 } else { 1.0 },
         })
     }
@@ -143,7 +142,6 @@ fn fade(t: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::emit::disk::Disk;
     use crate::scene::{Effects, Scene};
 
     const STILL: [Place; 2] = [Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];

@@ -6,8 +6,9 @@ use super::hole::Hole;
 use super::quality::Quality;
 use super::sky::Sky;
 use crate::emit::Emitters;
-use crate::emit::disk::{Disk, ThinDisk};
+use crate::emit::disk::Disk;
 use crate::emit::haze::Haze;
+use crate::emit::thin_disk::ThinDisk;
 use crate::emit::turbulence::{Turbulence, When};
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
@@ -107,13 +108,13 @@ impl Default for Scene {
 }
 
 impl Scene {
-    /// What shines and absorbs near the hole, as the scene's view shows it.
+    /// The matter that shines and absorbs near the hole, as the scene's view shows it.
     pub fn emitters(&self) -> Emitters {
         let light = self.view == View::Light;
-        let disk = self
-            .disk
-            .and_then(|disk| ThinDisk::new(&disk, self.hole.spin))
-            .map(|disk| ThinDisk { turbulence: Turbulence::new(&disk, &self.when()).filter(|_| light), ..disk });
+        let disk = self.disk.and_then(|disk| ThinDisk::new(&disk, self.hole.spin)).map(|disk| ThinDisk {
+            turbulence: Turbulence::new(&disk.disk, disk.matter_spin, &self.when()).filter(|_| light),
+            ..disk
+        });
         Emitters { disk, haze: self.haze.filter(|_| light) }
     }
 
