@@ -1,6 +1,6 @@
-/* job_ends.c -- how jobs end while the host goes on: waits end in time, on several threads too; progress is heard by the
- * waiter and may cancel; a target is left alone once its job is gone; jobs outlive their context; and no call waits for
- * a job but those that say so. The frames of jobs are in jobs.c.
+/* job_ends.c -- how jobs end while the host goes on: waits end in time, on several threads too; progress is heard by
+ * the waiter and may cancel; a target is left alone once its job is gone; jobs outlive their context; and no call waits
+ * for a job but those that say so. The frames of jobs are in jobs.c.
  *
  * A second argument is for valgrind: "small" leaves out what takes long there, "brief" all but the callbacks and the
  * ends of jobs that are under way. */

@@ -1,5 +1,5 @@
-/* job_scenes.h -- what the tests of jobs share: eight scenes that differ in what a job has to take along, their frames as
- * bhr_render_image has them, and a job that is far from its end whenever it is looked at. Tests nothing by itself. */
+/* job_scenes.h -- what the tests of jobs share: eight scenes that differ in what a job has to take along, their frames
+ * as bhr_render_image has them, and a job that is far from its end whenever it is looked at. Tests nothing by itself. */
 #ifndef BHR_JOB_SCENES_H
 #define BHR_JOB_SCENES_H
 
@@ -24,7 +24,8 @@ extern unsigned char expected[FLIGHT][BYTES], got[FLIGHT][BYTES];
 BhrImage frame_of(unsigned char *pixels);
 BhrJob  *submit(BhrContext *context, const BhrImage *target); /* ends the program when there is no job */
 void     set_quality(BhrContext *context, BhrMethod method, uint32_t samples);
-/* Light, without a region (other views take one sample a pixel); the context's quality is the default one again afterwards. */
+/* It shows light, as other views take one sample a pixel, and no region. Afterwards the context's quality is the
+ * default. */
 BhrJob  *submit_slow(BhrContext *context);
 /* Waits until some, but not all, of a job is done. */
 double   wait_for_a_part(BhrJob *job, double part);
