@@ -1,5 +1,6 @@
 /* job_scenes.h -- what the tests of jobs share: eight scenes that differ in what a job has to take along, their frames
- * as bhr_render_image has them, and a job that is far from its end whenever it is looked at. Tests nothing by itself. */
+ * as bhr_render_image has them, and a job that is far from its end whenever it is looked at. It tests nothing by
+ * itself. */
 #ifndef BHR_JOB_SCENES_H
 #define BHR_JOB_SCENES_H
 

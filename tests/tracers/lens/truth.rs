@@ -1,4 +1,4 @@
-//! What becomes of a ray in truth: integrated in f64 with small steps, with how well that is conditioned, and whether
+//! The fate of a ray in truth: integrated in f64 with small steps, with how well that is conditioned, and whether
 //! rounding alone may decide otherwise.
 
 use bhr::physics::orbit::redshift;
