@@ -254,7 +254,25 @@ void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *inde
     fprintf(out, "%sand Intel, NVIDIA's own for NVIDIA.\n", indent);
 }
 
+BhrStatus create_context_on(BhrBackend backend, BhrContext **out) {
+    BhrContextOptions options;
+    BhrStatus         status = bhr_context_options_init(&options, sizeof options);
+    if (status < 0) {
+        return status;
+    }
+    options.backend = backend;
+    return bhr_context_create(BHR_ABI_VERSION, &options, out);
+}
+
 /* ---- the process ---- */
+
+int end_output(int result) {
+    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
+        fprintf(stderr, "cannot write to standard output\n");
+        return EXIT_FAILURE;
+    }
+    return result;
+}
 
 uint32_t cores(void) {
 #ifdef _WIN32

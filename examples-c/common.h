@@ -60,7 +60,11 @@ void print_adapter(FILE *out, const BhrAdapterInfo *info);              /* one l
 /* Where AUTO found no GPU: says so, and what to install. Lines that begin with `indent`; nothing for a GPU. */
 void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *indent);
 
+/* A context with the defaults and this backend. */
+BhrStatus create_context_on(BhrBackend backend, BhrContext **out);
+
 /* ---- the process ---- */
+int      end_output(int result);        /* an exit status: EXIT_FAILURE instead of 0 when stdout cannot be written */
 double   wall_seconds(void);            /* monotonic; only differences mean something */
 uint32_t cores(void);                   /* 1 or more; a guess where the system does not tell */
 int      is_terminal(FILE *stream);

@@ -170,12 +170,7 @@ static int prepare(Film *film) {
             return 0;
         }
     }
-    BhrContextOptions options;
-    BhrStatus         status = bhr_context_options_init(&options, sizeof options);
-    if (status >= 0) {
-        options.backend = s->backend;
-        status = bhr_context_create(BHR_ABI_VERSION, &options, &film->context);
-    }
+    BhrStatus status = create_context_on(s->backend, &film->context);
     if (status >= 0) {
         status = begin_fall(&film->scene, s);
     }
@@ -294,10 +289,5 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    int result = run(argc, argv);
-    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
-        fprintf(stderr, "cannot write to standard output\n");
-        return EXIT_FAILURE;
-    }
-    return result;
+    return end_output(run(argc, argv));
 }

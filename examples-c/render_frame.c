@@ -357,10 +357,5 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    int result = run(argc, argv);
-    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
-        fprintf(stderr, "cannot write to standard output\n");
-        return EXIT_FAILURE;
-    }
-    return result;
+    return end_output(run(argc, argv));
 }

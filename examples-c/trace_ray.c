@@ -272,13 +272,8 @@ static BhrStatus describe_scene(BhrContext *context, const Settings *s) {
 }
 
 static int trace(const Settings *s, double psi, int demonstration) {
-    BhrContextOptions options;
-    BhrContext       *context = NULL;
-    BhrStatus         status = bhr_context_options_init(&options, sizeof options);
-    if (status >= 0) {
-        options.backend = s->backend;
-        status = bhr_context_create(BHR_ABI_VERSION, &options, &context);
-    }
+    BhrContext *context = NULL;
+    BhrStatus   status = create_context_on(s->backend, &context);
     if (status < 0) {
         return report_failure("create a context", status);
     }
@@ -362,10 +357,5 @@ static int run(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-    int result = run(argc, argv);
-    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
-        fprintf(stderr, "cannot write to standard output\n");
-        return EXIT_FAILURE;
-    }
-    return result;
+    return end_output(run(argc, argv));
 }

@@ -478,10 +478,5 @@ static int run(int argc, char **argv) {
 
 int main(int argc, char **argv) {
     setvbuf(stdout, NULL, _IOLBF, BUFSIZ); /* what it says is read while it runs, from a file too */
-    int result = run(argc, argv);
-    if (fflush(stdout) != 0 && result == EXIT_SUCCESS) {
-        fprintf(stderr, "cannot write to standard output\n");
-        return EXIT_FAILURE;
-    }
-    return result;
+    return end_output(run(argc, argv));
 }

@@ -17,6 +17,7 @@ use crate::scene::record::Record;
 use crate::scene::{KerrWorth, Scene, View};
 use crate::sky::StarIndex;
 use crate::tracer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
+use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -53,40 +54,48 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         allocate::check_room(0, "a frame")?;
+        self.with_frame(scene, request, |pool, frame| {
+            let tiles = tiles(request, frame.expected_steps(scene))?;
+            let mut delivery = Delivery::new(pool, frame, sink, progress);
+            match Bloom::new(scene, request.format, [request.width, request.height])? {
+                None => delivery.plain(&tiles)?,
+                Some(bloom) => delivery.with_glare(&tiles, &bloom, scene.quality.keep_light)?,
+            }
+            let rays = u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples);
+            Ok(FrameStats { rays, steps: delivery.steps, ..FrameStats::default() })
+        })
+    }
+
+    /// Sets a frame up, and keeps its sky and its lens for the next ones. Errors: as `Scene::lens`; OUT_OF_MEMORY;
+    /// those of `work`.
+    fn with_frame<T>(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        work: impl FnOnce(&ThreadPool, &Frame<'_>) -> Result<T>,
+    ) -> Result<T> {
         let lens = scene.lens(&request.region)?;
         let stars = self.stars.insert(scene.stars()?).clone();
         let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
-        let tiles = tiles(request, frame.expected_steps(scene))?;
-        let mut delivery = Delivery::new(&self.pool, &frame, sink, progress);
-        match Bloom::new(scene, request.format, [request.width, request.height])? {
-            None => delivery.plain(&tiles)?,
-            Some(bloom) => delivery.with_glare(&tiles, &bloom, scene.quality.keep_light)?,
-        }
-        let rays = u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples);
-        Ok(FrameStats { rays, steps: delivery.steps, ..FrameStats::default() })
+        work(&self.pool, &frame)
     }
-}
 
-impl CpuTracer {
     /// Makes all that frames of the scene like this one need, its sky and its lens, and keeps it. Errors: as
     /// `Renderer::render`.
     pub fn prepare(&mut self, scene: &Scene, request: &FrameRequest) -> Result<()> {
-        let lens = scene.lens(&request.region)?;
-        let stars = self.stars.insert(scene.stars()?).clone();
-        self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request)).map(|_| ())
+        self.with_frame(scene, request, |_, _| Ok(()))
     }
 
     /// The records of a frame, row by row. Errors: as `Scene::lens`; OUT_OF_MEMORY.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
-        let lens = scene.lens(&request.region)?;
-        let stars = self.stars.insert(scene.stars()?).clone();
-        let frame = self.pool.install(|| Frame::new(scene, &lens, stars, &mut self.lenses, request))?;
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
         let count = request.width as usize * request.height as usize;
         let mut records = filled(count, Record::captured(), "the records of a frame's rays")?;
         let keep = |record: &Record, _: f64, _: f64, out: &mut Record| *out = record.clone();
-        self.pool.install(|| frame.with_records(tile, origin, &mut records, keep))?;
+        self.with_frame(scene, request, |pool, frame| {
+            pool.install(|| frame.with_records(tile, origin, &mut records, keep))
+        })?;
         Ok(records)
     }
 }

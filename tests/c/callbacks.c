@@ -208,16 +208,11 @@ static void check_log(BhrBackend backend, BhrLogLevel level, int expects_message
     static unsigned char pixels[16 * 16 * 4];
     const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, 16, 16, pixels, sizeof pixels);
     Log                  log = {NULL, 0, 0, 0, 0, 0, level};
-    BhrContextOptions    options;
-    BhrContext          *context = NULL;
-    CHECK_OK(bhr_context_options_init(&options, sizeof options));
-    options.backend = backend;
+    BhrContextOptions    options = check_options(backend);
     options.log_level = level;
     options.log_fn = on_log;
     options.log_user = &log;
-    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
-        return;
-    }
+    BhrContext *context = check_context_with(&options);
     log.context = context;
     CHECK_OK(bhr_render_image(context, &image));
     double m = 0.0, a = 0.0, axis[3];

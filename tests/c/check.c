@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static unsigned        passed_count, failed_count;
@@ -50,18 +51,28 @@ void check_set_sky(BhrContext *context) {
     }
 }
 
-BhrContext *check_context(BhrBackend backend) {
+BhrContextOptions check_options(BhrBackend backend) {
     BhrContextOptions options;
-    BhrContext       *context = NULL;
-    if (CHECK_OK(bhr_context_options_init(&options, sizeof options))) {
-        options.backend = backend;
-        if (CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context)) &&
-            CHECK(context != NULL, "success without a context")) {
-            check_set_sky(context);
-            return context;
-        }
+    if (!CHECK_OK(bhr_context_options_init(&options, sizeof options))) {
+        exit(check_end());
     }
-    exit(check_end());
+    options.backend = backend;
+    return options;
+}
+
+BhrContext *check_context_with(const BhrContextOptions *options) {
+    BhrContext *context = NULL;
+    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, options, &context)) ||
+        !CHECK(context != NULL, "success without a context")) {
+        exit(check_end());
+    }
+    check_set_sky(context);
+    return context;
+}
+
+BhrContext *check_context(BhrBackend backend) {
+    const BhrContextOptions options = check_options(backend);
+    return check_context_with(&options);
 }
 
 /* ---- checks ---- */
@@ -224,4 +235,17 @@ int all_untouched(const void *memory, size_t size) {
         }
     }
     return 1;
+}
+
+/* ---- time ---- */
+
+void pause_ms(long ms) {
+    const struct timespec time = {ms / 1000, ms % 1000 * 1000000};
+    nanosleep(&time, NULL);
+}
+
+double seconds_now(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }

@@ -20,6 +20,9 @@ BhrBackend  check_begin(int argc, char **argv); /* exits with 2 when there is no
 int         check_end(void);                    /* prints the count; the exit status of main */
 BhrContext *check_context(BhrBackend backend);  /* a new one, silent; ends the program when there is none */
 
+BhrContextOptions check_options(BhrBackend backend); /* the defaults, with this backend */
+BhrContext       *check_context_with(const BhrContextOptions *options); /* as check_context */
+
 /* The sky of check_context. With CHECK_WITHOUT_MILKY_WAY in the environment it has no Milky Way, which takes
  * valgrind long to make in every program anew. */
 void check_set_sky(BhrContext *context);
@@ -82,5 +85,9 @@ BhrImage image_of(BhrFormat format, uint32_t width, uint32_t height, void *pixel
 size_t   bytes_per_pixel(BhrFormat format);
 #define UNTOUCHED 0xA5 /* what the tests fill memory with before the library may write to it */
 int all_untouched(const void *memory, size_t size);
+
+/* ---- time ---- */
+void   pause_ms(long ms);
+double seconds_now(void);
 
 #endif

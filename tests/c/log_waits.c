@@ -116,18 +116,11 @@ static long next_call(void) {
 }
 
 static BhrContext *listening_context(void) {
-    BhrContextOptions options;
-    BhrContext       *context = NULL;
-    CHECK_OK(bhr_context_options_init(&options, sizeof options));
-    options.backend = listener.backend;
+    BhrContextOptions options = check_options(listener.backend);
     options.log_level = BHR_LOG_TRACE;
     options.log_fn = on_log;
     options.log_user = &listener;
-    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
-        exit(check_end());
-    }
-    check_set_sky(context);
-    return context;
+    return check_context_with(&options);
 }
 
 static void render_in_background(BhrContext *context) {

@@ -30,15 +30,11 @@ static void adapters(int cpu_only) {
 static void automatic(int cpu_only) {
     static unsigned char pixels[48 * 32 * 4];
     const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, 48, 32, pixels, sizeof pixels);
-    BhrContextOptions    options;
-    BhrContext          *context = NULL;
+    BhrContextOptions    options = check_options(BHR_BACKEND_AUTO);
     BhrAdapterInfo       info = {.struct_size = sizeof info};
-    CHECK_OK(bhr_context_options_init(&options, sizeof options));
     options.log_level = BHR_LOG_INFO;
     options.log_fn = remember;
-    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
-        return;
-    }
+    BhrContext *context = check_context_with(&options);
     CHECK_OK(bhr_context_adapter(context, &info));
     CHECK(info.backend != BHR_BACKEND_VULKAN && (!cpu_only || info.backend == BHR_BACKEND_CPU), "backend %d, %s",
           (int)info.backend, info.name);

@@ -251,16 +251,11 @@ static void on_log(void *user, BhrLogLevel level, const char *message) {
 }
 
 static BhrContext *create(const HostGl *host) {
-    BhrContextOptions options;
-    BhrContext       *context = NULL;
+    BhrContextOptions options = check_options(asked);
     BhrAdapterInfo    info = {.struct_size = sizeof info};
-    CHECK_OK(bhr_context_options_init(&options, sizeof options));
-    options.backend = asked;
     options.log_level = BHR_LOG_INFO;
     options.log_fn = on_log;
-    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
-        exit(check_end());
-    }
+    BhrContext *context = check_context_with(&options);
     check_unchanged_gl(host, "bhr_context_create");
     CHECK_OK(bhr_context_adapter(context, &info));
     CHECK(asked == BHR_BACKEND_AUTO || info.backend == asked, "backend %d: %s", (int)info.backend, info.name);

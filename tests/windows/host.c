@@ -11,17 +11,6 @@
 
 #define PATIENCE 60.0 /* seconds until a window must show what was presented: lavapipe presents on threads of its own */
 
-void pause_ms(long ms) {
-    const struct timespec time = {ms / 1000, ms % 1000 * 1000000};
-    nanosleep(&time, NULL);
-}
-
-double seconds_now(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static void give_up(const char *why) {
     CHECK(0, "%s", why);
     exit(check_end());

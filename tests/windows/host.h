@@ -39,9 +39,6 @@ int host_grab(const Host *host, uint32_t width, uint32_t height, unsigned char *
  * most. The largest difference of the last look; 999 when there was nothing to look at. */
 int host_difference(const Host *host, uint32_t width, uint32_t height, const unsigned char *rgba, int tolerance);
 
-void   pause_ms(long ms);
-double seconds_now(void);
-
 /* A surface that must be made. */
 BhrSurface *check_surface(BhrContext *context, const Host *host, uint32_t width, uint32_t height, BhrPresentMode mode);
 

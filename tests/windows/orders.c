@@ -85,16 +85,10 @@ static void open_glfw_window(Set *set) {
 }
 
 static BhrContext *open_context(BhrBackend backend) {
-    BhrContextOptions options;
-    BhrContext       *context = NULL;
-    CHECK_OK(bhr_context_options_init(&options, sizeof options));
-    options.backend = backend;
+    BhrContextOptions options = check_options(backend);
     options.flags = use_validation ? BHR_CONTEXT_VALIDATION : 0;
     options.log_fn = on_log;
-    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
-        exit(check_end());
-    }
-    return context;
+    return check_context_with(&options);
 }
 
 /* Everything is there, frames have been presented, and a job is under way. */

@@ -38,17 +38,11 @@ static void remember(void *user, BhrLogLevel level, const char *message) {
 }
 
 static BhrContext *open_context(BhrBackend backend, const BhrWindow *compatible) {
-    BhrContextOptions options;
-    BhrContext       *context = NULL;
-    CHECK_OK(bhr_context_options_init(&options, sizeof options));
-    options.backend = backend;
+    BhrContextOptions options = check_options(backend);
     options.log_level = BHR_LOG_INFO;
     options.log_fn = remember;
     options.compatible_window = compatible;
-    if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context))) {
-        exit(check_end());
-    }
-    return context;
+    return check_context_with(&options);
 }
 
 /* ---- windows ---- */
