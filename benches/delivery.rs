@@ -158,10 +158,10 @@ fn jobs(
     let warm = 2 * in_flight + 4;
     for i in 0..count + warm {
         if under_way.len() == in_flight
-            && let Some((job, ordered)) = under_way.pop_front()
+            && let Some((job, requested)) = under_way.pop_front()
         {
             let stats = job.wait(None, &mut |_| true).expect("an end").expect("a frame");
-            latencies.push(milliseconds(ordered));
+            latencies.push(milliseconds(requested));
             readbacks.push(1e-6 * stats.readback_ns as f64);
         }
         if i == warm {
@@ -172,12 +172,12 @@ fn jobs(
         }
         turn(&mut renderer.scene, i);
         let (pixels, length) = targets[i % in_flight];
-        let ordered = Instant::now();
+        let requested = Instant::now();
         // SAFETY: leaked above, and the job before it in this target has ended.
         let target = unsafe { ImageMut::from_raw(layout, pixels, length as u64) }.expect("a target");
         let job = renderer.render_in_background(target, false, None).expect("a job");
-        calls.push(milliseconds(ordered));
-        under_way.push_back((job, ordered));
+        calls.push(milliseconds(requested));
+        under_way.push_back((job, requested));
     }
     for (job, _) in under_way {
         job.wait(None, &mut |_| true).expect("an end").expect("a frame");
@@ -226,8 +226,8 @@ fn main() {
             let (rate, calls, latencies, readbacks) = jobs(&mut renderer, FULL_HD, in_flight, count);
             let way = if mapped == Some(false) { "packed on the device, then copied" } else { "as the device has it" };
             println!("{in_flight} in flight, {way}: {rate:.0} frames/s, {:.2} GB/s", rate * 8.2944e-3);
-            line("    order to end", "ms", latencies);
-            line("    the call that orders", "ms", calls);
+            line("    request to end", "ms", latencies);
+            line("    the call that requests", "ms", calls);
             line("    staging memory to the host's", "ms", readbacks);
             if !adapter.software {
                 let possible = (1e3 / traced).min(bus / 8.2944e-3);
@@ -236,7 +236,7 @@ fn main() {
         }
         println!("jobs, 3840 x 2160 RGBA8, spin {spin}");
         let (_, _, latencies, readbacks) = jobs(&mut renderer, ULTRA_HD, 1, frames(adapter.software, 200));
-        line("    order to end", "ms", latencies);
+        line("    request to end", "ms", latencies);
         line("    staging memory to the host's", "ms", readbacks);
     }
 }

@@ -32,8 +32,8 @@ enum Change {
     Nothing,
     /// The view turns by a hundredth of a degree.
     View,
-    /// The eye moves outward by 1e-4 of its distance, and back.
-    Eye,
+    /// The observer moves outward by 1e-4 of its distance, and back.
+    Observer,
 }
 
 impl Stage {
@@ -68,7 +68,7 @@ impl Stage {
                 let turn = DQuat::from_axis_angle(camera.up.normalize(), if back { -1.7e-4 } else { 1.7e-4 });
                 camera.forward = turn * camera.forward;
             }
-            Change::Eye => camera.position *= if back { 1.0 / 1.0001 } else { 1.0001 },
+            Change::Observer => camera.position *= if back { 1.0 / 1.0001 } else { 1.0001 },
         }
     }
 
@@ -157,7 +157,7 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
     for a in [0.0, 0.9] {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
         measured(&format!("spin {a}, view turning"), size, Change::View, Box::new(spin(a)));
-        measured(&format!("spin {a}, eye moving"), size, Change::Eye, Box::new(spin(a)));
+        measured(&format!("spin {a}, observer moving"), size, Change::Observer, Box::new(spin(a)));
         measured(&format!("spin {a}, each ray integrated"), size, Change::Nothing, Box::new(traced(a)));
         measured(&format!("spin {a}, bloom"), size, Change::Nothing, Box::new(bloom(a)));
         measured(&format!("spin {a}, RK4"), size, Change::Nothing, Box::new(method(a, Method::Rk4)));
@@ -165,7 +165,12 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
     for a in [0.0, 0.9] {
         for size in [size, [640, 360]] {
             measured(&format!("spin {a}, everything"), size, Change::Nothing, Box::new(everything(a)));
-            measured(&format!("spin {a}, everything, eye moving"), size, Change::Eye, Box::new(everything(a)));
+            measured(
+                &format!("spin {a}, everything, observer moving"),
+                size,
+                Change::Observer,
+                Box::new(everything(a)),
+            );
         }
     }
     for a in [0.5, 0.998] {

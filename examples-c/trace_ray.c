@@ -1,5 +1,5 @@
 /* trace_ray.c -- one photon around a black hole, in numbers: its path, crossings of the equatorial plane, deflection,
- * fate. The light is followed backward, from the eye of a static observer (ZAMO) into the direction it looks. Asks for
+ * fate. The light is followed backward, from a static observer (ZAMO) into the direction it looks. Asks for
  * rays; makes no image. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
 #include "common.h"
 #include "vectors.h"
@@ -43,8 +43,8 @@ static double look_angle_of_impact(double impact, double distance) {
     return asin(impact * sqrt(1.0 - 2.0 / distance) / distance);
 }
 
-/* The eye sits at azimuth 0, so that e_r = (cos el, 0, sin el), up = -e_th = (-sin el, 0, cos el) and right = e_ph = y.
- * `psi`: from the hole's centre; `position_angle`: from up towards right. */
+/* The observer sits at azimuth 0, so that e_r = (cos el, 0, sin el), up = -e_th = (-sin el, 0, cos el) and right = e_ph
+ * = y. `psi`: from the hole's centre; `position_angle`: from up towards right. */
 static BhrRay make_ray(const Settings *s, double psi, double position_angle) {
     const double elevation = s->elevation * PI / 180.0;
     const double outward[3] = {cos(elevation), 0.0, sin(elevation)};
@@ -62,7 +62,7 @@ static BhrRay make_ray(const Settings *s, double psi, double position_angle) {
 /* ---- printing ---- */
 
 /* At most `rows` points of the path, evenly chosen by index, the first and the last among them. "swept" is the angle
- * about the hole since the eye, summed over all points in between. */
+ * about the hole since the observer, summed over all points in between. */
 static void print_path(const Settings *s, const double (*points)[4], uint32_t count) {
     printf("      r / M   theta deg     phi deg   swept deg       t / M\n");
     double   swept = 0.0;
@@ -117,13 +117,13 @@ static void print_fate(const Settings *s, const BhrRay *ray, const BhrHit *hit, 
         const double *sky = hit->sky_direction;
         printf("deflection   %.6f deg between look and sky direction (%.6f, %.6f, %.6f)\n",
                degrees(angle_between(ray->direction, sky)), sky[0], sky[1], sky[2]);
-        printf("sky redshift %.6f = nu(eye) / nu(at infinity)\n", hit->sky_redshift);
+        printf("sky redshift %.6f = nu(observer) / nu(at infinity)\n", hit->sky_redshift);
     }
     print_crossings(s, hit);
     putchar('\n');
 }
 
-/* ---- the plot: the plane of the hole, the eye and the look direction, eye to the right, looked-at side up ---- */
+/* ---- the plot: the plane of hole, observer and look direction; observer to the right, looked-at side up ---- */
 
 /* Unit vectors of that plane; a look straight at the hole or away leaves `across` to any perpendicular. */
 static void plot_axes(const BhrRay *ray, double along[3], double across[3]) {
@@ -137,7 +137,7 @@ static void plot_axes(const BhrRay *ray, double along[3], double across[3]) {
     }
     double size = length(across);
     if (size < 1e-12) {
-        const double y[3] = {0.0, 1.0, 0.0}; /* the eye is at azimuth 0 */
+        const double y[3] = {0.0, 1.0, 0.0}; /* the observer is at azimuth 0 */
         memcpy(across, y, sizeof y);
         size = 1.0;
     }
@@ -204,7 +204,7 @@ static void print_plot(const Settings *s, const BhrRay *ray, const double (*poin
             printf("    %.*s\n", end, cells[row]);
         }
     }
-    printf("    # hole%s, * path; %g M across, the eye to the right\n\n", s->spin == 0.0 ? ", . photon sphere" : "",
+    printf("    # hole%s, * path; %g M across, observer to the right\n\n", s->spin == 0.0 ? ", . photon sphere" : "",
            2.0 * PLOT_RADIUS);
 }
 
@@ -307,7 +307,7 @@ static int find_look_angle(const Settings *s, const char *program, double *out_p
         return EXIT_USAGE;
     }
     if (!(s->distance > 2.0)) {
-        fprintf(stderr, "%s: --impact needs a static eye: --distance is %g M, but must be above 2 M\n", program,
+        fprintf(stderr, "%s: --impact needs a static observer: --distance is %g M, but must be above 2 M\n", program,
                 s->distance);
         return EXIT_USAGE;
     }
@@ -326,8 +326,8 @@ static int run(int argc, char **argv) {
     const Option options[] = {
         {"--mass", OPTION_DOUBLE, &s.mass, "M", "in scene lengths; default 1", NULL},
         {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -0.999 to 0.999; default 0", NULL},
-        {"--distance", OPTION_DOUBLE, &s.distance, "R", "the eye's radius in M; default 30", NULL},
-        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "the eye above the equatorial plane; default 0", NULL},
+        {"--distance", OPTION_DOUBLE, &s.distance, "R", "the observer's radius in M; default 30", NULL},
+        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "the observer above the equatorial plane; default 0", NULL},
         {"--impact", OPTION_DOUBLE, &s.impact, "B", "impact parameter in M, for spin 0; looks towards the hole", NULL},
         {"--angle", OPTION_DOUBLE, &s.angle, "DEG", "look direction, from the hole's centre; at any spin", NULL},
         {"--position-angle", OPTION_DOUBLE, &s.position_angle, "DEG",
@@ -343,7 +343,7 @@ static int run(int argc, char **argv) {
     }
     if (s.help) {
         printf("Usage: trace_ray [options]\n"
-               "Follows one photon backward from the eye. Lengths in units of the hole's mass M.\n"
+               "Follows one photon backward from the observer. Lengths in units of the hole's mass M.\n"
                "With no option: three photons, one captured, one at the photon sphere, one that escapes.\n\n");
         options_print(stdout, options, COUNT_OF(options));
         return EXIT_SUCCESS;

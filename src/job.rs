@@ -1,4 +1,4 @@
-//! Frames in the background: orders, each with its own copy of the scene, and all that their host knows of them. The
+//! Frames in the background: requests, each with its own copy of the scene, and all that their host knows of them. The
 //! threads of worker.rs make them. Knows no callbacks and nothing of C.
 
 mod worker;
@@ -13,19 +13,19 @@ use crate::tracers::SharedTracer;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
-use worker::Line;
+use worker::JobQueue;
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     // Nothing under these locks is left half done by a panic.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A frame that was ordered. Clones are the same job; dropping them all neither ends nor cancels it.
+/// A frame that was requested. Clones are the same job; dropping them all neither ends nor cancels it.
 #[derive(Clone)]
 pub struct Job {
     shared: Arc<Shared>,
     /// The queue in which the job may still wait for its turn.
-    line: Weak<Line>,
+    queue: Weak<JobQueue>,
 }
 
 #[derive(Default)]
@@ -48,10 +48,10 @@ impl Job {
     /// come.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
-        if let Some(order) = self.line.upgrade().and_then(|line| line.withdraw(&self.shared))
+        if let Some(job_request) = self.queue.upgrade().and_then(|queue| queue.withdraw(&self.shared))
             && let Err(cancelled) = self.shared.check_cancelled()
         {
-            order.finish(Err(cancelled));
+            job_request.finish(Err(cancelled));
         }
     }
 
@@ -108,17 +108,17 @@ impl Shared {
 
 /// A frame to be made, and the job that hears of it. Its target is written until the job has its outcome, and never
 /// after.
-pub struct Order {
+pub struct JobRequest {
     pub scene: Scene,
     pub request: FrameRequest,
     pub target: ImageMut<'static>,
     pub tracer: SharedTracer,
     pub stats: StatsBoard,
     shared: Arc<Shared>,
-    ordered: Instant,
+    requested: Instant,
 }
 
-impl Order {
+impl JobRequest {
     pub fn new(
         scene: Scene,
         request: FrameRequest,
@@ -126,13 +126,13 @@ impl Order {
         tracer: SharedTracer,
         stats: StatsBoard,
     ) -> Self {
-        Self { scene, request, target, tracer, stats, shared: Arc::default(), ordered: Instant::now() }
+        Self { scene, request, target, tracer, stats, shared: Arc::default(), requested: Instant::now() }
     }
 
     /// The job's end. The target is its owner's again.
     fn finish(self, outcome: Result<FrameStats>) {
         let touched = self.target.is_touched();
-        let outcome = outcome.map(|stats| self.stats.publish(stats, self.ordered.elapsed())).map_err(|mut error| {
+        let outcome = outcome.map(|stats| self.stats.publish(stats, self.requested.elapsed())).map_err(|mut error| {
             if touched {
                 error.message += "; part of the target has been written";
             }
@@ -148,7 +148,7 @@ impl Order {
     }
 }
 
-impl Drop for Order {
+impl Drop for JobRequest {
     fn drop(&mut self) {
         self.end(Err(Error::internal("a thread that renders in the background failed")));
     }

@@ -6,10 +6,10 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
-use crate::job::{Job, Order, Worker};
+use crate::job::{Job, JobRequest, Worker};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Ray, Region, Scene, View};
-use crate::surface::{Showing, Shown, Surface, Tracing, frame_request};
+use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
 use parking_lot::Mutex;
@@ -147,7 +147,7 @@ impl Renderer {
     }
 
     /// Opens the device anew after it was lost, on the adapter it was on if that is still there; the scene stays. Jobs
-    /// that were ordered before fail, surfaces are lost.
+    /// that were requested before fail, surfaces are lost.
     pub fn recover(&mut self) -> Result<()> {
         gpu::forget_drivers();
         let tracer = self.reopen()?;
@@ -221,7 +221,7 @@ impl Renderer {
         self.check_device()?;
         let tracing = match &self.runs_on {
             RunsOn::Gpu(adapter, device) => {
-                Some(Tracing { adapter, device: device.clone(), tracer: self.tracer.clone() })
+                Some(WindowTracer { adapter, device: device.clone(), tracer: self.tracer.clone() })
             }
             RunsOn::Cpu | RunsOn::Gl(_) => None,
         };
@@ -233,13 +233,13 @@ impl Renderer {
 
     /// Renders the scene into the surface's window. Errors: as `render`; INVALID_ARGUMENT for another renderer's
     /// surface; SURFACE_LOST; DEVICE_LOST.
-    pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<Shown> {
+    pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<ShowOutcome> {
         self.check_device()?;
         self.scene.observer()?;
         if !surface.has_ended() && !self.surfaces.iter().any(|ours| std::ptr::eq(ours.as_ptr(), Arc::as_ptr(surface))) {
             return Err(Error::argument("surface was made by another context"));
         }
-        surface.show(&Showing { scene: &self.scene, tracer: &self.tracer, stats: &self.stats })
+        surface.show(&ShowRequest { scene: &self.scene, tracer: &self.tracer, stats: &self.stats })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {
@@ -377,7 +377,7 @@ impl Renderer {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),
         };
-        worker.order(Order::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
+        worker.enqueue(JobRequest::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
     }
 
     /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for

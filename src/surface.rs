@@ -3,7 +3,7 @@
 
 use crate::allocate::{reserve, with_room};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submitted, Swapchain, Texture};
+use crate::gpu::{self, Acquired, Adapter, Device, FrameTarget, Search, Submission, Swapchain, Texture};
 use crate::image::PixelFormat;
 use crate::scene::{Projection, Region, Scene};
 use crate::tracer::{FrameRequest, FrameStats, StatsBoard, Tile};
@@ -17,13 +17,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// The most frames whose numbers are not taken yet: more than a window's images hold back.
-const UNTAKEN: usize = 4;
+const MAX_UNREAD: usize = 4;
 /// The most steps of one frame that are under way.
 const AHEAD: usize = 3;
 
 /// The outcome of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
+pub enum ShowOutcome {
     Presented,
     /// The window is 0 x 0, minimised or hidden: nothing was presented.
     Skipped,
@@ -36,7 +36,7 @@ pub struct Surface {
 
 struct Inner {
     /// `None` once it has ended: then `end` says why. Goes before the window.
-    way: Option<Way>,
+    presentation: Option<Presentation>,
     end: &'static str,
     /// Goes before the claim.
     window: Option<Window>,
@@ -44,11 +44,11 @@ struct Inner {
     size: [u32; 2],
     mode: PresentMode,
     /// Submitted frames whose numbers are not taken yet, oldest first.
-    untaken: VecDeque<Untaken>,
+    unread: VecDeque<UnreadFrame>,
 }
 
 /// How frames get into the window.
-enum Way {
+enum Presentation {
     /// Traced and presented by the tracer's device, to which nobody else may submit while images are made or go.
     Direct(Screen, SharedTracer),
     /// Traced elsewhere, and uploaded to a device that can present.
@@ -67,8 +67,8 @@ struct Screen {
     pacer: Option<Box<dyn Pacer>>,
 }
 
-struct Untaken {
-    steps: VecDeque<Submitted>,
+struct UnreadFrame {
+    steps: VecDeque<Submission>,
     /// Dropped after the steps.
     device: Arc<Device>,
     stats: FrameStats,
@@ -77,14 +77,14 @@ struct Untaken {
 }
 
 /// A GPU tracer, and what it runs on.
-pub struct Tracing<'a> {
+pub struct WindowTracer<'a> {
     pub adapter: &'a Adapter,
     pub device: Arc<Device>,
     pub tracer: SharedTracer,
 }
 
 /// A frame to be shown: the scene, what traces it, and where its numbers go.
-pub struct Showing<'a> {
+pub struct ShowRequest<'a> {
     pub scene: &'a Scene,
     pub tracer: &'a SharedTracer,
     pub stats: &'a StatsBoard,
@@ -99,25 +99,25 @@ impl Surface {
         native: NativeWindow,
         size: [u32; 2],
         mode: PresentMode,
-        tracing: Option<Tracing<'_>>,
+        tracing: Option<WindowTracer<'_>>,
         validation: bool,
     ) -> Result<Self> {
         let window = Window::open(native)?;
         let claim = Claim::new(window.claim_key())?;
-        let way = Way::find(&window, tracing, validation).map_err(|error| match window.exists() {
+        let presentation = Presentation::find(&window, tracing, validation).map_err(|error| match window.exists() {
             true => error,
             false => Error::argument("the window has gone while its surface was being made"),
         })?;
-        way.check_size(size)?;
+        presentation.check_size(size)?;
         Ok(Self {
             inner: Mutex::new(Inner {
-                way: Some(way),
+                presentation: Some(presentation),
                 end: "",
                 window: Some(window),
                 _claim: Some(claim),
                 size,
                 mode,
-                untaken: VecDeque::new(),
+                unread: VecDeque::new(),
             }),
         })
     }
@@ -126,10 +126,12 @@ impl Surface {
     /// SURFACE_LOST.
     pub fn resize(&self, size: [u32; 2]) -> Result<()> {
         let mut inner = self.inner.lock();
-        inner.way()?.check_size(size)?;
-        match &mut inner.way {
-            Some(Way::Direct(screen, _) | Way::Uploaded(screen, _)) if size != [0, 0] => screen.window_changed(),
-            Some(Way::Memory(_, _, Some(pacer))) if size != [0, 0] => pacer.forget(),
+        inner.presentation()?.check_size(size)?;
+        match &mut inner.presentation {
+            Some(Presentation::Direct(screen, _) | Presentation::Uploaded(screen, _)) if size != [0, 0] => {
+                screen.window_changed()
+            }
+            Some(Presentation::Memory(_, _, Some(pacer))) if size != [0, 0] => pacer.forget(),
             _ => {}
         }
         inner.size = size;
@@ -139,13 +141,13 @@ impl Surface {
     /// Errors: SURFACE_LOST.
     pub fn set_present_mode(&self, mode: PresentMode) -> Result<()> {
         let mut inner = self.inner.lock();
-        inner.way()?;
+        inner.presentation()?;
         inner.mode = mode;
         Ok(())
     }
 
     pub fn has_ended(&self) -> bool {
-        self.inner.lock().way.is_none()
+        self.inner.lock().presentation.is_none()
     }
 
     /// Ends it, for a reason: later calls are SURFACE_LOST. The window is free for another.
@@ -155,9 +157,9 @@ impl Surface {
 
     /// Renders the scene into the window. Errors: as `Renderer::render`; SURFACE_LOST, then and ever after, when the
     /// window is gone.
-    pub fn show(&self, showing: &Showing<'_>) -> Result<Shown> {
+    pub fn show(&self, show_request: &ShowRequest<'_>) -> Result<ShowOutcome> {
         let mut inner = self.inner.lock();
-        let shown = inner.show(showing);
+        let shown = inner.show(show_request);
         if shown.as_ref().is_err_and(|error| error.kind == ErrorKind::SurfaceLost) {
             inner.end("its window is gone, or took no frame");
         }
@@ -166,101 +168,104 @@ impl Surface {
 }
 
 impl Inner {
-    fn way(&mut self) -> Result<&mut Way> {
+    fn presentation(&mut self) -> Result<&mut Presentation> {
         let end = self.end;
-        self.way.as_mut().ok_or_else(|| Error::new(ErrorKind::SurfaceLost, format!("the surface was lost: {end}")))
+        self.presentation
+            .as_mut()
+            .ok_or_else(|| Error::new(ErrorKind::SurfaceLost, format!("the surface was lost: {end}")))
     }
 
     fn end(&mut self, reason: &'static str) {
-        if self.way.is_some() {
+        if self.presentation.is_some() {
             self.end = reason;
         }
-        match self.way.take() {
-            Some(Way::Direct(screen, tracer)) => {
-                let _alone = tracer.lock();
+        match self.presentation.take() {
+            Some(Presentation::Direct(screen, tracer)) => {
+                let _tracer = tracer.lock();
                 drop(screen);
             }
-            way => drop(way),
+            presentation => drop(presentation),
         }
-        self.untaken.clear();
+        self.unread.clear();
         self.window = None;
         self._claim = None;
     }
 
-    fn show(&mut self, showing: &Showing<'_>) -> Result<Shown> {
+    fn show(&mut self, show_request: &ShowRequest<'_>) -> Result<ShowOutcome> {
         let begun = Instant::now();
-        self.way()?;
+        self.presentation()?;
         if self.size.contains(&0) {
-            return Ok(Shown::Skipped);
+            return Ok(ShowOutcome::Skipped);
         }
         let window = self.window.as_ref().ok_or_else(|| Error::internal("a surface without its window"))?;
         // X11 windows know their size better than a host whose events are still to come.
         let (given, mode) = (self.size, self.mode);
-        if let Some(pacer) = self.way.as_mut().and_then(|way| way.pacer(mode))
+        if let Some(pacer) = self.presentation.as_mut().and_then(|presentation| presentation.pacer(mode))
             && !pacer.wait()?
         {
-            return Ok(Shown::Skipped);
+            return Ok(ShowOutcome::Skipped);
         }
-        let shown = match self.way.as_mut().ok_or_else(|| Error::internal("a surface without a way"))? {
-            Way::Direct(screen, tracer) => {
-                let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
-                    return Ok(Shown::Skipped);
-                };
-                let traced = screen.trace(showing, &image, size);
-                let shown = traced.and_then(|steps| screen.show(image, mode).map(|()| steps));
-                Some(screen.or_anew(shown)?)
-            }
-            Way::Uploaded(screen, pixels) => {
-                let size = window.size().unwrap_or(given);
-                screen.check_size(size)?;
-                let request = frame_request(showing.scene, size, PixelFormat::Rgba8Srgb);
-                let stats = render_to_memory(showing, &request, pixels)?;
-                let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
-                    return Ok(Shown::Skipped);
-                };
-                let uploaded = screen.upload(&request, pixels);
-                let shown = uploaded.and_then(|()| screen.present(image, mode));
-                screen.or_anew(shown)?;
-                showing.stats.publish(stats, begun.elapsed());
-                None
-            }
-            Way::Memory(memory, pixels, pacer) => {
-                let size = match window.size() {
-                    Some(size) => size,
-                    None if !window.exists() => return Err(window_gone()),
-                    None => given,
-                };
-                check_memory_size(size)?;
-                let request = frame_request(showing.scene, size, PixelFormat::Bgra8Srgb);
-                let stats = render_to_memory(showing, &request, pixels)?;
-                let stretched = stretched(&request, pixels, size)?;
-                if let Some(pacer) = pacer {
-                    pacer.ask()?;
+        let shown =
+            match self.presentation.as_mut().ok_or_else(|| Error::internal("a surface without a presentation"))? {
+                Presentation::Direct(screen, tracer) => {
+                    let Some((image, size)) = screen.acquire(window, given, mode, Some(tracer))? else {
+                        return Ok(ShowOutcome::Skipped);
+                    };
+                    let traced = screen.trace(show_request, &image, size);
+                    let shown = traced.and_then(|steps| screen.show(image, mode).map(|()| steps));
+                    Some(screen.recreate_on_error(shown)?)
                 }
-                memory.present(window, size, stretched.as_deref().unwrap_or(pixels))?;
-                showing.stats.publish(stats, begun.elapsed());
-                None
-            }
-        };
+                Presentation::Uploaded(screen, pixels) => {
+                    let size = window.size().unwrap_or(given);
+                    screen.check_size(size)?;
+                    let request = frame_request(show_request.scene, size, PixelFormat::Rgba8Srgb);
+                    let stats = render_to_memory(show_request, &request, pixels)?;
+                    let Some((image, _)) = screen.acquire(window, given, mode, None)? else {
+                        return Ok(ShowOutcome::Skipped);
+                    };
+                    let uploaded = screen.upload(&request, pixels);
+                    let shown = uploaded.and_then(|()| screen.present(image, mode));
+                    screen.recreate_on_error(shown)?;
+                    show_request.stats.publish(stats, begun.elapsed());
+                    None
+                }
+                Presentation::Memory(memory, pixels, pacer) => {
+                    let size = match window.size() {
+                        Some(size) => size,
+                        None if !window.exists() => return Err(window_gone()),
+                        None => given,
+                    };
+                    check_memory_size(size)?;
+                    let request = frame_request(show_request.scene, size, PixelFormat::Bgra8Srgb);
+                    let stats = render_to_memory(show_request, &request, pixels)?;
+                    let stretched = stretched(&request, pixels, size)?;
+                    if let Some(pacer) = pacer {
+                        pacer.ask()?;
+                    }
+                    memory.present(window, size, stretched.as_deref().unwrap_or(pixels))?;
+                    show_request.stats.publish(stats, begun.elapsed());
+                    None
+                }
+            };
         window.drop_errors();
         if let Some((device, steps, stats)) = shown {
-            self.untaken.push_back(Untaken { device, steps, stats, call: begun.elapsed() });
+            self.unread.push_back(UnreadFrame { device, steps, stats, call: begun.elapsed() });
         }
-        self.take_numbers(showing.stats)?;
-        Ok(Shown::Presented)
+        self.take_numbers(show_request.stats)?;
+        Ok(ShowOutcome::Presented)
     }
 
     /// Takes the numbers of the frames that have run.
     fn take_numbers(&mut self, board: &StatsBoard) -> Result<()> {
-        while let Some(first) = self.untaken.front() {
+        while let Some(first) = self.unread.front() {
             let done = match first.steps.back() {
                 Some(last) => last.is_done(&first.device)?,
                 None => true,
             };
-            if !done && self.untaken.len() <= UNTAKEN {
+            if !done && self.unread.len() <= MAX_UNREAD {
                 break;
             }
-            let Some(mut frame) = self.untaken.pop_front() else { break };
+            let Some(mut frame) = self.unread.pop_front() else { break };
             for step in frame.steps {
                 step.finish(&frame.device, &mut frame.stats, &mut |_, _, _| Ok(()))?;
             }
@@ -291,7 +296,11 @@ pub fn frame_request(scene: &Scene, size: [u32; 2], format: PixelFormat) -> Fram
 }
 
 /// Rows of 4-byte pixels without gaps. Errors: as `Renderer::render`; OUT_OF_MEMORY.
-fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut Vec<u8>) -> Result<FrameStats> {
+fn render_to_memory(
+    show_request: &ShowRequest<'_>,
+    request: &FrameRequest,
+    pixels: &mut Vec<u8>,
+) -> Result<FrameStats> {
     let row = request.width as usize * 4;
     let bytes = row * request.height as usize;
     pixels.clear();
@@ -306,7 +315,7 @@ fn render_to_memory(showing: &Showing<'_>, request: &FrameRequest, pixels: &mut 
         }
         Ok(())
     };
-    showing.tracer.lock().render(showing.scene, request, &mut sink, &mut |_| true)
+    show_request.tracer.lock().render(show_request.scene, request, &mut sink, &mut |_| true)
 }
 
 /// `pixels` in the window's size, if the frame has another; bilinear, as the sampler of window/present.wgsl. Errors:
@@ -348,7 +357,7 @@ fn pacer_of(window: &Window) -> Option<Box<dyn Pacer>> {
     })
 }
 
-impl Way {
+impl Presentation {
     /// The pacer, which says when frames of the mode are shown, if the driver does not.
     fn pacer(&mut self, mode: PresentMode) -> Option<&mut Box<dyn Pacer>> {
         match self {
@@ -357,10 +366,10 @@ impl Way {
         }
     }
 
-    fn find(window: &Window, tracing: Option<Tracing<'_>>, validation: bool) -> Result<Self> {
+    fn find(window: &Window, tracing: Option<WindowTracer<'_>>, validation: bool) -> Result<Self> {
         let mut reasons = Vec::new();
         let tried = tracing.as_ref().map(|tracing| tracing.adapter.info.clone());
-        if let Some(Tracing { adapter, device, tracer }) = tracing {
+        if let Some(WindowTracer { adapter, device, tracer }) = tracing {
             match Swapchain::new(adapter, device, window) {
                 Ok(swapchain) => return Ok(Self::Direct(Screen::new(swapchain, window), tracer)),
                 Err(error) if error.kind == ErrorKind::Unsupported => reasons.push(error.message),
@@ -459,7 +468,7 @@ impl Screen {
                 // The size is what X11 says; elsewhere, and if the window has just gone, what the host says.
                 let size = window.size().unwrap_or(given).map(|side| side.max(1));
                 self.check_size(size)?;
-                let _alone = tracer.map(|tracer| tracer.lock());
+                let _tracer = tracer.map(|tracer| tracer.lock());
                 let configured = self.swapchain.configure(size, mode);
                 if configured.is_err() && !window.exists() {
                     return Err(window_gone());
@@ -494,22 +503,22 @@ impl Screen {
     /// Submits the frame for an image of `size`, and the filling of the image with it.
     fn trace(
         &mut self,
-        showing: &Showing<'_>,
+        show_request: &ShowRequest<'_>,
         image: &wgpu::SurfaceTexture,
         size: [u32; 2],
-    ) -> Result<(Arc<Device>, VecDeque<Submitted>, FrameStats)> {
-        let request = frame_request(showing.scene, size, PixelFormat::Rgba8Srgb);
+    ) -> Result<(Arc<Device>, VecDeque<Submission>, FrameStats)> {
+        let request = frame_request(show_request.scene, size, PixelFormat::Rgba8Srgb);
         let device = self.swapchain.device().clone();
         self.texture(&request, false)?;
         let Self { swapchain, texture: Some(texture), .. } = self else {
             return Err(Error::internal("a screen without its texture"));
         };
         let mut fill = |encoder: &mut wgpu::CommandEncoder| swapchain.fill(encoder, image, texture);
-        let mut tracer = showing.tracer.lock();
+        let mut tracer = show_request.tracer.lock();
         let Tracer::Gpu(tracer) = &mut *tracer else {
             return Err(Error::internal("a window of a GPU on another tracer"));
         };
-        let mut frame = tracer.begin(showing.scene, &request, FrameTarget::Screen(texture))?;
+        let mut frame = tracer.begin(show_request.scene, &request, FrameTarget::Screen(texture))?;
         let mut stats = frame.stats();
         let mut steps = VecDeque::new();
         while let Some(step) = tracer.submit_and(&mut frame, &mut fill)? {
@@ -540,7 +549,7 @@ impl Screen {
     }
 
     /// After a failure the image that was taken and not shown is lost to its window: images are made anew.
-    fn or_anew<T>(&mut self, shown: Result<T>) -> Result<T> {
+    fn recreate_on_error<T>(&mut self, shown: Result<T>) -> Result<T> {
         if shown.is_err() {
             self.swapchain.window_changed();
         }

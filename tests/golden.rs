@@ -122,7 +122,7 @@ fn deflection(mut renderer: Renderer, bars: &Bars) {
     let file = golden("deflection.json");
     let cases = file["cases"].as_array().unwrap().iter().enumerate().map(|(i, data)| {
         let (r, psi) = (number(&data["r_o"]), number(&data["psi"]));
-        // On the axis through the eye; psi from the outward radial.
+        // On the axis through the observer; psi from the outward radial.
         Case {
             name: format!("deflection {i}"),
             data,
@@ -266,7 +266,7 @@ fn traced_change(renderer: &Renderer, x: usize, y: usize, k: usize) -> f64 {
     let lens = renderer.scene.lens(&region).unwrap();
     let settings = trace::Settings { step: 0.05, ..trace::Settings::exact(renderer.scene.hole.spin) };
     let radius = |dx: f64, dy: f64| {
-        let (n, _) = lens.observer.look(lens.look(x as f64 + 0.5 + dx, y as f64 + 0.5 + dy));
+        let (n, _) = lens.observer.aberrate(lens.look_direction(x as f64 + 0.5 + dx, y as f64 + 0.5 + dy));
         let traced = trace::trace_look(&lens.observer.frame, n, &settings).1;
         traced.crossings.iter().find(|c| c.order as usize == k).map(|c| (n, -c.u.ln()))
     };

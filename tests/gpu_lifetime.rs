@@ -72,7 +72,8 @@ fn allocated() -> u64 {
     (heap.uordblks + heap.hblkhd) as u64 >> 10
 }
 
-/// Frames of an eye that moves in each; how much more the heap holds after the last one than after the first few, KiB.
+/// Frames of an observer that moves in each; how much more the heap holds after the last one than after the first few,
+/// KiB.
 fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     let mut renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
@@ -99,7 +100,7 @@ fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     allocated().saturating_sub(before)
 }
 
-/// Lavapipe keeps every kernel that it compiles, and may compile some for each frame: shaders/shared/deciding.wgsl.
+/// Lavapipe keeps every kernel that it compiles, and may compile some for each frame: shaders/shared/not_inlined.wgsl.
 #[test]
 fn many_frames_leave_no_memory_behind() {
     let _alone = alone();

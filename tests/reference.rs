@@ -66,7 +66,7 @@ fn shadows() {
         close(found.radius, number(case, "angular_radius"), 1e-12, &format!("circular {r}"));
         assert!((found.center - vector(&case["center"])).length() < 1e-12, "circular {r}: {}", found.center);
         for point in list(case, "boundary") {
-            let (n, ratio) = observer.look(vector(&point["n_moving"]));
+            let (n, ratio) = observer.aberrate(vector(&point["n_moving"]));
             assert!((n - vector(&point["n_static"])).length() < 1e-12, "aberration at {r}: {n}");
             close(ratio, number(point, "nu_moving_over_nu_static"), 1e-12, "frequency ratio");
         }
@@ -96,7 +96,7 @@ fn redshifts_and_orbits() {
     for case in list(&file, "circular_observer") {
         let observer = Observer::orbiting(frame(number(case, "r"))).unwrap();
         close(observer.beta.z, number(case, "beta"), 1e-14, "beta");
-        let (n, ratio) = observer.look(vector(&case["n_moving"]));
+        let (n, ratio) = observer.aberrate(vector(&case["n_moving"]));
         assert!((n - vector(&case["n_static"])).length() < 1e-13);
         close(ratio, number(case, "nu_moving_over_nu_static"), 1e-13, "ratio");
         let (c, _) = observer.frame.start(n).unwrap();

@@ -75,7 +75,7 @@ void draw_ray(const Diagram &diagram, const RayReport &report, const Projection 
         ImGui::GetWindowDrawList()->AddCircleFilled(at, 3.5F, colour::crossing);
         diagram.label({at.x + 5.0F, at.y - ImGui::GetFontSize() - 1.0F}, colour::crossing, text);
     }
-    if (!points.empty()) { // the eye
+    if (!points.empty()) { // the observer
         ImGui::GetWindowDrawList()->AddCircleFilled(points.front(), 4.0F, colour::text);
     }
 }

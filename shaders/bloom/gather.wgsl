@@ -35,7 +35,7 @@ fn coverage(from_end: i32, tail: vec4<f32>) -> f32 {
 
 // The weight of tap `tap`, which is finer cell `i`, along one side of a cell. The share that would go to a missing cell
 // stays with the pixel's own cell.
-fn taken(tap: i32, i: i32, cell: i32, cells: u32, fine: u32, tail: vec4<f32>) -> f32 {
+fn tap_weight(tap: i32, i: i32, cell: i32, cells: u32, fine: u32, tail: vec4<f32>) -> f32 {
     let own = i / STEP == cell;
     let before = select(0.0, kernel(tap + STEP), own && cell == 0);
     let after = select(0.0, kernel(tap - STEP), own && cell + 1 == i32(cells));
@@ -56,10 +56,10 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     var weights = 0.0;
     for (var y = 0; y < taps; y += 1) {
         let row = corner.y + y;
-        let down = taken(y, row, cell.y, level.cells.y, level.fine.y, level.tail_y);
+        let down = tap_weight(y, row, cell.y, level.cells.y, level.fine.y, level.tail_y);
         for (var x = 0; x < taps; x += 1) {
             let column = corner.x + x;
-            let weight = down * taken(x, column, cell.x, level.cells.x, level.fine.x, level.tail_x);
+            let weight = down * tap_weight(x, column, cell.x, level.cells.x, level.fine.x, level.tail_x);
             let place = clamp(vec2<i32>(column, row), vec2<i32>(0), last) - level.origin;
             sum += weight * textureLoad(finer, place, 0).xyz;
             weights += weight;

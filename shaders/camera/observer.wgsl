@@ -3,7 +3,7 @@
 
 #import constants
 #import geodesic/geodesic
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 
 struct RayBegin {
@@ -12,12 +12,12 @@ struct RayBegin {
     // nu(camera) / nu(observer of the local frame).
     frequency_ratio: f32,
     // False: no light can come from there (rain frame, E <= 0).
-    light: bool,
+    has_light: bool,
 }
 
 // The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and
 // nu(camera) / nu(observer of the local frame).
-struct LocalLook {
+struct LookDirection {
     // In the camera's own frame, and in the local one.
     look: vec3<f32>,
     n: vec3<f32>,
@@ -27,21 +27,22 @@ struct LocalLook {
 // False: the camera rests in the local frame.
 override MOVING: bool = true;
 
-fn local_look(look: vec3<f32>) -> LocalLook {
+fn aberrate(look: vec3<f32>) -> LookDirection {
     if !MOVING {
-        return LocalLook(look, look, 1.0);
+        return LookDirection(look, look, 1.0);
     }
     let beta = frame.beta.xyz;
     let gamma = frame.beta.w;
     let along = dot(beta, look);
-    // In f32 an eye that falls beside the horizon moves at 1: its ray straight ahead is as good as any.
+    // In f32 an observer that falls beside the horizon moves at 1: its ray straight ahead is as good as any.
     let ratio = 1.0 / (gamma * max(1.0 - along, 6e-8));
-    return LocalLook(look, normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio), ratio);
+    let n = normalize((look + beta * (gamma * gamma / (gamma + 1.0) * along - gamma)) * ratio);
+    return LookDirection(look, n, ratio);
 }
 
 // Change of `seen.n` when the look direction in the camera's own frame changes by `change`; at rest with what that
 // holds along it.
-fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
+fn aberrate_change(seen: LookDirection, change: vec3<f32>) -> vec3<f32> {
     if !MOVING {
         return change;
     }
@@ -53,7 +54,7 @@ fn local_change(seen: LocalLook, change: vec3<f32>) -> vec3<f32> {
 }
 
 fn begin_ray(look: vec3<f32>) -> RayBegin {
-    let seen = local_look(look);
+    let seen = aberrate(look);
     var begin = begin_local(seen.n);
     begin.frequency_ratio = seen.frequency_ratio;
     return begin;
@@ -64,7 +65,7 @@ fn begin_local(n: vec3<f32>) -> RayBegin {
     var begin: RayBegin;
     begin.frequency_ratio = 1.0;
     // Rain frames are for spin 0.
-    if !SPINNING && deciding(frame.rain) != 0u {
+    if !SPINNING && not_inlined(frame.rain) != 0u {
         begin_rain(&begin, n);
     } else {
         begin_zamo(&begin, n);
@@ -98,7 +99,7 @@ fn begin_zamo(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     (*begin).c = constants(energy, s * w, carter, k, 1.0);
     (*begin).state = State(u, frame.zamo.w * p.x, frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
-    (*begin).light = true;
+    (*begin).has_light = true;
 }
 
 // Spin 0: beta_rain = sqrt(2 u) is place.w.
@@ -115,7 +116,7 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     (*begin).c = constants(1.0, frame.place.y * w, polar * polar + cw * cw, k, e);
     (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
-    (*begin).light = energy > 0.0;
+    (*begin).has_light = energy > 0.0;
 }
 
 // g of the disk's matter for the local frame's observer (physics::orbit::redshift).

@@ -2,7 +2,7 @@
 // src/scene/projection.rs, where the formulas and conventions are.
 
 #import constants
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 #import shared/math
 
@@ -27,33 +27,33 @@ struct CameraView {
 
 fn is_perspective() -> bool {
     if PROJECTION == FROM_UNIFORM {
-        return deciding(frame.projection) == PERSPECTIVE;
+        return not_inlined(frame.projection) == PERSPECTIVE;
     }
     return PROJECTION == PERSPECTIVE;
 }
 
 fn is_fisheye() -> bool {
     if PROJECTION == FROM_UNIFORM {
-        return deciding(frame.projection) == FISHEYE;
+        return not_inlined(frame.projection) == FISHEYE;
     }
     return PROJECTION == FISHEYE;
 }
 
 fn is_equirect() -> bool {
     if PROJECTION == FROM_UNIFORM {
-        return deciding(frame.projection) == EQUIRECT;
+        return not_inlined(frame.projection) == EQUIRECT;
     }
     return PROJECTION == EQUIRECT;
 }
 
 fn is_cube() -> bool {
     if PROJECTION == FROM_UNIFORM {
-        return deciding(frame.projection) == CUBE;
+        return not_inlined(frame.projection) == CUBE;
     }
     return PROJECTION == CUBE;
 }
 
-// No early returns here: camera_look is called from loops (Mesa 22.3).
+// No early returns here: look_direction is called from loops (Mesa 22.3).
 fn camera_point(x: f32, y: f32) -> FramePoint {
     var p: FramePoint;
     if is_fisheye() {
@@ -74,7 +74,7 @@ fn in_frame(p: vec3<f32>) -> vec3<f32> {
     return frame.right.xyz * p.x + frame.up.xyz * p.y + frame.forward.xyz * p.z;
 }
 
-fn camera_look(x: f32, y: f32) -> vec3<f32> {
+fn look_direction(x: f32, y: f32) -> vec3<f32> {
     return normalize(in_frame(camera_point(x, y).at));
 }
 
@@ -93,7 +93,7 @@ fn camera_view(x: f32, y: f32) -> CameraView {
 }
 
 // Whether something is seen at a position: all but what lies outside a fisheye's circle.
-fn has_look(place: vec2<f32>) -> bool {
+fn has_look_direction(place: vec2<f32>) -> bool {
     let p = place - 0.5 * frame.size.xy;
     let radius = 0.5 * min(frame.size.x, frame.size.y);
     return !is_fisheye() || dot(p, p) <= radius * radius;

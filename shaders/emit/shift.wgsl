@@ -24,9 +24,9 @@ fn visible_shift(g: f32, gravity: f32) -> Shift {
     return Shift(colour, select(1.0, g, (frame.effects & EFFECT_BEAMING) != 0u));
 }
 
-// nu(static observer or ZAMO at the eye), for E and L scaled to nu_local = 1; in the rain frame inside the horizon,
-// its own.
-fn nu_static_eye(energy: f32) -> f32 {
+// nu(static observer or ZAMO where the camera is), for E and L scaled to nu_local = 1; in the rain frame inside the
+// horizon, its own.
+fn nu_static_observer(energy: f32) -> f32 {
     let static_lapse = 1.0 - 2.0 * frame.place.x;
     if frame.rain == 0u || static_lapse <= 0.0 {
         return 1.0;

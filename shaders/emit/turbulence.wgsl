@@ -6,7 +6,7 @@
 #import shared/math
 
 // The factor on the disk's radiance. dx, dy: the change of `at` to the next pixel.
-fn turbulent_brightness(at: Place, dx: Place, dy: Place) -> f32 {
+fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint) -> f32 {
     let since = frame.turbulence.y + (frame.turbulence.z - at.delay);
     let births = floor(since / (0.5 * LIFETIME));
     let generation = frame.pattern.y + bitcast<u32>(i32(births));
@@ -18,7 +18,7 @@ fn turbulent_brightness(at: Place, dx: Place, dy: Place) -> f32 {
 }
 
 // The share of one generation in each octave.
-fn turbulent_octaves(generation: u32, age: f32, at: Place, dx: Place, dy: Place) -> vec4<f32> {
+fn turbulent_octaves(generation: u32, age: f32, at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint) -> vec4<f32> {
     let sense = sign(frame.hole.w);
     let root_cube = exp(1.5 * at.ln_r);
     let omega = sense / (root_cube + sense * frame.hole.x);
@@ -38,7 +38,7 @@ fn turbulent_octaves(generation: u32, age: f32, at: Place, dx: Place, dy: Place)
 }
 
 // Cells of the coarsest octave in a change of place.
-fn cells_across(d: Place, sheared: f32, omega: f32) -> f32 {
+fn cells_across(d: EmissionPoint, sheared: f32, omega: f32) -> f32 {
     let turn = (d.azimuth - sheared * d.ln_r + omega * d.delay) / TAU;
     let x = abs(d.ln_r * CELLS_PER_E_FOLD);
     let y = abs(turn * f32(CELLS_AROUND));
@@ -69,8 +69,8 @@ fn gradient_noise(along: f32, turns: f32, around: u32, key: u32) -> f32 {
     return mix(low, high, s.y);
 }
 
-// The gradient of a corner, times the way from it.
-fn slope(corner: u32, way: vec2<f32>) -> f32 {
+// The gradient of a corner, times the offset from it.
+fn slope(corner: u32, offset: vec2<f32>) -> f32 {
     let h = mix_bits(corner);
-    return dot(vec2<f32>(f32(h & 0xffffu), f32(h >> 16u)) / 32767.5 - 1.0, way);
+    return dot(vec2<f32>(f32(h & 0xffffu), f32(h >> 16u)) / 32767.5 - 1.0, offset);
 }

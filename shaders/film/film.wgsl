@@ -6,7 +6,7 @@
 #import film/false_colour
 #import film/encode
 #import film/params
-#import shared/deciding
+#import shared/not_inlined
 
 // The number of the ToneMap that a kernel is made for, or FROM_UNIFORM where it serves all and the uniform says which.
 override TONE_MAP: u32 = 1u;
@@ -17,7 +17,7 @@ override FALSE_COLOUR: bool = false;
 
 fn is_float() -> bool {
     if PIXELS == FROM_UNIFORM {
-        let format = deciding(film.format);
+        let format = not_inlined(film.format);
         return (format == FORMAT_RGBA16F) | (format == FORMAT_RGBA32F);
     }
     return PIXELS == PIXELS_FLOAT;
@@ -25,25 +25,25 @@ fn is_float() -> bool {
 
 fn is_r32f() -> bool {
     if PIXELS == FROM_UNIFORM {
-        return deciding(film.format) == FORMAT_R32F;
+        return not_inlined(film.format) == FORMAT_R32F;
     }
     return PIXELS == PIXELS_R32F;
 }
 
 fn is_rgba32f() -> bool {
-    return deciding(film.format) == FORMAT_RGBA32F;
+    return not_inlined(film.format) == FORMAT_RGBA32F;
 }
 
 fn is_aces() -> bool {
     if TONE_MAP == FROM_UNIFORM {
-        return deciding(film.tone_map) == TONE_MAP_ACES;
+        return not_inlined(film.tone_map) == TONE_MAP_ACES;
     }
     return TONE_MAP == TONE_MAP_ACES;
 }
 
 fn is_agx() -> bool {
     if TONE_MAP == FROM_UNIFORM {
-        return deciding(film.tone_map) == TONE_MAP_AGX;
+        return not_inlined(film.tone_map) == TONE_MAP_AGX;
     }
     return TONE_MAP == TONE_MAP_AGX;
 }

@@ -1,5 +1,5 @@
-// Puts the packed pixels of a tile, rows without gaps, into the buffer that a frame's last kernel writes for the host.
-// (The uniforms of group 2 come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
+// Writes the packed pixels of a tile, rows without gaps, into the buffer that a frame's last kernel writes for the
+// host. (The uniforms of group 2 come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
 
 #import film/film
 #import film/params
@@ -8,7 +8,7 @@
 @group(2) @binding(0) var<uniform> film: FilmParams;
 @group(2) @binding(1) var<storage, read_write> pixels: array<u32>;
 
-fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
+fn write_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let place = vec2<u32>(pass_.origin + vec2<i32>(id) + 1);
     let words = develop(radiance, place.x, place.y);
     let i = id.y * (pass_.size.x - 2u) + id.x;

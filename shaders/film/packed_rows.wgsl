@@ -1,4 +1,4 @@
-// Puts the packed pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory. The
+// Writes the packed pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory. The
 // bus carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row
 // (H200: 49 against 24.5 GB/s). So a workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide,
 // gathers their words and then writes them row by row.
@@ -29,13 +29,13 @@ fn keep_words(words: vec4<u32>) {
     }
 }
 
-fn put_pixel(id: vec2<u32>, radiance: vec4<f32>) {
+fn write_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let place = vec2<u32>(pass_.origin + vec2<i32>(id) + 1);
     keep_words(develop(radiance, place.x, place.y));
 }
 
-// Once all threads have put their pixels: thread `i` writes its share of those of the workgroup at `corner`. Words of
-// pixels that another kernel will put are whatever `keep_words` had last.
+// Once all threads have written their pixels: thread `i` writes its share of those of the workgroup at `corner`. Words
+// of pixels that another kernel will write are whatever `keep_words` had last.
 fn write_rows(corner: vec2<u32>, i: u32) {
     for (var k = 0u; k < pixel_words(); k += 1u) {
         let word = i + ROWS_PIXELS * k;

@@ -1,4 +1,4 @@
-// The uniform `film`, which says how pixels are developed; the fragment that puts the pixels binds it. Mirrors
+// The uniform `film`, which says how pixels are developed; the fragment that writes the pixels binds it. Mirrors
 // `FilmParams` of src/film/mod.rs.
 
 #requires var film: FilmParams

@@ -1,4 +1,4 @@
-// Light rays traced backward from the eye, in Mino time: the equations of motion. Mirrors src/physics/geodesic.rs,
+// Light rays traced backward, in Mino time: the equations of motion. Mirrors src/physics/geodesic.rs,
 // where the formulas and their sources stand. Knows no integrator and no observer.
 
 #import constants
@@ -19,7 +19,7 @@ struct Constants {
     a2e2: f32,
     a2q: f32,
     scale: f32,
-    u_eye: f32,
+    u_observer: f32,
     r_plus: f32,
     r_minus: f32,
     // CLOCK_*.
@@ -87,7 +87,7 @@ fn coordinate_delay_rate(c: Constants, u: f32, n_z: f32) -> f32 {
         let r = 1.0 / u;
         return c.energy * r * (r + 2.0) + frame + horizon;
     }
-    let l = log(max(u / c.u_eye, 1e-30));
+    let l = log(max(u / c.u_observer, 1e-30));
     let by_parts = (c.k - c.a2e2) * u * (1.0 + l) - c.b * u * u * (2.0 + 3.0 * l) + c.a2q * u * u * u * (1.0 + 2.0 * l);
     return (c.b * u - c.a2q * u * u + 2.0 * by_parts) / c.energy + frame + horizon;
 }
@@ -112,7 +112,7 @@ fn coordinate_delay_boundary(c: Constants, u: f32, du: f32) -> f32 {
     if !delay_by_parts(c) {
         return 0.0;
     }
-    return (2.0 * du * log(u / c.u_eye) - du / u) / c.energy;
+    return (2.0 * du * log(u / c.u_observer) - du / u) / c.energy;
 }
 
 // The clock's time less t at u, outside the horizon: H of rain_offset.
@@ -125,9 +125,10 @@ fn clock_offset(c: Constants, u: f32) -> f32 {
     return select(0.0, 4.0 / w + 2.0 * log((1.0 - 2.0 * u) / (root * root)), c.clock == CLOCK_RAIN);
 }
 
-// The clock's time at the eye less the t at which light left `there`, with the integral part of the delay between them.
-fn retardation(c: Constants, eye_u: f32, eye_du: f32, u: f32, du: f32, integral: f32) -> f32 {
-    return delay_boundary(c, u, du) - delay_boundary(c, eye_u, eye_du) + integral + clock_offset(c, u);
+// The clock's time at the observer less the t at which light left `there`, with the integral part of the delay between
+// them.
+fn retardation(c: Constants, observer_u: f32, observer_du: f32, u: f32, du: f32, integral: f32) -> f32 {
+    return delay_boundary(c, u, du) - delay_boundary(c, observer_u, observer_du) + integral + clock_offset(c, u);
 }
 
 // The chart direction of N, normalised, turned by the drag.

@@ -1,4 +1,4 @@
-// One light ray from the eye to its fate. Mirrors src/physics/trace.rs; knows no observer, no pixel and no buffer.
+// One light ray from its start to its fate. Mirrors src/physics/trace.rs; knows no observer, no pixel and no buffer.
 //
 // The inner loop only steps; whatever happens in a step is looked into outside it: GPUs (and lavapipe, which runs both
 // sides of an `if`) would pay for root finding in every step. A kernel's on_crossing keeps a crossing of the equatorial
@@ -165,12 +165,12 @@ fn crossing_state(c: Constants, start: State, to: State, h: f32) -> CrossingStat
     return CrossingState(there, partial + rest);
 }
 
-fn find_crossing(c: Constants, eye: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {
+fn find_crossing(c: Constants, observer: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {
     let found = crossing_state(c, start, to, h);
     let there = found.at;
     var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order, found.tau);
     if DELAY {
-        crossing.delay = retardation(c, eye.u, eye.du, there.u, there.du, there.delay - eye.delay);
+        crossing.delay = retardation(c, observer.u, observer.du, there.u, there.du, there.delay - observer.delay);
     }
     return crossing;
 }

@@ -2,7 +2,7 @@
 // cubic interpolation. Mirrors src/physics/lens/coordinate.rs.
 
 // A place on an axis: the node before it, and how far it is to the next, 0 .. 1.
-struct LensPlace {
+struct AxisPosition {
     node: u32,
     share: f32,
 }
@@ -25,12 +25,12 @@ fn exp2_share(x: f32) -> f32 {
 
 // The place of t_hat >= 2^-octaves on an axis of `per_octave` nodes that begins there; `last` is the last node that an
 // interpolation may begin at. Exponent and mantissa are kept apart: their sum would cost digits.
-fn lens_place(t_hat: f32, octaves: f32, per_octave: f32, last: u32) -> LensPlace {
+fn axis_position(t_hat: f32, octaves: f32, per_octave: f32, last: u32) -> AxisPosition {
     let bits = bitcast<u32>(max(t_hat, exp2(-octaves)));
     let octave = (f32(bits >> 23u) - 127.0 + octaves) * per_octave;
     let x = per_octave * log2_mantissa(bitcast<f32>((bits & 0x7fffffu) | 0x3f800000u));
     let node = min(u32(octave) + u32(x), last);
-    return LensPlace(node, x + octave - f32(node));
+    return AxisPosition(node, x + octave - f32(node));
 }
 
 // t_hat of a node, which may lie before the axis' begin.

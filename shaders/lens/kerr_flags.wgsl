@@ -3,7 +3,7 @@
 
 #import constants
 #import lens/kerr
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -20,7 +20,7 @@ const KERR_PATTERN_TOLERANCE: f32 = 2e-5;
 
 // Lower corner of the cell.
 var<private> cell: vec2<u32>;
-// Its extent along chi and along x, and sin R: angles on the eye's sky.
+// Its extent along chi and along x, and sin R: angles on the observer's sky.
 var<private> column_angle: f32;
 var<private> row_angle: f32;
 var<private> critical: f32;
@@ -153,7 +153,7 @@ fn pattern_is_good(p: Patch) -> bool {
 
 @compute @workgroup_size(8, 16)
 fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
-    zero = id.z;
+    unknown_zero = id.z;
     let inner = id.y >= lens.outer_rows;
     let row = id.y - kerr_first_row(inner);
     let rows = select(lens.outer_rows, lens.inner_rows, inner);
@@ -170,7 +170,7 @@ fn flag_cells(@builtin(global_invocation_id) id: vec3<u32>) {
     if !inner && !sky_is_good() {
         flags = KERR_DIRECT;
     }
-    let orders = deciding(lens.orders);
+    let orders = not_inlined(lens.orders);
     if PATTERN {
         for (var order = 0u; order < orders; order += 1u) {
             let p = patch_of(order);

@@ -7,7 +7,7 @@
 #import geodesic/integrator
 #import geodesic/trace
 #import lens/kerr
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -29,7 +29,7 @@ var<private> four: vec4<f32>;
 
 @compute @workgroup_size(8, 16)
 fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
-    zero = id.z;
+    unknown_zero = id.z;
     if id.x >= KERR_COLUMNS || id.y >= lens.outer_rows + lens.inner_rows {
         return;
     }
@@ -61,7 +61,7 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
                     there.drag = state.drag;
                     there.delay = state.delay;
                 }
-                put_crossing(c, begin.state, there);
+                store_crossing(c, begin.state, there);
             }
         }
         if next.u <= 0.0 {
@@ -84,7 +84,7 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     let none = select(KERR_NO_CROSSING, -KERR_NO_CROSSING, escaped);
     while found < lens.orders {
-        put(vec4<f32>(none, 0.0, 0.0, 0.0));
+        store_next(vec4<f32>(none, 0.0, 0.0, 0.0));
     }
     if !PATTERN && found % 4u != 0u {
         textureStore(crossings_out, node, found / 4u, four);
@@ -98,17 +98,17 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
 }
 
-fn put_crossing(c: Constants, eye: State, there: State) {
+fn store_crossing(c: Constants, observer: State, there: State) {
     var at = vec4<f32>(there.u, 0.0, 0.0, 0.0);
     if PATTERN {
         let direction = chart_direction(there.n, there.drag);
-        at = vec4<f32>(there.u, direction.xy, regular_delay(c, eye, there));
+        at = vec4<f32>(there.u, direction.xy, regular_delay(c, observer, there));
     }
-    put(at);
+    store_next(at);
 }
 
-// The next order's crossing.
-fn put(at: vec4<f32>) {
+// Stores the crossing of the next order.
+fn store_next(at: vec4<f32>) {
     if PATTERN {
         textureStore(crossings_out, node, found, at);
     } else {
@@ -121,17 +121,18 @@ fn put(at: vec4<f32>) {
     found += 1u;
 }
 
-// The delay less the eye's r and what it diverges like at infinity, 1 / u - 2 ln(|u| / u_eye); (E + u') / u and
-// (E - u') / u without cancellation, as u'^2 = E^2 + u^2 (...).
-fn regular_delay(c: Constants, eye: State, there: State) -> f32 {
+// The delay less the observer's r and what it diverges like at infinity, 1 / u - 2 ln(|u| / u_observer); (E + u') / u
+// and (E - u') / u without cancellation, as u'^2 = E^2 + u^2 (...).
+fn regular_delay(c: Constants, observer: State, there: State) -> f32 {
     if !DELAY {
         return 0.0;
     }
     let below = beyond_energy(c, there.u);
     let ratio = select((c.energy + there.du) / there.u, -below / (c.energy - there.du), there.du < 0.0);
-    let begin = select((eye.du - c.energy) / eye.u, beyond_energy(c, eye.u) / (c.energy + eye.du), eye.du > 0.0);
-    let logarithm = log(max(abs(there.u / c.u_eye), 1e-30));
-    return (2.0 * ratio * there.u * logarithm - ratio + begin) / c.energy + there.delay - eye.delay;
+    let begin = select((observer.du - c.energy) / observer.u,
+        beyond_energy(c, observer.u) / (c.energy + observer.du), observer.du > 0.0);
+    let logarithm = log(max(abs(there.u / c.u_observer), 1e-30));
+    return (2.0 * ratio * there.u * logarithm - ratio + begin) / c.energy + there.delay - observer.delay;
 }
 
 // (u'^2 - E^2) / u.

@@ -1,5 +1,5 @@
 // Ray records with spin, as the tables of lens/kerr.wgsl have them; rays that the tables do not hold are left to
-// lens/kerr_rest.wgsl.
+// lens/kerr_deferred.wgsl.
 
 #import lens/kerr_record
 #import records/record

@@ -31,8 +31,8 @@ struct Deferred {
 }
 
 // The record at hand: what its crossings need.
-struct Looked {
-    seen: LocalLook,
+struct Lookup {
+    seen: LookDirection,
     cell: vec2<u32>,
     // The flags without those of crossings that were given already.
     flags: u32,
@@ -51,13 +51,13 @@ struct Looked {
     dy: vec2<f32>,
 }
 
-var<private> looked: Looked;
+var<private> lookup: Lookup;
 
 // FATE_PENDING: not in the tables; footprint and fate are nearly right all the same.
 fn look_up(id: vec2<u32>) -> Record {
     let at = pixel_place(id);
     let view = camera_view(at.x, at.y);
-    let seen = local_look(view.look);
+    let seen = aberrate(view.look);
     let n = seen.n;
     let begin = begin_local(n);
     let energy = begin.c.energy / begin.c.nu_local;
@@ -79,18 +79,18 @@ fn look_up(id: vec2<u32>) -> Record {
     let t_hat = abs(t) / half_tangent.x;
     let rows = select(lens.outer_rows, lens.inner_rows, inner);
     let last = rows - 2u * KERR_ROWS_ABOVE;
-    let place = lens_place(t_hat, KERR_OCTAVES, f32(KERR_PER_OCTAVE), last);
+    let place = axis_position(t_hat, KERR_OCTAVES, f32(KERR_PER_OCTAVE), last);
 
-    looked.seen = seen;
-    looked.cell = vec2<u32>(column, kerr_first_row(inner) + place.node + KERR_ROWS_BELOW);
-    looked.all_flags = textureLoad(kerr_flags, looked.cell, 0).x;
-    looked.flags = looked.all_flags;
-    looked.on_edge = false;
-    looked.beyond = beyond_right_angle(t);
-    looked.columns = lagrange(around - f32(column));
-    looked.columns_slope = lagrange_slope(around - f32(column));
-    looked.rows = lagrange(place.share);
-    looked.rows_slope = lagrange_slope(place.share);
+    lookup.seen = seen;
+    lookup.cell = vec2<u32>(column, kerr_first_row(inner) + place.node + KERR_ROWS_BELOW);
+    lookup.all_flags = textureLoad(kerr_flags, lookup.cell, 0).x;
+    lookup.flags = lookup.all_flags;
+    lookup.on_edge = false;
+    lookup.beyond = beyond_right_angle(t);
+    lookup.columns = lagrange(around - f32(column));
+    lookup.columns_slope = lagrange_slope(around - f32(column));
+    lookup.rows = lagrange(place.share);
+    lookup.rows_slope = lagrange_slope(place.share);
 
     // d psi and d chi; dt = (1 + t^2) / 2 (d psi - dR), dR = 2 dT / (1 + T^2), d(row) = n / ln 2 (dt / t - dT / T).
     let outward = kerr_radial(chi.x, chi.y) * cosine - lens.k.xyz * sine;
@@ -99,13 +99,13 @@ fn look_up(id: vec2<u32>) -> Record {
     let slope_r = half_tangent.y * (slope_t * 2.0 / (1.0 + half_tangent.x * half_tangent.x) + 1.0 / half_tangent.x);
     const ROWS: f32 = f32(KERR_PER_OCTAVE) * 1.4426950408889634;
     // The components of these changes along n turn nothing.
-    let grid_x = local_change(seen, view.dx);
-    let grid_y = local_change(seen, view.dy);
+    let grid_x = aberrate_change(seen, view.dx);
+    let grid_y = aberrate_change(seen, view.dy);
     let chi_change = vec2<f32>(dot(along, grid_x), dot(along, grid_y));
     let row_change = ROWS * (slope_t * vec2<f32>(dot(outward, grid_x), dot(outward, grid_y)) - slope_r * chi_change);
     let column_change = chi_change * (w_slope * f32(KERR_COLUMNS) / TAU);
-    looked.dx = vec2<f32>(column_change.x, row_change.x);
-    looked.dy = vec2<f32>(column_change.y, row_change.y);
+    lookup.dx = vec2<f32>(column_change.x, row_change.x);
+    lookup.dy = vec2<f32>(column_change.y, row_change.y);
 
     var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0,
         vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
@@ -115,11 +115,11 @@ fn look_up(id: vec2<u32>) -> Record {
         let sky = interpolate(KERR_SKY_LAYER);
         let inverse = inverseSqrt(dot(sky.value.xyz, sky.value.xyz));
         record.sky = sky.value.xyz * inverse;
-        let dx = (sky.by_column.xyz * looked.dx.x + sky.by_row.xyz * looked.dx.y) * inverse;
-        let dy = (sky.by_column.xyz * looked.dy.x + sky.by_row.xyz * looked.dy.y) * inverse;
+        let dx = (sky.by_column.xyz * lookup.dx.x + sky.by_row.xyz * lookup.dx.y) * inverse;
+        let dy = (sky.by_column.xyz * lookup.dy.x + sky.by_row.xyz * lookup.dy.y) * inverse;
         record.footprint = footprint_of(record.sky, dx, dy);
     }
-    if t_hat < exp2(-KERR_OCTAVES) || (looked.flags & KERR_DIRECT) != 0u {
+    if t_hat < exp2(-KERR_OCTAVES) || (lookup.flags & KERR_DIRECT) != 0u {
         record.fate = FATE_PENDING;
     }
     return record;
@@ -149,23 +149,23 @@ const KERR_SKY_LAYER: u32 = 0xffffu;
 fn interpolate(layer: u32) -> Interpolated {
     var sum: Interpolated;
     for (var j = 0u; j < 4u; j += 1u) {
-        let row = looked.cell.y + j - 1u;
+        let row = lookup.cell.y + j - 1u;
         var value = vec4<f32>(0.0);
         var slope = vec4<f32>(0.0);
         for (var i = 0u; i < 4u; i += 1u) {
-            let place = vec2<u32>((looked.cell.x + KERR_COLUMNS + i - 1u) % KERR_COLUMNS, row);
+            let place = vec2<u32>((lookup.cell.x + KERR_COLUMNS + i - 1u) % KERR_COLUMNS, row);
             var at: vec4<f32>;
             if layer == KERR_SKY_LAYER {
                 at = textureLoad(kerr_sky, place, 0);
             } else {
                 at = textureLoad(kerr_crossings, place, layer, 0);
             }
-            value += at * looked.columns[i];
-            slope += at * looked.columns_slope[i];
+            value += at * lookup.columns[i];
+            slope += at * lookup.columns_slope[i];
         }
-        sum.value += value * looked.rows[j];
-        sum.by_row += value * looked.rows_slope[j];
-        sum.by_column += slope * looked.rows[j];
+        sum.value += value * lookup.rows[j];
+        sum.by_row += value * lookup.rows_slope[j];
+        sum.by_column += slope * lookup.rows[j];
     }
     return sum;
 }
@@ -173,14 +173,14 @@ fn interpolate(layer: u32) -> Interpolated {
 // The change of component `lane` to the next pixel right and down.
 fn looked_up_change(at: Interpolated, lane: u32) -> vec2<f32> {
     let by = vec2<f32>(at.by_column[lane], at.by_row[lane]);
-    return vec2<f32>(dot(by, looked.dx), dot(by, looked.dy));
+    return vec2<f32>(dot(by, lookup.dx), dot(by, lookup.dy));
 }
 
 fn edges_of_pixel(through: f32) -> u32 {
     // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
-    let rows = length(vec2<f32>(looked.dx.y, looked.dy.y));
-    let curve = looked.beyond * f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
-    return edges_looked_up(looked.on_edge, curve, looked.cell.y < lens.outer_rows, through);
+    let rows = length(vec2<f32>(lookup.dx.y, lookup.dy.y));
+    let curve = lookup.beyond * f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
+    return edges_looked_up(lookup.on_edge, curve, lookup.cell.y < lens.outer_rows, through);
 }
 
 // The next crossing of the disk in the tables.
@@ -189,42 +189,42 @@ fn next_looked_up() -> Crossing {
     if !PLANE {
         return crossing;
     }
-    var orders = looked.flags & 0xffffu;
+    var orders = lookup.flags & 0xffffu;
     while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
         orders &= orders - 1u;
         let at = interpolate(select(order / 4u, order, PATTERN));
         let lane = select(order % 4u, 0u, PATTERN);
         let u = at.value[lane];
-        looked.on_edge = looked.on_edge || near_disk_edge(u, looked_up_change(at, lane));
+        lookup.on_edge = lookup.on_edge || near_disk_edge(u, looked_up_change(at, lane));
         if is_wanted(u) && u < KERR_NO_CROSSING {
             crossing.u = u;
             crossing.order = order;
         }
     }
-    looked.flags = orders;
+    lookup.flags = orders;
     if crossing.u > 0.0 {
-        let c = begin_local(looked.seen.n).c;
-        crossing.g = looked.seen.frequency_ratio * redshift_of(c, crossing.u);
+        let c = begin_local(lookup.seen.n).c;
+        crossing.g = lookup.seen.frequency_ratio * redshift_of(c, crossing.u);
     }
     if PATTERN && crossing.u > 0.0 {
-        put_pattern(&crossing, interpolate(crossing.order));
+        add_pattern(&crossing, interpolate(crossing.order));
     }
     return crossing;
 }
 
-fn put_pattern(crossing: ptr<function, Crossing>, at: Interpolated) {
+fn add_pattern(crossing: ptr<function, Crossing>, at: Interpolated) {
     let u = at.value.x;
     let delay = at.value.w + 1.0 / frame.place.x + 1.0 / u - 2.0 * log(u / frame.place.x);
-    (*crossing).place = Place(-log(u), arctan2(at.value.z, at.value.y), select(0.0, delay, DELAY));
+    (*crossing).place = EmissionPoint(-log(u), arctan2(at.value.z, at.value.y), select(0.0, delay, DELAY));
     if FOOTPRINTS {
-        (*crossing).dx = place_change((*crossing).u, at, looked.dx);
-        (*crossing).dy = place_change((*crossing).u, at, looked.dy);
+        (*crossing).dx = place_change((*crossing).u, at, lookup.dx);
+        (*crossing).dy = place_change((*crossing).u, at, lookup.dy);
     }
 }
 
-fn place_change(u: f32, at: Interpolated, change: vec2<f32>) -> Place {
+fn place_change(u: f32, at: Interpolated, change: vec2<f32>) -> EmissionPoint {
     let d = at.by_column * change.x + at.by_row * change.y;
     let turn = (at.value.y * d.z - at.value.z * d.y) / max(dot(at.value.yz, at.value.yz), 1e-6);
-    return Place(-d.x / u, turn, select(0.0, d.w - (1.0 / u + 2.0) * d.x / u, DELAY));
+    return EmissionPoint(-d.x / u, turn, select(0.0, d.w - (1.0 / u + 2.0) * d.x / u, DELAY));
 }

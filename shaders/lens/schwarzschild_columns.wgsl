@@ -5,7 +5,7 @@
 #import geodesic/geodesic
 #import lens/schwarzschild
 #import lens/schwarzschild_curve
-#import shared/deciding
+#import shared/not_inlined
 
 // The ends that lens/schwarzschild_ends.wgsl found.
 @group(0) @binding(2) var ends: texture_2d<f32>;
@@ -18,7 +18,7 @@
 
 @compute @workgroup_size(32)
 fn fill_columns(@builtin(global_invocation_id) id: vec3<u32>) {
-    zero = id.z;
+    unknown_zero = id.z;
     let nodes = nodes_of(id.y);
     if id.x >= nodes {
         return;

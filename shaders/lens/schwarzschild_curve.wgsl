@@ -22,7 +22,7 @@ struct Curve {
     // e0 of the separatrix u_s = -1/6 + ((1 - e) / (1 + e))^2 / 2, e = e0 exp(-phi).
     e0: f32,
     deviates: bool,
-    // v and dv/dsigma at the eye.
+    // v and dv/dsigma at the observer.
     v: f32,
     dv: f32,
     // -1 beyond psi = pi (or 0), where everything continues on the other side.

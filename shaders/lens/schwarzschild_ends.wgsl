@@ -3,7 +3,7 @@
 #import constants
 #import lens/schwarzschild
 #import lens/schwarzschild_curve
-#import shared/deciding
+#import shared/not_inlined
 
 // x: phi, y: sigma. A row for each branch.
 @group(0) @binding(2) var ends_out: texture_storage_2d<rgba32float, write>;
@@ -14,7 +14,7 @@ const END_STEPS: u32 = 400u;
 
 @compute @workgroup_size(32)
 fn find_ends(@builtin(global_invocation_id) id: vec3<u32>) {
-    zero = id.z;
+    unknown_zero = id.z;
     if id.x >= nodes_of(id.y) {
         return;
     }

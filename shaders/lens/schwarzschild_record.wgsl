@@ -18,11 +18,11 @@
 @group(1) @binding(3) var lens_delay: texture_2d_array<f32>;
 
 // The record at hand: what its crossings need.
-struct Looked {
+struct Lookup {
     // Look direction in the local frame, and nu(camera) / nu(local frame).
-    seen: LocalLook,
+    seen: LookDirection,
     branch: u32,
-    place: LensPlace,
+    place: AxisPosition,
     // Angle to the end of the ray, and to the first crossing of the plane; the number of the next crossing.
     swept: f32,
     first: f32,
@@ -43,17 +43,17 @@ struct Looked {
     across: vec3<f32>,
 }
 
-var<private> looked: Looked;
+var<private> lookup: Lookup;
 
 fn ray_record(id: vec2<u32>) -> Record {
     let at = pixel_place(id);
     let view = camera_view(at.x, at.y);
-    let seen = local_look(view.look);
+    let seen = aberrate(view.look);
     let n = seen.n;
     let energy = local_energy(n);
     // The components of these changes along n turn nothing below.
-    let dx = local_change(seen, view.dx);
-    let dy = local_change(seen, view.dy);
+    let dx = aberrate_change(seen, view.dx);
+    let dy = aberrate_change(seen, view.dy);
 
     // cos psi = -n_r.
     let s2 = dot(n.yz, n.yz);
@@ -64,7 +64,7 @@ fn ray_record(id: vec2<u32>) -> Record {
     let branch = select(1u, 0u, escaped);
     let nodes = select(lens.inner_nodes, lens.outer_nodes, escaped);
     let has_column = nodes > 2u && energy > 0.0;
-    let place = lens_place(t_hat, LENS_OCTAVES, f32(LENS_PER_OCTAVE), max(nodes, 3u) - 3u);
+    let place = axis_position(t_hat, LENS_OCTAVES, f32(LENS_PER_OCTAVE), max(nodes, 3u) - 3u);
     let ends = textureLoad(lens_swept, vec2<u32>(place.node, branch), 0);
     let swept = select(0.0, dot(lagrange(place.share), ends), has_column);
     let swept_slope = dot(lagrange_slope(place.share), ends);
@@ -76,24 +76,24 @@ fn ray_record(id: vec2<u32>) -> Record {
     let tangent = select(vec2<f32>(1.0, 0.0), n.yz / s, s > 0.0);
     let d_psi = vec2<f32>(s * dx.x - n.x * dot(tangent, dx.yz), s * dy.x - n.x * dot(tangent, dy.yz));
     let d_across = vec2<f32>(tangent.x * dx.z - tangent.y * dx.y, tangent.x * dy.z - tangent.y * dy.y);
-    looked.seen = seen;
-    looked.branch = branch;
-    looked.place = place;
-    looked.swept = swept;
-    looked.order = 0u;
-    looked.swept_slope = swept_slope;
-    looked.change = slope * d_psi;
-    looked.turn = d_across / max(s, 1e-6);
-    looked.along = frame.e_theta.xyz * tangent.x + frame.e_phi.xyz * tangent.y;
-    looked.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
-    looked.first = first_crossing_angle(tangent.x);
-    looked.on_edge = false;
-    looked.beyond = beyond_right_angle(t);
+    lookup.seen = seen;
+    lookup.branch = branch;
+    lookup.place = place;
+    lookup.swept = swept;
+    lookup.order = 0u;
+    lookup.swept_slope = swept_slope;
+    lookup.change = slope * d_psi;
+    lookup.turn = d_across / max(s, 1e-6);
+    lookup.along = frame.e_theta.xyz * tangent.x + frame.e_phi.xyz * tangent.y;
+    lookup.across = frame.e_phi.xyz * tangent.x - frame.e_theta.xyz * tangent.y;
+    lookup.first = first_crossing_angle(tangent.x);
+    lookup.on_edge = false;
+    lookup.beyond = beyond_right_angle(t);
     if PLANE {
         // N_z stays 0 (OrbitPlane::image_change); both factors change sign from crossing to crossing.
-        let turn = sincos(min(looked.first, PI));
-        let rise = looked.along.z * turn.y - frame.e_r.z * turn.x;
-        looked.first_change = looked.turn * (-looked.across.z * turn.x / rise);
+        let turn = sincos(min(lookup.first, PI));
+        let rise = lookup.along.z * turn.y - frame.e_r.z * turn.x;
+        lookup.first_change = lookup.turn * (-lookup.across.z * turn.x / rise);
     }
 
     // L = r sin(theta) p_phi, p = -n.
@@ -104,12 +104,12 @@ fn ray_record(id: vec2<u32>) -> Record {
         let e_r = frame.e_r.xyz;
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
-        record.sky = e_r * turn.y + looked.along * turn.x;
+        record.sky = e_r * turn.y + lookup.along * turn.x;
         // The direction changes by psi in the ray's plane, and by sin(swept) / sin(psi) across it; outward, where both
         // sines vanish, by their slopes' ratio.
         let swept_psi = swept_slope * slope;
         let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
-        record.footprint = Footprint(looked.along * turn.y - e_r * turn.x, looked.across,
+        record.footprint = Footprint(lookup.along * turn.y - e_r * turn.x, lookup.across,
             vec2<f32>(swept_psi * d_psi.x, across * d_across.x), vec2<f32>(swept_psi * d_psi.y, across * d_across.y));
     }
     return record;
@@ -136,32 +136,32 @@ fn next_crossing() -> Crossing {
     if !PLANE {
         return crossing;
     }
-    if looked.first >= looked.swept {
+    if lookup.first >= lookup.swept {
         return crossing;
     }
-    var phi = looked.first + PI * f32(looked.order);
+    var phi = lookup.first + PI * f32(lookup.order);
     // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found
     // must be kept apart, too: lanes that have left go on writing.)
     loop {
-        let at = column_at(lens_u, phi / max(looked.swept, 1e-6));
+        let at = column_at(lens_u, phi / max(lookup.swept, 1e-6));
         let u = at.x;
-        let comes = phi < looked.swept && looked.order < frame.max_crossings;
+        let comes = phi < lookup.swept && lookup.order < frame.max_crossings;
         if comes && crossing.u <= 0.0 {
-            looked.on_edge = looked.on_edge || near_disk_edge(u, u_change(at, phi));
+            lookup.on_edge = lookup.on_edge || near_disk_edge(u, u_change(at, phi));
         }
         if comes && is_wanted(u) && crossing.u <= 0.0 {
             crossing.u = u;
-            crossing.order = looked.order;
+            crossing.order = lookup.order;
         }
-        looked.order += 1u;
+        lookup.order += 1u;
         phi += PI;
 
         continuing {
-            break if crossing.u > 0.0 || phi >= looked.swept || looked.order >= frame.max_crossings;
+            break if crossing.u > 0.0 || phi >= lookup.swept || lookup.order >= frame.max_crossings;
         }
     }
     if crossing.u > 0.0 {
-        complete(&crossing, looked.first + PI * f32(crossing.order));
+        complete(&crossing, lookup.first + PI * f32(crossing.order));
     }
     return crossing;
 }
@@ -178,9 +178,9 @@ fn more_crossings() -> bool {
 
 // The change of u to the next pixel right and down, where the table of u has `at` at the crossing `phi`.
 fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
-    let y = phi / looked.swept;
-    return at.y * looked.change
-        + at.z * ((looked.first_change - y * looked.swept_slope * looked.change) / looked.swept);
+    let y = phi / lookup.swept;
+    return at.y * lookup.change
+        + at.z * ((lookup.first_change - y * lookup.swept_slope * lookup.change) / lookup.swept);
 }
 
 // The value of a table over (place, y), and its derivatives by place and by y. It is cubic in both: Hermite in y,
@@ -189,13 +189,13 @@ fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
     let scaled = clamp(y, 0.0, 1.0) * f32(LENS_INTERVALS);
     let j = min(u32(scaled), LENS_INTERVALS - 1u);
     let x = scaled - f32(j);
-    let weights = lagrange(looked.place.share);
-    let slopes = lagrange_slope(looked.place.share);
+    let weights = lagrange(lookup.place.share);
+    let slopes = lagrange_slope(lookup.place.share);
     var value = vec4<f32>(0.0);
     var change = vec4<f32>(0.0);
     for (var i = 0u; i < 4u; i += 1u) {
-        let node = max(looked.place.node + i, 1u) - 1u;
-        let ends = textureLoad(columns, vec2<u32>(node, j), looked.branch, 0);
+        let node = max(lookup.place.node + i, 1u) - 1u;
+        let ends = textureLoad(columns, vec2<u32>(node, j), lookup.branch, 0);
         value += ends * weights[i];
         change += ends * slopes[i];
     }
@@ -208,50 +208,50 @@ fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
 }
 
 fn complete(crossing: ptr<function, Crossing>, phi: f32) {
-    let begin = begin_local(looked.seen.n);
+    let begin = begin_local(lookup.seen.n);
     let c = begin.c;
     let u = (*crossing).u;
-    (*crossing).g = looked.seen.frequency_ratio * redshift_of(c, u);
+    (*crossing).g = lookup.seen.frequency_ratio * redshift_of(c, u);
     if !FOOTPRINTS {
         return;
     }
-    let at = column_at(lens_u, phi / looked.swept);
+    let at = column_at(lens_u, phi / lookup.swept);
     let turn = sincos(phi);
-    let n = frame.e_r.xyz * turn.y + looked.along * turn.x;
-    let tangent = looked.along * turn.y - frame.e_r.xyz * turn.x;
+    let n = frame.e_r.xyz * turn.y + lookup.along * turn.x;
+    let tangent = lookup.along * turn.y - frame.e_r.xyz * turn.x;
     // u' by tau.
     let kappa = sqrt(c.k);
-    let du = at.z / looked.swept * kappa;
-    (*crossing).place = Place(-log(u), arctan2(n.y, n.x), 0.0);
+    let du = at.z / lookup.swept * kappa;
+    (*crossing).place = EmissionPoint(-log(u), arctan2(n.y, n.x), 0.0);
     if DELAY {
-        let integral = column_at(lens_delay, phi / looked.swept).x;
+        let integral = column_at(lens_delay, phi / lookup.swept).x;
         (*crossing).place.delay = retardation(c, frame.place.x, begin.state.du, u, du, integral);
     }
     // How far a turn of the ray's plane moves the crossing around the disk, and how far the next pixel moves it.
-    let swing = (n.x * looked.across.y - n.y * looked.across.x) * turn.x;
+    let swing = (n.x * lookup.across.y - n.y * lookup.across.x) * turn.x;
     let around = n.x * tangent.y - n.y * tangent.x;
     let rho2 = n.x * n.x + n.y * n.y;
-    let phi_change = looked.first_change;
-    let azimuth_change = (looked.turn * swing + phi_change * around) / rho2;
+    let phi_change = lookup.first_change;
+    let azimuth_change = (lookup.turn * swing + phi_change * around) / rho2;
     let du_change = u_change(at, phi);
     // The gradient of the travel time at its far end is the photon's momentum: b along phi, -u' / (D u^2) along u.
     var delay_change = vec2<f32>(0.0);
     if DELAY {
         delay_change = (kappa * phi_change + du / (u * u * (1.0 - 2.0 * u)) * du_change) / c.energy;
     }
-    (*crossing).dx = Place(-du_change.x / u, azimuth_change.x, delay_change.x);
-    (*crossing).dy = Place(-du_change.y / u, azimuth_change.y, delay_change.y);
+    (*crossing).dx = EmissionPoint(-du_change.x / u, azimuth_change.x, delay_change.x);
+    (*crossing).dy = EmissionPoint(-du_change.y / u, azimuth_change.y, delay_change.y);
 }
 
 fn edges_of_pixel(through: f32) -> u32 {
     // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
-    let curve = looked.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(looked.change), 1e-30);
-    return edges_looked_up(looked.on_edge, curve, looked.branch == 0u, through);
+    let curve = lookup.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(lookup.change), 1e-30);
+    return edges_looked_up(lookup.on_edge, curve, lookup.branch == 0u, through);
 }
 
 // Gives the crossings once more from the first.
 fn rewind_crossings() {
-    looked.order = 0u;
+    lookup.order = 0u;
 }
 
 // No record is pending here.

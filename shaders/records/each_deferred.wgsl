@@ -2,7 +2,7 @@
 
 #import lens/kerr_record
 #import records/record
-#import shared/deciding
+#import shared/not_inlined
 #import shared/pass
 #requires fn ray_record(id: vec2<u32>) -> Record
 #requires fn take_record(id: vec2<u32>, record: Record)
@@ -11,7 +11,7 @@ const DEFERRED_GROUP: u32 = 64u;
 
 @compute @workgroup_size(DEFERRED_GROUP)
 fn each_deferred(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    zero = id.z;
+    unknown_zero = id.z;
     let count = min(atomicLoad(&deferred.counts[pass_.slot]), arrayLength(&deferred.pixels));
     for (var i = id.x; i < count; i += groups.x * DEFERRED_GROUP) {
         let place = deferred.pixels[i];

@@ -1,4 +1,4 @@
-// Puts the ray records of a tile into a buffer, for tests: src/gpu/export.rs reads them.
+// Writes the ray records of a tile into a buffer, for tests: src/gpu/export.rs reads them.
 
 #import constants
 #import records/record
@@ -12,7 +12,7 @@
 
 // A record takes EXPORT_SIZE vectors: four for the ray, three for each of EXPORT_CROSSINGS crossings.
 
-fn export_place(p: Place, w: f32) -> vec4<f32> {
+fn export_place(p: EmissionPoint, w: f32) -> vec4<f32> {
     return vec4<f32>(p.ln_r, p.azimuth, p.delay, w);
 }
 

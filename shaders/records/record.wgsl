@@ -18,7 +18,7 @@
 #import shared/frame
 
 // Where and when the light of a crossing left, or the change of it from pixel to pixel.
-struct Place {
+struct EmissionPoint {
     ln_r: f32,
     azimuth: f32,
     delay: f32,
@@ -67,10 +67,10 @@ struct Crossing {
     g: f32,
     order: u32,
     // ln_r; azimuth and delay where shading needs them, else 0.
-    place: Place,
+    place: EmissionPoint,
     // With FOOTPRINTS: change to the next pixel right and down.
-    dx: Place,
-    dy: Place,
+    dx: EmissionPoint,
+    dy: EmissionPoint,
     // How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1; shading sets it.
     share: f32,
 }

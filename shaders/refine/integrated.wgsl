@@ -58,12 +58,12 @@ fn integrated_record(id: vec2<u32>) -> Record {
         medium = NO_MEDIUM;
     }
     let place = pixel_place(id);
-    let begin = begin_ray(camera_look(place.x, place.y));
+    let begin = begin_ray(look_direction(place.x, place.y));
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
         begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
-    if begin.light {
+    if begin.has_light {
         // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
         let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
         let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
@@ -102,9 +102,9 @@ fn next_integrated() -> Crossing {
             crossing.u = at.x;
             crossing.order = kept_order;
             crossing.g = kept_ratio * redshift_of(kept_constants, at.x);
-            crossing.place = Place(-log(at.x), at.y, at.z);
-            crossing.dx = Place(1e30, 0.0, 0.0);
-            crossing.dy = Place(1e30, 0.0, 0.0);
+            crossing.place = EmissionPoint(-log(at.x), at.y, at.z);
+            crossing.dx = EmissionPoint(1e30, 0.0, 0.0);
+            crossing.dy = EmissionPoint(1e30, 0.0, 0.0);
         }
         kept_order += 1u;
     }

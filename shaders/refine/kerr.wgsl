@@ -32,9 +32,9 @@ fn next_crossing() -> Crossing {
     if PATTERN && crossing.u > 0.0 {
         // Footprints need not be as exact: the tables' serve where they hold the same crossing.
         let alike = interpolate(crossing.order);
-        if abs(alike.value.x / crossing.u - 1.0) < LIKE {
-            crossing.dx = place_change(crossing.u, alike, looked.dx);
-            crossing.dy = place_change(crossing.u, alike, looked.dy);
+        if abs(alike.value.x / crossing.u - 1.0) < SAME_CROSSING {
+            crossing.dx = place_change(crossing.u, alike, lookup.dx);
+            crossing.dy = place_change(crossing.u, alike, lookup.dy);
         }
     }
     return crossing;
@@ -47,5 +47,5 @@ fn more_crossings() -> bool {
 // Gives the crossings once more from the first.
 fn rewind_crossings() {
     kept_order = 0u;
-    looked.flags = looked.all_flags;
+    lookup.flags = lookup.all_flags;
 }

@@ -8,7 +8,7 @@
 #import records/record
 #import refine/edges
 #import shade/shade
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 #import shared/pass
 #requires fn ray_record(id: vec2<u32>) -> Record
@@ -33,9 +33,9 @@ var<private> lane: u32;
 @compute @workgroup_size(64)
 fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) i: u32) {
-    zero = group.z;
+    unknown_zero = group.z;
     lane = i;
-    samples = deciding(pass_.refined);
+    samples = not_inlined(pass_.refined);
     whole_plane = samples == EDGE_SAMPLES;
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
@@ -48,7 +48,7 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     }
 }
 
-// The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and puts
+// The sample of this thread in the list's pixel `entry`; beyond the list's end it shades the last one's and writes
 // nothing.
 fn refine_sample(entry: u32, count: u32) {
     let id = listed_pixel(list_kind(), min(entry, count - 1u));
@@ -63,7 +63,7 @@ fn refine_sample(entry: u32, count: u32) {
         lane_u[lane * CROSSINGS_KEPT + k] = 0.0;
     }
     if whole_plane {
-        for (var k = 0u; k < deciding(frame.max_crossings); k += 1u) {
+        for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u) {
             let crossing = next_crossing();
             if crossing.u <= 0.0 {
                 break;
@@ -134,11 +134,12 @@ fn across_curve(id: vec2<u32>) -> vec2<f32> {
     sample_shift = vec2<f32>(0.0);
     let at = pixel_place(id);
     let view = camera_view(at.x, at.y);
-    let seen = local_look(view.look);
+    let seen = aberrate(view.look);
     let centre = vec3<f32>(frame.e_r.w, frame.e_theta.w, frame.e_phi.w);
     // The components of a look direction's changes along it are no changes of it.
     let across_sight = centre - seen.n * dot(centre, seen.n);
-    return vec2<f32>(dot(across_sight, local_change(seen, view.dx)), dot(across_sight, local_change(seen, view.dy)));
+    return vec2<f32>(dot(across_sight, aberrate_change(seen, view.dx)),
+        dot(across_sight, aberrate_change(seen, view.dy)));
 }
 
 fn mean_light() -> vec4<f32> {
@@ -197,7 +198,7 @@ fn is_ragged() -> bool {
     let near = frame.disk_u.y;
     var hidden = false;
     var ragged = false;
-    for (var k = 0u; k < min(deciding(frame.max_crossings), CROSSINGS_KEPT); k += 1u) {
+    for (var k = 0u; k < min(not_inlined(frame.max_crossings), CROSSINGS_KEPT); k += 1u) {
         var low = 1e30;
         var high = 0.0;
         var present = 0u;

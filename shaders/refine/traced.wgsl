@@ -6,7 +6,7 @@
 #import traced/footprints
 
 fn ray_record(id: vec2<u32>) -> Record {
-    go_to_traced(id);
+    set_traced_pixel(id);
     var record = integrated_record(id);
     let sky = textureLoad(record_sky, traced_pixel, 0);
     if record.fate == FATE_ESCAPED && sky.w != 0.0 {

@@ -1,7 +1,7 @@
 // Develops the light of a pixel at once, where the pixel has but one sample.
 
-#requires fn put_pixel(id: vec2<u32>, radiance: vec4<f32>)
+#requires fn write_pixel(id: vec2<u32>, radiance: vec4<f32>)
 
 fn take_light(id: vec2<u32>, light: vec4<f32>) {
-    put_pixel(id, light);
+    write_pixel(id, light);
 }

@@ -12,7 +12,7 @@
 
 fn take_record(id: vec2<u32>, record: Record) {
     take_light(id, shade_record(id, record));
-    if REFINES && has_look(pixel_place(id)) {
+    if REFINES && has_look_direction(pixel_place(id)) {
         note_edges(id, edges_of_pixel(seen_through));
     }
 }

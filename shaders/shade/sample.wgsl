@@ -1,6 +1,6 @@
 // Adds the light of one of a pixel's samples to the sum of those before.
 
-#import shared/deciding
+#import shared/not_inlined
 #import shared/pass
 
 // The sum of the tile's samples before this one, and the sum with it.
@@ -9,7 +9,7 @@
 
 fn take_light(id: vec2<u32>, light: vec4<f32>) {
     var sum = light * pass_.weight;
-    if deciding(pass_.first) == 0u {
+    if not_inlined(pass_.first) == 0u {
         sum += textureLoad(radiance_before, id, 0);
     }
     textureStore(radiance, id, sum);

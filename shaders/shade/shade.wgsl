@@ -6,7 +6,7 @@
 #import emit/plane
 #import emit/shift
 #import records/record
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 #import shared/math
 #import shared/pass
@@ -47,7 +47,7 @@ fn star_cell(i: u32) -> u32 {
 
 // Light and alpha of the tile's pixel `id`, or the view's value first; nothing where the projection shows nothing.
 fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
-    let seen = has_look(pixel_place(id));
+    let seen = has_look_direction(pixel_place(id));
     if SHOWS_LIGHT {
         return select(vec4<f32>(0.0), pixel_light(record), seen);
     }
@@ -77,7 +77,7 @@ fn pixel_light(here: Record) -> vec4<f32> {
     var open = 1.0;
     var given = 0u;
     // max_crossings bounds what next_crossing gives; behind an opaque crossing nothing is seen.
-    for (var k = 0u; k < select(deciding(frame.max_crossings), 1u, OPAQUE); k += 1u) {
+    for (var k = 0u; k < select(not_inlined(frame.max_crossings), 1u, OPAQUE); k += 1u) {
         let crossing = seen_crossing();
         if crossing.u <= 0.0 {
             break;
@@ -112,14 +112,14 @@ fn crossing_shift(here: Record, crossing: Crossing) -> Shift {
     if ALL_EFFECTS {
         return Shift(crossing.g, crossing.g);
     }
-    let gravity = nu_static_eye(here.energy) / zamo_frequency(crossing.u, 0.0, here.energy, here.angular_momentum);
+    let gravity = nu_static_observer(here.energy) / zamo_frequency(crossing.u, 0.0, here.energy, here.angular_momentum);
     return visible_shift(crossing.g, gravity);
 }
 
 fn sky_light(here: Record) -> vec3<f32> {
     var shift = Shift(here.sky_redshift, here.sky_redshift);
     if !ALL_EFFECTS {
-        shift = visible_shift(here.sky_redshift, nu_static_eye(here.energy) / here.energy);
+        shift = visible_shift(here.sky_redshift, nu_static_observer(here.energy) / here.energy);
     }
     var light = vec3<f32>(0.0);
     if SHOWS_STARS {
@@ -154,7 +154,7 @@ fn view_value(here: Record, id: vec2<u32>) -> f32 {
     let first = next_crossing();
     let on_disk = first.u > 0.0;
     let in_sky = here.fate == FATE_ESCAPED;
-    switch deciding(frame.view) {
+    switch not_inlined(frame.view) {
         case VIEW_REDSHIFT: {
             return select(select(nothing, here.sky_redshift, in_sky), first.g, on_disk);
         }
@@ -164,7 +164,7 @@ fn view_value(here: Record, id: vec2<u32>) -> f32 {
         }
         case VIEW_DEFLECTION: {
             let place = pixel_place(id);
-            let n = camera_look(place.x, place.y);
+            let n = look_direction(place.x, place.y);
             let look = frame.e_r.xyz * n.x + frame.e_theta.xyz * n.y + frame.e_phi.xyz * n.z;
             return select(nothing, arctan2(length(cross(look, here.sky)), dot(look, here.sky)), in_sky);
         }

@@ -1,6 +1,6 @@
 // The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/uniforms.rs.
 
-#import shared/deciding
+#import shared/not_inlined
 #requires var frame: Frame
 
 // The scene in the hole's units; the same for all tiles and samples of a frame.
@@ -16,7 +16,7 @@ struct Frame {
     e_r: vec4<f32>,
     e_theta: vec4<f32>,
     e_phi: vec4<f32>,
-    // u, sin theta, cos theta of the eye, and the lapse (rain: sqrt(2 u)).
+    // u, sin theta, cos theta of the observer, and the lapse (rain: sqrt(2 u)).
     place: vec4<f32>,
     // omega, q, sqrt(Sg), sqrt(Sg D) of docs/numerics.md's start values.
     zamo: vec4<f32>,

@@ -5,19 +5,19 @@
 #import shared/math
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
 
-struct Lines {
+struct GridLines {
     coverage: f32,
     origin: f32,
 }
 
-fn lines(coordinate: f32, change: f32, spacing: f32) -> Lines {
+fn grid_lines(coordinate: f32, change: f32, spacing: f32) -> GridLines {
     let number = round(coordinate / spacing);
     let gap = spacing / max(change, 1e-12);
     let distance = abs(coordinate / spacing - number) * gap;
     let sharp = clamp(0.5 * GRID_WIDTH + 0.5 - distance, 0.0, 1.0);
     let open = clamp((gap - GRID_DENSE) / (GRID_OPEN - GRID_DENSE), 0.0, 1.0);
     let tint = min(GRID_WIDTH / gap, GRID_TINT);
-    return Lines(tint + (sharp - tint) * open, select(0.0, open, number == 0.0));
+    return GridLines(tint + (sharp - tint) * open, select(0.0, open, number == 0.0));
 }
 
 // `light` of the sky under the grid. `d`: sky axes.
@@ -32,11 +32,11 @@ fn under_grid(light: vec3<f32>, d: vec3<f32>, footprint: Footprint) -> vec3<f32>
     let east = vec2<f32>(d.x * p.y - d.y * p.x, d.x * q.y - d.y * q.x) / (rho * rho);
     let north = vec2<f32>(p.z, q.z) / rho;
     let spacing = select(GRID_CAP_SPACING, GRID_SPACING, abs(d.z) < GRID_CAP);
-    var meridians = lines(arctan2(d.y, d.x), length(vec2<f32>(dot(dx, east), dot(dy, east))), spacing);
-    var parallels = lines(arctan2(d.z, rho), length(vec2<f32>(dot(dx, north), dot(dy, north))), GRID_SPACING);
+    var meridians = grid_lines(arctan2(d.y, d.x), length(vec2<f32>(dot(dx, east), dot(dy, east))), spacing);
+    var parallels = grid_lines(arctan2(d.z, rho), length(vec2<f32>(dot(dx, north), dot(dy, north))), GRID_SPACING);
     if !(stretch2 < GRID_WHOLE_SKY) {
-        meridians = Lines(GRID_TINT, 0.0);
-        parallels = Lines(GRID_TINT, 0.0);
+        meridians = GridLines(GRID_TINT, 0.0);
+        parallels = GridLines(GRID_TINT, 0.0);
     }
     let over = light + (mix(GRID_COLOUR, GRID_ORIGIN_COLOUR, meridians.origin) - light) * meridians.coverage;
     return over + (mix(GRID_COLOUR, GRID_ORIGIN_COLOUR, parallels.origin) - over) * parallels.coverage;

@@ -17,7 +17,7 @@ var<private> traced_pixel: vec2<u32>;
 var<private> traced_joined: vec2<bool>;
 
 // Goes to the tile's pixel `id`.
-fn go_to_traced(id: vec2<u32>) {
+fn set_traced_pixel(id: vec2<u32>) {
     traced_pixel = id + 1u;
     let x = pixel_place(id).x - sample_shift.x;
     traced_joined = vec2<bool>(same_face(x, x - 1.0), same_face(x, x + 1.0));
@@ -52,8 +52,8 @@ fn derivative_of_direction(here: vec3<f32>, step: vec2<u32>) -> vec4<f32> {
     return vec4<f32>(difference, select(0.0, 1.0, has_before || has_after));
 }
 
-fn place_of(crossing: vec4<f32>) -> Place {
-    return Place(-log(crossing.x), crossing.z, crossing.w);
+fn place_of(crossing: vec4<f32>) -> EmissionPoint {
+    return EmissionPoint(-log(crossing.x), crossing.z, crossing.w);
 }
 
 // The crossing of the plane of this order, if it is the disk's; else 0.
@@ -66,18 +66,18 @@ fn crossing_of_order(pixel: vec2<u32>, order: u32) -> vec4<f32> {
 }
 
 // d(place) / d(pixel) of a crossing, from the crossings of its order at -+ step, as derivative_of_direction.
-fn derivative_of_place(here: vec4<f32>, order: u32, step: vec2<u32>) -> Place {
+fn derivative_of_place(here: vec4<f32>, order: u32, step: vec2<u32>) -> EmissionPoint {
     let before = crossing_of_order(traced_pixel - step, order);
     let after = crossing_of_order(traced_pixel + step, order);
     let joined = traced_neighbours(step);
     let has_before = joined.x && before.x > 0.0;
     let has_after = joined.y && after.x > 0.0;
     if !has_before && !has_after {
-        return Place(1e30, 0.0, 0.0);
+        return EmissionPoint(1e30, 0.0, 0.0);
     }
     let share = select(1.0, 0.5, has_before && has_after);
     let first = place_of(select(here, before, has_before));
     let last = place_of(select(here, after, has_after));
     let turn = wrap_angle(last.azimuth - first.azimuth);
-    return Place(share * (last.ln_r - first.ln_r), share * turn, share * (last.delay - first.delay));
+    return EmissionPoint(share * (last.ln_r - first.ln_r), share * turn, share * (last.delay - first.delay));
 }

@@ -6,7 +6,7 @@
 #import emit/volumes
 #import geodesic/geodesic
 #import geodesic/trace
-#import shared/deciding
+#import shared/not_inlined
 #import shared/frame
 #import shared/math
 #import shared/pass
@@ -62,13 +62,13 @@ fn keep_medium() {
 
 @compute @workgroup_size(8, 16)
 fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
-    zero = id.z;
+    unknown_zero = id.z;
     if id.x >= pass_.size.x || id.y >= pass_.size.y {
         return;
     }
     pixel = id.xy;
     let place = vec2<f32>(pass_.origin + vec2<i32>(pixel)) + pass_.offset;
-    let begin = begin_ray(camera_look(place.x, place.y));
+    let begin = begin_ray(look_direction(place.x, place.y));
     let c = begin.c;
     frequency_ratio = begin.frequency_ratio;
     disk_orders = 0u;
@@ -77,7 +77,7 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     medium = NO_MEDIUM;
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
-    if begin.light {
+    if begin.has_light {
         let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
             frame.capture_u, frame.opaque_u);
         let traced = trace(c, begin.state, settings);

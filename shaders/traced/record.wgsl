@@ -10,7 +10,7 @@ var<private> traced_orders: u32;
 var<private> traced_layer: u32;
 
 fn ray_record(id: vec2<u32>) -> Record {
-    go_to_traced(id);
+    set_traced_pixel(id);
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;

@@ -19,9 +19,9 @@ impl Success for () {
 }
 
 /// The status of a success, >= 0: with news, or without.
-pub(super) struct News(pub BhrStatus);
+pub(super) struct SuccessStatus(pub BhrStatus);
 
-impl Success for News {
+impl Success for SuccessStatus {
     fn status(self) -> BhrStatus {
         self.0
     }

@@ -16,7 +16,7 @@ struct State {
 }
 
 /// A callback is running for as long as this value lives.
-pub(super) struct Inside<'a>(&'a Gate);
+pub(super) struct RunningCallback<'a>(&'a Gate);
 
 impl Gate {
     fn lock(&self) -> MutexGuard<'_, State> {
@@ -25,13 +25,13 @@ impl Gate {
     }
 
     /// Lets a callback in; `None` when the gate is closed.
-    pub fn enter(&self) -> Option<Inside<'_>> {
+    pub fn enter(&self) -> Option<RunningCallback<'_>> {
         let mut state = self.lock();
         if state.closed {
             return None;
         }
         state.running += 1;
-        Some(Inside(self))
+        Some(RunningCallback(self))
     }
 
     pub fn close(&self) {
@@ -48,7 +48,7 @@ impl Gate {
     }
 }
 
-impl Drop for Inside<'_> {
+impl Drop for RunningCallback<'_> {
     fn drop(&mut self) {
         self.0.lock().running -= 1;
         self.0.idle.notify_all();

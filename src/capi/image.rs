@@ -104,7 +104,7 @@ fn format(value: BhrFormat) -> Result<PixelFormat> {
 }
 
 /// The host's image, checked.
-pub(super) struct Given<'a> {
+pub(super) struct HostImage<'a> {
     pub pixels: ImageMut<'a>,
     pub transparent: bool,
 }
@@ -142,7 +142,7 @@ fn layout(given: &BhrImage, name: &str) -> Result<(Layout, u32)> {
 ///
 /// # Safety
 /// `image` is NULL or points to a BhrImage whose block is the host's during `'a`.
-pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Given<'a>> {
+pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<HostImage<'a>> {
     // SAFETY: this function's contract.
     let given = unsafe { versioned::read(image, name) }?;
     let (layout, flags) = layout(&given, name)?;
@@ -153,7 +153,7 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Give
             _ => ImageMut::from_raw_bottom_up(layout, given.pixels.cast(), given.byte_size),
         }
     }?;
-    Ok(Given { pixels, transparent: flags & BHR_IMAGE_TRANSPARENT != 0 })
+    Ok(HostImage { pixels, transparent: flags & BHR_IMAGE_TRANSPARENT != 0 })
 }
 
 /// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT

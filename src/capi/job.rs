@@ -3,7 +3,7 @@
 use super::call::{break_if_internal, on_context};
 use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{self, News, finish, outside_callbacks};
+use super::entry::{self, SuccessStatus, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
@@ -35,19 +35,19 @@ impl BhrJob {
         self.progress_gate.enter().is_none_or(|_open| report.tell(fraction))
     }
 
-    fn wait(&self, timeout_ns: u64, out: &Out<f64>) -> Result<News> {
+    fn wait(&self, timeout_ns: u64, out: &Out<f64>) -> Result<SuccessStatus> {
         let timeout = (timeout_ns != u64::MAX).then(|| Duration::from_nanos(timeout_ns));
         let mut report = Report::new(self.progress);
         let outcome = self.job.wait(timeout, &mut |fraction| self.tell(&mut report, fraction));
         match outcome {
             None => {
                 out.set(self.job.fraction());
-                Ok(News(BHR_NOT_READY))
+                Ok(SuccessStatus(BHR_NOT_READY))
             }
             Some(Ok(_)) => {
                 self.tell(&mut report, 1.0);
                 out.set(1.0);
-                Ok(News(BHR_OK))
+                Ok(SuccessStatus(BHR_OK))
             }
             Some(Err(error)) => Err(error),
         }

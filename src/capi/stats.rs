@@ -22,7 +22,7 @@ pub struct BhrFrameStats {
     pub rays: u64,
     /// Integration steps of all rays; rays that were looked up take none.
     pub steps: u64,
-    /// From the call's beginning to its end; for a job, from its order until it was done.
+    /// From the call's beginning to its end; for a job, from its request until it was done.
     pub cpu_ns: u64,
     /// Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU.
     pub gpu_ns: u64,

@@ -3,7 +3,7 @@
 use super::call::on_context;
 use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{News, finish, outside_callbacks};
+use super::entry::{SuccessStatus, finish, outside_callbacks};
 use super::log::{self, Sink};
 use super::panic::guarded;
 use super::pointer::{Out, is_null, unknown};
@@ -11,7 +11,7 @@ use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, Result};
 use crate::image::MAX_SIDE;
-use crate::surface::{Shown, Surface};
+use crate::surface::{ShowOutcome, Surface};
 use crate::window::PresentMode;
 use std::sync::Arc;
 
@@ -141,8 +141,8 @@ pub unsafe extern "C" fn bhr_render_surface(context: *mut BhrContext, surface: *
         on_context("bhr_render_surface", context, |state| {
             let surface = surface.as_ref().ok_or_else(|| is_null("surface"))?;
             Ok(match state.renderer.render_surface(&surface.surface)? {
-                Shown::Presented => News(BHR_OK),
-                Shown::Skipped => News(BHR_FRAME_SKIPPED),
+                ShowOutcome::Presented => SuccessStatus(BHR_OK),
+                ShowOutcome::Skipped => SuccessStatus(BHR_FRAME_SKIPPED),
             })
         })
     }

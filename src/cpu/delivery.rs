@@ -44,7 +44,7 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         self.total = tiles.len() as u64 * u64::from(self.frame.samples);
         for tile in tiles {
             let light = self.light(*tile)?;
-            self.put(*tile, &self.frame.film, &light)?;
+            self.deliver(*tile, &self.frame.film, &light)?;
             self.tick()?;
         }
         Ok(())
@@ -58,10 +58,10 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         let samples = u64::from(self.frame.samples);
         self.total = tiles.len() as u64 * (samples + if keep { 1 } else { samples });
         let mut kept = filled(if keep { width * height } else { 0 }, [0.0; 4], "the light of a frame with bloom")?;
-        let mut gathering = bloom.gathering()?;
+        let mut accumulator = bloom.accumulator()?;
         for tile in tiles {
             let light = self.exposed_light(*tile)?;
-            self.pool.install(|| gathering.add([tile.x, tile.y], tile.width, &light));
+            self.pool.install(|| accumulator.add([tile.x, tile.y], tile.width, &light));
             for (row, light) in rows(*tile, width).zip(light.chunks_exact(tile.width as usize)) {
                 if let Some(row) = kept.get_mut(row) {
                     row.copy_from_slice(light);
@@ -69,7 +69,7 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
             }
             self.tick()?;
         }
-        let glare = self.pool.install(|| gathering.spread())?;
+        let glare = self.pool.install(|| accumulator.spread())?;
         let film = self.frame.film.of_exposed();
         for tile in tiles {
             let light = match keep {
@@ -81,7 +81,7 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
                 false => self.exposed_light(*tile)?,
             };
             let light = self.pool.install(|| with_glare(&glare, *tile, &light))?;
-            self.put(*tile, &film, &light)?;
+            self.deliver(*tile, &film, &light)?;
             self.tick()?;
         }
         Ok(())
@@ -105,7 +105,7 @@ impl<'a, 'b, 'c> Delivery<'a, 'b, 'c> {
         collected(light.into_iter().map(|radiance| self.frame.film.exposed_light(radiance)), LIGHT)
     }
 
-    fn put(&mut self, tile: Tile, film: &FilmParams, light: &[[f64; 4]]) -> Result<()> {
+    fn deliver(&mut self, tile: Tile, film: &FilmParams, light: &[[f64; 4]]) -> Result<()> {
         let pixels = self.pool.install(|| self.frame.develop(film, tile, light))?;
         (self.sink)(tile, &pixels, pixels.len() / tile.height.max(1) as usize)
     }

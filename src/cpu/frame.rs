@@ -3,7 +3,7 @@
 
 use super::CpuTracer;
 use super::delivery::Delivery;
-use super::lens::{LensCache, LookedUp};
+use super::lens::{LensCache, LensLookup};
 use super::record::{Neighbours, Recorder};
 use super::refine::Refiner;
 use super::shade::Shader;
@@ -14,7 +14,7 @@ use crate::film::{FilmParams, develop_row};
 use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
-use crate::scene::{KerrWorth, Scene, View};
+use crate::scene::{KerrThreshold, Scene, View};
 use crate::sky::StarIndex;
 use crate::tracer::{FrameRequest, FrameStats, Progress, Tile, TileSink};
 use rayon::ThreadPool;
@@ -27,15 +27,15 @@ const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
 
 /// The maker of a frame's records.
-pub enum Source<'a> {
+pub enum RecordSource<'a> {
     Traced(Recorder<'a>),
-    LookedUp(LookedUp<'a>),
+    LensLookup(LensLookup<'a>),
 }
 
 /// A frame being rendered.
 pub struct Frame<'a> {
     lens: &'a Lens,
-    source: Source<'a>,
+    source: RecordSource<'a>,
     shader: Shader<'a>,
     /// Refines pixels with edges; `None` where values of views are shown, which are not to be averaged.
     refiner: Option<Refiner<'a>>,
@@ -128,11 +128,11 @@ impl<'a> Frame<'a> {
         let light = scene.view == View::Light;
         let region = &request.region;
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
-        let eye = &lens.observer.frame;
-        let tables = cache.tables(scene, eye, scene.lensing(eye, pixels, KerrWorth::CPU))?;
+        let observer = &lens.observer.frame;
+        let tables = cache.tables(scene, observer, scene.lensing(observer, pixels, KerrThreshold::CPU))?;
         let source = |recorder| match tables {
-            Some(tables) => Source::LookedUp(LookedUp::new(recorder, tables)),
-            None => Source::Traced(recorder),
+            Some(tables) => RecordSource::LensLookup(LensLookup::new(recorder, tables)),
+            None => RecordSource::Traced(recorder),
         };
         let samples = if light { scene.quality.samples_per_pixel } else { 1 };
         Ok(Self {
@@ -150,8 +150,8 @@ impl<'a> Frame<'a> {
     /// The steps of a ray on average; looking one up takes as long as one.
     fn expected_steps(&self, scene: &Scene) -> u64 {
         match self.source {
-            Source::Traced(_) => scene.expected_steps(),
-            Source::LookedUp(_) => 1,
+            RecordSource::Traced(_) => scene.expected_steps(),
+            RecordSource::LensLookup(_) => 1,
         }
     }
 
@@ -163,7 +163,7 @@ impl<'a> Frame<'a> {
         let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
-            let refiner = self.refiner.as_ref().filter(|_| self.lens.mapping.has_look(x, y));
+            let refiner = self.refiner.as_ref().filter(|_| self.lens.mapping.has_look_direction(x, y));
             let refined = refiner.and_then(|r| r.light(&self.shader, &self.source, record, [x, y]));
             let value = refined.unwrap_or_else(|| self.shader.shade_record(record, x, y));
             (0..4).for_each(|c| pixel[c] += weight * value[c]);
@@ -180,8 +180,8 @@ impl<'a> Frame<'a> {
         take: impl Fn(&Record, f64, f64, &mut T) + Sync,
     ) -> Result<u64> {
         match &self.source {
-            Source::Traced(recorder) => trace_records(recorder, tile, origin, out, take),
-            Source::LookedUp(lookup) => Ok(look_records_up(lookup, tile, origin, out, take)),
+            RecordSource::Traced(recorder) => trace_records(recorder, tile, origin, out, take),
+            RecordSource::LensLookup(lookup) => Ok(look_records_up(lookup, tile, origin, out, take)),
         }
     }
 
@@ -236,7 +236,7 @@ fn trace_records<T: Send>(
 
 /// Does the work of `Frame::with_records` by looking up: each record is used as it is made.
 fn look_records_up<T: Send>(
-    lookup: &LookedUp<'_>,
+    lookup: &LensLookup<'_>,
     tile: Tile,
     origin: [f64; 2],
     out: &mut [T],

@@ -1,10 +1,10 @@
-//! Ray records of pixels, looked up in tables of the eye's lens (`physics::lens`), and the tables themselves, built in
-//! parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them by
-//! tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
+//! Ray records of pixels, looked up in tables of the observer's lens (`physics::lens`), and the tables themselves,
+//! built in parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them
+//! by tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
 use crate::allocate::{filled, with_room};
-use crate::emit::{Crossing, Place};
+use crate::emit::{Crossing, EmissionPoint};
 use crate::error::Result;
 use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
@@ -12,8 +12,8 @@ use crate::physics::lens::{LENS, OrbitPlane, PlaneImage, SchwarzschildLens};
 use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
-use crate::scene::record::{Record, UNKNOWN_PLACE};
-use crate::scene::refine::{LIKE, looked_up_edge, near_disk_edge, reached_u};
+use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT};
+use crate::scene::refine::{SAME_CROSSING, looked_up_edge, near_disk_edge, reached_u};
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ pub struct LensCache {
 struct KerrKey {
     spin: f64,
     r: f64,
-    /// Unit vector from the hole to the eye.
+    /// Unit vector from the hole to the observer.
     e_r: DVec3,
     wanted: Crossings,
 }
@@ -49,7 +49,7 @@ pub enum Tables<'a> {
 }
 
 impl LensCache {
-    /// The tables for `lensing` by the eye at `frame`, built on the current pool unless they are those of before.
+    /// The tables for `lensing` by the observer at `frame`, built on the current pool unless they are those of before.
     /// `None`: rays are to be traced. Errors: OUT_OF_MEMORY.
     pub fn tables(&mut self, scene: &Scene, frame: &LocalFrame, lensing: Lensing) -> Result<Option<Tables<'_>>> {
         Ok(match lensing {
@@ -136,7 +136,7 @@ fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Result<Option<Sc
 }
 
 /// Looks the records of a frame up.
-pub struct LookedUp<'a> {
+pub struct LensLookup<'a> {
     recorder: Recorder<'a>,
     tables: Tables<'a>,
     momenta: Momenta,
@@ -146,13 +146,13 @@ pub struct LookedUp<'a> {
 
 /// A pixel's look direction in the local frame, its changes to the next pixel right and down, and nu(camera) /
 /// nu(local frame).
-struct Seen {
+struct LookDirection {
     n: DVec3,
     changes: [DVec3; 2],
     ratio: f64,
 }
 
-impl<'a> LookedUp<'a> {
+impl<'a> LensLookup<'a> {
     pub fn new(recorder: Recorder<'a>, tables: Tables<'a>) -> Self {
         let momenta = recorder.lens.observer.frame.momenta();
         Self { pattern: recorder.emitters.needs().places, recorder, tables, momenta }
@@ -160,19 +160,19 @@ impl<'a> LookedUp<'a> {
 
     /// Makes `record` that of position (x, y) of the full frame, with footprints.
     pub fn record(&self, x: f64, y: f64, record: &mut Record) {
-        self.find(x, y, record, |_| self.traced(x, y));
+        self.look_up(x, y, record, |_| self.traced(x, y));
     }
 
     /// Makes `record` that of one of many samples of a pixel: footprints that the tables do not hold stay unknown.
     pub fn sample(&self, x: f64, y: f64, record: &mut Record) {
-        self.find(x, y, record, |found| found.unwrap_or_else(|| self.recorder.trace(x, y)));
+        self.look_up(x, y, record, |found| found.unwrap_or_else(|| self.recorder.trace(x, y)));
     }
 
-    /// `rest` makes the record of a ray that the tables do not hold; it is given that record, if some footprints are
-    /// known.
-    fn find(&self, x: f64, y: f64, record: &mut Record, rest: impl Fn(Option<Record>) -> Record) {
+    /// `fallback` makes the record of a ray that the tables do not hold; it is given that record, if some footprints
+    /// are known.
+    fn look_up(&self, x: f64, y: f64, record: &mut Record, fallback: impl Fn(Option<Record>) -> Record) {
         record.clear();
-        let seen = self.see(x, y);
+        let seen = self.look_direction(x, y);
         let energy = self.momenta.energy(seen.n);
         if energy <= 0.0 && self.recorder.lens.observer.frame.rain {
             return;
@@ -180,14 +180,14 @@ impl<'a> LookedUp<'a> {
         record.energy = energy;
         record.angular_momentum = self.momenta.angular_momentum(seen.n);
         match self.tables {
-            Tables::Schwarzschild(lens) => self.look_in_plane(lens, &seen, record),
-            Tables::Kerr(lens) => match lens.look(seen.n) {
-                Some(found) if found.crossings_are_good() => self.look_in_grid(&found, &seen, record),
+            Tables::Schwarzschild(lens) => self.look_up_schwarzschild(lens, &seen, record),
+            Tables::Kerr(lens) => match lens.look_up(seen.n) {
+                Some(found) if found.crossings_are_good() => self.look_up_kerr(&found, &seen, record),
                 Some(found) => {
                     let (traced, complete) = self.traced_once(x, y, &found, &seen);
-                    *record = if complete { traced } else { rest(Some(traced)) };
+                    *record = if complete { traced } else { fallback(Some(traced)) };
                 }
-                None => *record = rest(None),
+                None => *record = fallback(None),
             },
         }
     }
@@ -202,7 +202,7 @@ impl<'a> LookedUp<'a> {
 
     /// Makes the record by tracing the pixel; its footprints, which need not be as exact, come from the table. The
     /// result says whether all are known.
-    fn traced_once(&self, x: f64, y: f64, found: &kerr::Seen, seen: &Seen) -> (Record, bool) {
+    fn traced_once(&self, x: f64, y: f64, found: &kerr::KerrLookup, seen: &LookDirection) -> (Record, bool) {
         let mut record = self.recorder.trace(x, y);
         let steps = seen.changes.map(|change| found.place.step(change));
         if let (Some(sky), Fate::Escaped) = (found.sky(), record.fate) {
@@ -218,7 +218,7 @@ impl<'a> LookedUp<'a> {
         }
         let mut complete = true;
         for crossing in &mut record.crossings {
-            let near = |other: &kerr::Crossing| (other.image.u / crossing.u - 1.0).abs() < LIKE;
+            let near = |other: &kerr::Crossing| (other.image.u / crossing.u - 1.0).abs() < SAME_CROSSING;
             match found.crossing(crossing.order as usize).filter(near) {
                 Some(alike) => crossing.footprint = steps.map(|step| change_of_place(crossing.u, &alike.change(&step))),
                 None => complete = false,
@@ -228,7 +228,7 @@ impl<'a> LookedUp<'a> {
     }
 
     /// Looks a record up in the tables of a spinning hole.
-    fn look_in_grid(&self, found: &kerr::Seen, seen: &Seen, record: &mut Record) {
+    fn look_up_kerr(&self, found: &kerr::KerrLookup, seen: &LookDirection, record: &mut Record) {
         let steps = seen.changes.map(|change| found.place.step(change));
         let mut on_edge = false;
         for crossing in found.crossings() {
@@ -262,31 +262,31 @@ impl<'a> LookedUp<'a> {
         record.edge = looked_up_edge(on_edge, outside && self.recorder.disk_u.is_some(), seen);
     }
 
-    fn see(&self, x: f64, y: f64) -> Seen {
+    fn look_direction(&self, x: f64, y: f64) -> LookDirection {
         let Recorder { lens, .. } = self.recorder;
-        let (look, changes) = lens.look_and_changes(x, y);
-        let (n, ratio) = lens.observer.look(look);
-        Seen { n, changes: changes.map(|change| lens.observer.look_change((n, ratio), change)), ratio }
+        let (look, changes) = lens.look_direction_and_changes(x, y);
+        let (n, ratio) = lens.observer.aberrate(look);
+        LookDirection { n, changes: changes.map(|change| lens.observer.aberrate_change((n, ratio), change)), ratio }
     }
 
     /// Looks a record up in the tables of a spin-0 lens.
-    fn look_in_plane(&self, lens: &SchwarzschildLens, seen: &Seen, record: &mut Record) {
+    fn look_up_schwarzschild(&self, lens: &SchwarzschildLens, seen: &LookDirection, record: &mut Record) {
         let frame = &self.recorder.lens.observer.frame;
-        let look = lens.look(seen.n);
+        let lookup = lens.look_up(seen.n);
         let plane = OrbitPlane::new(frame, seen.n);
-        let turns = seen.changes.map(|change| plane.turn(frame, &look, change));
+        let turns = seen.changes.map(|change| plane.turn(frame, &lookup, change));
         let mut on_edge = false;
         if let (Some([outer, inner]), Some(first)) = (self.recorder.plane_u, plane.crossing_angle(0)) {
             for order in 0..self.recorder.settings.max_crossings as u32 {
-                let Some(crossing) = look.crossing(first + PI * f64::from(order)) else { break };
-                let change = turns.map(|turn| plane.u_change(&look, &crossing, &turn));
+                let Some(crossing) = lookup.crossing(first + PI * f64::from(order)) else { break };
+                let change = turns.map(|turn| plane.u_change(&lookup, &crossing, &turn));
                 on_edge |= self.is_near_disk_edge(crossing.u, change);
                 if !(crossing.u >= outer && crossing.u <= inner) {
                     continue;
                 }
                 let place = self.pattern.then(|| {
-                    let image = plane.image(&look, &crossing);
-                    let changes = turns.map(|turn| plane.image_change(&look, &crossing, &turn));
+                    let image = plane.image(&lookup, &crossing);
+                    let changes = turns.map(|turn| plane.image_change(&lookup, &crossing, &turn));
                     (place_of(&image), changes.map(|change| change_of_place(crossing.u, &change)))
                 });
                 if self.cross(record, seen.ratio, crossing.u, order, place) {
@@ -294,20 +294,27 @@ impl<'a> LookedUp<'a> {
                 }
             }
         }
-        let slope = look.curve_slope() * turns[0].dpsi.hypot(turns[1].dpsi);
-        self.note_edge(record, on_edge, look.escaped, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
-        if look.escaped && record.fate != Fate::Hidden {
-            let sky = plane.sky(&look);
+        let slope = lookup.curve_slope() * turns[0].dpsi.hypot(turns[1].dpsi);
+        self.note_edge(record, on_edge, lookup.escaped, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
+        if lookup.escaped && record.fate != Fate::Hidden {
+            let sky = plane.sky(&lookup);
             escape(record, seen.ratio, sky.direction, turns.map(|turn| sky.change(&turn)));
         }
     }
 
     /// Adds a crossing where emitters shine, with its place and footprint if known; true if it hides all behind it.
-    fn cross(&self, record: &mut Record, ratio: f64, u: f64, order: u32, place: Option<(Place, [Place; 2])>) -> bool {
+    fn cross(
+        &self,
+        record: &mut Record,
+        ratio: f64,
+        u: f64,
+        order: u32,
+        place: Option<(EmissionPoint, [EmissionPoint; 2])>,
+    ) -> bool {
         let spin = self.recorder.lens.observer.frame.a;
         let g = redshift(spin, u, self.recorder.retrograde, record.energy, record.angular_momentum, 1.0);
-        let nowhere = Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
-        let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_PLACE; 2]));
+        let nowhere = EmissionPoint { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
+        let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_EMISSION_POINT; 2]));
         // Tables hold no more crossings than a record does.
         let share = self.recorder.emitters.covered(u);
         let _ = record.crossings.try_push(Crossing { u, order, g: ratio * g, place, footprint, share });
@@ -326,12 +333,12 @@ fn escape(record: &mut Record, ratio: f64, direction: DVec3, changes: [DVec3; 2]
     record.footprint = changes;
 }
 
-fn place_of(image: &PlaneImage) -> Place {
-    Place { ln_r: -image.u.ln(), azimuth: image.azimuth, delay: image.delay }
+fn place_of(image: &PlaneImage) -> EmissionPoint {
+    EmissionPoint { ln_r: -image.u.ln(), azimuth: image.azimuth, delay: image.delay }
 }
 
-fn change_of_place(u: f64, change: &PlaneImage) -> Place {
-    Place { ln_r: -change.u / u, azimuth: change.azimuth, delay: change.delay }
+fn change_of_place(u: f64, change: &PlaneImage) -> EmissionPoint {
+    EmissionPoint { ln_r: -change.u / u, azimuth: change.azimuth, delay: change.delay }
 }
 
 #[cfg(test)]
@@ -340,7 +347,7 @@ mod tests {
     use crate::physics::geodesic::wrap_angle;
     use crate::physics::trace::Settings;
     use crate::scene::observer::Lens;
-    use crate::scene::{Camera, KerrWorth, LensTables, Motion, Region};
+    use crate::scene::{Camera, KerrThreshold, LensTables, Motion, Region};
 
     /// Numbers in [0, 1): a fixed sequence (Knuth's multiplier, TAOCP 3.3.4).
     struct Sequence(u64);
@@ -414,7 +421,7 @@ mod tests {
 
         fn crossing(&mut self, found: &Crossing, truth: &Crossing, look_step: f64, sin_critical: f64) {
             let turn = truth.u * truth.u.sqrt();
-            let by = |f: fn(&Place) -> f64| {
+            let by = |f: fn(&EmissionPoint) -> f64| {
                 found.footprint.iter().map(|change| f(change).abs()).fold(0.0, f64::max) / look_step * sin_critical
             };
             let radial = 1.0 + by(|place| place.ln_r);
@@ -459,10 +466,10 @@ mod tests {
         let lens = scene.lens(&REGION).unwrap();
         let mut cache = LensCache::default();
         let frame = &lens.observer.frame;
-        let lensing = scene.lensing(frame, 1, KerrWorth::CPU);
+        let lensing = scene.lensing(frame, 1, KerrThreshold::CPU);
         assert_ne!(lensing, Lensing::Traced);
         let tables = cache.tables(scene, frame, lensing).unwrap().unwrap();
-        let lookup = LookedUp::new(Recorder::new(scene, &lens), tables);
+        let lookup = LensLookup::new(Recorder::new(scene, &lens), tables);
         let truth = exact(scene, &lens);
         let mut sequence = Sequence(11);
         let mut errors = Errors { pixels: count, ..Errors::default() };
@@ -479,7 +486,7 @@ mod tests {
             assert_eq!(found.fate, expected.fate, "at {x} {y}");
             assert!((found.energy - expected.energy).abs() < 1e-13);
             assert!((found.angular_momentum - expected.angular_momentum).abs() < 1e-12 * frame.r);
-            let [dx, dy] = lookup.see(x, y).changes.map(|change| change.length());
+            let [dx, dy] = lookup.look_direction(x, y).changes.map(|change| change.length());
             let look_step = dx.max(dy);
             if found.fate == Fate::Escaped {
                 errors.direction(&found, &expected, look_step);
@@ -561,7 +568,7 @@ mod tests {
         let mut cache = LensCache::default();
         let mut place = |scene: &Scene| {
             let frame = scene.lens(&REGION).unwrap().observer.frame;
-            match cache.tables(scene, &frame, scene.lensing(&frame, 1, KerrWorth::CPU)).unwrap().unwrap() {
+            match cache.tables(scene, &frame, scene.lensing(&frame, 1, KerrThreshold::CPU)).unwrap().unwrap() {
                 Tables::Schwarzschild(lens) => lens.family().r,
                 Tables::Kerr(lens) => {
                     lens.grid().direction(kerr::Branch::Outer, 0, 40.0).x + lens.grid().channels() as f64

@@ -2,14 +2,14 @@
 
 use crate::emit::along::MediaAlong;
 use crate::emit::medium::{Media, Medium};
-use crate::emit::{Crossing, Emitters, Place};
+use crate::emit::{Crossing, EmissionPoint, Emitters};
 use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::{Fate, RayTrace, Settings, trace_look, trace_look_visited};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::projection::Mapping;
-use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_PLACE};
+use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT};
 use crate::scene::refine::{Edge, is_steep};
 use glam::DVec3;
 
@@ -58,7 +58,7 @@ impl<'a> Recorder<'a> {
     /// The record of position (x, y) of the full frame, without footprints.
     pub fn trace(&self, x: f64, y: f64) -> Record {
         let observer = &self.lens.observer;
-        let (n, frequency_ratio) = observer.look(self.lens.look(x, y));
+        let (n, frequency_ratio) = observer.aberrate(self.lens.look_direction(x, y));
         let (constants, traced, media) = if self.emitters.needs().parts {
             let (emitters, plane_u) = (&self.emitters, self.plane_u);
             let (media, medium) = (Media::new(), Medium::default());
@@ -97,8 +97,8 @@ impl<'a> Recorder<'a> {
             u: x.u,
             order: x.order,
             g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
-            place: Place { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
-            footprint: [UNKNOWN_PLACE; 2],
+            place: EmissionPoint { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
+            footprint: [UNKNOWN_EMISSION_POINT; 2],
             share: self.emitters.covered(x.u),
         }));
     }
@@ -163,15 +163,15 @@ fn derivative_of_direction(here: &Record, before: Option<&Record>, after: Option
 }
 
 /// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
-fn derivative_of_place(here: &Crossing, before: Option<&Record>, after: Option<&Record>) -> Place {
+fn derivative_of_place(here: &Crossing, before: Option<&Record>, after: Option<&Record>) -> EmissionPoint {
     let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(|c| c.place);
     let (before, after) = (before.and_then(same), after.and_then(same));
     if before.is_none() && after.is_none() {
-        return UNKNOWN_PLACE;
+        return UNKNOWN_EMISSION_POINT;
     }
     let share = if before.is_some() && after.is_some() { 0.5 } else { 1.0 };
     let (first, last) = (before.unwrap_or(here.place), after.unwrap_or(here.place));
-    Place {
+    EmissionPoint {
         ln_r: share * (last.ln_r - first.ln_r),
         azimuth: share * wrap_angle(last.azimuth - first.azimuth),
         delay: share * (last.delay - first.delay),

@@ -1,20 +1,20 @@
 //! The second look at a pixel that edges run through: more rays, on edges of the disk its cover of each one's cell,
 //! and their mean light. Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
 
-use super::frame::Source;
+use super::frame::RecordSource;
 use super::shade::Shader;
 use crate::physics::lens::critical::shadow_centre;
 use crate::physics::trace::CROSSINGS_KEPT;
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
-use crate::scene::record::{Record, UNKNOWN_PLACE};
+use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT};
 use crate::scene::refine::{CURVE_SAMPLES, Crossings, Edge, curve_place, quarter_place};
 use glam::DVec3;
 
 /// Refines the pixels of a frame.
 pub struct Refiner<'a> {
     /// Gives crossings of the whole plane; nothing is hidden in it.
-    plane: Source<'a>,
+    plane: RecordSource<'a>,
     plane_u: Option<[f64; 2]>,
     disk_u: Option<[f64; 2]>,
     opaque: bool,
@@ -25,7 +25,7 @@ pub struct Refiner<'a> {
 
 impl<'a> Refiner<'a> {
     /// `plane`: of records of the whole plane (`Recorder::whole_plane`).
-    pub fn new(scene: &Scene, lens: &'a Lens, plane: Source<'a>) -> Self {
+    pub fn new(scene: &Scene, lens: &'a Lens, plane: RecordSource<'a>) -> Self {
         let emitters = scene.emitters();
         let (plane_u, disk_u) = (emitters.plane_u(), emitters.disk_u());
         let opaque = emitters.opaque_u().is_some();
@@ -34,7 +34,13 @@ impl<'a> Refiner<'a> {
 
     /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`:
     /// nothing runs through it.
-    pub fn light(&self, shader: &Shader<'_>, source: &Source<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
+    pub fn light(
+        &self,
+        shader: &Shader<'_>,
+        source: &RecordSource<'_>,
+        here: &Record,
+        at: [f64; 2],
+    ) -> Option<[f64; 4]> {
         let smooth = match here.edge {
             Edge::None => return None,
             Edge::Disk => self.smooth_light(shader, here, at),
@@ -65,7 +71,7 @@ impl<'a> Refiner<'a> {
     }
 
     /// The light from many samples, each counted as it falls.
-    fn counted_light(&self, shader: &Shader<'_>, source: &Source<'_>, here: &Record, at: [f64; 2]) -> [f64; 4] {
+    fn counted_light(&self, shader: &Shader<'_>, source: &RecordSource<'_>, here: &Record, at: [f64; 2]) -> [f64; 4] {
         let across = self.lens.across(self.shadow, at);
         mean((0..CURVE_SAMPLES).map(|index| {
             let [x, y] = place_about(at, curve_place(index, across));
@@ -105,19 +111,19 @@ fn place_about(at: [f64; 2], place: [f64; 2]) -> [f64; 2] {
 
 /// The record of the sample at a place. A traced one's footprints are those of the pixel's own record `here`, where
 /// that has any.
-fn sample(source: &Source<'_>, here: &Record, [x, y]: [f64; 2]) -> Record {
+fn sample(source: &RecordSource<'_>, here: &Record, [x, y]: [f64; 2]) -> Record {
     match source {
-        Source::LookedUp(lookup) => {
+        RecordSource::LensLookup(lookup) => {
             let mut record = Record::captured();
             lookup.sample(x, y, &mut record);
             record
         }
-        Source::Traced(recorder) => {
+        RecordSource::Traced(recorder) => {
             let mut record = recorder.trace(x, y);
             record.footprint = here.footprint;
             for crossing in &mut record.crossings {
                 let same = here.crossings.iter().find(|c| c.order == crossing.order);
-                crossing.footprint = same.map_or([UNKNOWN_PLACE; 2], |c| c.footprint);
+                crossing.footprint = same.map_or([UNKNOWN_EMISSION_POINT; 2], |c| c.footprint);
             }
             record
         }

@@ -47,7 +47,7 @@ impl<'a> Shader<'a> {
     /// The pixel of the record at (x, y): light and alpha, or the view's value first; nothing where the projection
     /// shows nothing.
     pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
-        match (self.scene.view, self.lens.mapping.has_look(x, y)) {
+        match (self.scene.view, self.lens.mapping.has_look_direction(x, y)) {
             (View::Light, true) => self.pixel_light(here),
             (View::Light, false) => [0.0; 4],
             (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
@@ -71,7 +71,7 @@ impl<'a> Shader<'a> {
             if open <= 0.0 {
                 break;
             }
-            let gravity = || nu_static_eye(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
+            let gravity = || nu_static_observer(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
             let emission = self.plane.at_crossing(crossing, self.visible_shift(crossing.g, gravity), open);
             (0..3).for_each(|c| light[c] += emission.light[c]);
             open *= 1.0 - emission.opacity;
@@ -107,7 +107,7 @@ impl<'a> Shader<'a> {
     }
 
     fn sky_light(&self, here: &Record) -> [f64; 3] {
-        let shift = self.visible_shift(here.sky_redshift, || nu_static_eye(self.lens, here.energy) / here.energy);
+        let shift = self.visible_shift(here.sky_redshift, || nu_static_observer(self.lens, here.energy) / here.energy);
         let d = self.chart_to_sky * here.direction;
         // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings
         // them back too.
@@ -145,7 +145,7 @@ impl<'a> Shader<'a> {
                 (None, Fate::Unresolved | Fate::Hidden) => f64::NAN,
             },
             (View::Deflection, Fate::Escaped) => {
-                let look = self.lens.observer.frame.vector(self.lens.look(x, y));
+                let look = self.lens.observer.frame.vector(self.lens.look_direction(x, y));
                 look.cross(here.direction).length().atan2(look.dot(here.direction))
             }
             (View::Deflection, _) => f64::NAN,
@@ -158,8 +158,9 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// nu(static observer or ZAMO at the eye), for E scaled to nu_local = 1; in the rain frame inside the horizon, its own.
-fn nu_static_eye(lens: &Lens, energy: f64) -> f64 {
+/// nu(static observer or ZAMO where the camera is), for E scaled to nu_local = 1; in the rain frame inside the horizon,
+/// its own.
+fn nu_static_observer(lens: &Lens, energy: f64) -> f64 {
     let frame = &lens.observer.frame;
     let static_lapse = 1.0 - 2.0 / frame.r;
     if !frame.rain || static_lapse <= 0.0 { 1.0 } else { energy / static_lapse.sqrt() }

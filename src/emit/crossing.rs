@@ -2,7 +2,7 @@
 
 /// The place and time at which the light of a crossing left, or the change of both from pixel to pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct EmissionPoint {
     pub ln_r: f64,
     /// Azimuth in the chart.
     pub azimuth: f64,
@@ -20,9 +20,9 @@ pub struct Crossing {
     /// g of matter on the circular geodesic there, the camera's motion included.
     pub g: f64,
     /// The place and time; known where an emitter needs them ([`Needs`]).
-    pub place: Place,
+    pub place: EmissionPoint,
     /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
-    pub footprint: [Place; 2],
+    pub footprint: [EmissionPoint; 2],
     /// How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1.
     pub share: f64,
 }

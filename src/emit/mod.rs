@@ -17,7 +17,7 @@ pub mod medium;
 pub mod thin_disk;
 pub mod turbulence;
 
-pub use crossing::{Crossing, Emission, Place, Shift};
+pub use crossing::{Crossing, Emission, EmissionPoint, Shift};
 
 use crate::physics::trace::Part;
 use haze::Haze;

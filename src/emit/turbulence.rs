@@ -12,7 +12,7 @@
 //! seed of its own, sheared by its own age only, and with weight sin(pi age / LIFETIME): the squares of the two alive
 //! add up to 1, which keeps the variance, and a generation is invisible when it comes and goes.
 
-use super::crossing::Place;
+use super::crossing::EmissionPoint;
 use super::disk::Disk;
 use crate::random::mix;
 use std::f64::consts::{PI, TAU};
@@ -79,7 +79,7 @@ impl Turbulence {
 
     /// The factor on the disk's radiance: mean 1, within 0 .. prod (1 + a_i) = 7.4. `per_pixel`: change of `at` to the
     /// next pixel in x and in y; octaves whose cells are narrower than that fade out.
-    pub fn brightness(&self, at: Place, per_pixel: [Place; 2]) -> f64 {
+    pub fn brightness(&self, at: EmissionPoint, per_pixel: [EmissionPoint; 2]) -> f64 {
         let since = self.age + (self.reference_delay - at.delay);
         let births = (since / (0.5 * LIFETIME)).floor();
         let generation = self.generation.wrapping_add(births as i32 as u32);
@@ -91,13 +91,19 @@ impl Turbulence {
     }
 
     /// The share of one generation in each n_i.
-    fn octaves(&self, generation: u32, age: f64, at: Place, per_pixel: [Place; 2]) -> [f64; AMPLITUDES.len()] {
+    fn octaves(
+        &self,
+        generation: u32,
+        age: f64,
+        at: EmissionPoint,
+        per_pixel: [EmissionPoint; 2],
+    ) -> [f64; AMPLITUDES.len()] {
         // Omega = +-1 / (r^(3/2) +- a), and dOmega / d ln r.
         let root_cube = (1.5 * at.ln_r).exp();
         let omega = self.sense / (root_cube + self.matter_spin);
         let shear = -1.5 * root_cube * omega * omega * self.sense;
         let turn = (at.azimuth - omega * age) / TAU;
-        let cells = |d: Place| {
+        let cells = |d: EmissionPoint| {
             let turn = (d.azimuth - shear * age * d.ln_r + omega * d.delay) / TAU;
             (d.ln_r * CELLS_PER_E_FOLD).hypot(turn * f64::from(CELLS_AROUND))
         };
@@ -144,7 +150,7 @@ mod tests {
     use super::*;
     use crate::scene::{Effects, Scene};
 
-    const STILL: [Place; 2] = [Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];
+    const STILL: [EmissionPoint; 2] = [EmissionPoint { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];
 
     fn scene(spin: f64, retrograde: bool, time: f64, seed: u64) -> Scene {
         let mut scene = Scene { time, ..Scene::default() };
@@ -162,12 +168,12 @@ mod tests {
         of_scene(&scene(spin, retrograde, time, seed))
     }
 
-    fn at(ln_r: f64, azimuth: f64) -> Place {
-        Place { ln_r, azimuth, delay: 0.0 }
+    fn at(ln_r: f64, azimuth: f64) -> EmissionPoint {
+        EmissionPoint { ln_r, azimuth, delay: 0.0 }
     }
 
     /// Places all over a disk from r = 6 to 20.
-    fn places(count: u32) -> impl Iterator<Item = Place> {
+    fn places(count: u32) -> impl Iterator<Item = EmissionPoint> {
         let part = move |i: u32| (f64::from(i) + 0.5) / f64::from(count);
         (0..count).flat_map(move |i| {
             (0..count).map(move |j| at(6_f64.ln() + (20.0_f64 / 6.0).ln() * part(i), TAU * (part(j) - 0.5)))
@@ -272,7 +278,7 @@ mod tests {
         for delay in [3.0, 31.0, 500.0] {
             let then = turbulence(0.0, false, 1e6 - delay, 5);
             for p in places(10) {
-                let difference = late.brightness(Place { delay, ..p }, STILL) - then.brightness(p, STILL);
+                let difference = late.brightness(EmissionPoint { delay, ..p }, STILL) - then.brightness(p, STILL);
                 assert!(difference.abs() < 1e-6, "{delay}: {difference}");
             }
         }

@@ -217,9 +217,9 @@ impl Bloom {
     }
 
     /// How the frame's light is gathered for the finest grid. Errors: OUT_OF_MEMORY.
-    pub fn gathering(&self) -> Result<Gathering<'_>> {
+    pub fn accumulator(&self) -> Result<BloomAccumulator<'_>> {
         let cells = self.levels.first().map_or(0, |base| base.cells());
-        Ok(Gathering { bloom: self, base: filled(cells, [0.0; 4], GRIDS)? })
+        Ok(BloomAccumulator { bloom: self, base: filled(cells, [0.0; 4], GRIDS)? })
     }
 }
 
@@ -253,7 +253,7 @@ impl Level {
     }
 
     /// The cells' mean light, from the finer grid's.
-    fn taken(&self, fine: &[[f32; 4]], [width, height]: [u32; 2]) -> Result<Vec<[f32; 4]>> {
+    fn downsampled(&self, fine: &[[f32; 4]], [width, height]: [u32; 2]) -> Result<Vec<[f32; 4]>> {
         let mut cells = filled(self.cells(), [0.0; 4], GRIDS)?;
         let (width, height) = (width as usize, height as usize);
         cells.par_chunks_mut(self.size[0] as usize).enumerate().for_each(|(y, row)| {
@@ -280,12 +280,12 @@ fn weighted_sum(values: &[[f32; 4]], width: usize, [left, top]: [usize; 2], acro
 }
 
 /// The finest grid as the frame's light comes in, tile by tile.
-pub struct Gathering<'a> {
+pub struct BloomAccumulator<'a> {
     bloom: &'a Bloom,
     base: Vec<[f32; 4]>,
 }
 
-impl<'a> Gathering<'a> {
+impl<'a> BloomAccumulator<'a> {
     /// `light` of a tile of the frame at `begin`, rows of `width`. On the current pool.
     pub fn add(&mut self, begin: [u32; 2], width: u32, light: &[[f32; 4]]) {
         let Some(base) = self.bloom.levels.first() else { return };
@@ -317,13 +317,13 @@ impl<'a> Gathering<'a> {
         let mut grids = vec![base];
         for pair in bloom.levels.windows(2) {
             if let ([finer, level], Some(grid)) = (pair, grids.last()) {
-                let taken = level.taken(grid, finer.size)?;
-                grids.push(taken);
+                let grid = level.downsampled(grid, finer.size)?;
+                grids.push(grid);
             }
         }
         let mut glare = grids.pop().unwrap_or_default();
         for (index, grid) in grids.into_iter().enumerate().rev() {
-            glare = bloom.joined(index, grid, &glare);
+            glare = bloom.with_coarser(index, grid, &glare);
         }
         Ok(Glare { bloom, cells: glare })
     }
@@ -339,13 +339,13 @@ fn within((first, shares): (usize, &[f32]), begin: usize, size: usize) -> (usize
 
 impl Bloom {
     /// The light that level `index` and those above it spread, on its grid: its own light times its weight, and theirs.
-    fn joined(&self, index: usize, mut own: Vec<[f32; 4]>, above: &[[f32; 4]]) -> Vec<[f32; 4]> {
+    fn with_coarser(&self, index: usize, mut own: Vec<[f32; 4]>, above: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let (Some(level), Some(coarser)) = (self.levels.get(index), self.levels.get(index + 1)) else { return own };
         let factor = self.weight_above(index + 1);
         own.par_chunks_mut(level.size[0] as usize).enumerate().for_each(|(y, row)| {
-            let (rows, down) = returned(y, coarser.size[1]);
+            let (rows, down) = upsampling_taps(y, coarser.size[1]);
             for (x, cell) in row.iter_mut().enumerate() {
-                let (columns, across) = returned(x, coarser.size[0]);
+                let (columns, across) = upsampling_taps(x, coarser.size[0]);
                 let mut sum = cell.map(|v| v * level.weight);
                 for (row, down) in rows.iter().zip(down) {
                     for (column, across) in columns.iter().zip(across) {
@@ -362,7 +362,7 @@ impl Bloom {
 
 /// The coarser cells that give light back to cell `i`, and their shares; at the border the share of a missing cell is
 /// that of the cell itself.
-fn returned(i: usize, coarser: u32) -> ([usize; 3], [f32; 3]) {
+fn upsampling_taps(i: usize, coarser: u32) -> ([usize; 3], [f32; 3]) {
     let own = i / 2;
     let cells = [own.saturating_sub(1), own, (own + 1).min(coarser as usize - 1)];
     let shares =

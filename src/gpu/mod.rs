@@ -19,13 +19,13 @@ pub use device::driver_lock;
 pub(crate) use device::gl_thread::GlThread;
 pub(crate) use device::gl_thread::park;
 pub use device::pipeline::{Kernel, Loops, ProvenFinite};
-pub use device::readback::{Arrived, Copied, Readback};
+pub use device::readback::{MappedReadback, PendingReadback, Readback};
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss};
-pub use frame::begun::{BegunFrame, Recording};
+pub use frame::begun::{BegunFrame, ExtraCommands};
 pub use frame::setup::FrameTarget;
-pub use frame::submission::Submitted;
+pub use frame::submission::Submission;
 pub use frame::tracer::GpuTracer;
 pub use gl_tracer::GlTracer;
 #[doc(hidden)]

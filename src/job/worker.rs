@@ -1,12 +1,12 @@
 //! The two threads that make a renderer's jobs. One prepares frames and submits them to the GPU; the other waits for
 //! what it has made and copies that into the host's memory. So copying, which may take as long as tracing, delays no
-//! submission. Frames end in the order in which they were ordered. Only the first thread holds a tracer; the second
+//! submission. Frames end in the order in which they were requested. Only the first thread holds a tracer; the second
 //! needs nothing that anybody holds for longer than a few instructions, so that it always gets on.
 
-use super::{Job, Order, Shared, lock};
+use super::{Job, JobRequest, Shared, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{BegunFrame, Device, FrameTarget, Submitted};
+use crate::gpu::{BegunFrame, Device, FrameTarget, Submission};
 use crate::thread_scope::{self, ThreadScope};
 use crate::tracer::{FrameStats, Tile};
 use crate::tracers::Tracer;
@@ -25,19 +25,19 @@ pub const MAX_UNFINISHED: usize = 64;
 const AHEAD: usize = 4;
 
 /// The messages of the submitting thread to the finishing one. For each frame they are `Begun`, then its steps, and
-/// `Left` if those are not all; or `Made` alone.
+/// `Failed` if those are not all; or `Whole` alone.
 enum Event {
-    Begun(Box<Running>),
-    Step(Box<Submitted>),
+    Begun(Box<RunningFrame>),
+    Step(Box<Submission>),
     /// The frame ends with an error.
-    Left(Error),
+    Failed(Error),
     /// A frame that was made in one piece, or failed before its begin.
-    Made(Box<Order>, Result<FrameStats>),
+    Whole(Box<JobRequest>, Result<FrameStats>),
 }
 
 /// A frame of which steps are under way on the GPU.
-struct Running {
-    order: Order,
+struct RunningFrame {
+    job_request: JobRequest,
     device: Arc<Device>,
     stats: FrameStats,
     done: u64,
@@ -46,9 +46,9 @@ struct Running {
 
 /// The state that host and threads share.
 #[derive(Default)]
-pub(super) struct Line {
+pub(super) struct JobQueue {
     state: Mutex<State>,
-    /// Signalled when an order came, or room for a step, or the end.
+    /// Signalled when a request came, or room for a step, or the end.
     to_submit: Condvar,
     /// Signalled when an event came, or the end.
     to_finish: Condvar,
@@ -56,15 +56,15 @@ pub(super) struct Line {
 
 #[derive(Default)]
 struct State {
-    waiting: VecDeque<Order>,
-    /// Orders taken by the submitting thread and not yet finished.
+    waiting: VecDeque<JobRequest>,
+    /// Requests taken by the submitting thread and not yet finished.
     taken: usize,
     events: VecDeque<Event>,
     /// Steps that are submitted and not yet finished.
     steps: usize,
-    /// No more orders will come.
+    /// No more requests will come.
     closed: bool,
-    /// A thread panicked: orders that wait are not made any more.
+    /// A thread panicked: requests that wait are not made any more.
     broken: bool,
     /// The submitting thread has ended: no more events will come.
     submitted: bool,
@@ -74,7 +74,7 @@ struct State {
 
 /// A renderer's threads, which make its jobs in their order. Dropping it finishes them all first.
 pub struct Worker {
-    line: Arc<Line>,
+    queue: Arc<JobQueue>,
     threads: Vec<JoinHandle<()>>,
 }
 
@@ -84,23 +84,23 @@ impl Worker {
     pub fn new() -> Result<Self> {
         let scope = thread_scope::of_caller();
         allocate::check_room(2 * THREAD_ROOM, "the threads that render in the background")?;
-        let mut worker = Self { line: Arc::default(), threads: Vec::new() };
+        let mut worker = Self { queue: Arc::default(), threads: Vec::new() };
         worker.spawn("bhr-jobs", scope.clone(), submit_all, |state| state.submitted = true)?;
         worker.spawn("bhr-finish", scope, finish_all, |state| state.finished = true)?;
         Ok(worker)
     }
 
     /// Runs `work`; `end` tells the others when it has ended.
-    fn spawn(&mut self, name: &str, scope: ThreadScope, work: fn(&Line), end: fn(&mut State)) -> Result<()> {
-        let line = self.line.clone();
+    fn spawn(&mut self, name: &str, scope: ThreadScope, work: fn(&JobQueue), end: fn(&mut State)) -> Result<()> {
+        let queue = self.queue.clone();
         let begun = Arc::new(Barrier::new(2));
         let begins = begun.clone();
         let body = move || {
             begins.wait();
             let _scope = scope();
             // Unwind safe: after a panic nothing is taken any more, and what was taken ends as it is dropped.
-            let result = catch_unwind(AssertUnwindSafe(|| work(&line)));
-            line.end(result.is_err(), end);
+            let result = catch_unwind(AssertUnwindSafe(|| work(&queue)));
+            queue.end(result.is_err(), end);
             if let Err(payload) = result {
                 // Dropping an unknown payload may panic again.
                 std::mem::forget(payload);
@@ -117,9 +117,9 @@ impl Worker {
     }
 
     /// Errors: INVALID_STATE when too many are unfinished; INTERNAL when a job panicked before.
-    pub fn order(&self, order: Order) -> Result<Job> {
-        let job = Job { shared: order.shared.clone(), line: Arc::downgrade(&self.line) };
-        let mut state = lock(&self.line.state);
+    pub fn enqueue(&self, job_request: JobRequest) -> Result<Job> {
+        let job = Job { shared: job_request.shared.clone(), queue: Arc::downgrade(&self.queue) };
+        let mut state = lock(&self.queue.state);
         if state.closed {
             return Err(Error::internal("a thread that renders in the background failed before"));
         }
@@ -129,42 +129,42 @@ impl Worker {
                 "{unfinished} jobs are unfinished, as many as a context takes; wait for one or cancel it"
             )));
         }
-        state.waiting.push_back(order);
-        self.line.to_submit.notify_one();
+        state.waiting.push_back(job_request);
+        self.queue.to_submit.notify_one();
         Ok(job)
     }
 }
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        lock(&self.line.state).closed = true;
-        self.line.to_submit.notify_one();
+        lock(&self.queue.state).closed = true;
+        self.queue.to_submit.notify_one();
         for thread in self.threads.drain(..) {
             let _ = thread.join();
         }
     }
 }
 
-impl Line {
-    /// The order of a job whose turn has not come.
-    pub(super) fn withdraw(&self, job: &Arc<Shared>) -> Option<Order> {
+impl JobQueue {
+    /// The request of a job whose turn has not come.
+    pub(super) fn withdraw(&self, job: &Arc<Shared>) -> Option<JobRequest> {
         let mut state = lock(&self.state);
-        let place = state.waiting.iter().position(|order| Arc::ptr_eq(&order.shared, job))?;
+        let place = state.waiting.iter().position(|job_request| Arc::ptr_eq(&job_request.shared, job))?;
         state.waiting.remove(place)
     }
 
-    /// The next order, once there is room for its first step; `None`: the end.
-    fn take(&self) -> Option<Order> {
+    /// The next request, once there is room for its first step; `None`: the end.
+    fn take(&self) -> Option<JobRequest> {
         let mut state = lock(&self.state);
         loop {
             if state.broken {
                 return None;
             }
             if state.steps < AHEAD
-                && let Some(order) = state.waiting.pop_front()
+                && let Some(job_request) = state.waiting.pop_front()
             {
                 state.taken += 1;
-                return Some(order);
+                return Some(job_request);
             }
             if state.closed && state.waiting.is_empty() {
                 return None;
@@ -188,7 +188,7 @@ impl Line {
     fn send(&self, event: Event) {
         let mut state = lock(&self.state);
         if state.finished {
-            // An order in it ends as it is dropped, for which the lock is not needed.
+            // A request in it ends as it is dropped, for which the lock is not needed.
             drop(state);
             return drop(event);
         }
@@ -216,10 +216,10 @@ impl Line {
         self.to_submit.notify_one();
     }
 
-    fn finish(&self, order: Order, outcome: Result<FrameStats>) {
-        // This comes first, so that a host that has seen the end may order again.
+    fn finish(&self, job_request: JobRequest, outcome: Result<FrameStats>) {
+        // This comes first, so that a host that has seen the end may request another.
         lock(&self.state).taken -= 1;
-        order.finish(outcome);
+        job_request.finish(outcome);
     }
 
     /// Ends a thread; everything that it leaves behind is dropped.
@@ -240,45 +240,47 @@ impl Line {
 }
 
 /// The submitting thread.
-fn submit_all(line: &Line) {
-    while let Some(order) = line.take() {
-        submit(line, order);
+fn submit_all(queue: &JobQueue) {
+    while let Some(job_request) = queue.take() {
+        submit(queue, job_request);
     }
 }
 
 /// Submits a frame to the GPU; on the CPU and with GL, makes it.
-fn submit(line: &Line, mut order: Order) {
-    if let Err(error) = order.shared.check_cancelled() {
-        return line.send(Event::Made(Box::new(order), Err(error)));
+fn submit(queue: &JobQueue, mut job_request: JobRequest) {
+    if let Err(error) = job_request.shared.check_cancelled() {
+        return queue.send(Event::Whole(Box::new(job_request), Err(error)));
     }
-    let mut guard = order.tracer.lock_arc();
+    let mut guard = job_request.tracer.lock_arc();
     let begun = match &mut *guard {
-        Tracer::Gpu(tracer) => {
-            tracer.begin(&order.scene, &order.request, FrameTarget::Host).map(|frame| (frame, tracer.device()))
-        }
+        Tracer::Gpu(tracer) => tracer
+            .begin(&job_request.scene, &job_request.request, FrameTarget::Host)
+            .map(|frame| (frame, tracer.device())),
         Tracer::Cpu(_) | Tracer::Gl(_) => {
-            let rendered = render_whole(&mut guard, &mut order);
+            let rendered = render_whole(&mut guard, &mut job_request);
             // Whoever waits for the tracer gets it before the next job does.
             ArcMutexGuard::unlock_fair(guard);
-            return line.send(Event::Made(Box::new(order), rendered));
+            return queue.send(Event::Whole(Box::new(job_request), rendered));
         }
     };
     match begun {
-        Err(error) => line.send(Event::Made(Box::new(order), Err(error))),
+        Err(error) => queue.send(Event::Whole(Box::new(job_request), Err(error))),
         Ok((frame, device)) => {
-            let (stats, count, shared, _device) = (frame.stats(), frame.count(), order.shared.clone(), device.clone());
-            line.send(Event::Begun(Box::new(Running { order, device, stats, done: 0, count })));
-            let submitted = Submitting { guard: Some(guard), frame, _device }.submit(line, &shared);
+            let (stats, count, shared, _device) =
+                (frame.stats(), frame.count(), job_request.shared.clone(), device.clone());
+            queue.send(Event::Begun(Box::new(RunningFrame { job_request, device, stats, done: 0, count })));
+            let submitted = FrameSubmitter { guard: Some(guard), frame, _device }.submit(queue, &shared);
             if let Err(error) = submitted {
-                line.send(Event::Left(error));
+                queue.send(Event::Failed(error));
             }
         }
     }
 }
 
 /// Makes a frame without overlap with the next one: the CPU is busy, and GL is one thread's.
-fn render_whole(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
-    let (scene, request, target, shared) = (&order.scene, &order.request, &mut order.target, order.shared.clone());
+fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
+    let (scene, request, target, shared) =
+        (&job_request.scene, &job_request.request, &mut job_request.target, job_request.shared.clone());
     let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
         target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
     };
@@ -294,7 +296,7 @@ fn render_whole(tracer: &mut Tracer, order: &mut Order) -> Result<FrameStats> {
 }
 
 /// A frame of which steps are left, and the tracer, which no other frame may use before they are submitted.
-struct Submitting {
+struct FrameSubmitter {
     /// The lock of the tracer; `None` only while it is being dropped.
     guard: Option<ArcMutexGuard<RawMutex, Tracer>>,
     frame: BegunFrame,
@@ -302,24 +304,24 @@ struct Submitting {
     _device: Arc<Device>,
 }
 
-impl Submitting {
+impl FrameSubmitter {
     /// Submits the steps. Errors: CANCELLED; as [`crate::gpu::GpuTracer::submit`].
-    fn submit(mut self, line: &Line, shared: &Shared) -> Result<()> {
+    fn submit(mut self, queue: &JobQueue, shared: &Shared) -> Result<()> {
         while !self.frame.is_submitted() {
-            line.wait_for_room()?;
+            queue.wait_for_room()?;
             shared.check_cancelled()?;
             let Some(Tracer::Gpu(tracer)) = self.guard.as_deref_mut() else {
                 return Err(Error::internal("a frame of the GPU on another tracer"));
             };
             if let Some(step) = tracer.submit(&mut self.frame)? {
-                line.send(Event::Step(Box::new(step)));
+                queue.send(Event::Step(Box::new(step)));
             }
         }
         Ok(())
     }
 }
 
-impl Drop for Submitting {
+impl Drop for FrameSubmitter {
     fn drop(&mut self) {
         let Some(mut guard) = self.guard.take() else { return };
         if let Tracer::Gpu(tracer) = &mut *guard
@@ -333,54 +335,54 @@ impl Drop for Submitting {
 }
 
 /// The finishing thread.
-fn finish_all(line: &Line) {
+fn finish_all(queue: &JobQueue) {
     // The frame that the steps are of; none if it has ended before its last.
     let mut current = None;
-    while let Some(event) = line.next_event() {
+    while let Some(event) = queue.next_event() {
         match event {
             Event::Begun(frame) => current = Some(*frame),
-            Event::Made(order, outcome) => line.finish(*order, outcome),
-            Event::Left(error) => {
+            Event::Whole(job_request, outcome) => queue.finish(*job_request, outcome),
+            Event::Failed(error) => {
                 if let Some(frame) = current.take() {
-                    line.finish(frame.order, Err(error));
+                    queue.finish(frame.job_request, Err(error));
                 }
             }
             Event::Step(step) => {
-                current = current.take().and_then(|frame| frame.finish_step(line, *step));
-                line.step_finished();
+                current = current.take().and_then(|frame| frame.finish_step(queue, *step));
+                queue.step_finished();
             }
         }
     }
 }
 
-impl Running {
+impl RunningFrame {
     /// Waits for the oldest step and takes its pixels. `None`: the frame has ended.
-    fn finish_step(mut self, line: &Line, step: Submitted) -> Option<Self> {
+    fn finish_step(mut self, queue: &JobQueue, step: Submission) -> Option<Self> {
         match self.take_pixels(step) {
             Err(error) => {
                 // Steps that are left need not be submitted any more.
-                self.order.shared.cancelled.store(true, Ordering::Relaxed);
-                line.finish(self.order, Err(error));
+                self.job_request.shared.cancelled.store(true, Ordering::Relaxed);
+                queue.finish(self.job_request, Err(error));
                 None
             }
             Ok(()) if self.done < self.count => Some(self),
             Ok(()) => {
                 self.stats.device_bytes = self.device.bytes();
-                line.finish(self.order, Ok(self.stats));
+                queue.finish(self.job_request, Ok(self.stats));
                 None
             }
         }
     }
 
-    fn take_pixels(&mut self, step: Submitted) -> Result<()> {
-        self.order.shared.check_cancelled()?;
-        let target = &mut self.order.target;
+    fn take_pixels(&mut self, step: Submission) -> Result<()> {
+        self.job_request.shared.check_cancelled()?;
+        let target = &mut self.job_request.target;
         let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
         };
         step.finish(&self.device, &mut self.stats, &mut sink)?;
         self.done += 1;
-        self.order.shared.report(self.done as f64 / self.count as f64);
+        self.job_request.shared.report(self.done as f64 / self.count as f64);
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! Light rays traced backward from the eye, in Mino time tau: the equations of motion and what is measured along a ray.
+//! Light rays traced backward, in Mino time tau: the equations of motion and what is measured along a ray.
 //! Knows no integrator and no observer. Mirrored by `shaders/geodesic/geodesic.wgsl`.
 //!
 //! State: u = 1/r, the unit position vector N (in axes that the drag has not turned), the drag angle and the delay.
@@ -20,15 +20,15 @@ use glam::DVec3;
 /// The time that `State::delay` integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clock {
-    /// Boyer-Lindquist (Schwarzschild) t, for eyes outside the horizon.
+    /// Boyer-Lindquist (Schwarzschild) t, for observers outside the horizon.
     Coordinate,
     /// Painleve-Gullstrand (rain) time, spin 0 only: regular through the horizon. `rain_offset` leads to t.
     Rain,
 }
 
-/// The clock of falling eyes is rain time from here inwards: t would cost the more digits the nearer to the horizon.
-/// It is the photon sphere: from no farther out, all light that escapes moves outwards only, for which the rate of
-/// rain time is regular.
+/// The clock of falling observers is rain time from here inwards: t would cost the more digits the nearer to the
+/// horizon. It is the photon sphere: from no farther out, all light that escapes moves outwards only, for which the
+/// rate of rain time is regular.
 pub const RAIN_CLOCK_RADIUS: f64 = 3.0;
 
 /// H, rain time less t outside the horizon, M: dH/dr = sqrt(2/r) / (1 - 2/r), so that
@@ -61,7 +61,7 @@ pub struct Constants {
     pub a2e2: f64,
     /// Frequency that the observer of the local frame measures, in the units that `energy` is in.
     pub nu_local: f64,
-    pub u_eye: f64,
+    pub u_observer: f64,
     /// S: sigma = S tau is the parameter in which all rays take steps of like size.
     pub scale: f64,
     pub r_plus: f64,
@@ -81,7 +81,7 @@ pub struct State {
 }
 
 impl Constants {
-    pub fn new(a: f64, energy: f64, angular_momentum: f64, carter: f64, nu_local: f64, u_eye: f64) -> Self {
+    pub fn new(a: f64, energy: f64, angular_momentum: f64, carter: f64, nu_local: f64, u_observer: f64) -> Self {
         let k = carter + angular_momentum * angular_momentum;
         let a2e2 = (a * energy).powi(2);
         Self {
@@ -93,7 +93,7 @@ impl Constants {
             b: k - 2.0 * a * angular_momentum * energy + a2e2,
             a2e2,
             nu_local,
-            u_eye,
+            u_observer,
             // 3 |E|: radial rays have K = 0 but still r to travel. (K + a^2 E^2 >= 0 for light.)
             scale: (k + a2e2).max(0.0).sqrt().max(3.0 * energy.abs()),
             r_plus: horizon_outer(a),
@@ -139,7 +139,7 @@ impl Constants {
     /// d/dtau of `State::delay`: Carter's dt/dtau without what `delay_boundary` holds in closed form.
     ///
     /// dt/dtau = 1/u^2 + 2/u + a^2 N_z^2 + (4 - 2 a L u) / D with E = 1; 1/u^2 = -(u'/u)' + B u - a^2 Q u^2 and, with
-    /// l = ln(u / u_eye), 1/u = (u' l)' + (K - a^2) u (1 + l) - B u^2 (2 + 3 l) + a^2 Q u^3 (1 + 2 l).
+    /// l = ln(u / u_observer), 1/u = (u' l)' + (K - a^2) u (1 + l) - B u^2 (2 + 3 l) + a^2 Q u^3 (1 + 2 l).
     #[inline(always)]
     pub fn delay_rate(&self, u: f64, du: f64, n_z: f64) -> f64 {
         let k = self.k;
@@ -157,7 +157,7 @@ impl Constants {
             return self.energy * (1.0 / (u * u) + 2.0 / u) + frame + horizon;
         }
         // |u|: the lens table continues rays past infinity, where u ln |u| is continuous.
-        let l = (u / self.u_eye).abs().max(f64::MIN_POSITIVE).ln();
+        let l = (u / self.u_observer).abs().max(f64::MIN_POSITIVE).ln();
         let a2q = a2 * self.carter;
         let by_parts = (k - a2) * u * (1.0 + l) - self.b * u * u * (2.0 + 3.0 * l) + a2q * u * u * u * (1.0 + 2.0 * l);
         self.b * u - a2q * u * u + 2.0 * by_parts + frame + horizon
@@ -171,12 +171,13 @@ impl Constants {
         if !self.is_unit_energy() {
             return 0.0;
         }
-        2.0 * du * (u / self.u_eye).ln() - du / u
+        2.0 * du * (u / self.u_observer).ln() - du / u
     }
 
-    /// Time from the event at `there` to the eye, which the ray left as `eye`; > 0 outside the horizon.
-    pub fn delay(&self, eye: &State, there: &State) -> f64 {
-        self.delay_boundary(there.u, there.du) - self.delay_boundary(eye.u, eye.du) + there.delay - eye.delay
+    /// Time from the event at `there` to the observer, which the ray left as `observer`; > 0 outside the horizon.
+    pub fn delay(&self, observer: &State, there: &State) -> f64 {
+        self.delay_boundary(there.u, there.du) - self.delay_boundary(observer.u, observer.du) + there.delay
+            - observer.delay
     }
 
     /// The clock's time less t at u, outside the horizon.
@@ -187,9 +188,9 @@ impl Constants {
         }
     }
 
-    /// The clock's time at the eye less the t at which light left `there`, outside the horizon: matter keeps t.
-    pub fn retardation(&self, eye: &State, there: &State) -> f64 {
-        self.delay(eye, there) + self.clock_offset(there.u)
+    /// The clock's time at the observer less the t at which light left `there`, outside the horizon: matter keeps t.
+    pub fn retardation(&self, observer: &State, there: &State) -> f64 {
+        self.delay(observer, there) + self.clock_offset(there.u)
     }
 }
 

@@ -246,7 +246,7 @@ impl Observer {
     ///
     /// n_frame = (n + ((gamma - 1)(beta.n) / beta^2 - gamma) beta) / (gamma (1 - beta.n)), ratio 1 / (gamma (1 -
     /// beta.n)).
-    pub fn look(&self, n: DVec3) -> (DVec3, f64) {
+    pub fn aberrate(&self, n: DVec3) -> (DVec3, f64) {
         if self.beta == DVec3::ZERO {
             return (n, 1.0);
         }
@@ -258,8 +258,8 @@ impl Observer {
     }
 
     /// The change of the look direction in the frame, `seen` (with its frequency ratio), for a small change `dn` of
-    /// the one seen by the moving observer: the derivative of `look`.
-    pub fn look_change(&self, (seen, ratio): (DVec3, f64), dn: DVec3) -> DVec3 {
+    /// the one seen by the moving observer: the derivative of `aberrate`.
+    pub fn aberrate_change(&self, (seen, ratio): (DVec3, f64), dn: DVec3) -> DVec3 {
         if self.beta == DVec3::ZERO {
             return dn;
         }

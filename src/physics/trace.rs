@@ -1,4 +1,4 @@
-//! One light ray from the eye to its fate: steps, crossings of the equatorial plane, escape and capture. The only
+//! One light ray from its start to its fate: steps, crossings of the equatorial plane, escape and capture. The only
 //! driver of the integrators. Mirrored by `shaders/geodesic/trace.wgsl`.
 
 use super::geodesic::{Constants, State};
@@ -97,7 +97,7 @@ pub struct Segment<'a> {
 pub struct Part<'a> {
     pub constants: &'a Constants,
     /// The state at the observer.
-    pub eye: &'a State,
+    pub observer: &'a State,
     from: &'a State,
     /// Tau from `from` to the part's begin and end.
     begin: f64,
@@ -241,7 +241,7 @@ pub fn trace_visited(
     let crossing_limit = settings.max_crossings.min(CROSSINGS_KEPT);
     let (end, steps) = follow(c, start, settings, &mut |segment| {
         last = (*segment.from, *segment.to, segment.tau, segment.h);
-        let mut part = Part { constants: c, eye: start, from: segment.from, begin: 0.0, end: segment.h, settings };
+        let mut part = Part { constants: c, observer: start, from: segment.from, begin: 0.0, end: segment.h, settings };
         if side * segment.to.n.z < 0.0 {
             side = segment.to.n.z;
             order += 1;
@@ -296,7 +296,7 @@ fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
 /// The crossing of the plane within a step, and its tau from the step's begin.
 fn find_crossing(
     c: &Constants,
-    eye: &State,
+    observer: &State,
     s: &Settings,
     segment: &Segment,
     order: u32,
@@ -309,7 +309,7 @@ fn find_crossing(
     if !(state.u > 0.0 && state.u <= outermost) {
         return None;
     }
-    let delay = if s.delay { c.retardation(eye, &state) } else { 0.0 };
+    let delay = if s.delay { c.retardation(observer, &state) } else { 0.0 };
     Some((PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order }, h))
 }
 
@@ -361,8 +361,8 @@ pub struct PathPoint {
     pub delay: f64,
 }
 
-/// The path in `count` (>= 2) points, evenly spaced in Mino time from the eye to the end: the horizon (1 + 1e-6), or,
-/// for a ray that escapes, the radius `far`. Errors: OUT_OF_MEMORY.
+/// The path in `count` (>= 2) points, evenly spaced in Mino time from the observer to the end: the horizon (1 + 1e-6),
+/// or, for a ray that escapes, the radius `far`. Errors: OUT_OF_MEMORY.
 pub fn path(c: &Constants, start: &State, settings: &Settings, far: f64, count: usize) -> Result<Vec<PathPoint>> {
     let point = |s: &State| PathPoint { position: s.chart_direction() / s.u, delay: c.delay(start, s) };
     let u_far = 1.0 / far;
@@ -408,8 +408,8 @@ mod tests {
     use super::*;
     use crate::physics::orbit::{horizon_inner, horizon_outer};
 
-    /// Boyer-Lindquist time along the ray from the eye to Mino time `tau`, by Simpson's rule on dt/dtau as Carter 1968
-    /// has it: [(r^2 + a^2)(E (r^2 + a^2) - a L)] / Delta + a (L - a E sin^2 theta).
+    /// Boyer-Lindquist time along the ray from the observer to Mino time `tau`, by Simpson's rule on dt/dtau as Carter
+    /// 1968 has it: [(r^2 + a^2)(E (r^2 + a^2) - a L)] / Delta + a (L - a E sin^2 theta).
     fn coordinate_time(c: &Constants, start: &State, tau: f64) -> f64 {
         let rate = |s: &State| {
             let (a, r) = (c.a, 1.0 / s.u);
@@ -473,8 +473,8 @@ mod tests {
         tau
     }
 
-    /// t = r_eye - r + 2 ln((r_eye - 2) / (r - 2)) along a radial ray; the rain time of an eye inside is finite
-    /// through r = 2.
+    /// t = r_observer - r + 2 ln((r_observer - 2) / (r - 2)) along a radial ray; the rain time of an observer inside is
+    /// finite through r = 2.
     #[test]
     fn radial_paths_take_the_textbook_time() {
         let frame = LocalFrame::new(0.0, DVec3::new(0.0, 40.0, 0.0)).unwrap();
@@ -489,7 +489,7 @@ mod tests {
         let points = path(&c, &start, &Settings::exact(0.0), 100.0, 9).unwrap();
         for pair in points.windows(2) {
             // Outgoing light looked back along: dT/dr = 1 / (1 + sqrt(2/r)) on the radial ray that falls in with the
-            // eye.
+            // observer.
             let [r0, r1] = [0, 1].map(|i| pair[i].position.length());
             assert!(r1 > r0 && pair[1].delay > pair[0].delay && pair[1].delay.is_finite());
             let time = |r: f64| r - 2.0 * (2.0 * r).sqrt() + 4.0 * (1.0 + (r / 2.0).sqrt()).ln();

@@ -121,17 +121,17 @@ impl Scene {
     /// When the frame shows its emitters.
     fn when(&self) -> When {
         let delayed = self.effects.has(Effects::LIGHT_DELAY);
-        let eye = self.observer().ok().map(|o| o.frame).filter(|_| delayed);
-        let reference_delay = eye.map_or(0.0, |eye| eye.r);
+        let observer = self.observer().ok().map(|o| o.frame).filter(|_| delayed);
+        let reference_delay = observer.map_or(0.0, |observer| observer.r);
         // A tiny mass can make the time infinite.
         let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX) - reference_delay
-            + eye.map_or(0.0, |eye| clock_advance(&eye));
+            + observer.map_or(0.0, |observer| clock_advance(&observer));
         When { time, reference_delay, delayed }
     }
 }
 
-/// The clock of the eye's delays less the scene's time there: H where that is still t.
-fn clock_advance(eye: &LocalFrame) -> f64 {
-    let outside = eye.clock() == Clock::Rain && eye.r > 2.0;
-    if outside { rain_offset(1.0 / eye.r, (eye.r - 2.0) / eye.r) } else { 0.0 }
+/// The clock of the observer's delays less the scene's time there: H where that is still t.
+fn clock_advance(observer: &LocalFrame) -> f64 {
+    let outside = observer.clock() == Clock::Rain && observer.r > 2.0;
+    if outside { rain_offset(1.0 / observer.r, (observer.r - 2.0) / observer.r) } else { 0.0 }
 }

@@ -18,10 +18,10 @@ pub fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
 /// Most points of a path: more than any plot shows, and bounded memory.
 const MAX_PATH: usize = 1 << 16;
 
-/// The curve a ray follows, from the eye: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most
+/// The curve a ray follows, from the observer: x, y, z, t in scene axes and lengths, t <= 0; `capacity` points at most
 /// (65536 in any case), evenly spaced in Mino time, the last one its end: just outside the horizon, or, for a ray that
-/// escapes, at ten times the eye's radius, but at least 1000 M. Errors: INVALID_ARGUMENT for a ray that is not valid;
-/// OUT_OF_MEMORY.
+/// escapes, at ten times the observer's radius, but at least 1000 M. Errors: INVALID_ARGUMENT for a ray that is not
+/// valid; OUT_OF_MEMORY.
 pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64; 4]>> {
     let Some((frame, start)) = scene.start(ray) else {
         return Err(Error::argument(
@@ -29,8 +29,8 @@ pub fn trace_path(scene: &Scene, ray: &Ray, capacity: usize) -> Result<Vec<[f64;
              and the position outside a spinning hole's horizon",
         ));
     };
-    let eye = ray.position;
-    let Some((constants, state)) = start else { return Ok(vec![[eye.x, eye.y, eye.z, 0.0]]) };
+    let observer = ray.position;
+    let Some((constants, state)) = start else { return Ok(vec![[observer.x, observer.y, observer.z, 0.0]]) };
     let settings = scene.quality.ray_settings(scene.hole.spin);
     let far = (10.0 * frame.r).max(1000.0);
     let to_scene = scene.hole.scene_to_chart().transpose();

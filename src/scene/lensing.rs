@@ -1,22 +1,22 @@
-//! Whether a frame looks its rays up in tables of the eye's lens or integrates each. Decided by scene and frame size
-//! alone, so that a frame's bytes never depend on those before it.
+//! Whether a frame looks its rays up in tables of the observer's lens or integrates each. Decided by scene and frame
+//! size alone, so that a frame's bytes never depend on those before it.
 
 use super::{LensTables, Method, Scene, View};
 use crate::physics::lens::critical;
 use crate::physics::observer::LocalFrame;
 
 /// Pixels times samples that pay for the tables of a spin-0 lens.
-const SCHWARZSCHILD_WORTH: u64 = 4096;
-/// r, M, of eyes whose spin-0 lens is tabulated: at rest, and falling.
+const SCHWARZSCHILD_THRESHOLD: u64 = 4096;
+/// r, M, of observers whose spin-0 lens is tabulated: at rest, and falling.
 const SCHWARZSCHILD_STATIC: std::ops::RangeInclusive<f64> = 2.0005..=1e6;
 const SCHWARZSCHILD_RAIN: std::ops::RangeInclusive<f64> = 0.9..=1e6;
 
 /// Pixels times samples that pay for the tables of a spinning hole's lens on a tracer: as many as it integrates in the
 /// time that it builds and reads the tables in. The GPU's are finer than the CPU's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct KerrWorth(u64);
+pub struct KerrThreshold(u64);
 
-impl KerrWorth {
+impl KerrThreshold {
     pub const GPU: Self = Self(500_000);
     /// At spin 0.9, r = 30 M building takes as long as 100,000 pixels (115,000 with turbulence) and reading a fifth of
     /// what integration takes; at spin 0.998, r = 8 M a third.
@@ -24,7 +24,7 @@ impl KerrWorth {
 }
 
 /// Orders of crossings that tables within 32 MB hold with azimuth and delay (without: four times as many): for all
-/// eyes, and for those no farther than KERR_NEAR, M.
+/// observers, and for those no farther than KERR_NEAR, M.
 const KERR_ORDERS: usize = 3;
 const KERR_ORDERS_NEAR: usize = 4;
 const KERR_NEAR: f64 = 1e4;
@@ -42,8 +42,8 @@ pub enum Lensing {
 
 impl Scene {
     /// How the rays of a frame of `pixels` pixels (the full frame's, of which an image may be a part) are found by an
-    /// eye at `frame`.
-    pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_worth: KerrWorth) -> Lensing {
+    /// observer at `frame`.
+    pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_threshold: KerrThreshold) -> Lensing {
         let needs = self.emitters().needs();
         // METRIC shows places where no disk is; tables end before. They hold no steps.
         if self.quality.method != Method::Auto || self.view == View::Metric || needs.parts {
@@ -56,13 +56,13 @@ impl Scene {
             LensTables::Never => false,
         };
         let range = if frame.rain { SCHWARZSCHILD_RAIN } else { SCHWARZSCHILD_STATIC };
-        if frame.a == 0.0 && range.contains(&frame.r) && pays(SCHWARZSCHILD_WORTH) {
+        if frame.a == 0.0 && range.contains(&frame.r) && pays(SCHWARZSCHILD_THRESHOLD) {
             return Lensing::Schwarzschild;
         }
         let settings = self.pixel_settings();
         let layers = settings.max_crossings.div_ceil(if needs.places { 1 } else { 4 });
         let fits = layers <= if frame.r <= KERR_NEAR { KERR_ORDERS_NEAR } else { KERR_ORDERS };
-        if frame.a != 0.0 && critical::reaches(frame) && fits && pays(kerr_worth.0) {
+        if frame.a != 0.0 && critical::reaches(frame) && fits && pays(kerr_threshold.0) {
             return Lensing::Kerr;
         }
         Lensing::Traced
@@ -77,20 +77,20 @@ mod tests {
     fn tables_are_for_frames_that_pay_for_them() {
         let mut scene = Scene::default();
         let lensing = |scene: &Scene, pixels| {
-            let [cpu, gpu] = [KerrWorth::CPU, KerrWorth::GPU]
+            let [cpu, gpu] = [KerrThreshold::CPU, KerrThreshold::GPU]
                 .map(|worth| scene.lensing(&scene.observer().unwrap().frame, pixels, worth));
             assert!(cpu == gpu || (cpu, gpu) == (Lensing::Kerr, Lensing::Traced));
             gpu
         };
-        assert_eq!(lensing(&scene, SCHWARZSCHILD_WORTH), Lensing::Schwarzschild);
-        assert_eq!(lensing(&scene, SCHWARZSCHILD_WORTH - 1), Lensing::Traced);
+        assert_eq!(lensing(&scene, SCHWARZSCHILD_THRESHOLD), Lensing::Schwarzschild);
+        assert_eq!(lensing(&scene, SCHWARZSCHILD_THRESHOLD - 1), Lensing::Traced);
         scene.hole.spin = 0.9;
-        assert_eq!(lensing(&scene, KerrWorth::GPU.0), Lensing::Kerr);
-        assert_eq!(lensing(&scene, KerrWorth::GPU.0 - 1), Lensing::Traced);
+        assert_eq!(lensing(&scene, KerrThreshold::GPU.0), Lensing::Kerr);
+        assert_eq!(lensing(&scene, KerrThreshold::GPU.0 - 1), Lensing::Traced);
         // Samples count as pixels do.
         scene.quality.samples_per_pixel = 2;
-        assert_eq!(lensing(&scene, KerrWorth::GPU.0 / 2), Lensing::Kerr);
+        assert_eq!(lensing(&scene, KerrThreshold::GPU.0 / 2), Lensing::Kerr);
         scene.quality.method = Method::Rk4;
-        assert_eq!(lensing(&scene, KerrWorth::GPU.0), Lensing::Traced);
+        assert_eq!(lensing(&scene, KerrThreshold::GPU.0), Lensing::Traced);
     }
 }

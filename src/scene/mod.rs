@@ -24,7 +24,7 @@ pub use content::{Effects, Scene, View};
 pub use film::{Film, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;
-pub use lensing::{KerrWorth, Lensing};
+pub use lensing::{KerrThreshold, Lensing};
 pub use quality::{LensTables, Method, Quality};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 pub use sky::Sky;

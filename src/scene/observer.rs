@@ -101,7 +101,7 @@ impl Scene {
     }
 }
 
-/// The lens before an observer's eye.
+/// The lens before an observer.
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     pub observer: Observer,
@@ -112,14 +112,14 @@ pub struct Lens {
 
 impl Lens {
     /// Unit look direction (components in the observer's own frame) through position (x, y) of the full frame, (0, 0)
-    /// being its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look`).
-    pub fn look(&self, x: f64, y: f64) -> DVec3 {
+    /// being its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look_direction`).
+    pub fn look_direction(&self, x: f64, y: f64) -> DVec3 {
         (self.axes * self.mapping.point(x, y)).normalize()
     }
 
-    /// `look`, and its changes to the next pixel right and down, to first order.
+    /// `look_direction`, and its changes to the next pixel right and down, to first order.
     #[inline]
-    pub fn look_and_changes(&self, x: f64, y: f64) -> (DVec3, [DVec3; 2]) {
+    pub fn look_direction_and_changes(&self, x: f64, y: f64) -> (DVec3, [DVec3; 2]) {
         let point = self.axes * self.mapping.point(x, y);
         let inverse = 1.0 / point.length();
         let look = point * inverse;
@@ -130,9 +130,9 @@ impl Lens {
     /// The direction on the frame, in pixels right and down and of any length, at right angles to the circle about
     /// `centre`, a look direction in the frame, that runs through position (x, y).
     pub fn across(&self, centre: DVec3, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (look, changes) = self.look_and_changes(x, y);
-        let seen = self.observer.look(look);
-        changes.map(|change| centre.dot(self.observer.look_change(seen, change)))
+        let (look, changes) = self.look_direction_and_changes(x, y);
+        let seen = self.observer.aberrate(look);
+        changes.map(|change| centre.dot(self.observer.aberrate_change(seen, change)))
     }
 }
 

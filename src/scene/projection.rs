@@ -6,8 +6,8 @@ use crate::error::{Error, Result};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// A projection onto a frame. Every position has a point, which continues the projection outside the frame; `has_look`
-/// says where the projection shows something.
+/// A projection onto a frame. Every position has a point, which continues the projection outside the frame;
+/// `has_look_direction` says where the projection shows something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mapping {
     pub projection: Projection,
@@ -47,7 +47,7 @@ impl Mapping {
     }
 
     /// Whether something is seen at (x, y): all but what lies outside a fisheye's circle.
-    pub fn has_look(&self, x: f64, y: f64) -> bool {
+    pub fn has_look_direction(&self, x: f64, y: f64) -> bool {
         let radius = 0.5 * self.width.min(self.height);
         self.projection != Projection::Fisheye || self.offset(x, y).length_squared() <= radius * radius
     }
@@ -197,7 +197,11 @@ mod tests {
         near(dome.point(250.0, 100.0), DVec3::X);
         near(dome.point(150.0, 0.0), DVec3::Y);
         near(dome.point(150.0, 150.0), DVec3::new(0.0, -1.0, 1.0));
-        assert!(dome.has_look(249.9, 100.0) && !dome.has_look(250.1, 100.0) && !dome.has_look(1.0, 1.0));
+        assert!(
+            dome.has_look_direction(249.9, 100.0)
+                && !dome.has_look_direction(250.1, 100.0)
+                && !dome.has_look_direction(1.0, 1.0)
+        );
         let all = mapping(Projection::Equirect, [300, 200], 1.0);
         near(all.point(150.0, 100.0), DVec3::Z);
         near(all.point(225.0, 100.0), DVec3::X);

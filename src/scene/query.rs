@@ -105,8 +105,8 @@ impl Scene {
         if !(x.abs() <= MAX_PIXEL && y.abs() <= MAX_PIXEL) {
             return Err(Error::argument(format!("pixel position ({x:e}, {y:e}) must lie within +-{MAX_PIXEL:e}")));
         }
-        let (eye, region) = self.eye(width, height, region)?;
-        Ok(eye.ray(self, x + f64::from(region.x), y + f64::from(region.y)))
+        let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
+        Ok(pixel_rays.ray(self, x + f64::from(region.x), y + f64::from(region.y)))
     }
 
     /// Rays through all pixel centres of the image, row by row, handed to `write(index, ray)`. Errors: as `camera_ray`.
@@ -117,17 +117,17 @@ impl Scene {
         region: Option<Region>,
         write: &mut dyn FnMut(usize, Ray),
     ) -> Result<()> {
-        let (eye, region) = self.eye(width, height, region)?;
+        let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
         for y in 0..height {
             for x in 0..width {
                 let (px, py) = (f64::from(region.x + x) + 0.5, f64::from(region.y + y) + 0.5);
-                write(y as usize * width as usize + x as usize, eye.ray(self, px, py));
+                write(y as usize * width as usize + x as usize, pixel_rays.ray(self, px, py));
             }
         }
         Ok(())
     }
 
-    fn eye(&self, width: u32, height: u32, region: Option<Region>) -> Result<(Eye, Region)> {
+    fn pixel_rays(&self, width: u32, height: u32, region: Option<Region>) -> Result<(PixelRays, Region)> {
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         if width == 0 || height == 0 {
             return Err(Error::argument(format!("image is {width} x {height}; each side must be at least 1")));
@@ -142,7 +142,7 @@ impl Scene {
         } else {
             lens.observer
         };
-        Ok((Eye { lens, aberration }, region))
+        Ok((PixelRays { lens, aberration }, region))
     }
 
     /// `camera` moved along its own world line by `proper_time` (scene lengths, any sign), and the scene time that
@@ -210,15 +210,15 @@ fn angles(indices: &[usize]) -> i32 {
 }
 
 /// The camera's lens and the boost into the frame in which its rays are stated.
-struct Eye {
+struct PixelRays {
     lens: Lens,
     aberration: Observer,
 }
 
-impl Eye {
+impl PixelRays {
     fn ray(&self, scene: &Scene, x: f64, y: f64) -> Ray {
-        let (n, frequency_ratio) = match self.lens.mapping.has_look(x, y) {
-            true => self.aberration.look(self.lens.look(x, y)),
+        let (n, frequency_ratio) = match self.lens.mapping.has_look_direction(x, y) {
+            true => self.aberration.aberrate(self.lens.look_direction(x, y)),
             false => (DVec3::ZERO, 1.0),
         };
         let chart = self.aberration.frame.vector(n);

@@ -9,8 +9,8 @@ pub const MAX_CROSSINGS: usize = 4;
 pub struct Ray {
     /// Scene axes and lengths.
     pub position: DVec3,
-    /// The direction in which the eye looks, opposite to the photon's momentum. Components are along the local frame,
-    /// placed on the Euclidean unit vectors of spherical coordinates (bhr.h, Coordinates), in scene axes.
+    /// The direction in which the observer looks, opposite to the photon's momentum. Components are along the local
+    /// frame, placed on the Euclidean unit vectors of spherical coordinates (bhr.h, Coordinates), in scene axes.
     pub direction: DVec3,
     /// nu(camera) / nu(observer of the local frame), > 0.
     pub frequency_ratio: f64,
@@ -37,7 +37,7 @@ pub struct Crossing {
     pub azimuth: f64,
     /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
     pub redshift: f64,
-    /// Coordinate time since the photon left, scene lengths; NaN for an eye inside the horizon.
+    /// Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon.
     pub delay: f64,
 }
 
@@ -49,7 +49,7 @@ pub struct Hit {
     pub sky_direction: DVec3,
     /// nu(camera) / nu(at infinity).
     pub sky_redshift: f64,
-    /// Spin 0: orbit angle from the eye to infinity, or to the horizon; spinning: NaN.
+    /// Spin 0: orbit angle from the observer to infinity, or to the horizon; spinning: NaN.
     pub swept_angle: f64,
     pub steps: u32,
     pub crossings: [Crossing; MAX_CROSSINGS],

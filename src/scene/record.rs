@@ -3,7 +3,7 @@
 
 use super::refine::Edge;
 use crate::emit::medium::Media;
-use crate::emit::{Crossing, Place};
+use crate::emit::{Crossing, EmissionPoint};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -73,4 +73,4 @@ impl Record {
 /// A footprint that nothing is known of: only the mean sky can stand for it.
 pub const UNKNOWN_DIRECTION: DVec3 = DVec3::splat(1e30);
 /// A footprint of a crossing that nothing is known of.
-pub const UNKNOWN_PLACE: Place = Place { ln_r: 1e30, azimuth: 0.0, delay: 0.0 };
+pub const UNKNOWN_EMISSION_POINT: EmissionPoint = EmissionPoint { ln_r: 1e30, azimuth: 0.0, delay: 0.0 };

@@ -31,7 +31,7 @@ pub enum Edge {
 pub const EDGE_SAMPLES: u32 = 4;
 pub const CURVE_SAMPLES: u32 = 32;
 /// Relative difference of u of crossings up to which the footprint of one serves for the other.
-pub const LIKE: f64 = 1e-2;
+pub const SAME_CROSSING: f64 = 1e-2;
 
 /// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
 pub(crate) const EDGE_REACH: f64 = 0.75;

@@ -91,7 +91,7 @@ impl Scene {
         if self.view == super::View::Metric {
             return 1.0 / horizon_outer(spin);
         }
-        // The margin is 1 %: an eye on the photon orbit itself still sees its rays leave.
+        // The margin is 1 %: an observer on the photon orbit itself still sees its rays leave.
         1.0 / (0.99 * photon_orbit(spin.abs())).max(horizon_outer(spin))
     }
 

@@ -30,13 +30,13 @@ pub(crate) const GRID_ORIGIN_COLOUR: [f64; 3] = [0.42, 0.17, 0.03];
 
 /// Coverage of a family of lines, and how much of it is of the line where the coordinate is 0.
 #[derive(Clone, Copy)]
-struct Lines {
+struct GridLines {
     coverage: f64,
     origin: f64,
 }
 
 /// Lines wherever a coordinate is a multiple of `spacing`. `change`: of the coordinate by pixel.
-fn lines(coordinate: f64, change: f64, spacing: f64) -> Lines {
+fn grid_lines(coordinate: f64, change: f64, spacing: f64) -> GridLines {
     let number = (coordinate / spacing).round();
     let gap = spacing / change.max(1e-12);
     let distance = (coordinate / spacing - number).abs() * gap;
@@ -44,12 +44,12 @@ fn lines(coordinate: f64, change: f64, spacing: f64) -> Lines {
     let sharp = (0.5 * GRID_WIDTH + 0.5 - distance).clamp(0.0, 1.0);
     let open = ((gap - GRID_DENSE) / (GRID_OPEN - GRID_DENSE)).clamp(0.0, 1.0);
     let tint = (GRID_WIDTH / gap).min(GRID_TINT);
-    Lines { coverage: tint + (sharp - tint) * open, origin: if number == 0.0 { open } else { 0.0 } }
+    GridLines { coverage: tint + (sharp - tint) * open, origin: if number == 0.0 { open } else { 0.0 } }
 }
 
 /// `light` of the sky under the grid. `d`: unit direction in sky axes; `dx`, `dy`: its derivatives by pixel.
 pub fn under_grid(light: [f64; 3], d: DVec3, dx: DVec3, dy: DVec3) -> [f64; 3] {
-    let unknown = Lines { coverage: GRID_TINT, origin: 0.0 };
+    let unknown = GridLines { coverage: GRID_TINT, origin: 0.0 };
     let stretch2 = dx.length_squared() + dy.length_squared();
     // The condition is positive so that it is false for NaN.
     let families = if stretch2 < GRID_WHOLE_SKY {
@@ -58,7 +58,10 @@ pub fn under_grid(light: [f64; 3], d: DVec3, dx: DVec3, dy: DVec3) -> [f64; 3] {
         let east = DVec3::new(-d.y, d.x, 0.0) / (rho * rho);
         let change = |gradient: DVec3| dx.dot(gradient).hypot(dy.dot(gradient));
         let spacing = if d.z.abs() < GRID_CAP { GRID_SPACING } else { GRID_CAP_SPACING };
-        [lines(d.y.atan2(d.x), change(east), spacing), lines(d.z.atan2(rho), change(DVec3::Z / rho), GRID_SPACING)]
+        [
+            grid_lines(d.y.atan2(d.x), change(east), spacing),
+            grid_lines(d.z.atan2(rho), change(DVec3::Z / rho), GRID_SPACING),
+        ]
     } else {
         [unknown; 2]
     };

@@ -42,8 +42,8 @@ static Light turned(double b, Light at, double angle) {
     return at;
 }
 
-/* An eye at rest and where it looks: `psi` off the hole's centre, towards `aside`, a unit vector across the line of
- * sight. */
+/* An observer at rest and where it looks: `psi` off the hole's centre, towards `aside`, a unit vector across the line
+ * of sight. */
 typedef struct Look {
     double r, inclination, alpha, psi;
     double outward[3], aside[3];
@@ -68,7 +68,7 @@ static double impact_parameter(const Look *look) {
     return look->r * sin(look->psi) / sqrt(1.0 - 2.0 / look->r);
 }
 
-static Light at_eye(const Look *look) {
+static Light at_observer(const Look *look) {
     const double b = impact_parameter(look), u = 1.0 / look->r;
     const Light  light = {u, sqrt(1.0 / (b * b) - u * u * (1.0 - 2.0 * u)), 0.0};
     return light;
@@ -90,14 +90,14 @@ static unsigned crossings(BhrContext *context, const Look *look, double bar) {
     beside.psi += nudge;
     for (int order = 0; order < 2; order++) {
         const double angle = swept_to_plane(look, order);
-        const Light  there = turned(impact_parameter(look), at_eye(look), angle);
+        const Light  there = turned(impact_parameter(look), at_observer(look), angle);
         if (there.u == 0.0) {
             break;
         }
         found++;
         CHECK(hit.crossing_count >= found, "r %g alpha %g: %u crossings", look->r, look->alpha,
               (unsigned)hit.crossing_count);
-        const Light  nudged = turned(impact_parameter(&beside), at_eye(&beside), angle);
+        const Light  nudged = turned(impact_parameter(&beside), at_observer(&beside), angle);
         const double conditioning = fabs(nudged.time / there.time - 1.0) / nudge;
         const double error = fabs(hit.crossings[order].delay / (MASS * there.time) - 1.0) / (1.0 + conditioning);
         CHECK(error < bar, "r %g alpha %g order %d: delay %.12g, not %.12g: %.1e", look->r, look->alpha, order,
@@ -121,7 +121,7 @@ static void path(BhrContext *context, const Look *look) {
     CHECK(count == POINTS, "%u points", (unsigned)count);
     CHECK(points[0][3] == 0.0, "the path begins at t = %g", points[0][3]);
     const double b = impact_parameter(look);
-    Light        light = at_eye(look);
+    Light        light = at_observer(look);
     double       swept = 0.0, worst = 0.0;
     /* The last point of a ray that is captured lies at the horizon, where t has no end. */
     for (uint32_t i = 1; i + 1 < count; i++) {
@@ -176,13 +176,13 @@ int main(int argc, char **argv) {
     const double     bar = backend == BHR_BACKEND_CPU ? 1e-9 : 2e-5;
     CHECK_OK(bhr_set_mass(context, MASS));
     unsigned         compared = 0;
-    static const double eyes[][2] = {{10.0, 1.2}, {40.0, 0.7}, {500.0, 1.4}};
-    for (size_t e = 0; e < COUNT_OF(eyes); e++) {
-        const double r = eyes[e][0];
+    static const double observers[][2] = {{10.0, 1.2}, {40.0, 0.7}, {500.0, 1.4}};
+    for (size_t e = 0; e < COUNT_OF(observers); e++) {
+        const double r = observers[e][0];
         for (int k = 0; k < 8; k++) {
             /* Outside the critical impact parameter: most go round far enough for two crossings. */
             const double b = k % 2 == 0 ? 5.25 : 5.5;
-            const Look   look = look_of(r, eyes[e][1], 0.3 + 0.7 * k, asin(b * sqrt(1.0 - 2.0 / r) / r));
+            const Look   look = look_of(r, observers[e][1], 0.3 + 0.7 * k, asin(b * sqrt(1.0 - 2.0 / r) / r));
             compared += crossings(context, &look, bar);
             path(context, &look);
         }

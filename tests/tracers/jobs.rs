@@ -24,7 +24,7 @@ fn target(size: [u32; 2]) -> (&'static [u8], ImageMut<'static>) {
     unsafe { (std::slice::from_raw_parts(pixels, length), ImageMut::from_raw(layout, pixels, length as u64).unwrap()) }
 }
 
-fn order(renderer: &mut Renderer, target: ImageMut<'static>) -> Job {
+fn request_frame(renderer: &mut Renderer, target: ImageMut<'static>) -> Job {
     renderer.render_in_background(target, false, None).unwrap()
 }
 
@@ -47,7 +47,7 @@ fn jobs_are_frames_of_the_scene_at_their_order_and_end_in_it() {
                 renderer.scene.hole.spin = if i % 4 == 3 { 0.7 } else { 0.0 };
                 renderer.scene.quality.mapped_pixels = Some(i % 3 == 0);
                 let (pixels, image) = target(SIZE);
-                (renderer.scene.clone(), pixels, order(&mut renderer, image))
+                (renderer.scene.clone(), pixels, request_frame(&mut renderer, image))
             })
             .collect::<Vec<_>>();
         let last = wait(&jobs[11].2).unwrap();
@@ -68,7 +68,7 @@ fn jobs_are_frames_of_the_scene_at_their_order_and_end_in_it() {
 fn a_cancelled_job_ends_and_the_others_are_made() {
     for mut renderer in renderers() {
         slow(&mut renderer);
-        let jobs = (0..4).map(|_| order(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
+        let jobs = (0..4).map(|_| request_frame(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
         jobs[2].cancel();
         jobs[1].wait(None, &mut |fraction| fraction == 0.0);
         let ends = jobs.iter().map(|job| wait(job).map_err(|error| error.kind)).collect::<Vec<_>>();
@@ -76,7 +76,7 @@ fn a_cancelled_job_ends_and_the_others_are_made() {
         assert_eq!(ends[2].err(), Some(ErrorKind::Cancelled));
         // The second may have been done before it heard.
         assert!(ends[1].as_ref().err().is_none_or(|kind| *kind == ErrorKind::Cancelled));
-        wait(&order(&mut renderer, target(SIZE).1)).unwrap();
+        wait(&request_frame(&mut renderer, target(SIZE).1)).unwrap();
     }
 }
 
@@ -84,7 +84,7 @@ fn a_cancelled_job_ends_and_the_others_are_made() {
 fn dropping_the_renderer_finishes_its_jobs() {
     for mut renderer in renderers() {
         slow(&mut renderer);
-        let jobs = (0..3).map(|_| order(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
+        let jobs = (0..3).map(|_| request_frame(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
         drop(renderer);
         assert!(jobs.iter().all(|job| job.outcome().expect("an end").is_ok()));
     }
@@ -94,7 +94,7 @@ fn dropping_the_renderer_finishes_its_jobs() {
 fn jobs_and_frames_that_are_waited_for_take_turns() {
     let [mut renderer, _] = renderers();
     slow(&mut renderer);
-    let jobs = (0..8).map(|_| order(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
+    let jobs = (0..8).map(|_| request_frame(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
     let (_, mut image) = target(SIZE);
     renderer.render(&mut image, false, None, &mut |_| true).unwrap();
     assert!(jobs[7].outcome().is_none(), "a frame waited for all jobs, or too few were under way to tell");
@@ -107,7 +107,7 @@ fn a_device_that_is_lost_ends_every_job() {
     for begun in [false, true] {
         let [mut renderer, _] = renderers();
         slow(&mut renderer);
-        let jobs = (0..8).map(|_| order(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
+        let jobs = (0..8).map(|_| request_frame(&mut renderer, target(SIZE).1)).collect::<Vec<_>>();
         if begun {
             wait(&jobs[0]).unwrap();
         }
@@ -116,6 +116,6 @@ fn a_device_that_is_lost_ends_every_job() {
         assert!(!lost.is_empty() && lost.iter().all(|error| error.kind == ErrorKind::DeviceLost), "{lost:?}");
         renderer.recover().unwrap();
         renderer.scene = Default::default();
-        wait(&order(&mut renderer, target(SIZE).1)).unwrap();
+        wait(&request_frame(&mut renderer, target(SIZE).1)).unwrap();
     }
 }

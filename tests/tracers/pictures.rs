@@ -6,7 +6,7 @@ use bhr::gpu::{Device, Search, adapters};
 use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, KerrWorth, LensTables, Lensing, Motion, Region, Sky, View};
+use bhr::scene::{Camera, Effects, KerrThreshold, LensTables, Lensing, Motion, Region, Sky, View};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -36,7 +36,7 @@ fn scenes() -> Vec<NamedScene> {
         scene("spin 0.998", 0.998, camera(20.0, 75.0, 60.0, Motion::Static)),
         scene("orbit", 0.5, camera(10.0, 90.0, 80.0, Motion::Orbit)),
         scene("free fall inside", 0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
-        // Looking back out; nearer still, f32 cannot tell the eye from the horizon.
+        // Looking back out; nearer still, f32 cannot tell the observer from the horizon.
         scene("free fall at a spinning horizon", 0.5, {
             let inward = camera((1.0 + 0.75_f64.sqrt()) * (1.0 + 1e-3), 60.0, 120.0, Motion::FreeFall);
             Camera { forward: -inward.forward, ..inward }
@@ -211,12 +211,12 @@ fn tiles_and_repetitions_give_the_same_bytes() {
 }
 
 /// Frames whose rays are looked up: their bytes are the same with tables made afresh, used again, and filled for other
-/// eyes in between; tile by tile; and in every frame of an eye that moves there and back.
+/// observers in between; tile by tile; and in every frame of an observer that moves there and back.
 #[test]
 fn tables_give_the_same_bytes() {
     let format = PixelFormat::Rgba8Srgb;
     let (small, size) = ([40, 30], [210, 140]);
-    let eyes = [
+    let observers = [
         (0.0, camera(12.0, 70.0, 60.0, Motion::Static)),
         (0.9, camera(12.0, 70.0, 60.0, Motion::Static)),
         (0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
@@ -233,21 +233,21 @@ fn tables_give_the_same_bytes() {
             renderer.scene.quality.lens_tables = if size == small { LensTables::Never } else { LensTables::Always };
             picture(renderer, format, size, region, false)
         };
-        let there = eyes.map(|eye| show(&mut renderer, eye, size, None));
-        for (eye, first) in eyes.iter().zip(&there).rev() {
-            // The eye comes from elsewhere, first in a frame that has no use for tables.
-            let moved = (eye.0, Camera { position: eye.1.position * 1.01, ..eye.1 });
+        let there = observers.map(|observer| show(&mut renderer, observer, size, None));
+        for (observer, first) in observers.iter().zip(&there).rev() {
+            // The observer comes from elsewhere, first in a frame that has no use for tables.
+            let moved = (observer.0, Camera { position: observer.1.position * 1.01, ..observer.1 });
             show(&mut renderer, moved, small, None);
             show(&mut renderer, moved, size, None);
-            assert!(*first == show(&mut renderer, *eye, size, None), "{name}: back at {eye:?}");
-            assert!(*first == show(&mut renderer, *eye, size, None), "{name}: again at {eye:?}");
-            assert!(*first == show(&mut make(), *eye, size, None), "{name}: another renderer at {eye:?}");
-            assert!(*first == tiled(&mut renderer, format, size), "{name}: tiles at {eye:?}");
+            assert!(*first == show(&mut renderer, *observer, size, None), "{name}: back at {observer:?}");
+            assert!(*first == show(&mut renderer, *observer, size, None), "{name}: again at {observer:?}");
+            assert!(*first == show(&mut make(), *observer, size, None), "{name}: another renderer at {observer:?}");
+            assert!(*first == tiled(&mut renderer, format, size), "{name}: tiles at {observer:?}");
             let frame = renderer.scene.observer().unwrap().frame;
             let pixels = u64::from(size[0] * size[1]);
             assert!(
-                renderer.scene.lensing(&frame, pixels, KerrWorth::GPU) != Lensing::Traced,
-                "{name}: no tables at {eye:?}"
+                renderer.scene.lensing(&frame, pixels, KerrThreshold::GPU) != Lensing::Traced,
+                "{name}: no tables at {observer:?}"
             );
         }
     }
@@ -372,7 +372,7 @@ fn spin_zero_shadow_is_synges_circle() {
             let dark = silhouette(&mut renderer, size);
             for y in 0..size[1] {
                 for x in 0..size[0] {
-                    let at = |dx: f64, dy: f64| lens.look(f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy);
+                    let at = |dx: f64, dy: f64| lens.look_direction(f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy);
                     let angle = at(0.0, 0.0).angle_between(circle.center);
                     let half =
                         0.5 * at(0.0, 0.0).angle_between(at(1.0, 0.0)).max(at(0.0, 0.0).angle_between(at(0.0, 1.0)));

@@ -101,12 +101,12 @@ impl Window {
 }
 
 /// Spin, distance, side of a window that holds the rings.
-const EYES: [(f64, f64, u32); 4] = [(0.0, 30.0, 132), (0.9, 30.0, 132), (0.0, 100.0, 44), (0.9, 100.0, 44)];
+const OBSERVERS: [(f64, f64, u32); 4] = [(0.0, 30.0, 132), (0.9, 30.0, 132), (0.0, 100.0, 44), (0.9, 100.0, 44)];
 
 #[test]
 fn rings_have_no_gaps_and_as_much_light_as_many_rays_find() {
     let mut tracers = both();
-    for (spin, distance, side) in EYES {
+    for (spin, distance, side) in OBSERVERS {
         let truth =
             of_many_rays(&mut tracers, scene(spin, distance, 20.0, 0.3), |gpu| finer_ring(gpu, side, 0, 2, FINER))
                 .sum();
@@ -140,12 +140,13 @@ fn turn(camera: &Camera, pixels: f64) -> Camera {
 
 #[test]
 fn rings_are_steady_while_the_camera_turns() {
-    // The eye is so far that the shadow is 3 pixels wide: all light counts, as its rings are no more than a thousandth.
+    // The observer is so far that the shadow is 3 pixels wide: all light counts, as its rings are no more than a
+    // thousandth.
     let tiny = [(0.0, 1000.0, 40), (0.9, 1000.0, 40)];
     // In sixteenths of a pixel. The CPU's pictures are the GPU's (tests/tracers/pictures.rs), so that it takes fewer.
     let steps = if runs_all() { [17, 64] } else { [9, 24] };
     for ((tracer, mut renderer), steps) in both().into_iter().zip(steps) {
-        for (spin, distance, side) in EYES.into_iter().chain(tiny) {
+        for (spin, distance, side) in OBSERVERS.into_iter().chain(tiny) {
             renderer.scene = scene(spin, distance, 20.0, 0.3);
             let begin = renderer.scene.camera;
             let (mut last, mut most) = (None::<f64>, 0.0_f64);
@@ -188,10 +189,10 @@ fn edge_errors(seen: &Window, truth: &Window) -> (usize, f64, f64) {
 #[test]
 fn edges_of_the_disk_are_filtered_over_the_pixel() {
     let mut tracers = both();
-    for (eye, (spin, distance, _)) in EYES.into_iter().enumerate() {
+    for (observer, (spin, distance, _)) in OBSERVERS.into_iter().enumerate() {
         for (disk, (inclination, opacity, inner)) in [(75.0, 1.0, 0.0), (40.0, 0.6, 9.0)].into_iter().enumerate() {
             // Everyday each disk is seen at each spin and from each distance, but not at each spin from each distance.
-            if !runs_all() && disk != [0, 1, 1, 0][eye] {
+            if !runs_all() && disk != [0, 1, 1, 0][observer] {
                 continue;
             }
             let mut scene = scene(spin, distance, inclination, opacity);

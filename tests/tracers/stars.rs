@@ -16,7 +16,7 @@ use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
-/// Renderers of the sky alone, seen by an eye at rest.
+/// Renderers of the sky alone, seen by an observer at rest.
 fn both() -> [(&'static str, crate::frames::Lent); 2] {
     crate::frames::both().map(|(name, mut renderer)| {
         renderer.scene.disk = None;
@@ -115,9 +115,9 @@ fn centre(i: usize, size: [u32; 2]) -> DVec2 {
 
 // ---- the lens equation of a hole without spin ----
 
-/// Azimuth that light from infinity runs through about the hole to the eye at r, coming in past the hole at its least
-/// distance 1/u_p: phi = int du / sqrt(1/b^2 - u^2 + 2 u^3), 1/b^2 = u_p^2 - 2 u_p^3 (Darwin 1959), from 0 to u_p and
-/// from 1/r to u_p; with u = u_p (1 - s^2) the square root's zero is divided out. By Simpson's rule.
+/// Azimuth that light from infinity runs through about the hole to the observer at r, coming in past the hole at its
+/// least distance 1/u_p: phi = int du / sqrt(1/b^2 - u^2 + 2 u^3), 1/b^2 = u_p^2 - 2 u_p^3 (Darwin 1959), from 0 to u_p
+/// and from 1/r to u_p; with u = u_p (1 - s^2) the square root's zero is divided out. By Simpson's rule.
 fn swept(u_p: f64, r: f64) -> f64 {
     let leg = |from: f64| {
         let end = (1.0 - from / u_p).max(0.0).sqrt();
@@ -133,7 +133,7 @@ fn swept(u_p: f64, r: f64) -> f64 {
     leg(0.0) + leg(1.0 / r)
 }
 
-/// Angle from the hole, for a static eye at r, at which light is seen that has swept `phi`.
+/// Angle from the hole, for a static observer at r, at which light is seen that has swept `phi`.
 fn seen_at(phi: f64, r: f64) -> f64 {
     let (mut far, mut near) = (1.0 / r, 1.0 / 3.0 - 1e-15);
     for _ in 0..60 {
@@ -144,7 +144,7 @@ fn seen_at(phi: f64, r: f64) -> f64 {
     (((1.0 - 2.0 / r) / inverse_b2).sqrt() / r).min(1.0).asin()
 }
 
-/// An image of a star at the angle `beta` from the line eye - hole.
+/// An image of a star at the angle `beta` from the line observer - hole.
 #[derive(Clone, Copy, Debug)]
 struct Image {
     /// Angle from the hole, on the star's side or, `opposite`, on the other.
@@ -174,7 +174,7 @@ fn the_lens_equation_has_its_limits() {
     let (b, r): (f64, f64) = (1e4, 1e12);
     let u_p = 1.0 / (b - 1.0 - 1.5 / b);
     let deflection = 4.0 / b + 15.0 * PI / 4.0 / (b * b);
-    // The eye is not quite at infinity.
+    // The observer is not quite at infinity.
     assert!((swept(u_p, r) - (PI + deflection - b / r)).abs() < 1e-9);
     // Seen from far away: the lens equation of weak fields, beta = theta - theta_E^2 / theta, and its magnification.
     let (r, beta): (f64, f64) = (1e7, 5e-4);
@@ -187,7 +187,7 @@ fn the_lens_equation_has_its_limits() {
         assert!((found.psi / theta - 1.0).abs() < 4e-3, "{found:?}, not {theta}");
         assert!((found.magnification / magnification - 1.0).abs() < 0.02, "{found:?}, not {magnification}");
     }
-    // At the photon orbit's distance from an eye's shadow: images of ever higher order come to its edge.
+    // At the photon orbit's distance from an observer's shadow: images of ever higher order come to its edge.
     let shadow = (27.0_f64 * (1.0 - 2.0 / 30.0)).sqrt() / 30.0;
     let orders = [0, 1, 2, 3, 4].map(|order| image(order, 0.3, 30.0).psi);
     assert!(
@@ -198,11 +198,11 @@ fn the_lens_equation_has_its_limits() {
 
 // ---- stars behind a hole ----
 
-/// Where the eye of these tests is, on the x axis, looking at the hole.
-const EYE: f64 = 30.0;
+/// Where the observer of these tests is, on the x axis, looking at the hole.
+const OBSERVER: f64 = 30.0;
 
 fn looking_at_the_hole(fov_y: f64) -> Camera {
-    let position = DVec3::X * EYE;
+    let position = DVec3::X * OBSERVER;
     Camera { position, forward: -position, fov_y, ..Camera::default() }
 }
 
@@ -220,7 +220,7 @@ struct Lensed {
 impl Lensed {
     fn new(beta: f64, turn: f64, colour: f64, orders: u32) -> Self {
         let of_order = |order| {
-            let image = image(order, beta, EYE);
+            let image = image(order, beta, OBSERVER);
             (image, around_the_hole(image.psi, if image.opposite { turn + PI } else { turn }))
         };
         let star = Star { direction: around_the_hole(beta, turn), magnitude: 0.0, colour };
@@ -232,10 +232,10 @@ impl Lensed {
         f64::from(StarIndex::new([self.star].into_iter()).unwrap().stars[0][3])
     }
 
-    /// The factor by which the eye's frequency shift, 1 / sqrt(1 - 2 / r), brightens a blackbody of the star's
+    /// The factor by which the observer's frequency shift, 1 / sqrt(1 - 2 / r), brightens a blackbody of the star's
     /// temperature.
     fn gain(&self) -> f64 {
-        let g = 1.0 / (1.0 - 2.0 / EYE).sqrt();
+        let g = 1.0 / (1.0 - 2.0 / OBSERVER).sqrt();
         let temperature = self.star.temperature();
         radiance_xyz(g * temperature)[1] / radiance_xyz(temperature)[1]
     }
@@ -315,7 +315,7 @@ fn higher_images_have_the_flux_that_the_lens_equation_gives() {
 fn a_field_has_the_flux_that_the_lens_equation_gives() {
     let size = [900, 900];
     let mut random = Random(11);
-    let ring = seen_at(PI, EYE);
+    let ring = seen_at(PI, OBSERVER);
     let mut stars = Vec::new();
     for _ in 0..150 {
         // Evenly over the sky from 0.03 to 0.3 rad.

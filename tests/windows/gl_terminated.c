@@ -40,7 +40,7 @@ static void load(void *function, const char *name) {
 
 typedef struct Blow {
     pthread_t thread;
-    double    after; /* seconds from its order */
+    double    after; /* seconds from its request */
 } Blow;
 
 static void *strike(void *argument) {

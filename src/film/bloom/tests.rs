@@ -11,15 +11,15 @@ fn black([width, height]: [u32; 2]) -> Field {
 /// A field with its bloom, gathered in tiles of at most `tile` pixels.
 fn bloomed(bloom: &Bloom, light: &Field, tile: [u32; 2]) -> Field {
     let [width, height] = bloom.frame;
-    let mut gathering = bloom.gathering().expect("a grid");
+    let mut accumulator = bloom.accumulator().expect("a grid");
     for y in (0..height).step_by(tile[1] as usize) {
         for x in (0..width).step_by(tile[0] as usize) {
             let (w, h) = (tile[0].min(width - x), tile[1].min(height - y));
             let row = |row: u32| ((row * width + x) as usize)..((row * width + x + w) as usize);
-            gathering.add([x, y], w, &(y..y + h).flat_map(|y| light[row(y)].to_vec()).collect::<Field>());
+            accumulator.add([x, y], w, &(y..y + h).flat_map(|y| light[row(y)].to_vec()).collect::<Field>());
         }
     }
-    let glare = gathering.spread().expect("grids");
+    let glare = accumulator.spread().expect("grids");
     let place = |i: usize| (i as u32 % width, i as u32 / width);
     light.iter().enumerate().map(|(i, v)| glare.over(*v, place(i).0, place(i).1)).collect()
 }

@@ -69,7 +69,7 @@ impl Drop for Handle {
             return;
         }
         let end = move || {
-            let _alone = driver_lock::lock();
+            let _driver = driver_lock::lock();
             drop(raw);
             drop(instance);
         };
@@ -125,7 +125,7 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
 /// costs Mesa half a megabyte that it never frees.
 pub fn forget_drivers() {
     let forgotten = std::mem::take(&mut *found());
-    let _alone = driver_lock::lock();
+    let _driver = driver_lock::lock();
     drop(forgotten);
 }
 
@@ -138,20 +138,20 @@ pub(in crate::gpu) fn required_limits() -> wgpu::Limits {
 /// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
 /// under the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
 /// This lock is held for a few instructions; who holds [`driver_lock`] may take it, but not the other way round.
-static FOUND: Mutex<[Found; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
+static FOUND: Mutex<[DriverAdapters; 2]> = Mutex::new([(None, Vec::new()), (None, Vec::new())]);
 
 /// The instance that a search asked, and the adapters it has.
-type Found = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
+type DriverAdapters = (Option<wgpu::Instance>, Vec<wgpu::Adapter>);
 
-fn found() -> MutexGuard<'static, [Found; 2]> {
+fn found() -> MutexGuard<'static, [DriverAdapters; 2]> {
     FOUND.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn native(validation: bool) -> Found {
+fn native(validation: bool) -> DriverAdapters {
     let kept = || Some(found()[usize::from(validation)].clone()).filter(|(_, list)| !list.is_empty());
     kept().unwrap_or_else(|| {
         // A second thread waits for what the first one finds.
-        let _alone = driver_lock::lock();
+        let _driver = driver_lock::lock();
         kept().unwrap_or_else(|| {
             let mut all = wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12;
             if !loader::is_usable() {
@@ -168,16 +168,16 @@ fn native(validation: bool) -> Found {
 
 /// Asked anew each time, since all adapters of one wgpu GL instance share one GL context, which two threads cannot use
 /// at once. None without the feature `gl`; `None` when the search itself failed.
-fn gl() -> Option<Vec<Usable>> {
+fn gl() -> Option<Vec<RankedAdapter>> {
     if !cfg!(feature = "gl") {
         return Some(Vec::new());
     }
-    let search = || -> Result<Vec<Usable>> {
+    let search = || -> Result<Vec<RankedAdapter>> {
         // wgpu makes the contexts of adapters when it searches for them.
         let (thread, age) = (GlThread::start()?, DisplayAge::now());
         thread.run(|| {
             // Adapters that are not wanted are dropped here.
-            let _alone = driver_lock::lock();
+            let _driver = driver_lock::lock();
             let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
             keep_display(instance);
             list.into_iter().filter_map(|raw| usable(raw, None, Some((thread.clone(), age)))).collect()
@@ -187,7 +187,7 @@ fn gl() -> Option<Vec<Usable>> {
 }
 
 /// Those of [`gl`] that are no software.
-fn gl_hardware() -> Vec<Usable> {
+fn gl_hardware() -> Vec<RankedAdapter> {
     if NO_GL_HARDWARE.load(Ordering::Relaxed) {
         return Vec::new();
     }
@@ -210,13 +210,13 @@ fn keep_display(instance: Option<wgpu::Instance>) {
 }
 
 /// A driver that panics has no adapters.
-fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
+fn ask_drivers(backends: wgpu::Backends, validation: bool) -> DriverAdapters {
     // Without VALIDATION_INDIRECT_CALL, which would compile pipelines for indirect dispatches, and bhr makes none;
     // without DEBUG, whose shaders say that they were WGSL, which older layers take for an error.
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     let descriptor =
         wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
-    let _alone = driver_lock::lock();
+    let _driver = driver_lock::lock();
     let ask = || {
         let instance = wgpu::Instance::new(descriptor);
         let list = pollster::block_on(instance.enumerate_adapters(backends));
@@ -233,7 +233,7 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool) -> Found {
 }
 
 /// An adapter that can run the tracer, and its place in the list: lower is better.
-struct Usable {
+struct RankedAdapter {
     rank: Rank,
     adapter: Adapter,
 }
@@ -246,7 +246,7 @@ fn usable(
     raw: wgpu::Adapter,
     instance: Option<wgpu::Instance>,
     gl: Option<(Arc<GlThread>, DisplayAge)>,
-) -> Option<Usable> {
+) -> Option<RankedAdapter> {
     let found = raw.get_info();
     let pass_over = |reason: String| {
         log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
@@ -278,7 +278,7 @@ fn usable(
         name: found.name,
     };
     let handle = Handle { raw: Some(raw), instance, gl };
-    Some(Usable { rank: rank(kind, backend), adapter: Adapter { info, handle } })
+    Some(RankedAdapter { rank: rank(kind, backend), adapter: Adapter { info, handle } })
 }
 
 /// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)

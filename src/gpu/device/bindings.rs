@@ -12,9 +12,9 @@ const MOST: usize = 64;
 /// which steady frames do not do: what a new one takes the place of must be gone before, since both together need not
 /// fit.
 #[derive(Default)]
-pub(in crate::gpu) struct Bindings(Mutex<Vec<Kept>>);
+pub(in crate::gpu) struct BindGroupCache(Mutex<Vec<CachedGroup>>);
 
-struct Kept {
+struct CachedGroup {
     layout: wgpu::BindGroupLayout,
     resources: Vec<Resource>,
     group: wgpu::BindGroup,
@@ -50,7 +50,7 @@ impl Resource {
     }
 }
 
-impl Kept {
+impl CachedGroup {
     fn is(&self, layout: &wgpu::BindGroupLayout, resources: &[wgpu::BindingResource<'_>]) -> bool {
         self.layout == *layout
             && self.resources.len() == resources.len()
@@ -58,8 +58,8 @@ impl Kept {
     }
 }
 
-impl Bindings {
-    fn lock(&self) -> MutexGuard<'_, Vec<Kept>> {
+impl BindGroupCache {
+    fn lock(&self) -> MutexGuard<'_, Vec<CachedGroup>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -86,7 +86,7 @@ impl Bindings {
         if kept.len() >= MOST {
             kept.clear();
         }
-        kept.push(Kept { layout: layout.clone(), resources, group: group.clone() });
+        kept.push(CachedGroup { layout: layout.clone(), resources, group: group.clone() });
     }
 
     /// Lets all go.

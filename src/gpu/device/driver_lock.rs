@@ -20,16 +20,16 @@ use parking_lot::{ReentrantMutex, ReentrantMutexGuard, const_reentrant_mutex};
 static DRIVER: ReentrantMutex<()> = const_reentrant_mutex(());
 
 /// While it lives, no other thread starts or ends a driver.
-pub struct Alone {
+pub struct DriverLock {
     // Released before what waits for that is done.
     _lock: ReentrantMutexGuard<'static, ()>,
     _holding: Holding,
 }
 
-pub fn lock() -> Alone {
+pub fn lock() -> DriverLock {
     thread_end::guard();
     let holding = hold();
-    Alone { _lock: DRIVER.lock(), _holding: holding }
+    DriverLock { _lock: DRIVER.lock(), _holding: holding }
 }
 
 /// Releases it for a thread that will never run again.

@@ -21,7 +21,7 @@ use std::thread::{self, JoinHandle};
 
 thread_local! {
     /// On a thread for GL that is at work: who waits for it, and how old the display was when the work began.
-    static CALLER: RefCell<Option<(mpsc::Sender<News>, DisplayAge)>> = const { RefCell::new(None) };
+    static CALLER: RefCell<Option<(mpsc::Sender<Report>, DisplayAge)>> = const { RefCell::new(None) };
 }
 
 /// How often a thread for GL was parked by what had not parked another one before: the ends of the EGL display, as far
@@ -56,7 +56,7 @@ impl DisplayAge {
 type Work<'a> = Box<dyn FnOnce() + Send + 'a>;
 
 /// A message from a thread for GL to its caller.
-enum News {
+enum Report {
     /// Its work has got so far, and goes on once it is told whether to.
     Progress(f64),
     /// Its work is done, and it no longer uses what it was lent.
@@ -76,7 +76,7 @@ pub fn park(text: &str) {
     let Some((caller, age)) = caller else { return };
     age.end();
     driver_lock::abandon();
-    let _ = caller.send(News::Parked(text.to_owned()));
+    let _ = caller.send(Report::Parked(text.to_owned()));
     loop {
         thread::park();
     }
@@ -85,7 +85,7 @@ pub fn park(text: &str) {
 /// A thread for the calls into one GL context. Ends with its last clone.
 pub struct GlThread {
     /// Locked over each call. `None` once the thread is parked, and while this is being dropped.
-    line: Mutex<Option<mpsc::Sender<Work<'static>>>>,
+    channel: Mutex<Option<mpsc::Sender<Work<'static>>>>,
     /// `None` only while it is being dropped.
     handle: Option<JoinHandle<()>>,
 }
@@ -93,12 +93,12 @@ pub struct GlThread {
 impl GlThread {
     /// Errors: OUT_OF_MEMORY when the system gives no thread.
     pub fn start() -> Result<Arc<Self>> {
-        let (line, work) = mpsc::channel::<Work<'static>>();
+        let (channel, work) = mpsc::channel::<Work<'static>>();
         let run = move || work.into_iter().for_each(|work| work());
         let handle = thread::Builder::new().name("bhr-gl".into()).spawn(run);
         let handle =
             handle.map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("no thread for GL: {error}")))?;
-        Ok(Arc::new(Self { line: Mutex::new(Some(line)), handle: Some(handle) }))
+        Ok(Arc::new(Self { channel: Mutex::new(Some(channel)), handle: Some(handle) }))
     }
 
     /// Runs `work` on the thread and waits for it. Errors: INTERNAL when it panics; once the thread is parked,
@@ -117,13 +117,13 @@ impl GlThread {
             // From inside a call.
             return Ok(work(progress));
         }
-        let mut line = self.line.lock();
-        let Some(sender) = line.as_ref() else {
+        let mut channel = self.channel.lock();
+        let Some(sender) = channel.as_ref() else {
             std::mem::forget(work);
             return Err(Error::new(ErrorKind::DeviceLost, "the thread for GL has stopped"));
         };
         let scope = thread_scope::of_caller();
-        let (tell, news) = mpsc::channel();
+        let (tell, reports) = mpsc::channel();
         let (answer, answers) = mpsc::channel();
         let mut done = None;
         let slot = &mut done;
@@ -131,17 +131,17 @@ impl GlThread {
             CALLER.with(|caller| *caller.borrow_mut() = Some((tell.clone(), DisplayAge::now())));
             {
                 let _scope = scope();
-                let mut ask = |part: f64| tell.send(News::Progress(part)).is_ok() && answers.recv().unwrap_or(false);
+                let mut ask = |part: f64| tell.send(Report::Progress(part)).is_ok() && answers.recv().unwrap_or(false);
                 // Unwind safe: `GlTracer` is not used again after a panic.
                 *slot = Some(catch_unwind(AssertUnwindSafe(|| work(&mut ask))));
             }
             CALLER.with(|caller| caller.borrow_mut().take());
             // The last thing that it does: the rest has nothing that was lent.
-            let _ = tell.send(News::Done);
+            let _ = tell.send(Report::Done);
         };
         let job: Work<'_> = Box::new(job);
         // SAFETY: only the lifetime changes. What the work was lent outlives its use: from here on this function is
-        // left, also by unwinding out of `progress`, only after `Waiting` has seen that the work is done, that the
+        // left, also by unwinding out of `progress`, only after `BorrowGuard` has seen that the work is done, that the
         // thread stands still, or that the work was never taken. Threads that the work starts for itself, and lends
         // something to in turn, it waits for before it asks wgpu for anything, which is what parks it.
         let job = unsafe { transmute::<Work<'_>, Work<'static>>(job) };
@@ -149,10 +149,11 @@ impl GlThread {
             std::mem::forget(unsent);
             return Err(Error::internal("the thread for GL has ended"));
         }
-        let mut waiting = Waiting { line: &mut line, news, answer: Some(answer), parked: None, ended: false };
-        waiting.wait(progress);
-        let parked = waiting.parked.take();
-        drop(waiting);
+        let mut guard =
+            BorrowGuard { channel: &mut channel, reports, answer: Some(answer), parked: None, ended: false };
+        guard.wait(progress);
+        let parked = guard.parked.take();
+        drop(guard);
         if let Some(panic) = parked {
             return Err(Error::internal(format!("GL stopped: {panic}")));
         }
@@ -170,38 +171,38 @@ impl GlThread {
 }
 
 /// Until it is dropped, the thread may use what its caller lent it.
-struct Waiting<'a> {
+struct BorrowGuard<'a> {
     /// The way to the thread, which is given up when it is parked.
-    line: &'a mut Option<mpsc::Sender<Work<'static>>>,
-    news: mpsc::Receiver<News>,
+    channel: &'a mut Option<mpsc::Sender<Work<'static>>>,
+    reports: mpsc::Receiver<Report>,
     /// `None` when the caller's progress function has panicked: the work is to stop.
     answer: Option<mpsc::Sender<bool>>,
     parked: Option<String>,
     ended: bool,
 }
 
-impl Waiting<'_> {
+impl BorrowGuard<'_> {
     fn wait(&mut self, progress: &mut Progress<'_>) {
         while !self.ended {
-            match self.news.recv() {
-                Ok(News::Progress(part)) => {
+            match self.reports.recv() {
+                Ok(Report::Progress(part)) => {
                     if let Some(answer) = &self.answer {
                         let _ = answer.send(progress(part));
                     }
                 }
-                Ok(News::Parked(panic)) => {
-                    *self.line = None;
+                Ok(Report::Parked(panic)) => {
+                    *self.channel = None;
                     self.parked = Some(panic);
                     self.ended = true;
                 }
                 // Nobody who could say more is left.
-                Ok(News::Done) | Err(mpsc::RecvError) => self.ended = true,
+                Ok(Report::Done) | Err(mpsc::RecvError) => self.ended = true,
             }
         }
     }
 }
 
-impl Drop for Waiting<'_> {
+impl Drop for BorrowGuard<'_> {
     fn drop(&mut self) {
         self.answer = None;
         self.wait(&mut |_| false);
@@ -210,7 +211,7 @@ impl Drop for Waiting<'_> {
 
 impl Drop for GlThread {
     fn drop(&mut self) {
-        let parked = self.line.get_mut().take().is_none();
+        let parked = self.channel.get_mut().take().is_none();
         let Some(handle) = self.handle.take() else { return };
         // It ends when it has nothing left to do.
         if !parked && handle.thread().id() != thread::current().id() {
@@ -276,16 +277,16 @@ mod tests {
 
     #[test]
     fn the_thread_has_ended_when_its_last_clone_is_dropped() {
-        struct Ending(Arc<AtomicBool>);
-        impl Drop for Ending {
+        struct SetOnDrop(Arc<AtomicBool>);
+        impl Drop for SetOnDrop {
             fn drop(&mut self) {
                 self.0.store(true, Ordering::Relaxed);
             }
         }
-        thread_local!(static ENDING: RefCell<Option<Ending>> = const { RefCell::new(None) });
+        thread_local!(static ENDING: RefCell<Option<SetOnDrop>> = const { RefCell::new(None) });
         let (thread, ended) = (GlThread::start().unwrap(), Arc::new(AtomicBool::new(false)));
         let clone = thread.clone();
-        let ending = Ending(ended.clone());
+        let ending = SetOnDrop(ended.clone());
         thread.run(|| ENDING.with(|place| *place.borrow_mut() = Some(ending))).unwrap();
         drop(thread);
         assert!(!ended.load(Ordering::Relaxed));

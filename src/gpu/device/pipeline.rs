@@ -61,7 +61,7 @@ impl Device {
             ..wgpu::ShaderRuntimeChecks::checked()
         };
         let source = wgpu::ShaderSource::Naga(Cow::Owned(specialised));
-        let module = self.beside(kernel.label, |device| {
+        let module = self.scoped_off_thread(kernel.label, |device| {
             let descriptor = wgpu::ShaderModuleDescriptor { label: Some(kernel.label), source };
             // SAFETY: the one check that may be off is that of the loops, and whoever made the ProvenFinite vouches
             // for them.
@@ -69,7 +69,7 @@ impl Device {
         })?;
         let translated = started.elapsed();
         let groups = kernel.groups.iter().map(|group| Some(*group)).collect::<Vec<_>>();
-        let pipeline = self.beside(kernel.label, |device| {
+        let pipeline = self.scoped_off_thread(kernel.label, |device| {
             let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
                 label: Some(kernel.label),
                 bind_group_layouts: &groups,

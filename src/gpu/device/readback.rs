@@ -32,7 +32,7 @@ pub struct Staging {
 
 /// A piece on its way to the host, to be read after its submission. Pieces may be dropped unread.
 #[must_use]
-pub struct Copied {
+pub struct PendingReadback {
     staging: Staging,
     size: u64,
     /// Once its mapping is requested: what comes of that.
@@ -76,7 +76,7 @@ impl Readback {
         encoder: &mut wgpu::CommandEncoder,
         source: &wgpu::Buffer,
         size: u64,
-    ) -> Result<Copied> {
+    ) -> Result<PendingReadback> {
         let staging = self.staging(device, size)?;
         encoder.copy_buffer_to_buffer(source, 0, staging.buffer()?, 0, size);
         Ok(staging.filled(size))
@@ -110,8 +110,8 @@ impl Staging {
     }
 
     /// Once the commands that fill its first `size` bytes are recorded.
-    pub fn filled(self, size: u64) -> Copied {
-        Copied { staging: self, size, mapped: None }
+    pub fn filled(self, size: u64) -> PendingReadback {
+        PendingReadback { staging: self, size, mapped: None }
     }
 }
 
@@ -123,7 +123,7 @@ impl Drop for Staging {
     }
 }
 
-impl Copied {
+impl PendingReadback {
     /// Asks for the piece, after its submission, so that waiting for that is all that is left to do. Errors: as
     /// [`Device::scoped`].
     pub fn request(&mut self, device: &Device) -> Result<()> {
@@ -138,9 +138,9 @@ impl Copied {
         })
     }
 
-    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`, as [`Arrived::part`] does.
+    /// Waits for `submission`, which fills the piece, and hands its bytes to `take`, as [`MappedReadback::part`] does.
     ///
-    /// Errors: as [`Self::wait`] and [`Arrived::part`].
+    /// Errors: as [`Self::wait`] and [`MappedReadback::part`].
     pub fn read<T>(
         self,
         device: &Device,
@@ -153,7 +153,7 @@ impl Copied {
 
     /// Waits for `submission`, which fills the piece. Errors: those of [`Device::wait`]; `Internal` when it was not
     /// submitted.
-    pub fn wait<'a>(mut self, device: &'a Device, submission: &wgpu::SubmissionIndex) -> Result<Arrived<'a>> {
+    pub fn wait<'a>(mut self, device: &'a Device, submission: &wgpu::SubmissionIndex) -> Result<MappedReadback<'a>> {
         if self.mapped.is_none() {
             self.request(device)?;
         }
@@ -164,7 +164,7 @@ impl Copied {
         match outcome.unwrap_or(Err(mpsc::RecvTimeoutError::Disconnected)) {
             Ok(Ok(())) => {
                 let view = self.staging.buffer()?.get_mapped_range(0..self.size).map_err(|error| failed(&error))?;
-                Ok(Arrived { view, copied: self, device })
+                Ok(MappedReadback { view, copied: self, device })
             }
             Ok(Err(error)) => Err(failed(&error)),
             Err(error) => Err(failed(&error)),
@@ -173,14 +173,14 @@ impl Copied {
 }
 
 /// A piece that the host can read.
-pub struct Arrived<'a> {
+pub struct MappedReadback<'a> {
     /// Goes before the mapping does. To be touched in [`Self::part`] only.
     view: wgpu::BufferView,
-    copied: Copied,
+    copied: PendingReadback,
     device: &'a Device,
 }
 
-impl Arrived<'_> {
+impl MappedReadback<'_> {
     /// Hands the bytes of `range`, from the piece's begin, to `take`, as `Device::while_it_exists` does. Large pieces
     /// are better taken in parts.
     ///
@@ -195,7 +195,7 @@ impl Arrived<'_> {
     }
 }
 
-impl Drop for Copied {
+impl Drop for PendingReadback {
     fn drop(&mut self) {
         if let (Some(_), Ok(buffer)) = (&self.mapped, self.staging.buffer()) {
             buffer.unmap();

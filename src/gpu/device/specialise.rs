@@ -46,24 +46,24 @@ impl Parsed {
             process_overrides(&self.module, &self.info, Some((ShaderStage::Compute, entry_point)), &values)
                 .map_err(|error| Error::internal(format!("{label}: {error}")))?;
         let mut module = module.into_owned();
-        leave_out_what_never_runs(&mut module);
+        remove_dead_code(&mut module);
         Ok(module)
     }
 }
 
-fn leave_out_what_never_runs(module: &mut Module) {
-    let mut answers = Answers::new();
+fn remove_dead_code(module: &mut Module) {
+    let mut constant_functions = ConstantFunctions::new();
     let mut functions = std::mem::take(&mut module.functions);
     // Those that are called come before those that call them.
     for (handle, function) in functions.iter_mut() {
-        if let Some(answer) = Pruned::prune(module, function, &answers) {
-            answers.insert(handle, answer);
+        if let Some(constant_result) = Pruner::prune(module, function, &constant_functions) {
+            constant_functions.insert(handle, constant_result);
         }
     }
     module.functions = functions;
     let mut entry_points = std::mem::take(&mut module.entry_points);
     for entry in &mut entry_points {
-        Pruned::prune(module, &mut entry.function, &answers);
+        Pruner::prune(module, &mut entry.function, &constant_functions);
     }
     module.entry_points = entry_points;
     // This also leaves out the functions that nothing calls any more.
@@ -71,33 +71,37 @@ fn leave_out_what_never_runs(module: &mut Module) {
 }
 
 /// Functions that do nothing but return a value that is known.
-type Answers = HashMap<Handle<Function>, Literal>;
+type ConstantFunctions = HashMap<Handle<Function>, Literal>;
 
 /// A function whose constant conditions are being decided.
-struct Pruned<'a> {
+struct Pruner<'a> {
     module: &'a Module,
     function: &'a Function,
-    answers: &'a Answers,
+    constant_functions: &'a ConstantFunctions,
     /// Variables that hold one value throughout: naga makes one for each `&&` and `||`.
     known: HashMap<Handle<LocalVariable>, Literal>,
 }
 
-impl<'a> Pruned<'a> {
+impl<'a> Pruner<'a> {
     /// Leaves out of `function` what never runs; the value that is all it returns, if that is known.
-    fn prune(module: &'a Module, function: &mut Function, answers: &'a Answers) -> Option<Literal> {
+    fn prune(
+        module: &'a Module,
+        function: &mut Function,
+        constant_functions: &'a ConstantFunctions,
+    ) -> Option<Literal> {
         let mut known = HashMap::new();
-        let answer = loop {
+        let constant_result = loop {
             let body = std::mem::take(&mut function.body);
-            let pruned = Pruned { module, function, answers, known };
+            let pruned = Pruner { module, function, constant_functions, known };
             let body = pruned.block(body);
             let found = pruned.constant_variables(&body);
-            let answer = pruned.answer(&body);
+            let constant_result = pruned.constant_result(&body);
             let more = found.len() > pruned.known.len();
             known = found;
             function.body = body;
             // A variable that turned out constant may decide more.
             if !more {
-                break answer;
+                break constant_result;
             }
         };
         let mut evaluated = HashSet::new();
@@ -115,19 +119,19 @@ impl<'a> Pruned<'a> {
         function
             .named_expressions
             .retain(|handle, _| evaluated.contains(handle) || expressions[*handle].needs_pre_emit());
-        answer
+        constant_result
     }
 
     /// The value that `body` returns, if it is known and the body does nothing else.
-    fn answer(&self, body: &Block) -> Option<Literal> {
-        let (mut answers, mut acts) = (Vec::new(), false);
+    fn constant_result(&self, body: &Block) -> Option<Literal> {
+        let (mut results, mut acts) = (Vec::new(), false);
         visit(body, &mut |statement| match statement {
             Statement::Emit(_) | Statement::Block(_) => {}
-            Statement::Return { value: Some(value) } => answers.push(self.value(*value)),
+            Statement::Return { value: Some(value) } => results.push(self.value(*value)),
             _ => acts = true,
         });
-        match answers[..] {
-            [answer] if !acts => answer,
+        match results[..] {
+            [constant_result] if !acts => constant_result,
             _ => None,
         }
     }
@@ -141,7 +145,7 @@ impl<'a> Pruned<'a> {
                 other => kept.push(other, span),
             }
             // Nothing behind a statement that leaves the block runs.
-            if kept.last().is_some_and(leaves) {
+            if kept.last().is_some_and(ends_block) {
                 break;
             }
         }
@@ -159,7 +163,7 @@ impl<'a> Pruned<'a> {
             Statement::Loop { body, continuing, break_if } => {
                 let body = self.block(body);
                 // Where nothing goes on to it, it may use what is no longer evaluated.
-                if body.last().is_some_and(leaves) && !continues(&body) {
+                if body.last().is_some_and(ends_block) && !continues(&body) {
                     return Statement::Loop { body, continuing: Block::new(), break_if: None };
                 }
                 Statement::Loop { body, continuing: self.block(continuing), break_if }
@@ -182,7 +186,7 @@ impl<'a> Pruned<'a> {
                     _ => None,
                 }
             }
-            Expression::CallResult(function) => self.answers.get(&function).copied(),
+            Expression::CallResult(function) => self.constant_functions.get(&function).copied(),
             Expression::Select { condition, accept, reject } => match self.value(condition)? {
                 Literal::Bool(on) => self.value(if on { accept } else { reject }),
                 _ => None,
@@ -237,7 +241,7 @@ impl<'a> Pruned<'a> {
 }
 
 /// Whether nothing that follows the statement in its block runs.
-fn leaves(statement: &Statement) -> bool {
+fn ends_block(statement: &Statement) -> bool {
     matches!(statement, Statement::Return { .. } | Statement::Kill | Statement::Break | Statement::Continue)
 }
 

@@ -1,7 +1,7 @@
 //! GPU time of compute passes, by timestamp queries. Knows nothing of what the passes do.
 
 use super::buffer::Buffer;
-use super::readback::{Copied, Readback};
+use super::readback::{PendingReadback, Readback};
 use super::wgpu_device::Device;
 use crate::error::{Error, Result};
 
@@ -62,7 +62,7 @@ impl GpuTimer {
     }
 
     /// [`Self::resolve`] to a staging buffer of the timer's. `None` when no pass was timed.
-    pub fn finish(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder) -> Result<Option<Copied>> {
+    pub fn finish(&mut self, device: &Device, encoder: &mut wgpu::CommandEncoder) -> Result<Option<PendingReadback>> {
         if self.passes == 0 {
             return Ok(None);
         }
@@ -72,8 +72,8 @@ impl GpuTimer {
     }
 }
 
-/// Nanoseconds that the passes of `submission` took together. Errors: as [`Copied::read`].
-pub fn read_time(device: &Device, copied: Copied, submission: &wgpu::SubmissionIndex) -> Result<u64> {
+/// Nanoseconds that the passes of `submission` took together. Errors: as [`PendingReadback::read`].
+pub fn read_time(device: &Device, copied: PendingReadback, submission: &wgpu::SubmissionIndex) -> Result<u64> {
     let ticks = copied.read(device, submission, sum_of_spans)?;
     Ok(in_nanoseconds(device, ticks))
 }

@@ -47,7 +47,7 @@ pub struct Device {
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
     pub(in crate::gpu) shaders: super::specialise::Shaders,
-    pub(in crate::gpu) bindings: super::bindings::Bindings,
+    pub(in crate::gpu) bindings: super::bindings::BindGroupCache,
     pub(in crate::gpu) uploads: Uploads,
 }
 
@@ -96,9 +96,9 @@ impl Device {
             memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
             ..Default::default()
         };
-        let alone = driver_lock::lock();
+        let driver = driver_lock::lock();
         let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(raw.request_device(&descriptor))));
-        drop(alone);
+        drop(driver);
         let refused = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {why}", adapter.info.name))
         };
@@ -206,7 +206,7 @@ impl Device {
     /// Reaches no driver.
     fn refuses(&self) -> Result<bool> {
         let nothing = wgpu::QuerySetDescriptor { label: None, ty: wgpu::QueryType::Occlusion, count: 0 };
-        self.unpanicked(|| {
+        self.catching_panics(|| {
             let refusal = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
             drop(self.raw.create_query_set(&nothing));
             pollster::block_on(refusal.pop()).is_some()
@@ -219,7 +219,7 @@ impl Device {
     /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
     pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check()?;
-        match self.watched(work) {
+        match self.in_error_scopes(work) {
             (_, Some(error)) => Err(self.explain(from_wgpu(what, &error))),
             (done, None) => self.check().map(|()| done),
         }
@@ -227,16 +227,16 @@ impl Device {
 
     /// [`Self::scoped`] for threads beside the one that uses the device: leaves the errors that come outside every
     /// call to that one, and does not ask the device anew whether it is lost.
-    pub(in crate::gpu) fn beside<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
+    pub(in crate::gpu) fn scoped_off_thread<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check_known_loss()?;
-        match self.watched(work) {
+        match self.in_error_scopes(work) {
             (_, Some(error)) => Err(from_wgpu(what, &error)),
             (done, None) => Ok(done),
         }
     }
 
     /// Runs `work`, and what wgpu had against it.
-    fn watched<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
+    fn in_error_scopes<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
         driver_lock::guard();
         let _holding = hold();
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
@@ -351,11 +351,11 @@ impl Device {
     }
 
     fn poll(&self, how: wgpu::PollType) -> Result<Result<wgpu::PollStatus, wgpu::PollError>> {
-        self.unpanicked(|| self.raw.poll(how))
+        self.catching_panics(|| self.raw.poll(how))
     }
 
     /// wgpu panics in some calls when the driver reports that the device is lost. Errors: `DeviceLost`.
-    fn unpanicked<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
+    fn catching_panics<T>(&self, call: impl FnOnce() -> T) -> Result<T> {
         self.leave_what_is_gone();
         driver_lock::guard();
         let _holding = hold();
@@ -375,10 +375,10 @@ impl Device {
     pub(in crate::gpu) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
         let first = || !self.compiled.load(Ordering::Acquire);
         // Those who waited for the first one make theirs side by side.
-        let alone = first().then(driver_lock::lock).filter(|_| first());
+        let driver = first().then(driver_lock::lock).filter(|_| first());
         let made = compile();
         self.compiled.store(true, Ordering::Release);
-        drop(alone);
+        drop(driver);
         made
     }
 
@@ -396,7 +396,7 @@ impl Drop for Device {
     fn drop(&mut self) {
         self.drain();
         let queue = self.queue.take();
-        let alone = driver_lock::lock();
+        let driver = driver_lock::lock();
         let close = || {
             self.bindings.clear();
             drop(self.uploads.take());
@@ -412,7 +412,7 @@ impl Drop for Device {
         if catch_unwind(AssertUnwindSafe(close)).is_err() {
             log::error!("closing the GPU device panicked");
         }
-        drop(alone);
+        drop(driver);
     }
 }
 

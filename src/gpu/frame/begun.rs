@@ -4,7 +4,7 @@ use super::stages::Stages;
 use super::steps::{Step, Steps};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
-use crate::gpu::kernel::variant::{PixelTarget, Source};
+use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
 use crate::scene::Projection;
 use crate::tracer::{FrameRequest, FrameStats};
 
@@ -15,15 +15,15 @@ pub struct BegunFrame {
     pub(in crate::gpu) target: PixelTarget,
     pub(in crate::gpu) samples: u32,
     pub(in crate::gpu) projection: Projection,
-    pub(in crate::gpu) source: Source,
+    pub(in crate::gpu) source: RecordSource,
     pub(in crate::gpu) steps: Steps,
     pub(in crate::gpu) bloom: Option<Bloom>,
     /// Submitted so far.
     pub(in crate::gpu) submitted: u64,
 }
 
-/// Records commands of its own.
-pub type Recording<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
+/// Records further commands into the last submission of a frame.
+pub type ExtraCommands<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
 
 impl BegunFrame {
     /// The number of steps.

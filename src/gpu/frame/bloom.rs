@@ -1,7 +1,7 @@
 //! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that
 //! spread it. What goes where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
-use super::buffers::Written;
+use super::buffers::CachedUniform;
 use crate::error::{Error, Result};
 use crate::film::bloom::{Bloom, Level, MOST_LEVELS, TAIL};
 use crate::gpu::device::buffer::uniform_stride;
@@ -39,10 +39,10 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
 /// Textures that frames with bloom share; they grow and stay.
 #[derive(Default)]
 pub struct BloomBuffers {
-    made: Option<Made>,
+    resources: Option<BloomResources>,
 }
 
-struct Made {
+struct BloomResources {
     /// Exposed, of a frame or a tile.
     light: Texture,
     /// Mean light, from the finest grid on.
@@ -52,7 +52,7 @@ struct Made {
     /// Linear between the centres of cells.
     smooth: wgpu::Sampler,
     /// A `LevelUniform` for each grid, `uniform_stride` apart.
-    levels: Written,
+    levels: CachedUniform,
 }
 
 /// The passes of a frame's bloom.
@@ -60,7 +60,7 @@ pub struct BloomStages {
     /// From the finest grid on.
     gather: Vec<Stage>,
     /// To each grid but the last from the one above it.
-    give_back: Vec<Stage>,
+    upsample: Vec<Stage>,
     sizes: Vec<[u32; 2]>,
     stride: u32,
 }
@@ -70,7 +70,7 @@ fn finer(bloom: &Bloom) -> impl Iterator<Item = [u32; 2]> {
     std::iter::once(bloom.frame).chain(bloom.levels.iter().map(|level| level.size))
 }
 
-impl Made {
+impl BloomResources {
     fn new(device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<Self> {
         let TextureKind { format, dimension } = LIGHT;
         let texture = |label: &str, size: [u32; 2]| device.texture(label, format, dimension, size, 1);
@@ -86,7 +86,7 @@ impl Made {
             light: texture("light", light)?,
             gathered: grids("gathered light", &bloom.levels)?,
             spread: grids("spread light", but_last)?,
-            levels: Written::new(device, "bloom levels", bytes)?,
+            levels: CachedUniform::new(device, "bloom levels", bytes)?,
         })
     }
 
@@ -115,16 +115,16 @@ fn view(texture: &Texture) -> wgpu::BindingResource<'_> {
 }
 
 impl BloomBuffers {
-    fn made(&self) -> Result<&Made> {
-        self.made.as_ref().ok_or_else(|| Error::internal("bloom without textures"))
+    fn resources(&self) -> Result<&BloomResources> {
+        self.resources.as_ref().ok_or_else(|| Error::internal("bloom without textures"))
     }
 
     /// Makes room for a frame of which `light` pixels are held at once.
     pub fn prepare(&mut self, device: &Device, bloom: &Bloom, light: [u32; 2]) -> Result<()> {
-        if !self.made.as_ref().is_some_and(|made| made.serves(bloom, light)) {
+        if !self.resources.as_ref().is_some_and(|resources| resources.serves(bloom, light)) {
             // The old ones go first: both together need not fit.
-            self.made = None;
-            self.made = Some(Made::new(device, bloom, light)?);
+            self.resources = None;
+            self.resources = Some(BloomResources::new(device, bloom, light)?);
         }
         Ok(())
     }
@@ -150,56 +150,57 @@ impl BloomBuffers {
             };
             slot[..size_of::<LevelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
-        let made = self.made.as_mut().ok_or_else(|| Error::internal("bloom without textures"))?;
-        made.levels.write(device, &bytes)
+        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("bloom without textures"))?;
+        resources.levels.write(device, &bytes)
     }
 
     /// After a submission that failed, nobody knows what the buffers hold.
     pub fn forget(&mut self) {
-        if let Some(made) = &mut self.made {
-            made.levels.forget();
+        if let Some(resources) = &mut self.resources {
+            resources.levels.forget();
         }
     }
 
     /// The texture that takes the shaded light.
     pub fn light(&self) -> Result<wgpu::BindingResource<'_>> {
-        Ok(view(&self.made()?.light))
+        Ok(view(&self.resources()?.light))
     }
 
     /// Group 1 of development.
     pub fn group(&self, bloom: &Bloom) -> Result<[wgpu::BindingResource<'_>; 4]> {
-        let made = self.made()?;
-        let grids = if bloom.levels.len() > 1 { &made.spread } else { &made.gathered };
+        let resources = self.resources()?;
+        let grids = if bloom.levels.len() > 1 { &resources.spread } else { &resources.gathered };
         let glare = grids.first().ok_or_else(|| Error::internal("bloom without a grid"))?;
-        Ok([view(&made.light), view(glare), made.smooth(), made.level()])
+        Ok([view(&resources.light), view(glare), resources.smooth(), resources.level()])
     }
 
     pub fn stages(&self, device: &Device, kernels: &Kernels, bloom: &Bloom) -> Result<BloomStages> {
-        let made = self.made()?;
+        let resources = self.resources()?;
         let count = bloom.levels.len();
-        let below = std::iter::once(&made.light).chain(&made.gathered);
-        let gather = below.zip(&made.gathered).take(count).enumerate().map(|(index, (finer, cells))| {
+        let below = std::iter::once(&resources.light).chain(&resources.gathered);
+        let gather = below.zip(&resources.gathered).take(count).enumerate().map(|(index, (finer, cells))| {
             let key = gather_key(bloom, index);
             let kernel = kernels.get(key)?;
             match key {
                 KernelKey::GatherBase => {
-                    kernel.stage(device, &[&[made.level(), view(finer), made.smooth(), view(cells)]])
+                    kernel.stage(device, &[&[resources.level(), view(finer), resources.smooth(), view(cells)]])
                 }
-                _ => kernel.stage(device, &[&[made.level(), view(finer), view(cells)]]),
+                _ => kernel.stage(device, &[&[resources.level(), view(finer), view(cells)]]),
             }
         });
         let gather = gather.collect::<Result<Vec<_>>>()?;
-        let mut give_back = Vec::new();
+        let mut upsample = Vec::new();
         for index in 0..count.saturating_sub(1) {
             // The last grid spreads what it gathered.
-            let above = if index + 2 == count { made.gathered.get(index + 1) } else { made.spread.get(index + 1) };
-            let all = made.gathered.get(index).zip(above).zip(made.spread.get(index));
+            let above =
+                if index + 2 == count { resources.gathered.get(index + 1) } else { resources.spread.get(index + 1) };
+            let all = resources.gathered.get(index).zip(above).zip(resources.spread.get(index));
             let ((finer, coarser), spread) = all.ok_or_else(|| Error::internal("bloom without its grids"))?;
-            let group = [made.level(), view(finer), view(coarser), made.smooth(), view(spread)];
-            give_back.push(kernels.get(KernelKey::GiveBack)?.stage(device, &[&group])?);
+            let group = [resources.level(), view(finer), view(coarser), resources.smooth(), view(spread)];
+            upsample.push(kernels.get(KernelKey::Upsample)?.stage(device, &[&group])?);
         }
         let sizes = bloom.levels.iter().map(|level| level.size).collect();
-        Ok(BloomStages { gather, give_back, sizes, stride: uniform_stride::<LevelUniform>(device) as u32 })
+        Ok(BloomStages { gather, upsample, sizes, stride: uniform_stride::<LevelUniform>(device) as u32 })
     }
 }
 
@@ -207,7 +208,7 @@ impl BloomBuffers {
 pub fn kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
     let count = bloom.levels.len();
     let gather = (0..count).map(|index| gather_key(bloom, index));
-    gather.chain((1 < count).then_some(KernelKey::GiveBack))
+    gather.chain((1 < count).then_some(KernelKey::Upsample))
 }
 
 /// The kernel that gathers light into the grid of a level.
@@ -232,7 +233,7 @@ impl BloomStages {
         for ((stage, size), index) in self.gather.iter().zip(&self.sizes).zip(0..).skip(1) {
             stage.dispatch(pass, index * self.stride, *size);
         }
-        for (index, (stage, size)) in self.give_back.iter().zip(&self.sizes).enumerate().rev() {
+        for (index, (stage, size)) in self.upsample.iter().zip(&self.sizes).enumerate().rev() {
             stage.dispatch(pass, (index as u32 + 1) * self.stride, *size);
         }
     }

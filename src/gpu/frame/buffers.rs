@@ -13,7 +13,7 @@ use crate::gpu::device::texture::Texture;
 use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::slots::{RADIANCE, TextureKind};
-use crate::gpu::lens::records::{RecordMakers, step_sum};
+use crate::gpu::lens::records::{RecordStore, step_sum};
 use crate::tracer::PASSES;
 use wgpu::BufferUsages as Usage;
 
@@ -23,37 +23,37 @@ pub struct FrameBuffers {
     pub fixed: Option<FixedBuffers>,
     pub sized: Option<SizedBuffers>,
     pub bloom: BloomBuffers,
-    pub makers: RecordMakers,
+    pub record_store: RecordStore,
     pub edges: EdgeList,
     pub readback: Readback,
-    /// Where kernels put pixels row by row.
-    pub mapped: Mapped,
+    /// Where kernels write pixels row by row.
+    pub mapped: MappedStaging,
     pub timer: Option<GpuTimer>,
 }
 
 /// The buffers that do not depend on a frame's size.
 pub struct FixedBuffers {
-    pub frame: Written,
-    pub film: Written,
+    pub frame: CachedUniform,
+    pub film: CachedUniform,
     /// The same for light that is exposed already.
-    pub film_of_exposed: Written,
+    pub film_of_exposed: CachedUniform,
     /// One `PassUniform` for what is developed in frames with bloom, two for each sample of a batch, with
     /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`; `uniform_stride` apart.
-    pub passes: Written,
+    pub passes: CachedUniform,
     pub step_sum: Buffer,
 }
 
 /// Staging buffers that kernels write.
-pub struct Mapped(pub Readback);
+pub struct MappedStaging(pub Readback);
 
-impl Default for Mapped {
+impl Default for MappedStaging {
     fn default() -> Self {
         Self(Readback::of_kernels())
     }
 }
 
-/// A buffer of uniforms, and what was written to its begin last.
-pub struct Written {
+/// A buffer of uniforms, and the bytes that were last written to it, so that the same bytes are not written again.
+pub struct CachedUniform {
     pub buffer: Buffer,
     bytes: Vec<u8>,
 }
@@ -83,7 +83,7 @@ impl Size {
     }
 }
 
-impl Written {
+impl CachedUniform {
     pub fn new(device: &Device, label: &str, size: u64) -> Result<Self> {
         Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
     }
@@ -124,10 +124,10 @@ impl FrameBuffers {
     pub fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
         if self.fixed.is_none() {
             self.fixed = Some(FixedBuffers {
-                frame: Written::new(device, "frame", size_of::<FrameUniform>() as u64)?,
-                film: Written::new(device, "film", size_of::<FilmParams>() as u64)?,
-                film_of_exposed: Written::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
-                passes: Written::new(
+                frame: CachedUniform::new(device, "frame", size_of::<FrameUniform>() as u64)?,
+                film: CachedUniform::new(device, "film", size_of::<FilmParams>() as u64)?,
+                film_of_exposed: CachedUniform::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
+                passes: CachedUniform::new(
                     device,
                     "passes",
                     u64::from(1 + 2 * MAX_BATCH) * uniform_stride::<PassUniform>(device),
@@ -150,8 +150,8 @@ impl FrameBuffers {
                 packed: device.buffer("packed pixels", bytes, Usage::STORAGE | Usage::COPY_SRC)?,
             });
         }
-        self.makers.prepare(device, &setup.making, size.tile)?;
-        self.edges.prepare(device, if setup.looks.look.refines { size.tile } else { [1, 1] })?;
+        self.record_store.prepare(device, &setup.record_setup, size.tile)?;
+        self.edges.prepare(device, if setup.variants.shade.refines { size.tile } else { [1, 1] })?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
         fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
@@ -160,7 +160,7 @@ impl FrameBuffers {
 
     /// After a submission that failed, nobody knows what the buffers hold.
     pub fn forget(&mut self) {
-        self.makers.forget();
+        self.record_store.forget();
         self.bloom.forget();
         if let Some(fixed) = &mut self.fixed {
             for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.film_of_exposed, &mut fixed.passes] {

@@ -1,30 +1,30 @@
 //! The setup of a frame from its scene: which records, which shader variants, which film. Knows no buffers.
 
 use super::settings::{for_f32, variant};
-use super::setup::{Looks, Setup};
+use super::setup::{Setup, ShadingVariants};
 use super::tracer::GpuTracer;
 use super::uniforms::FrameUniform;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, ShadeVariant, Source, TraceVariant};
-use crate::gpu::lens::kerr::Wanted;
-use crate::gpu::lens::records::Making;
+use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, RecordSource, ShadeVariant, TraceVariant};
+use crate::gpu::lens::kerr::KerrContents;
+use crate::gpu::lens::records::RecordSetup;
 use crate::physics::trace::Settings;
 use crate::scene::observer::Lens;
-use crate::scene::{KerrWorth, Lensing, Projection, Region, Scene, View};
+use crate::scene::{KerrThreshold, Lensing, Projection, Region, Scene, View};
 use crate::tracer::{Backend, FrameRequest};
 use glam::DVec3;
 
 impl GpuTracer {
-    /// How pixels for the host's memory are put.
+    /// How pixels for the host's memory are written.
     pub(in crate::gpu) fn host_pixels(&self, scene: &Scene) -> PixelTarget {
         if self.maps_pixels(scene) { PixelTarget::Rows } else { PixelTarget::Packed }
     }
 
-    /// Whether kernels put pixels into the host's memory themselves, which hides the copy behind the tracing (a device
-    /// of wgpu's runs one thing after another). Other interfaces than Vulkan may keep such memory out of kernels'
-    /// reach, or reach it slowly.
+    /// Whether kernels write pixels into the host's memory themselves, which hides the copy behind the tracing (a
+    /// device of wgpu's runs one thing after another). Other interfaces than Vulkan may keep such memory out of
+    /// kernels' reach, or reach it slowly.
     fn maps_pixels(&self, scene: &Scene) -> bool {
         let info = &self.adapter.info;
         let pays = info.backend == Backend::Vulkan && !info.software;
@@ -42,16 +42,16 @@ impl GpuTracer {
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
-        let film_look = FilmVariant::new(&scene.film, scene.view, request.format, target);
-        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, film_look.is_usual());
+        let film_variant = FilmVariant::new(&scene.film, scene.view, request.format, target);
+        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, film_variant.is_usual());
         // Where one kernel both looks and develops, what is unusual in either is left open in both.
         let both = bloom.is_none() && samples == 1;
         let own_view = !shares || (usual_view && (usual_film || !both));
         let own_film = !shares || (usual_film && (usual_view || !both));
-        let developed = if own_film { film_look } else { film_look.of_any() };
+        let developed = if own_film { film_variant } else { film_variant.of_any() };
         let projection = own_view.then_some(scene.camera.projection);
-        let looks = Looks {
-            look: ShadeVariant {
+        let variants = ShadingVariants {
+            shade: ShadeVariant {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
                 milky_way: scene.shows_milky_way() && !request.transparent,
@@ -70,35 +70,35 @@ impl GpuTracer {
             several_samples: samples > 1,
             rows: target == PixelTarget::Rows,
         };
-        let making = self.making(scene, &lens, &settings, &request.region, projection);
-        let uniform = FrameUniform::new(scene, &lens, &settings, making.crossings)?;
-        Ok(Setup { making, looks, samples, uniform, film, bloom })
+        let record_setup = self.record_setup(scene, &lens, &settings, &request.region, projection);
+        let uniform = FrameUniform::new(scene, &lens, &settings, record_setup.crossings)?;
+        Ok(Setup { record_setup, variants, samples, uniform, film, bloom })
     }
 
     /// How the records of a frame are made.
-    fn making(
+    fn record_setup(
         &self,
         scene: &Scene,
         lens: &Lens,
         settings: &Settings,
         region: &Region,
         projection: Option<Projection>,
-    ) -> Making {
-        let eye = lens.observer.frame;
+    ) -> RecordSetup {
+        let observer = lens.observer.frame;
         let emitters = scene.emitters();
         let pattern = emitters.needs().places;
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);
-        let source = match scene.lensing(&eye, pixels, KerrWorth::GPU) {
-            Lensing::Traced => Source::Traced,
-            Lensing::Schwarzschild => Source::Schwarzschild { delay, moving },
-            Lensing::Kerr => Source::Kerr { delay, pattern, moving, rest: false },
+        let source = match scene.lensing(&observer, pixels, KerrThreshold::GPU) {
+            Lensing::Traced => RecordSource::Traced,
+            Lensing::Schwarzschild => RecordSource::Schwarzschild { delay, moving },
+            Lensing::Kerr => RecordSource::Kerr { delay, pattern, moving, deferred: false },
         };
         let hidden = settings.opaque_u.is_some() && emitters.hides_all();
         let crossings = if hidden { 1 } else { settings.max_crossings as u32 };
-        let inside = eye.r <= 2.0;
+        let inside = observer.r <= 2.0;
         let plane_u = emitters.plane_u();
-        Making {
+        RecordSetup {
             source,
             variant: TraceVariant {
                 azimuth: pattern,
@@ -108,8 +108,8 @@ impl GpuTracer {
             },
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
-            eye,
-            wanted: Wanted {
+            observer,
+            contents: KerrContents {
                 orders: if plane_u.is_some() { settings.max_crossings as u32 } else { 0 },
                 plane_u: plane_u.unwrap_or([1.0, 0.0]),
                 pattern,

@@ -1,12 +1,12 @@
 //! The ray records of a frame, for tests: has records/export.wgsl write them, and reads them back.
 
 use super::buffers::Size;
-use super::stages::Taking;
+use super::stages::RecordConsumer;
 use super::submission::pass_of;
 use super::tracer::GpuTracer;
 use crate::allocate::collected;
 use crate::emit::medium::Media;
-use crate::emit::{Crossing, Place};
+use crate::emit::{Crossing, EmissionPoint};
 use crate::error::{Error, Result};
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
@@ -37,7 +37,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         2 => Fate::Unresolved,
         _ => Fate::Hidden,
     };
-    let place = |[ln_r, azimuth, delay, _]: [f64; 4]| Place { ln_r, azimuth, delay };
+    let place = |[ln_r, azimuth, delay, _]: [f64; 4]| EmissionPoint { ln_r, azimuth, delay };
     let crossing = |[at, dx, dy]: &[[f64; 4]; 3]| Crossing {
         u: dx[3],
         order: at[3] as u32,
@@ -87,12 +87,12 @@ impl GpuTracer {
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let (common, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
-        let records = buffers.makers.stages(device, &self.kernels, &setup.making, &shared)?;
-        let group = buffers.makers.group(setup.making.source)?;
+        let records = buffers.record_store.stages(device, &self.kernels, &setup.record_setup, &shared)?;
+        let group = buffers.record_store.group(setup.record_setup.source)?;
         let take = |kernels: &Kernels, source| {
-            kernels.get(KernelKey::export(source, setup.looks.look))?.stage(device, &[&common, &group, &exported])
+            kernels.get(KernelKey::export(source, setup.variants.shade))?.stage(device, &[&common, &group, &exported])
         };
-        let taking = Taking::new(&self.kernels, &setup.making, self.adapter.info.software, take)?;
+        let consumer = RecordConsumer::new(&self.kernels, &setup.record_setup, self.adapter.info.software, take)?;
 
         let whole = Tile { x: 0, y: 0, width: request.width, height: request.height };
         let fixed = buffers.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
@@ -100,11 +100,11 @@ impl GpuTracer {
             .passes
             .write(device, bytemuck::bytes_of(&pass_of(request, whole, (0, 1), scene.camera.projection, 0, [0, 0])))?;
         let mut encoder = device.encoder("records")?;
-        buffers.makers.reset(setup.making.source, &fixed.step_sum, &mut encoder);
+        buffers.record_store.reset(setup.record_setup.source, &fixed.step_sum, &mut encoder);
         {
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
             records.encode(&mut pass, true, 0, tile);
-            taking.dispatch(&mut pass, 0, tile);
+            consumer.dispatch(&mut pass, 0, tile);
         }
         let bytes = u64::from(request.width) * u64::from(request.height) * EXPORT_BYTES;
         let copied = buffers.readback.copy(device, &mut encoder, &sized.packed, bytes)?;

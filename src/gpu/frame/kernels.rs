@@ -4,7 +4,7 @@
 use super::setup::Setup;
 use super::tracer::GpuTracer;
 use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::{PixelTarget, Refined, Source};
+use crate::gpu::kernel::variant::{PixelTarget, RecordSource, RefineVariant};
 use crate::image::PixelFormat;
 use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMap, View};
 use crate::sky::SkyMap;
@@ -13,32 +13,33 @@ use crate::tracer::{Backend, FrameRequest};
 impl Setup {
     /// Every kernel of the frame; those that take longest to make come last.
     pub fn kernels(&self) -> Vec<KernelKey> {
-        let (making, looks) = (&self.making, &self.looks);
-        let mut keys = match making.source {
-            Source::Traced => vec![KernelKey::Pixels(making.variant), KernelKey::Count],
-            Source::Schwarzschild { delay, .. } => {
+        let (record_setup, variants) = (&self.record_setup, &self.variants);
+        let mut keys = match record_setup.source {
+            RecordSource::Traced => vec![KernelKey::Pixels(record_setup.variant), KernelKey::Count],
+            RecordSource::Schwarzschild { delay, .. } => {
                 vec![KernelKey::SchwarzschildEnds, KernelKey::SchwarzschildColumns { delay }]
             }
-            Source::Kerr { delay, pattern, .. } => {
+            RecordSource::Kerr { delay, pattern, .. } => {
                 vec![KernelKey::KerrNodes { delay, pattern }, KernelKey::KerrFlags { pattern }]
             }
         };
-        let rest = making.rest();
-        let film = (!looks.several_samples).then_some(looks.film);
+        let deferred = record_setup.deferred_source();
+        let film = (!variants.several_samples).then_some(variants.film);
         let shade = |source| match film {
-            Some(film) => KernelKey::shade_only(source, looks.look, film),
-            None => KernelKey::shade_sample(source, looks.look),
+            Some(film) => KernelKey::shade_only(source, variants.shade, film),
+            None => KernelKey::shade_sample(source, variants.shade),
         };
-        keys.push(shade(making.source));
-        keys.extend(rest.map(shade));
-        if looks.look.refines {
-            let refined = Refined { source: rest.unwrap_or(making.source), variant: making.variant };
-            keys.push(KernelKey::refine(refined, looks.look, film));
+        keys.push(shade(record_setup.source));
+        keys.extend(deferred.map(shade));
+        if variants.shade.refines {
+            let refined =
+                RefineVariant { source: deferred.unwrap_or(record_setup.source), variant: record_setup.variant };
+            keys.push(KernelKey::refine(refined, variants.shade, film));
         }
         if film.is_none() {
-            keys.push(KernelKey::Develop(looks.film, None));
+            keys.push(KernelKey::Develop(variants.film, None));
         }
-        if let (Some(bloom), Some(developed)) = (&self.bloom, looks.developed) {
+        if let (Some(bloom), Some(developed)) = (&self.bloom, variants.developed) {
             keys.extend(super::bloom::kernels(bloom));
             keys.push(KernelKey::Develop(developed, Some(bloom.factor)));
         }
@@ -115,7 +116,7 @@ impl GpuTracer {
             self.kernels.anticipate(setup.kernels().into_iter().rev().collect());
         }
         // Kept for the process; a frame that comes first waits for them, or makes them itself.
-        self.kernels.run_behind(move || {
+        self.kernels.run_in_background(move || {
             let _ = (scene.stars(), SkyMap::milky_way());
         });
     }

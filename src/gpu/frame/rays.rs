@@ -1,5 +1,5 @@
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
-//! in f32; but for eyes so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
+//! in f32; but for observers so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
 
 use super::settings::{ray_settings, variant};
 use super::tracer::GpuTracer;
@@ -20,8 +20,8 @@ use wgpu::BufferUsages as Usage;
 
 /// Rays of one submission.
 const CHUNK: usize = 1 << 14;
-/// Distance of an eye from the horizon, relative to its radius, below which u in f32 is off by more than 1e-3 of that
-/// distance.
+/// Distance of an observer from the horizon, relative to its radius, below which u in f32 is off by more than 1e-3 of
+/// that distance.
 const TOO_NEAR: f64 = 1e-4;
 /// `RayEnd`s of a ray: its end and its crossings.
 const ENDS: usize = 1 + MAX_CROSSINGS;
@@ -64,12 +64,12 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 3] {
 
 #[derive(Default)]
 pub struct RayBuffers {
-    made: Option<[Buffer; 3]>,
+    resources: Option<[Buffer; 3]>,
     readback: Readback,
 }
 
 /// A valid ray of the batch.
-struct Begun {
+struct StartedRay {
     index: usize,
     frame: LocalFrame,
     constants: Constants,
@@ -87,7 +87,7 @@ impl GpuTracer {
     fn trace_chunk(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         let horizon = horizon_outer(scene.hole.spin);
         let exact = scene.quality.ray_settings(scene.hole.spin);
-        let mut begun = with_room(rays.len(), "rays to trace")?;
+        let mut started = with_room(rays.len(), "rays to trace")?;
         let mut starts = with_room(rays.len(), "rays to trace")?;
         for (index, (ray, hit)) in rays.iter().zip(hits.iter_mut()).enumerate() {
             *hit = Hit::default();
@@ -102,7 +102,7 @@ impl GpuTracer {
                 }
                 Some((frame, Some((constants, state)))) => {
                     starts.push(ray_start(&constants, &state));
-                    begun.push(Begun { index, frame, constants });
+                    started.push(StartedRay { index, frame, constants });
                 }
             }
         }
@@ -110,7 +110,7 @@ impl GpuTracer {
             return Ok(());
         }
         let ends = self.run(scene, &starts)?;
-        for (ray, ends) in begun.iter().zip(ends.chunks_exact(ENDS)) {
+        for (ray, ends) in started.iter().zip(ends.chunks_exact(ENDS)) {
             hits[ray.index] = finish(scene, &rays[ray.index], ray, ends);
         }
         Ok(())
@@ -120,15 +120,15 @@ impl GpuTracer {
         let device = &self.device;
         let settings = ray_settings(scene);
         let compiled = self.kernels.get(KernelKey::Rays(variant(scene, &settings, true)))?;
-        if self.ray_buffers.made.is_none() {
+        if self.ray_buffers.resources.is_none() {
             let bytes = |size: usize| (CHUNK * size) as u64;
-            self.ray_buffers.made = Some([
+            self.ray_buffers.resources = Some([
                 device.buffer("rays", size_of::<RaysUniform>() as u64, Usage::UNIFORM | Usage::COPY_DST)?,
                 device.buffer("ray starts", bytes(size_of::<RayStart>()), Usage::STORAGE | Usage::COPY_DST)?,
                 device.buffer("ray ends", bytes(size_of::<RayEnd>() * ENDS), Usage::STORAGE | Usage::COPY_SRC)?,
             ]);
         }
-        let Some([uniform, input, output]) = &self.ray_buffers.made else {
+        let Some([uniform, input, output]) = &self.ray_buffers.resources else {
             return Err(Error::internal("rays without buffers"));
         };
         let a = scene.hole.spin;
@@ -186,13 +186,13 @@ fn place(end: &RayEnd) -> State {
     State { u: 0.0, du: 0.0, n: DVec3::new(x, y, z), dn: DVec3::ZERO, drag, delay: 0.0 }
 }
 
-fn finish(scene: &Scene, ray: &Ray, begun: &Begun, ends: &[RayEnd]) -> Hit {
+fn finish(scene: &Scene, ray: &Ray, started: &StartedRay, ends: &[RayEnd]) -> Hit {
     let Some((end, crossings)) = ends.split_first() else { return Hit { fate: Fate::Unresolved, ..Hit::default() } };
     let [fate, steps, count, tau] = end.rest;
     let mut traced = RayTrace { steps, ..unresolved() };
     let swept = || {
         let tau = f64::from(f32::from_bits(tau));
-        if begun.constants.a == 0.0 { begun.constants.k.max(0.0).sqrt() * tau } else { f64::NAN }
+        if started.constants.a == 0.0 { started.constants.k.max(0.0).sqrt() * tau } else { f64::NAN }
     };
     match fate {
         0 => (traced.fate, traced.swept) = (trace::Fate::Captured, swept()),
@@ -214,5 +214,5 @@ fn finish(scene: &Scene, ray: &Ray, begun: &Begun, ends: &[RayEnd]) -> Hit {
             order: x.rest[2],
         });
     }
-    scene.hit(ray, &begun.frame, Some(&begun.constants), &traced)
+    scene.hit(ray, &started.frame, Some(&started.constants), &traced)
 }

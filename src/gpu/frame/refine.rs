@@ -7,13 +7,13 @@ use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::{FilmVariant, Refined, ShadeVariant, Source, TraceVariant};
+use crate::gpu::kernel::variant::{FilmVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
 use wgpu::BufferUsages as Usage;
 
 /// `Edges` of refine/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
 
-/// Workgroups that share the list: as `REST_GROUPS` of stages.rs.
+/// Workgroups that share the list: as `DEFERRED_GROUPS` of stages.rs.
 const GROUPS: u32 = 2048;
 const GROUPS_SOFTWARE: u32 = 16;
 
@@ -53,22 +53,23 @@ impl EdgeList {
 }
 
 /// The kernel over the list.
-pub struct Refining {
+pub struct RefineStage {
     stage: Stage,
     groups: u32,
 }
 
-impl Refining {
+impl RefineStage {
     /// `shared`: groups 0 and 1, and without `film` 2, as those of the kernels that shaded the pixels.
     pub fn new(
         device: &Device,
         kernels: &Kernels,
-        (source, variant): (Source, TraceVariant),
-        (look, film): (ShadeVariant, Option<FilmVariant>),
+        (source, variant): (RecordSource, TraceVariant),
+        (shade, film): (ShadeVariant, Option<FilmVariant>),
         shared: &[&[wgpu::BindingResource<'_>]],
         software: bool,
     ) -> Result<Self> {
-        let stage = kernels.get(KernelKey::refine(Refined { source, variant }, look, film))?.stage(device, shared)?;
+        let stage =
+            kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
         Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
     }
 

@@ -3,18 +3,18 @@
 //! has run, so that readback overlaps the work of the next steps and frames. Knows no host memory: finished tiles go
 //! to the sink.
 
-use super::begun::{BegunFrame, Recording};
+use super::begun::{BegunFrame, ExtraCommands};
 use super::bloom::LIGHT_BYTES;
 use super::buffers::Size;
 use super::refine::EdgeList;
 use super::setup::{FrameTarget, Setup};
 use super::steps::Steps;
-use super::submission::Submitted;
+use super::submission::Submission;
 use super::tables::Tables;
-use super::tiles::{MEMORY, Plan};
+use super::tiles::{MEMORY, TilePlan};
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::kernel::variant::{PixelTarget, Source};
+use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
 use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
 use std::collections::VecDeque;
@@ -88,8 +88,8 @@ impl GpuTracer {
         if let Some(window) = window {
             keys.extend(self.set_up(scene, window, PixelTarget::Screen)?.kernels());
         }
-        let wanted = self.kernels.begin(&keys);
-        self.kernels.finish(wanted)?;
+        let batch = self.kernels.begin(&keys);
+        self.kernels.finish(batch)?;
         // Some drivers put their part of a pipeline off until it runs; and a frame needs buffers, tables and a sky as
         // well.
         self.render(scene, request, &mut |_, _, _| Ok(()), progress).map(|_| ())
@@ -118,19 +118,19 @@ impl GpuTracer {
         };
         let mut setup = self.set_up(scene, request, kind)?;
         let needed = setup.kernels();
-        let wanted = self.kernels.begin(&needed);
+        let batch = self.kernels.begin(&needed);
         let samples = setup.samples;
         let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
         // in a view of nothing but the shadow's edge.
-        let ray_steps = match setup.making.source {
-            Source::Traced => scene.expected_steps(),
-            Source::Schwarzschild { .. } => 2,
-            Source::Kerr { .. } => 8,
+        let ray_steps = match setup.record_setup.source {
+            RecordSource::Traced => scene.expected_steps(),
+            RecordSource::Schwarzschild { .. } => 2,
+            RecordSource::Kerr { .. } => 8,
         };
         // Packed pixels have two staging buffers.
-        let bytes = setup.making.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
+        let bytes = setup.record_setup.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
         let steps = self.steps(scene, request, &setup, bytes, ray_steps);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
@@ -143,9 +143,9 @@ impl GpuTracer {
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
         // Meanwhile the sky and the buffers were made.
-        self.kernels.finish(wanted)?;
+        self.kernels.finish(batch)?;
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
-        let source = setup.making.source;
+        let source = setup.record_setup.source;
         let bloom = setup.bloom;
         let projection = scene.camera.projection;
         let request = *request;
@@ -159,27 +159,27 @@ impl GpuTracer {
         let side = longest.min(MAX_TILE_SIDE);
         let (samples, size) = (setup.samples, [request.width, request.height]);
         let Some(bloom) = &setup.bloom else {
-            return Steps::plain(Plan::new(request, bytes, side, ray_steps, samples), samples);
+            return Steps::plain(TilePlan::new(request, bytes, side, ray_steps, samples), samples);
         };
         let light = LIGHT_BYTES * size.map(u64::from).iter().product::<u64>();
         let fits = size.iter().all(|side| *side <= longest) && light <= MEMORY;
         if fits && scene.quality.keep_light.unwrap_or(true) {
-            return Steps::kept(Plan::new(request, bytes, side, ray_steps, samples), samples, bloom);
+            return Steps::kept(TilePlan::new(request, bytes, side, ray_steps, samples), samples, bloom);
         }
         Steps::twice(request, samples, bloom, |request, pixels| {
             let side = (u64::from(side) / pixels.isqrt()) as u32;
-            Plan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, samples)
+            TilePlan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, samples)
         })
     }
 
     /// Starts the frame's next step, if one is left. Errors: whatever the device reports; the tables of lenses are
     /// then forgotten.
-    pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submitted>> {
+    pub fn submit(&mut self, frame: &mut BegunFrame) -> Result<Option<Submission>> {
         self.submit_and(frame, &mut |_| Ok(()))
     }
 
     /// [`Self::submit`]; the frame's last step ends with what `then` records. Errors: those of `then` as well.
-    pub fn submit_and(&mut self, frame: &mut BegunFrame, then: &mut Recording<'_>) -> Result<Option<Submitted>> {
+    pub fn submit_and(&mut self, frame: &mut BegunFrame, then: &mut ExtraCommands<'_>) -> Result<Option<Submission>> {
         let submitted = self.buffers.submit(&self.device, frame, then);
         if submitted.is_err() {
             self.forget();

@@ -1,4 +1,4 @@
-//! The setup of a frame, made before its tiles run: how its records are made, its light shaded and its pixels put.
+//! The setup of a frame, made before its tiles run: how its records are made, its light shaded and its pixels written.
 //! Plain data; configure.rs fills it from a scene.
 
 use super::uniforms::FrameUniform;
@@ -6,17 +6,17 @@ use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::kernel::variant::{FilmVariant, ShadeVariant};
-use crate::gpu::lens::records::Making;
+use crate::gpu::lens::records::RecordSetup;
 
 /// How a frame's shading is compiled.
-pub(in crate::gpu) struct Looks {
-    pub(in crate::gpu) look: ShadeVariant,
+pub(in crate::gpu) struct ShadingVariants {
+    pub(in crate::gpu) shade: ShadeVariant,
     /// The film of the kernel that ends shading.
     pub(in crate::gpu) film: FilmVariant,
     /// The film of development, in frames with bloom.
     pub(in crate::gpu) developed: Option<FilmVariant>,
     pub(in crate::gpu) several_samples: bool,
-    /// Whether pixels are put row by row into the host's memory.
+    /// Whether pixels are written row by row into the host's memory.
     pub(in crate::gpu) rows: bool,
 }
 
@@ -31,8 +31,8 @@ pub enum FrameTarget<'a> {
 
 /// A frame's setup, made before its tiles run.
 pub(in crate::gpu) struct Setup {
-    pub(in crate::gpu) making: Making,
-    pub(in crate::gpu) looks: Looks,
+    pub(in crate::gpu) record_setup: RecordSetup,
+    pub(in crate::gpu) variants: ShadingVariants,
     pub(in crate::gpu) samples: u32,
     pub(in crate::gpu) uniform: FrameUniform,
     pub(in crate::gpu) film: FilmParams,

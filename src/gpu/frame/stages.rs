@@ -2,8 +2,8 @@
 //! them. Knows no submissions.
 
 use super::bloom::BloomStages;
-use super::buffers::{FrameBuffers, Written};
-use super::refine::Refining;
+use super::buffers::{CachedUniform, FrameBuffers};
+use super::refine::RefineStage;
 use super::setup::{FrameTarget, Setup};
 use super::steps::Step;
 use super::submission::PIXELS;
@@ -12,36 +12,36 @@ use crate::error::{Error, Result};
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Compiled, Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::Source;
-use crate::gpu::lens::records::{Making, RecordStages, Shared};
+use crate::gpu::kernel::variant::RecordSource;
+use crate::gpu::lens::records::{RecordSetup, RecordStages, Shared};
 use std::slice;
 
 /// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where
 /// each costs its share of a loop's body however little there is to do, few.
-const REST_GROUPS: u32 = 512;
-const REST_GROUPS_SOFTWARE: u32 = 16;
+const DEFERRED_GROUPS: u32 = 512;
+const DEFERRED_GROUPS_SOFTWARE: u32 = 16;
 
 /// A kernel that takes records: over all pixels, and over those that it deferred.
-pub struct Taking {
+pub struct RecordConsumer {
     all: Stage,
-    rest: Option<Stage>,
+    deferred: Option<Stage>,
     /// Workgroups over the deferred pixels, however many they are.
-    rest_groups: u32,
+    deferred_groups: u32,
 }
 
 /// The kernels that shade a sample: of all pixels, and then more rays of those that were listed for their edges.
-struct Shades {
-    taking: Taking,
-    refining: Option<Refining>,
+struct ShadeStages {
+    consumer: RecordConsumer,
+    refining: Option<RefineStage>,
 }
 
 /// The stages that turn ray records into packed pixels.
 enum Shading {
     /// The stage for the only sample.
-    Only(Shades),
+    Only(ShadeStages),
     Samples {
         /// The stages for even and for odd samples.
-        shade: Box<[Shades; 2]>,
+        shade: Box<[ShadeStages; 2]>,
         /// After an even and after an odd last sample.
         develop: [Stage; 2],
     },
@@ -53,8 +53,8 @@ pub struct Stages {
     shading: Shading,
     /// Group 3 of the kernels that shade: the list of pixels with edges.
     edges: wgpu::BindGroup,
-    pub put: Put,
-    /// In frames with bloom: what follows shading, which then puts light.
+    pub output: PixelOutput,
+    /// In frames with bloom: what follows shading, which then writes light.
     pub glare: Option<GlareStages>,
 }
 
@@ -62,36 +62,36 @@ pub struct Stages {
 pub struct GlareStages {
     pub bloom: BloomStages,
     pub develop: Stage,
-    pub put: Put,
+    pub output: PixelOutput,
 }
 
-/// Group 2 of a kernel that puts pixels, or light.
-pub enum Put {
+/// Group 2 of a kernel that writes pixels, or light.
+pub enum PixelOutput {
     /// In the same place in every submission.
-    Here(wgpu::BindGroup),
+    Fixed(wgpu::BindGroup),
     /// In the submission's staging buffer: the group's layout, and the film.
     Staged(wgpu::BindGroupLayout, wgpu::Buffer),
 }
 
-impl Taking {
+impl RecordConsumer {
     /// `take` makes the stage that takes the records of a source.
     pub fn new(
         kernels: &Kernels,
-        making: &Making,
+        record_setup: &RecordSetup,
         software: bool,
-        take: impl Fn(&Kernels, Source) -> Result<Stage>,
+        take: impl Fn(&Kernels, RecordSource) -> Result<Stage>,
     ) -> Result<Self> {
         Ok(Self {
-            all: take(kernels, making.source)?,
-            rest: making.rest().map(|source| take(kernels, source)).transpose()?,
-            rest_groups: if software { REST_GROUPS_SOFTWARE } else { REST_GROUPS },
+            all: take(kernels, record_setup.source)?,
+            deferred: record_setup.deferred_source().map(|source| take(kernels, source)).transpose()?,
+            deferred_groups: if software { DEFERRED_GROUPS_SOFTWARE } else { DEFERRED_GROUPS },
         })
     }
 
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, tile: [u32; 2]) {
         self.all.dispatch(pass, offset, tile);
-        if let Some(rest) = &self.rest {
-            rest.run(pass, Some(offset), [self.rest_groups, 1]);
+        if let Some(deferred) = &self.deferred {
+            deferred.run(pass, Some(offset), [self.deferred_groups, 1]);
         }
     }
 }
@@ -106,44 +106,56 @@ impl FrameBuffers {
         target: FrameTarget<'_>,
         software: bool,
     ) -> Result<Stages> {
-        let looks = &setup.looks;
+        let variants = &setup.variants;
         let (fixed, sized) =
             self.fixed.as_ref().zip(self.sized.as_ref()).ok_or_else(|| Error::internal("a frame without buffers"))?;
         let pass = fixed.pass();
         let frame = fixed.frame.buffer.as_entire_binding();
         let step_sum = fixed.step_sum.as_entire_binding();
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
-        let made = self.makers.stages(device, kernels, &setup.making, &shared)?;
-        let records = self.makers.group(setup.making.source)?;
+        let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
+        let records = self.record_store.group(setup.record_setup.source)?;
         let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let shared = [frame, pass.clone(), light, cells, milky_way, map];
         let shades = |kernels: &Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &Kernels, source| {
-                let compiled = match looks.several_samples {
-                    true => kernels.get(KernelKey::shade_sample(source, looks.look))?,
-                    false => kernels.get(KernelKey::shade_only(source, looks.look, looks.film))?,
+                let compiled = match variants.several_samples {
+                    true => kernels.get(KernelKey::shade_sample(source, variants.shade))?,
+                    false => kernels.get(KernelKey::shade_only(source, variants.shade, variants.film))?,
                 };
                 let groups: [&[_]; 3] = [&shared, &records, target];
-                compiled.stage(device, if looks.several_samples { &groups } else { &groups[..2] })
+                compiled.stage(device, if variants.several_samples { &groups } else { &groups[..2] })
             };
-            let making = &setup.making;
+            let record_setup = &setup.record_setup;
             let refine = |kernels: &Kernels| {
-                let film = (!looks.several_samples).then_some(looks.film);
-                let (source, groups) = (making.rest().unwrap_or(making.source), [&shared[..], &records, target]);
+                let film = (!variants.several_samples).then_some(variants.film);
+                let (source, groups) =
+                    (record_setup.deferred_source().unwrap_or(record_setup.source), [&shared[..], &records, target]);
                 let groups = if film.is_some() { &groups[..2] } else { &groups };
-                Refining::new(device, kernels, (source, making.variant), (looks.look, film), groups, software)
+                RefineStage::new(
+                    device,
+                    kernels,
+                    (source, record_setup.variant),
+                    (variants.shade, film),
+                    groups,
+                    software,
+                )
             };
-            let refining = if looks.look.refines { Some(refine(kernels)?) } else { None };
-            Ok::<_, Error>(Shades { taking: Taking::new(kernels, making, software, take)?, refining })
+            let refining = if variants.shade.refines { Some(refine(kernels)?) } else { None };
+            Ok::<_, Error>(ShadeStages {
+                consumer: RecordConsumer::new(kernels, record_setup, software, take)?,
+                refining,
+            })
         };
-        let puts = match looks.several_samples {
-            true => kernels.get(KernelKey::Develop(looks.film, None))?,
-            false => kernels.get(KernelKey::shade_only(setup.making.source, looks.look, looks.film))?,
+        let writer = match variants.several_samples {
+            true => kernels.get(KernelKey::Develop(variants.film, None))?,
+            false => kernels.get(KernelKey::shade_only(setup.record_setup.source, variants.shade, variants.film))?,
         };
-        let shading = if looks.several_samples {
-            let develop =
-                |from: wgpu::BindingResource<'_>| puts.stage(device, &[slice::from_ref(&pass), slice::from_ref(&from)]);
+        let shading = if variants.several_samples {
+            let develop = |from: wgpu::BindingResource<'_>| {
+                writer.stage(device, &[slice::from_ref(&pass), slice::from_ref(&from)])
+            };
             Shading::Samples {
                 shade: Box::new([
                     shades(kernels, &[odd.clone(), even.clone()])?,
@@ -155,36 +167,38 @@ impl FrameBuffers {
             Shading::Only(shades(kernels, &[])?)
         };
         let edges = self.edges.group(device, &kernels.edge_list()?)?;
-        let group = |puts: &Compiled, film: &Written, pixels| {
-            device.bind(puts.target()?, &[film.buffer.as_entire_binding(), pixels])
+        let group = |writer: &Compiled, film: &CachedUniform, pixels| {
+            device.bind(writer.target()?, &[film.buffer.as_entire_binding(), pixels])
         };
-        let put_pixels = |puts: &Compiled, film: &Written| match target {
+        let pixel_output = |writer: &Compiled, film: &CachedUniform| match target {
             FrameTarget::Screen(texture) => {
-                group(puts, film, wgpu::BindingResource::TextureView(&texture.view)).map(Put::Here)
+                group(writer, film, wgpu::BindingResource::TextureView(&texture.view)).map(PixelOutput::Fixed)
             }
-            FrameTarget::Host if looks.rows => Ok(Put::Staged(puts.target()?.clone(), (*film.buffer).clone())),
-            FrameTarget::Host => group(puts, film, sized.packed.as_entire_binding()).map(Put::Here),
+            FrameTarget::Host if variants.rows => {
+                Ok(PixelOutput::Staged(writer.target()?.clone(), (*film.buffer).clone()))
+            }
+            FrameTarget::Host => group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed),
         };
-        let (put, glare) = match (&setup.bloom, looks.developed) {
-            (Some(bloom), Some(look)) => {
-                let develops = kernels.get(KernelKey::Develop(look, Some(bloom.factor)))?;
+        let (output, glare) = match (&setup.bloom, variants.developed) {
+            (Some(bloom), Some(developed)) => {
+                let develops = kernels.get(KernelKey::Develop(developed, Some(bloom.factor)))?;
                 let glare = GlareStages {
                     bloom: self.bloom.stages(device, kernels, bloom)?,
                     develop: develops.stage(device, &[slice::from_ref(&pass), &self.bloom.group(bloom)?])?,
-                    put: put_pixels(&develops, &fixed.film_of_exposed)?,
+                    output: pixel_output(&develops, &fixed.film_of_exposed)?,
                 };
-                (Put::Here(group(&puts, &fixed.film, self.bloom.light()?)?), Some(glare))
+                (PixelOutput::Fixed(group(&writer, &fixed.film, self.bloom.light()?)?), Some(glare))
             }
-            _ => (put_pixels(&puts, &fixed.film)?, None),
+            _ => (pixel_output(&writer, &fixed.film)?, None),
         };
-        Ok(Stages { records: made, shading, edges, put, glare })
+        Ok(Stages { records: made, shading, edges, output, glare })
     }
 }
 
-impl Shades {
+impl ShadeStages {
     /// `offsets`: of the sample's two `PassUniform`s.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
-        self.taking.dispatch(pass, offsets[0], tile);
+        self.consumer.dispatch(pass, offsets[0], tile);
         if let Some(refining) = &self.refining {
             refining.dispatch(pass, offsets);
         }
@@ -201,7 +215,7 @@ impl Stages {
         samples: u32,
         begins: bool,
         stride: u32,
-        put: Option<&wgpu::BindGroup>,
+        output: Option<&wgpu::BindGroup>,
     ) {
         let tile = [step.shades.width, step.shades.height];
         pass.set_bind_group(3, &self.edges, &[]);
@@ -210,7 +224,7 @@ impl Stages {
             self.records.encode(pass, begins && slot == 1, offset, tile);
             match &self.shading {
                 Shading::Only(shades) => {
-                    pass.set_bind_group(2, put, &[]);
+                    pass.set_bind_group(2, output, &[]);
                     shades.dispatch(pass, [offset, offset + stride], tile);
                 }
                 Shading::Samples { shade, .. } => {
@@ -219,17 +233,17 @@ impl Stages {
             }
         }
         if let (Shading::Samples { develop, .. }, true) = (&self.shading, step.samples.end == samples) {
-            pass.set_bind_group(2, put, &[]);
+            pass.set_bind_group(2, output, &[]);
             develop[(samples as usize - 1) % 2].dispatch(pass, stride, tile);
         }
     }
 }
 
-impl Put {
+impl PixelOutput {
     /// `staging`: the submission's.
     pub fn group(&self, device: &Device, staging: &wgpu::Buffer) -> Result<wgpu::BindGroup> {
         match self {
-            Self::Here(group) => Ok(group.clone()),
+            Self::Fixed(group) => Ok(group.clone()),
             Self::Staged(layout, film) => {
                 let pixels = wgpu::BufferBinding { buffer: staging, offset: PIXELS, size: None };
                 device.bind(layout, &[film.as_entire_binding(), wgpu::BindingResource::Buffer(pixels)])

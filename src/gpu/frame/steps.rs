@@ -1,7 +1,7 @@
 //! In which steps a frame is made, each a submission: tiles and samples of them; and with bloom, what comes between
 //! shading and development. Knows numbers only.
 
-use super::tiles::Plan;
+use super::tiles::TilePlan;
 use crate::film::bloom::Bloom;
 use crate::scene::Region;
 use crate::tracer::{FrameRequest, Tile};
@@ -27,30 +27,30 @@ pub struct Step {
 /// The steps of a frame.
 #[derive(Debug)]
 pub struct Steps {
-    plan: Plan,
+    plan: TilePlan,
     samples: u32,
-    way: Way,
+    strategy: BloomStrategy,
 }
 
-/// The use that is made of light.
+/// How the light of a frame is held until bloom has spread it.
 #[derive(Debug)]
-enum Way {
-    /// A tile's is developed at once.
+enum BloomStrategy {
+    /// Without bloom: a tile's light is developed at once.
     Plain,
-    /// A whole frame's is kept until it has spread over a grid of so many cells.
+    /// A whole frame's light is kept until it has spread over a grid of so many cells.
     Kept([u32; 2]),
-    /// It is made twice: first for the cells of tiles of the grid, then for development.
-    Twice { gather: Plan, frame: [u32; 2], factor: u32 },
+    /// The light is made twice: first for the cells of tiles of the grid, then for development.
+    Twice { gather: TilePlan, frame: [u32; 2], factor: u32 },
 }
 
 impl Steps {
-    pub fn plain(plan: Plan, samples: u32) -> Self {
-        Self { plan, samples, way: Way::Plain }
+    pub fn plain(plan: TilePlan, samples: u32) -> Self {
+        Self { plan, samples, strategy: BloomStrategy::Plain }
     }
 
     /// With bloom, for a device that holds a whole frame's light.
-    pub fn kept(plan: Plan, samples: u32, bloom: &Bloom) -> Self {
-        Self { plan, samples, way: Way::Kept(base(bloom)) }
+    pub fn kept(plan: TilePlan, samples: u32, bloom: &Bloom) -> Self {
+        Self { plan, samples, strategy: BloomStrategy::Kept(base(bloom)) }
     }
 
     /// With bloom, for one that does not. `plan_of`: of a request, and how many pixels each of its own stands for.
@@ -58,42 +58,44 @@ impl Steps {
         request: &FrameRequest,
         samples: u32,
         bloom: &Bloom,
-        plan_of: impl Fn(&FrameRequest, u64) -> Plan,
+        plan_of: impl Fn(&FrameRequest, u64) -> TilePlan,
     ) -> Self {
         let [width, height] = base(bloom);
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         let gather = plan_of(&FrameRequest { width, height, region, ..*request }, u64::from(bloom.factor).pow(2));
-        let way = Way::Twice { gather, frame: bloom.frame, factor: bloom.factor };
-        Self { plan: plan_of(request, 1), samples, way }
+        let strategy = BloomStrategy::Twice { gather, frame: bloom.frame, factor: bloom.factor };
+        Self { plan: plan_of(request, 1), samples, strategy }
     }
 
-    fn batches(&self, plan: &Plan) -> u64 {
+    fn batches(&self, plan: &TilePlan) -> u64 {
         u64::from(self.samples.div_ceil(plan.batch))
     }
 
     /// Steps in which the light that spreads is made.
     fn gathering(&self) -> u64 {
-        match &self.way {
-            Way::Plain => 0,
-            Way::Kept(_) => self.plan.count() * self.batches(&self.plan),
-            Way::Twice { gather, .. } => gather.count() * self.batches(gather),
+        match &self.strategy {
+            BloomStrategy::Plain => 0,
+            BloomStrategy::Kept(_) => self.plan.count() * self.batches(&self.plan),
+            BloomStrategy::Twice { gather, .. } => gather.count() * self.batches(gather),
         }
     }
 
     pub fn count(&self) -> u64 {
-        match &self.way {
+        match &self.strategy {
             // The step in which the last light is made develops the first tile.
-            Way::Kept(_) => self.gathering() + self.plan.count() - 1,
-            Way::Plain | Way::Twice { .. } => self.gathering() + self.plan.count() * self.batches(&self.plan),
+            BloomStrategy::Kept(_) => self.gathering() + self.plan.count() - 1,
+            BloomStrategy::Plain | BloomStrategy::Twice { .. } => {
+                self.gathering() + self.plan.count() * self.batches(&self.plan)
+            }
         }
     }
 
     /// Width and height of the largest tile that is shaded.
     pub fn largest(&self) -> [u32; 2] {
         let tile = self.plan.largest();
-        match &self.way {
-            Way::Plain | Way::Kept(_) => tile,
-            Way::Twice { gather, frame, factor } => {
+        match &self.strategy {
+            BloomStrategy::Plain | BloomStrategy::Kept(_) => tile,
+            BloomStrategy::Twice { gather, frame, factor } => {
                 let cells = gather.largest();
                 [0, 1].map(|i| tile[i].max((cells[i] * factor + factor).min(frame[i])))
             }
@@ -102,10 +104,10 @@ impl Steps {
 
     /// How much of the light is held at once; `None`: no light is kept.
     pub fn light(&self) -> Option<[u32; 2]> {
-        match &self.way {
-            Way::Plain => None,
-            Way::Kept(_) => Some(self.plan.frame()),
-            Way::Twice { .. } => Some(self.largest()),
+        match &self.strategy {
+            BloomStrategy::Plain => None,
+            BloomStrategy::Kept(_) => Some(self.plan.frame()),
+            BloomStrategy::Twice { .. } => Some(self.largest()),
         }
     }
 
@@ -113,26 +115,26 @@ impl Steps {
     pub fn step(&self, index: u64) -> Step {
         let gathering = self.gathering();
         let ends = index + 1 == gathering;
-        match &self.way {
-            Way::Kept(base) if index < gathering => {
+        match &self.strategy {
+            BloomStrategy::Kept(base) if index < gathering => {
                 let (shades, samples) = self.shading(&self.plan, index);
                 let whole = Tile { x: 0, y: 0, width: base[0], height: base[1] };
                 let (gathers, develops) = (ends.then_some(whole), ends.then(|| self.plan.tile(0)));
                 Step { shades, samples, gathers, spreads: ends, develops, light_origin: [0, 0] }
             }
-            Way::Kept(_) => {
+            BloomStrategy::Kept(_) => {
                 let tile = self.plan.tile(index + 1 - gathering);
                 let light_origin = [0, 0];
                 Step { shades: tile, samples: 0..0, gathers: None, spreads: false, develops: Some(tile), light_origin }
             }
-            Way::Twice { gather, frame, factor } if index < gathering => {
+            BloomStrategy::Twice { gather, frame, factor } if index < gathering => {
                 let (cells, samples) = self.shading(gather, index);
                 let shades = under(cells, *factor, *frame);
                 let gathers = (samples.end == self.samples).then_some(cells);
                 let light_origin = [shades.x, shades.y];
                 Step { shades, samples, gathers, spreads: ends, develops: None, light_origin }
             }
-            Way::Plain | Way::Twice { .. } => {
+            BloomStrategy::Plain | BloomStrategy::Twice { .. } => {
                 let (shades, samples) = self.shading(&self.plan, index - gathering);
                 let develops = (samples.end == self.samples).then_some(shades);
                 let light_origin = [shades.x, shades.y];
@@ -142,7 +144,7 @@ impl Steps {
     }
 
     /// The `index`th tile and samples of a plan.
-    fn shading(&self, plan: &Plan, index: u64) -> (Tile, Range<u32>) {
+    fn shading(&self, plan: &TilePlan, index: u64) -> (Tile, Range<u32>) {
         let batches = self.batches(plan);
         let begin = (index % batches) as u32 * plan.batch;
         (plan.tile(index / batches), begin..(begin + plan.batch).min(self.samples))
@@ -182,23 +184,23 @@ mod tests {
     fn everything_is_done_once_and_in_order() {
         for frame in [[64, 48], [1000, 700], [5001, 333], [16384, 2000]] {
             let bloom = Bloom::of(1.0, frame).expect("grids");
-            let plan_of = |request: &FrameRequest, each: u64| Plan::new(request, 400 * each, 2048, 300 * each, 20);
+            let plan_of = |request: &FrameRequest, each: u64| TilePlan::new(request, 400 * each, 2048, 300 * each, 20);
             let plan = || plan_of(&request(frame), 1);
-            let ways = [
+            let strategies = [
                 Steps::plain(plan(), 20),
                 Steps::kept(plan(), 20, &bloom),
                 Steps::twice(&request(frame), 20, &bloom, plan_of),
             ];
-            for (way, steps) in ways.iter().enumerate() {
+            for (strategy, steps) in strategies.iter().enumerate() {
                 let list = all(steps);
                 let area = |tile: Tile| u64::from(tile.width) * u64::from(tile.height);
                 let developed = list.iter().filter_map(|step| step.develops).map(area).sum::<u64>();
-                assert_eq!(developed, u64::from(frame[0]) * u64::from(frame[1]), "{frame:?} {way}");
+                assert_eq!(developed, u64::from(frame[0]) * u64::from(frame[1]), "{frame:?} {strategy}");
                 let gathered = list.iter().filter_map(|step| step.gathers).map(area).sum::<u64>();
                 let cells = bloom.levels[0].size.map(u64::from);
-                assert_eq!(gathered, if way == 0 { 0 } else { cells[0] * cells[1] });
+                assert_eq!(gathered, if strategy == 0 { 0 } else { cells[0] * cells[1] });
                 let spreads = list.iter().position(|step| step.spreads);
-                assert_eq!(spreads.is_some(), way > 0);
+                assert_eq!(spreads.is_some(), strategy > 0);
                 assert!(list.iter().filter(|step| step.spreads).count() <= 1);
                 assert!(list.iter().take(spreads.unwrap_or(0)).all(|step| step.develops.is_none()));
                 let [width, height] = steps.largest();

@@ -1,11 +1,11 @@
 //! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
 
-use super::begun::{BegunFrame, Recording};
+use super::begun::{BegunFrame, ExtraCommands};
 use super::buffers::FrameBuffers;
 use super::uniforms::PassUniform;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
-use crate::gpu::device::readback::Copied;
+use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer;
 use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
@@ -31,10 +31,10 @@ enum PassKind {
 const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 
 /// A submission that has not been read yet.
-pub struct Submitted {
+pub struct Submission {
     submission: wgpu::SubmissionIndex,
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
-    copied: Copied,
+    copied: PendingReadback,
     tick_bytes: u64,
     /// Bytes of all that comes before the pixels.
     head: u64,
@@ -61,8 +61,8 @@ impl FrameBuffers {
         &mut self,
         device: &Device,
         frame: &mut BegunFrame,
-        then: &mut Recording<'_>,
-    ) -> Result<Option<Submitted>> {
+        then: &mut ExtraCommands<'_>,
+    ) -> Result<Option<Submission>> {
         let Some(step) = frame.next() else { return Ok(None) };
         let begins = frame.submitted == 0;
         let stages = &frame.stages;
@@ -96,10 +96,10 @@ impl FrameBuffers {
         if let Some(bloom) = &frame.bloom {
             self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
         }
-        let steps = self.makers.reset(frame.source, &fixed.step_sum, &mut encoder);
+        let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
         self.edges.reset(&mut encoder);
-        let puts = stages.glare.is_some() || step.develops.is_some();
-        let put = if puts { Some(stages.put.group(device, to)?) } else { None };
+        let writes = stages.glare.is_some() || step.develops.is_some();
+        let output = if writes { Some(stages.output.group(device, to)?) } else { None };
         let timer = &mut self.timer;
         let mut passes = ArrayVec::new();
         let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
@@ -111,7 +111,7 @@ impl FrameBuffers {
         };
         if !step.samples.is_empty() {
             in_pass(PassKind::Shading, "frame", &mut |pass| {
-                stages.shade(pass, &step, frame.samples, begins, stride as u32, put.as_ref())
+                stages.shade(pass, &step, frame.samples, begins, stride as u32, output.as_ref())
             });
         }
         if let Some(glare) = &stages.glare {
@@ -124,9 +124,9 @@ impl FrameBuffers {
                 });
             }
             if let Some(tile) = step.develops {
-                let put = glare.put.group(device, to)?;
+                let output = glare.output.group(device, to)?;
                 in_pass(PassKind::Development, "develop", &mut |pass| {
-                    pass.set_bind_group(2, &put, &[]);
+                    pass.set_bind_group(2, &output, &[]);
                     glare.develop.dispatch(pass, 0, [tile.width, tile.height]);
                 });
             }
@@ -147,11 +147,11 @@ impl FrameBuffers {
         copied.request(device)?;
         frame.submitted += 1;
         let head = size.min(PIXELS);
-        Ok(Some(Submitted { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
+        Ok(Some(Submission { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
     }
 }
 
-impl Submitted {
+impl Submission {
     /// The submission to wait for.
     pub fn submission(&self) -> &wgpu::SubmissionIndex {
         &self.submission

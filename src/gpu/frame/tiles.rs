@@ -12,13 +12,13 @@ pub const MAX_BATCH: u32 = 16;
 
 /// Tiles of one frame, and how many samples of a tile go into one submission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Plan {
+pub struct TilePlan {
     frame: [u32; 2],
     tile: [u32; 2],
     pub batch: u32,
 }
 
-impl Plan {
+impl TilePlan {
     /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to
     /// take.
     pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, samples: u32) -> Self {
@@ -81,7 +81,7 @@ mod tests {
     fn tiles_cover_every_pixel_once_within_the_limits() {
         for (width, height, steps) in [(1, 1, 30), (1280, 720, 30), (16384, 16384, 30), (5000, 3, 30), (300, 70, 6000)]
         {
-            let plan = Plan::new(&request(width, height), 100, 2048, steps, 1);
+            let plan = TilePlan::new(&request(width, height), 100, 2048, steps, 1);
             let [w, h] = plan.largest().map(u64::from);
             assert!((w + 2) * (h + 2) * 100 <= MEMORY, "{width} x {height}: {plan:?}");
             assert!(w * h * steps <= STEPS_PER_SUBMISSION && w.max(h) + 2 <= 2048, "{plan:?}");
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_frame_of_720_rows_is_one_submission_even_on_the_smallest_devices() {
-        let plan = Plan::new(&request(1280, 720), 112, 2048, 30, 1);
+        let plan = TilePlan::new(&request(1280, 720), 112, 2048, 30, 1);
         assert_eq!((plan.count(), plan.batch), (1, 1));
     }
 }

@@ -1,7 +1,7 @@
 //! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames
 //! that may come. They end with their owner. Knows no scene.
 
-use super::kernels::{Compiled, Store};
+use super::kernels::{Compiled, PipelineCache};
 use super::key::KernelKey;
 use crate::deferred::hold;
 use crate::error::Result;
@@ -15,7 +15,7 @@ use std::thread::{self, JoinHandle};
 /// Threads that make pipelines in the background at most, and at most for a frame that waits. More in the background
 /// make the same number in the same time, and each, so also the one that is needed first, takes longer (H200: 8 at
 /// once take twice as long as one).
-const MOST_BEHIND: usize = 5;
+const MOST_IN_BACKGROUND: usize = 5;
 const MOST_AT_ONCE: usize = 12;
 
 /// Their owner's drop ends the threads, after the pipeline that each is making.
@@ -73,13 +73,13 @@ impl Shared {
 
 /// Pipelines that a frame waits for, and those of them that nobody has begun.
 #[must_use]
-pub struct Wanted {
+pub struct CompileBatch {
     keys: Vec<KernelKey>,
     left: Arc<Mutex<VecDeque<KernelKey>>>,
     shared: Arc<Shared>,
 }
 
-impl Drop for Wanted {
+impl Drop for CompileBatch {
     /// A frame that failed before wants nothing more.
     fn drop(&mut self) {
         self.left.lock().unwrap_or_else(PoisonError::into_inner).clear();
@@ -88,34 +88,34 @@ impl Drop for Wanted {
     }
 }
 
-impl Wanted {
+impl CompileBatch {
     /// The entry points, for the log.
     pub fn names(&self) -> String {
         self.keys.iter().map(|key| key.entry_point()).collect::<Vec<_>>().join(", ")
     }
 
     /// Takes part in making them until all are there. Errors: the first one's.
-    pub fn finish(self, store: &Store, device: &Device) -> Result<()> {
-        while make_next(&self.left, store, device) {}
-        self.keys.iter().copied().try_for_each(|key| store.get(device, key).map(drop))
+    pub fn finish(self, cache: &PipelineCache, device: &Device) -> Result<()> {
+        while compile_next(&self.left, cache, device) {}
+        self.keys.iter().copied().try_for_each(|key| cache.get(device, key).map(drop))
     }
 }
 
 /// Makes one of those that are `left`, as well as it can be. Whether there was one.
-fn make_next(left: &Mutex<VecDeque<KernelKey>>, store: &Store, device: &Device) -> bool {
+fn compile_next(left: &Mutex<VecDeque<KernelKey>>, cache: &PipelineCache, device: &Device) -> bool {
     let key = left.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
     if let Some(key) = key {
-        make(store, |store| store.get(device, key));
+        compile(cache, |cache| cache.get(device, key));
     }
     key.is_some()
 }
 
 /// Makes a pipeline; a failure is left for the frame that needs it.
-fn make(store: &Store, make_it: impl FnOnce(&Store) -> Result<Compiled>) {
+fn compile(cache: &PipelineCache, compile_it: impl FnOnce(&PipelineCache) -> Result<Compiled>) {
     // A host's callback hears of it once those who wait for the pipeline have it.
     let _holding = hold();
     // Unwind safe: the store settles a pipeline whose making panics.
-    if !matches!(catch_unwind(AssertUnwindSafe(|| make_it(store))), Ok(Ok(_))) {
+    if !matches!(catch_unwind(AssertUnwindSafe(|| compile_it(cache))), Ok(Ok(_))) {
         log::debug!("a pipeline could not be made; the frame that needs it will tell why");
     }
 }
@@ -130,8 +130,13 @@ impl Compilers {
         Self { threads, queue: Arc::default() }
     }
 
-    /// Begins to make `missing` on several threads. What fails is tried again by [`Wanted::finish`].
-    pub fn make_now(&self, store: &Arc<Store>, device: &Arc<Device>, missing: Vec<KernelKey>) -> Wanted {
+    /// Begins to make `missing` on several threads. What fails is tried again by [`CompileBatch::finish`].
+    pub fn compile_now(
+        &self,
+        cache: &Arc<PipelineCache>,
+        device: &Arc<Device>,
+        missing: Vec<KernelKey>,
+    ) -> CompileBatch {
         let helpers = if self.threads { missing.len().min(cores()).min(MOST_AT_ONCE) } else { 0 };
         // Those that take longest, which come last, are begun first.
         let left = Arc::new(Mutex::new(missing.iter().rev().copied().collect::<VecDeque<_>>()));
@@ -139,20 +144,20 @@ impl Compilers {
         let mut queue = self.queue.lock();
         queue.waiting += 1;
         for _ in 0..helpers {
-            let (left, store, device, scope) = (left.clone(), store.clone(), device.clone(), scope.clone());
+            let (left, cache, device, scope) = (left.clone(), cache.clone(), device.clone(), scope.clone());
             // A machine that has no more threads makes do with fewer.
             let work = move || {
                 let _scope = scope();
-                while make_next(&left, &store, &device) {}
+                while compile_next(&left, &cache, &device) {}
             };
             let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { break };
             queue.keep(thread);
         }
-        Wanted { keys: missing, left, shared: self.queue.clone() }
+        CompileBatch { keys: missing, left, shared: self.queue.clone() }
     }
 
     /// Does `work` on a thread of low priority.
-    pub fn run_behind(&self, work: impl FnOnce() + Send + 'static) {
+    pub fn run_in_background(&self, work: impl FnOnce() + Send + 'static) {
         if !self.threads {
             return;
         }
@@ -171,20 +176,20 @@ impl Compilers {
 
     /// Makes those of `keys` that are not there, and keeps those that are, in the background, in place of what waits
     /// since an earlier call.
-    pub fn make_later(&self, store: &Arc<Store>, device: &Arc<Device>, keys: Vec<KernelKey>) {
+    pub fn compile_later(&self, cache: &Arc<PipelineCache>, device: &Arc<Device>, keys: Vec<KernelKey>) {
         if !self.threads {
             return;
         }
         let mut queue = self.queue.lock();
         queue.keys = keys.into();
         // Half of the cores are left to the host, where there are several.
-        let most = cores().div_ceil(2).min(MOST_BEHIND);
+        let most = cores().div_ceil(2).min(MOST_IN_BACKGROUND);
         while queue.running < most.min(queue.keys.len()) {
-            let (shared, store, device) = (self.queue.clone(), store.clone(), device.clone());
+            let (shared, cache, device) = (self.queue.clone(), cache.clone(), device.clone());
             let scope = thread_scope::of_caller();
             let work = move || {
                 let _scope = scope();
-                make_behind(&shared, &store, &device);
+                compile_in_background(&shared, &cache, &device);
             };
             let Ok(thread) = thread::Builder::new().name("bhr-kernels".into()).spawn(work) else { return };
             queue.running += 1;
@@ -210,10 +215,10 @@ impl Drop for Compilers {
     }
 }
 
-fn make_behind(shared: &Shared, store: &Store, device: &Device) {
+fn compile_in_background(shared: &Shared, cache: &PipelineCache, device: &Device) {
     lower_priority();
     while let Some(key) = shared.next() {
-        make(store, |store| store.get_ahead(device, key));
+        compile(cache, |cache| cache.get_ahead(device, key));
     }
 }
 

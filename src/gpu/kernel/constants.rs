@@ -87,7 +87,7 @@ fn all() -> Vec<(&'static str, String)> {
         KERR_TOLERANCE: f32 = kerr::TOLERANCE;
         KERR_BEYOND: f32 = kerr::BEYOND_INFINITY;
         KERR_INWARD: f32 = kerr::INWARD;
-        LIKE: f32 = refine::LIKE;
+        SAME_CROSSING: f32 = refine::SAME_CROSSING;
 
         VIEW_REDSHIFT: u32 = View::Redshift;
         VIEW_ORDER: u32 = View::Order;

@@ -72,7 +72,7 @@ mod tests {
 
     /// A fragment with all that it imports, and stubs for what is required then.
     fn alone(find: &dyn Fn(&str) -> Option<Cow<'static, str>>, name: &str) -> std::result::Result<(), String> {
-        let joined = preprocess::Joined::new(find, &[name])?;
+        let joined = preprocess::JoinedFragments::new(find, &[name])?;
         let mut required = BTreeSet::new();
         for unmet in joined.unmet() {
             if let Some(found) = unmet.found {

@@ -1,7 +1,7 @@
 //! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time. Knows
 //! what each kernel binds ([`KernelKey`]), not what with.
 
-use super::compilers::{Compilers, Wanted};
+use super::compilers::{CompileBatch, Compilers};
 use super::key::KernelKey;
 use super::slots::{Slot, edge_slots};
 use super::variant::GROUP;
@@ -39,7 +39,7 @@ const MOST_KERNELS_SOFTWARE: usize = 48;
 pub struct Kernels {
     /// First, so that its threads end before the device does.
     compilers: Compilers,
-    store: Arc<Store>,
+    cache: Arc<PipelineCache>,
     device: Arc<Device>,
     waits: AtomicU64,
     late: AtomicU64,
@@ -55,7 +55,7 @@ pub struct KernelWaits {
 }
 
 /// The pipelines that are there or being made; shared with the threads that make them.
-pub(in crate::gpu) struct Store {
+pub(in crate::gpu) struct PipelineCache {
     state: Mutex<State>,
     /// Pipelines that are kept.
     most: usize,
@@ -65,8 +65,8 @@ pub(in crate::gpu) struct Store {
 
 #[derive(Default)]
 struct State {
-    made: HashMap<KernelKey, Progress>,
-    /// Those of `made` that are there: first those that no frame has asked for yet, the one made last being the last
+    entries: HashMap<KernelKey, CacheEntry>,
+    /// Those of `entries` that are there: first those that no frame has asked for yet, the one made last being the last
     /// of them; then the others, the one used last being the last.
     used: Vec<KernelKey>,
     /// How many no frame has asked for yet.
@@ -75,10 +75,10 @@ struct State {
     layouts: HashMap<Vec<Slot>, wgpu::BindGroupLayout>,
 }
 
-enum Progress {
+enum CacheEntry {
     /// By a thread that will say so when it is done.
-    Making,
-    Made(Compiled),
+    Compiling,
+    Compiled(Compiled),
 }
 
 impl State {
@@ -97,7 +97,7 @@ impl State {
     }
 }
 
-impl Store {
+impl PipelineCache {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -116,29 +116,29 @@ impl Store {
     fn get_for(&self, device: &Device, key: KernelKey, ahead: bool) -> Result<Compiled> {
         let mut state = self.lock();
         loop {
-            match state.made.get(&key) {
-                Some(Progress::Made(compiled)) => {
+            match state.entries.get(&key) {
+                Some(CacheEntry::Compiled(compiled)) => {
                     let compiled = compiled.clone();
                     state.note_use(key, ahead);
                     return Ok(compiled);
                 }
-                Some(Progress::Making) => {
+                Some(CacheEntry::Compiling) => {
                     state = self.settled.wait(state).unwrap_or_else(PoisonError::into_inner);
                 }
                 None => break,
             }
         }
-        state.made.insert(key, Progress::Making);
+        state.entries.insert(key, CacheEntry::Compiling);
         drop(state);
         // Messages wait until those who wait for the pipeline have it.
         let _holding = hold();
-        let settling = Settling { store: self, key, ahead, made: None };
-        settling.settle(self.compile(device, key))
+        let guard = CompileGuard { cache: self, key, ahead, compiled: None };
+        guard.settle(self.compile(device, key))
     }
 
     /// Whether the kernel's pipeline is there.
     pub(in crate::gpu) fn has(&self, key: KernelKey) -> bool {
-        matches!(self.lock().made.get(&key), Some(Progress::Made(_)))
+        matches!(self.lock().entries.get(&key), Some(CacheEntry::Compiled(_)))
     }
 
     fn compile(&self, device: &Device, key: KernelKey) -> Result<Compiled> {
@@ -173,46 +173,46 @@ impl Store {
             })
             .collect::<Vec<_>>();
         let descriptor = wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-        let layout = device.beside("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
+        let layout = device.scoped_off_thread("laying out bindings", |d| d.create_bind_group_layout(&descriptor))?;
         state.layouts.insert(slots.into(), layout.clone());
         Ok(layout)
     }
 }
 
 /// A promise to tell those who wait for a pipeline what became of it, kept even if making it panics.
-struct Settling<'a> {
-    store: &'a Store,
+struct CompileGuard<'a> {
+    cache: &'a PipelineCache,
     key: KernelKey,
     /// No frame has asked for it yet.
     ahead: bool,
-    made: Option<Compiled>,
+    compiled: Option<Compiled>,
 }
 
-impl Settling<'_> {
-    fn settle(mut self, made: Result<Compiled>) -> Result<Compiled> {
-        made.inspect(|compiled| self.made = Some(compiled.clone()))
+impl CompileGuard<'_> {
+    fn settle(mut self, result: Result<Compiled>) -> Result<Compiled> {
+        result.inspect(|compiled| self.compiled = Some(compiled.clone()))
     }
 }
 
-impl Drop for Settling<'_> {
+impl Drop for CompileGuard<'_> {
     fn drop(&mut self) {
-        let mut state = self.store.lock();
-        match self.made.take() {
+        let mut state = self.cache.lock();
+        match self.compiled.take() {
             Some(compiled) => {
-                state.made.insert(self.key, Progress::Made(compiled));
+                state.entries.insert(self.key, CacheEntry::Compiled(compiled));
                 let place = if self.ahead { state.ahead } else { state.used.len() };
                 state.used.insert(place, self.key);
                 state.ahead += usize::from(self.ahead);
                 // The oldest go first.
-                let too_many = state.used.len().saturating_sub(self.store.most);
+                let too_many = state.used.len().saturating_sub(self.cache.most);
                 let old = state.used.drain(..too_many).collect::<Vec<_>>();
                 state.ahead = state.ahead.saturating_sub(too_many);
-                old.iter().for_each(|key| drop(state.made.remove(key)));
+                old.iter().for_each(|key| drop(state.entries.remove(key)));
             }
-            None => drop(state.made.remove(&self.key)),
+            None => drop(state.entries.remove(&self.key)),
         }
         drop(state);
-        self.store.settled.notify_all();
+        self.cache.settled.notify_all();
     }
 }
 
@@ -220,8 +220,8 @@ impl Kernels {
     /// `threads`: whether the device may be used from several.
     pub fn new(device: Arc<Device>, threads: bool, software: bool) -> Self {
         let most = if software { MOST_KERNELS_SOFTWARE } else { MOST_KERNELS };
-        let store = Arc::new(Store { state: Mutex::default(), most, settled: Condvar::new() });
-        Self { compilers: Compilers::new(threads), store, device, waits: AtomicU64::new(0), late: AtomicU64::new(0) }
+        let cache = Arc::new(PipelineCache { state: Mutex::default(), most, settled: Condvar::new() });
+        Self { compilers: Compilers::new(threads), cache, device, waits: AtomicU64::new(0), late: AtomicU64::new(0) }
     }
 
     pub fn waits(&self) -> KernelWaits {
@@ -235,54 +235,54 @@ impl Kernels {
 
     /// The kernel's pipeline, made now unless it is there. Errors: as [`Device::compute_pipeline`].
     pub fn get(&self, key: KernelKey) -> Result<Compiled> {
-        if !self.store.has(key) {
+        if !self.cache.has(key) {
             self.late.fetch_add(1, Ordering::Relaxed);
         }
-        self.store.get(&self.device, key).map_err(|error| self.device.explain(error))
+        self.cache.get(&self.device, key).map_err(|error| self.device.explain(error))
     }
 
     /// Those of `keys` whose pipelines are not there.
     pub fn missing(&self, keys: &[KernelKey]) -> Vec<KernelKey> {
-        keys.iter().copied().filter(|key| !self.store.has(*key)).collect()
+        keys.iter().copied().filter(|key| !self.cache.has(*key)).collect()
     }
 
     /// Begins to make all of `keys` that are not there, several at a time; [`Self::finish`] ends it. `None`: none are
     /// missing.
-    pub fn begin(&self, keys: &[KernelKey]) -> Option<Wanted> {
+    pub fn begin(&self, keys: &[KernelKey]) -> Option<CompileBatch> {
         let missing = self.missing(keys);
         self.waits.fetch_add(missing.len() as u64, Ordering::Relaxed);
-        (!missing.is_empty()).then(|| self.compilers.make_now(&self.store, &self.device, missing))
+        (!missing.is_empty()).then(|| self.compilers.compile_now(&self.cache, &self.device, missing))
     }
 
     /// Waits for what was begun. Errors: as [`Self::get`], the first one.
-    pub fn finish(&self, wanted: Option<Wanted>) -> Result<()> {
-        let Some(wanted) = wanted else { return Ok(()) };
-        let (started, names) = (Instant::now(), wanted.names());
-        let made = wanted.finish(&self.store, &self.device);
+    pub fn finish(&self, batch: Option<CompileBatch>) -> Result<()> {
+        let Some(batch) = batch else { return Ok(()) };
+        let (started, names) = (Instant::now(), batch.names());
+        let made = batch.finish(&self.cache, &self.device);
         log::debug!("a frame waited {} ms for kernels: {names}", started.elapsed().as_millis());
         made.map_err(|error| self.device.explain(error))
     }
 
     /// Does `work`, which makes what frames will need, in the background.
-    pub fn run_behind(&self, work: impl FnOnce() + Send + 'static) {
-        self.compilers.run_behind(work);
+    pub fn run_in_background(&self, work: impl FnOnce() + Send + 'static) {
+        self.compilers.run_in_background(work);
     }
 
     /// Makes those of `keys` that are not there in the background, the first ones first, instead of those that an
     /// earlier call asked for and that were not begun. Without effect where a device may be used from one thread only.
     pub fn anticipate(&self, mut keys: Vec<KernelKey>) {
         let asked_for = {
-            let state = self.store.lock();
+            let state = self.cache.lock();
             state.used.len() - state.ahead
         };
         // The less likely ones would take the places of the more likely ones.
-        keys.truncate(self.store.most.saturating_sub(asked_for));
-        self.compilers.make_later(&self.store, &self.device, keys);
+        keys.truncate(self.cache.most.saturating_sub(asked_for));
+        self.compilers.compile_later(&self.cache, &self.device, keys);
     }
 
     /// The layout of group 3 of kernels that shade.
     pub fn edge_list(&self) -> Result<wgpu::BindGroupLayout> {
-        self.store.layout(&self.device, &edge_slots())
+        self.cache.layout(&self.device, &edge_slots())
     }
 }
 

@@ -4,7 +4,7 @@
 use super::slots::{
     LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TRACED, edge_slots, shade_slots, sum_slots,
 };
-use super::variant::{FROM_UNIFORM, FilmVariant, GROUP, Refined, ShadeVariant, Source, TraceVariant};
+use super::variant::{FROM_UNIFORM, FilmVariant, GROUP, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
 use super::wgsl;
 use crate::error::Result;
 use crate::scene::Projection;
@@ -14,16 +14,16 @@ pub enum KernelKey {
     Pixels(TraceVariant),
     Rays(TraceVariant),
     Count,
-    ShadeSample(Source, ShadeVariant),
-    ShadeOnly(Source, ShadeVariant, FilmVariant),
-    Refine(Refined, ShadeVariant, Option<FilmVariant>),
+    ShadeSample(RecordSource, ShadeVariant),
+    ShadeOnly(RecordSource, ShadeVariant, FilmVariant),
+    Refine(RefineVariant, ShadeVariant, Option<FilmVariant>),
     /// Develops a sum of samples, or light that has spread over a grid of cells of so many pixels' side.
     Develop(FilmVariant, Option<u32>),
     /// Finer cells, or pixels, along a cell's side; whether they are cells.
     Gather(u32, bool),
     GatherBase,
-    GiveBack,
-    Export(Source, bool, Option<Projection>),
+    Upsample,
+    Export(RecordSource, bool, Option<Projection>),
     SchwarzschildEnds,
     SchwarzschildColumns {
         delay: bool,
@@ -39,23 +39,23 @@ pub enum KernelKey {
 
 impl KernelKey {
     /// Group 3, the list of pixels with edges, is for the caller to set.
-    pub fn shade_sample(source: Source, look: ShadeVariant) -> Self {
-        Self::ShadeSample(source, look)
+    pub fn shade_sample(source: RecordSource, shade: ShadeVariant) -> Self {
+        Self::ShadeSample(source, shade)
     }
 
-    /// Groups 2, which puts the pixels, and 3, the list of those with edges, are for the caller to set.
-    pub fn shade_only(source: Source, look: ShadeVariant, film: FilmVariant) -> Self {
-        Self::ShadeOnly(source, look, film.over(source))
+    /// Groups 2, which writes the pixels, and 3, the list of those with edges, are for the caller to set.
+    pub fn shade_only(source: RecordSource, shade: ShadeVariant, film: FilmVariant) -> Self {
+        Self::ShadeOnly(source, shade, film.over(source))
     }
 
     /// Groups 2 and 3 as `shade_only`, or, without `film`, `shade_sample`.
-    pub fn refine(refined: Refined, look: ShadeVariant, film: Option<FilmVariant>) -> Self {
+    pub fn refine(refined: RefineVariant, shade: ShadeVariant, film: Option<FilmVariant>) -> Self {
         // The disk may cover but a part of a sample's cell.
-        Self::Refine(refined, ShadeVariant { opaque: false, ..look }, film.map(FilmVariant::scattered))
+        Self::Refine(refined, ShadeVariant { opaque: false, ..shade }, film.map(FilmVariant::scattered))
     }
 
-    pub fn export(source: Source, look: ShadeVariant) -> Self {
-        Self::Export(source, look.footprints, look.projection)
+    pub fn export(source: RecordSource, shade: ShadeVariant) -> Self {
+        Self::Export(source, shade.footprints, shade.projection)
     }
 
     pub fn entry_point(self) -> &'static str {
@@ -68,7 +68,7 @@ impl KernelKey {
             Self::Refine(..) => "refine",
             Self::Develop(..) => "develop_tile",
             Self::Gather(..) | Self::GatherBase => "gather",
-            Self::GiveBack => "give_back",
+            Self::Upsample => "upsample",
             Self::SchwarzschildEnds => "find_ends",
             Self::SchwarzschildColumns { .. } => "fill_columns",
             Self::KerrNodes { .. } => "trace_nodes",
@@ -88,7 +88,7 @@ impl KernelKey {
             Self::Develop(film, glare) => wgsl::develop(film, glare.is_some()),
             Self::Gather(..) => wgsl::kernel("bloom/gather"),
             Self::GatherBase => wgsl::kernel("bloom/base"),
-            Self::GiveBack => wgsl::kernel("bloom/return"),
+            Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Export(source, ..) => wgsl::export(source),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
             Self::SchwarzschildColumns { .. } => wgsl::kernel("lens/schwarzschild_columns"),
@@ -122,7 +122,7 @@ impl KernelKey {
             Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }
-            Self::GiveBack => {
+            Self::Upsample => {
                 let [finer, coarser] = [Slot::Texture(LIGHT), Slot::Filtered(LIGHT)];
                 vec![vec![Slot::UniformPart, finer, coarser, Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }
@@ -159,22 +159,22 @@ impl KernelKey {
                 [trace_constants(variant), pixels].concat()
             }
             Self::Rays(variant) => trace_constants(variant),
-            Self::ShadeSample(source, look) => [source.constants(), look_constants(look)].concat(),
-            Self::ShadeOnly(source, look, film) => {
-                [source.constants(), look_constants(look), film_constants(film)].concat()
+            Self::ShadeSample(source, shade) => [source.constants(), shade_constants(shade)].concat(),
+            Self::ShadeOnly(source, shade, film) => {
+                [source.constants(), shade_constants(shade), film_constants(film)].concat()
             }
-            Self::Refine(refined, look, film) => {
+            Self::Refine(refined, shade, film) => {
                 let traced = match refined.source {
-                    Source::Traced => trace_constants(refined.variant),
+                    RecordSource::Traced => trace_constants(refined.variant),
                     _ => refined.source.constants(),
                 };
                 let film = film.map_or_else(Vec::new, film_constants);
-                [traced, look_constants(look), film, vec![("WHOLE_PLANE", 1.0)]].concat()
+                [traced, shade_constants(shade), film, vec![("WHOLE_PLANE", 1.0)]].concat()
             }
             Self::Develop(film, None) => film_constants(film),
             Self::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
             Self::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
-            Self::GatherBase | Self::GiveBack => Vec::new(),
+            Self::GatherBase | Self::Upsample => Vec::new(),
             Self::Export(source, footprints, projection) => {
                 let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
                 [source.constants(), export].concat()
@@ -192,7 +192,7 @@ fn flag(on: bool) -> f64 {
     f64::from(u8::from(on))
 }
 
-impl Source {
+impl RecordSource {
     /// Values of the `override` constants that the parts declare.
     fn constants(self) -> Vec<(&'static str, f64)> {
         match self {
@@ -200,9 +200,9 @@ impl Source {
             Self::Schwarzschild { delay, moving } => {
                 vec![("SPINNING", 0.0), ("DELAY", flag(delay)), ("MOVING", flag(moving))]
             }
-            Self::Kerr { delay, pattern, moving, rest } => {
+            Self::Kerr { delay, pattern, moving, deferred } => {
                 let mut list = vec![("DELAY", flag(delay)), ("PATTERN", flag(pattern)), ("MOVING", flag(moving))];
-                if rest {
+                if deferred {
                     // The rest of the constants' defaults are what AUTO takes.
                     list.push(("STEP_LIMIT", 1.0));
                 }
@@ -226,20 +226,20 @@ fn projection_constant(projection: Option<Projection>) -> (&'static str, f64) {
     ("PROJECTION", projection.map_or(FROM_UNIFORM, |projection| projection as u32).into())
 }
 
-fn look_constants(look: ShadeVariant) -> Vec<(&'static str, f64)> {
+fn shade_constants(shade: ShadeVariant) -> Vec<(&'static str, f64)> {
     vec![
-        ("SHOWS_LIGHT", flag(look.light)),
-        ("SHOWS_STARS", flag(look.stars)),
-        ("SHOWS_MILKY_WAY", flag(look.milky_way)),
-        ("SHOWS_MAP", flag(look.map)),
-        ("SHOWS_GRID", flag(look.grid)),
-        ("ALL_EFFECTS", flag(look.all_effects)),
-        ("PLANE", flag(look.plane)),
-        ("OPAQUE", flag(look.opaque)),
-        ("FOOTPRINTS", flag(look.footprints)),
-        ("VOLUMES", flag(look.volumes)),
-        projection_constant(look.projection),
-        ("REFINES", flag(look.refines)),
+        ("SHOWS_LIGHT", flag(shade.light)),
+        ("SHOWS_STARS", flag(shade.stars)),
+        ("SHOWS_MILKY_WAY", flag(shade.milky_way)),
+        ("SHOWS_MAP", flag(shade.map)),
+        ("SHOWS_GRID", flag(shade.grid)),
+        ("ALL_EFFECTS", flag(shade.all_effects)),
+        ("PLANE", flag(shade.plane)),
+        ("OPAQUE", flag(shade.opaque)),
+        ("FOOTPRINTS", flag(shade.footprints)),
+        ("VOLUMES", flag(shade.volumes)),
+        projection_constant(shade.projection),
+        ("REFINES", flag(shade.refines)),
     ]
 }
 

@@ -13,24 +13,24 @@ use std::collections::BTreeMap;
 type Text = Cow<'static, str>;
 
 /// The meaning of one line of a fragment.
-enum Line<'a> {
+enum SourceLine<'a> {
     Import(&'a str),
     Requires(&'a str),
     Wgsl,
 }
 
 /// Errors: a line that begins with `#` and is neither directive.
-fn line(text: &str) -> Result<Line<'_>, String> {
-    let Some(directive) = text.strip_prefix('#') else { return Ok(Line::Wgsl) };
+fn parse_line(text: &str) -> Result<SourceLine<'_>, String> {
+    let Some(directive) = text.strip_prefix('#') else { return Ok(SourceLine::Wgsl) };
     match directive.split_once(' ') {
-        Some(("import", name)) => Ok(Line::Import(name.trim())),
-        Some(("requires", declaration)) => Ok(Line::Requires(declaration)),
+        Some(("import", name)) => Ok(SourceLine::Import(name.trim())),
+        Some(("requires", declaration)) => Ok(SourceLine::Requires(declaration)),
         _ => Err(format!("`{text}` is neither `#import NAME` nor `#requires DECLARATION`")),
     }
 }
 
 /// Fragments that are to be one module.
-pub struct Joined<'a> {
+pub struct JoinedFragments<'a> {
     find: &'a dyn Fn(&str) -> Option<Text>,
     /// In the order in which they are joined.
     fragments: Vec<(String, Text)>,
@@ -39,18 +39,18 @@ pub struct Joined<'a> {
 }
 
 /// A requirement of a fragment that is not met, and what there is instead: nothing, or another declaration of the name.
-pub struct Unmet<'a> {
+pub struct UnmetRequirement<'a> {
     pub fragment: &'a str,
     pub required: &'a str,
     pub found: Option<String>,
 }
 
-impl<'a> Joined<'a> {
+impl<'a> JoinedFragments<'a> {
     /// Every fragment of `roots` and all that they import, as `find` has them by name; each once, imports first.
     ///
     /// Errors, with the names: a fragment that is not there, imports in a circle, and a line that is no directive.
     pub fn new(find: &'a dyn Fn(&str) -> Option<Text>, roots: &[&str]) -> Result<Self, String> {
-        let mut joined = Joined { find, fragments: Vec::new(), open: Vec::new() };
+        let mut joined = JoinedFragments { find, fragments: Vec::new(), open: Vec::new() };
         for root in roots {
             joined.add(root)?;
         }
@@ -69,7 +69,7 @@ impl<'a> Joined<'a> {
         let text = (self.find)(name).ok_or_else(|| format!("there is no fragment {name}, which {importer} imports"))?;
         self.open.push(name.into());
         for text in text.lines() {
-            if let Line::Import(import) = line(text).map_err(|error| format!("{name}: {error}"))? {
+            if let SourceLine::Import(import) = parse_line(text).map_err(|error| format!("{name}: {error}"))? {
                 self.add(import)?;
             }
         }
@@ -79,13 +79,13 @@ impl<'a> Joined<'a> {
     }
 
     /// All that is required, and declared by none of the fragments, or otherwise.
-    pub fn unmet(&self) -> Vec<Unmet<'_>> {
+    pub fn unmet(&self) -> Vec<UnmetRequirement<'_>> {
         let declared: BTreeMap<_, _> = self.fragments.iter().flat_map(|(_, text)| declarations(text)).collect();
         let required = self.fragments.iter().flat_map(|(name, text)| text.lines().map(move |text| (name, text)));
         let unmet = required.filter_map(|(fragment, text)| {
-            let Ok(Line::Requires(required)) = line(text) else { return None };
+            let Ok(SourceLine::Requires(required)) = parse_line(text) else { return None };
             let found = declared.get(name_of(required)).cloned();
-            (found.as_ref() != Some(&normal(required))).then_some(Unmet { fragment, required, found })
+            (found.as_ref() != Some(&normal(required))).then_some(UnmetRequirement { fragment, required, found })
         });
         unmet.collect()
     }
@@ -95,7 +95,7 @@ impl<'a> Joined<'a> {
         let mut source = String::new();
         for (name, text) in &self.fragments {
             source += &format!("// {name}.wgsl\n");
-            for text in text.lines().filter(|text| matches!(line(text), Ok(Line::Wgsl))) {
+            for text in text.lines().filter(|text| matches!(parse_line(text), Ok(SourceLine::Wgsl))) {
                 source.extend([text, "\n"]);
             }
         }
@@ -103,10 +103,11 @@ impl<'a> Joined<'a> {
     }
 }
 
-/// The WGSL of `roots` and all that they import. Errors: as [`Joined::new`], and what is unmet, with the names.
+/// The WGSL of `roots` and all that they import. Errors: as [`JoinedFragments::new`], and what is unmet, with the
+/// names.
 pub fn join(find: &dyn Fn(&str) -> Option<Text>, roots: &[&str]) -> Result<String, String> {
-    let joined = Joined::new(find, roots)?;
-    let unmet = joined.unmet().into_iter().map(|Unmet { fragment, required, found }| match found {
+    let joined = JoinedFragments::new(find, roots)?;
+    let unmet = joined.unmet().into_iter().map(|UnmetRequirement { fragment, required, found }| match found {
         Some(found) => format!("{fragment} requires `{required}`, but there is `{found}`"),
         None => format!("{fragment} requires `{required}`, which no fragment declares"),
     });

@@ -1,7 +1,7 @@
 //! The bindings of kernels: their kinds, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 
-use super::variant::{FilmVariant, PixelTarget, Source};
+use super::variant::{FilmVariant, PixelTarget, RecordSource};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 
 /// The kind of a binding.
@@ -87,7 +87,7 @@ impl Slot {
 }
 
 impl FilmVariant {
-    /// The group of film/film.wgsl and what puts the pixels.
+    /// The group of film/film.wgsl and what writes the pixels.
     pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
         let pixels = match self.target {
             PixelTarget::Screen => Slot::TextureWrite(SCREEN),
@@ -98,7 +98,7 @@ impl FilmVariant {
     }
 }
 
-impl Source {
+impl RecordSource {
     /// Group 1.
     pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
         match self {

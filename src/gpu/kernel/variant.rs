@@ -1,4 +1,4 @@
-//! The variants that kernels are compiled in: how rays are traced, light is shaded, and pixels are put. Plain data.
+//! The variants that kernels are compiled in: how rays are traced, light is shaded, and pixels are written. Plain data.
 
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
@@ -6,7 +6,7 @@ use crate::scene::{Film, Projection, ToneMap, View};
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
-/// The same of those that put them row by row.
+/// The same of those that write them row by row.
 pub(in crate::gpu) const ROWS_GROUP: [u32; 2] = [32, 4];
 /// Threads of a workgroup of the kernels that build spin-0 lenses.
 pub const LENS_GROUP: u32 = 32;
@@ -73,7 +73,7 @@ pub enum PixelKind {
     R32F,
 }
 
-/// Where the last kernel of a frame puts pixels.
+/// Where the last kernel of a frame writes pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PixelTarget {
     /// Into a window's texture.
@@ -122,9 +122,9 @@ impl FilmVariant {
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.
-    pub(in crate::gpu) fn over(self, source: Source) -> Self {
+    pub(in crate::gpu) fn over(self, source: RecordSource) -> Self {
         match source {
-            Source::Kerr { rest: true, .. } => self.scattered(),
+            RecordSource::Kerr { deferred: true, .. } => self.scattered(),
             _ => self,
         }
     }
@@ -137,7 +137,7 @@ impl FilmVariant {
         }
     }
 
-    /// Threads of a workgroup of the kernels that put pixels.
+    /// Threads of a workgroup of the kernels that write pixels.
     pub(in crate::gpu) fn group(self) -> [u32; 2] {
         match self.target {
             PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => GROUP,
@@ -148,20 +148,20 @@ impl FilmVariant {
 
 /// The maker of the ray records that a kernel reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Source {
+pub enum RecordSource {
     /// traced/record.wgsl
     Traced,
     /// lens/schwarzschild_record.wgsl
     Schwarzschild { delay: bool, moving: bool },
-    /// lens/kerr_pixel.wgsl, and of the pixels it defers lens/kerr_rest.wgsl
-    Kerr { delay: bool, pattern: bool, moving: bool, rest: bool },
+    /// lens/kerr_pixel.wgsl, and of the pixels it defers lens/kerr_deferred.wgsl
+    Kerr { delay: bool, pattern: bool, moving: bool, deferred: bool },
 }
 
 /// How refine/refine.wgsl finds its samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Refined {
+pub struct RefineVariant {
     /// The source of the pixels' own records.
-    pub source: Source,
+    pub source: RecordSource,
     /// How rays are traced that no table holds.
     pub variant: TraceVariant,
 }

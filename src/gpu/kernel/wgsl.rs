@@ -2,17 +2,17 @@
 //! devices.
 
 use super::fragments::join;
-use super::variant::{FilmVariant, PixelTarget, Source};
+use super::variant::{FilmVariant, PixelTarget, RecordSource};
 use crate::error::Result;
 
-impl Source {
+impl RecordSource {
     /// The fragment that makes the records of pixels.
     fn fragment(self) -> &'static str {
         match self {
             Self::Traced => "traced/record",
             Self::Schwarzschild { .. } => "lens/schwarzschild_record",
-            Self::Kerr { rest: false, .. } => "lens/kerr_pixel",
-            Self::Kerr { rest: true, .. } => "lens/kerr_rest",
+            Self::Kerr { deferred: false, .. } => "lens/kerr_pixel",
+            Self::Kerr { deferred: true, .. } => "lens/kerr_deferred",
         }
     }
 
@@ -28,7 +28,7 @@ impl Source {
     /// The kernel that goes over the pixels: its entry point and its fragment.
     pub(in crate::gpu) fn driver(self, target: Option<PixelTarget>) -> (&'static str, &'static str) {
         match (self, target) {
-            (Self::Kerr { rest: true, .. }, _) => ("each_deferred", "records/each_deferred"),
+            (Self::Kerr { deferred: true, .. }, _) => ("each_deferred", "records/each_deferred"),
             (_, Some(PixelTarget::Rows)) => ("each_pixel", "records/each_pixel_rows"),
             _ => ("each_pixel", "records/each_pixel"),
         }
@@ -36,7 +36,7 @@ impl Source {
 }
 
 impl PixelTarget {
-    /// The fragment that puts pixels there.
+    /// The fragment that writes pixels there.
     fn fragment(self) -> &'static str {
         match self {
             Self::Screen => "film/screen",
@@ -47,17 +47,17 @@ impl PixelTarget {
     }
 }
 
-pub fn shade_sample(source: Source) -> Result<String> {
+pub fn shade_sample(source: RecordSource) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "shade/record", "shade/sample"])
 }
 
-pub fn shade_only(source: Source, film: FilmVariant) -> Result<String> {
+pub fn shade_only(source: RecordSource, film: FilmVariant) -> Result<String> {
     let (_, driver) = source.driver(Some(film.target));
     join(&[driver, source.fragment(), "shade/record", "shade/only", film.target.fragment()])
 }
 
 /// `film`: of pixels with one sample.
-pub fn refine(source: Source, film: Option<FilmVariant>) -> Result<String> {
+pub fn refine(source: RecordSource, film: Option<FilmVariant>) -> Result<String> {
     let samples = source.sample_fragment();
     match film {
         Some(film) => join(&["refine/refine", samples, "shade/only", film.target.fragment()]),
@@ -65,7 +65,7 @@ pub fn refine(source: Source, film: Option<FilmVariant>) -> Result<String> {
     }
 }
 
-pub fn export(source: Source) -> Result<String> {
+pub fn export(source: RecordSource) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "records/export"])
 }
 
@@ -85,15 +85,20 @@ pub fn kernel(fragment: &str) -> Result<String> {
 /// Every shader of this tracer, joined as the device gets it: name and WGSL. Errors: as `join`.
 pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
     let film = |target| FilmVariant { target, ..FilmVariant::of_light() };
-    let kerr = |rest| Source::Kerr { delay: true, pattern: true, moving: true, rest };
+    let kerr = |deferred| RecordSource::Kerr { delay: true, pattern: true, moving: true, deferred };
     let sources = [
         ["shade sample, traced", "shade only, traced", "export, traced"],
         ["shade sample, spin-0 lens", "shade only, spin-0 lens", "export, spin-0 lens"],
         ["shade sample, Kerr lens", "shade only, Kerr lens", "export, Kerr lens"],
-        ["shade sample, Kerr rest", "shade only, Kerr rest", "export, Kerr rest"],
+        ["shade sample, Kerr deferred", "shade only, Kerr deferred", "export, Kerr deferred"],
     ]
     .into_iter()
-    .zip([Source::Traced, Source::Schwarzschild { delay: true, moving: true }, kerr(false), kerr(true)]);
+    .zip([
+        RecordSource::Traced,
+        RecordSource::Schwarzschild { delay: true, moving: true },
+        kerr(false),
+        kerr(true),
+    ]);
     let of_sources = sources.flat_map(|([in_sum, alone, exported], source)| {
         [
             (in_sum, shade_sample(source)),
@@ -115,12 +120,12 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("develop with glare by rows", develop(film(PixelTarget::Rows), true)),
         ("bloom, gather", kernel("bloom/gather")),
         ("bloom, gather pixels", kernel("bloom/base")),
-        ("bloom, give back", kernel("bloom/return")),
+        ("bloom, upsample", kernel("bloom/upsample")),
         ("shade only for bloom", shade_only(kerr(false), FilmVariant::of_light())),
-        ("refine, traced", refine(Source::Traced, Some(film(PixelTarget::Packed)))),
+        ("refine, traced", refine(RecordSource::Traced, Some(film(PixelTarget::Packed)))),
         (
             "refine, spin-0 lens",
-            refine(Source::Schwarzschild { delay: true, moving: true }, Some(film(PixelTarget::Packed))),
+            refine(RecordSource::Schwarzschild { delay: true, moving: true }, Some(film(PixelTarget::Packed))),
         ),
         ("refine, Kerr lens", refine(kerr(true), Some(film(PixelTarget::Packed)))),
         ("refine for a window", refine(kerr(true), Some(film(PixelTarget::Screen)))),

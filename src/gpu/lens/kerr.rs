@@ -1,6 +1,6 @@
-//! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the eye or the disk
-//! has changed, read by lens/kerr_record.wgsl; and the pixels that they leave to integration. Knows eyes and kernels,
-//! no scene.
+//! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the observer or the
+//! disk has changed, read by lens/kerr_record.wgsl; and the pixels that they leave to integration. Knows observers and
+//! kernels, no scene.
 
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
@@ -19,7 +19,7 @@ use wgpu::BufferUsages as Usage;
 
 /// Orders in a layer without pattern.
 const ORDERS_A_LAYER: u32 = 4;
-/// Rows are made in so many at once: an eye that moves changes their number.
+/// Rows are made in so many at once: an observer that moves changes their number.
 const ROWS_STEP: u32 = 64;
 /// `Deferred` of lens/kerr_record.wgsl: bytes before the pixels, and of a pixel.
 const DEFERRED_HEAD: u64 = 68;
@@ -45,7 +45,7 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
 
 /// The contents that are asked of the tables.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wanted {
+pub struct KerrContents {
     /// Orders of crossings; 0 without a disk.
     pub orders: u32,
     pub plane_u: [f64; 2],
@@ -55,7 +55,7 @@ pub struct Wanted {
 
 /// Everything that decides the nodes' content.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Eye {
+struct KerrKey {
     a: f64,
     place: [f64; 3],
     /// Azimuth.
@@ -65,15 +65,15 @@ struct Eye {
     delay: bool,
 }
 
-impl Eye {
-    fn new(frame: &LocalFrame, wanted: &Wanted) -> Self {
+impl KerrKey {
+    fn new(frame: &LocalFrame, contents: &KerrContents) -> Self {
         Self {
             a: frame.a,
             place: [frame.r, frame.sin, frame.cos],
             e_phi: frame.e_phi,
-            orders: wanted.orders,
-            pattern: wanted.pattern,
-            delay: wanted.delay,
+            orders: contents.orders,
+            pattern: contents.pattern,
+            delay: contents.delay,
         }
     }
 }
@@ -81,11 +81,11 @@ impl Eye {
 /// The tables; made when first needed.
 #[derive(Default)]
 pub struct KerrTables {
-    made: Option<Made>,
+    resources: Option<KerrResources>,
     deferred: Option<Buffer>,
 }
 
-struct Made {
+struct KerrResources {
     /// Counts of the outer rows and of all rows.
     rows: [u32; 2],
     layers: u32,
@@ -94,7 +94,7 @@ struct Made {
     sky: Texture,
     crossings: Texture,
     flags: Texture,
-    traced: Option<(Eye, KerrUniform)>,
+    traced: Option<(KerrKey, KerrUniform)>,
     flagged: Option<[f64; 2]>,
 }
 
@@ -132,62 +132,63 @@ impl KerrTables {
         self.deferred.as_ref()
     }
 
-    /// Brings the tables up to the eye and the disk; the stages to run before they are read, `None` if they are as
-    /// needed already. `frame_uniform` holds the eye. Errors: INTERNAL for an eye that has no tables.
+    /// Brings the tables up to the observer and the disk; the stages to run before they are read, `None` if they are as
+    /// needed already. `frame_uniform` holds the observer. Errors: INTERNAL for an observer that has no tables.
     pub fn update(
         &mut self,
         device: &Device,
         kernels: &Kernels,
         frame: &LocalFrame,
-        wanted: &Wanted,
+        contents: &KerrContents,
         frame_uniform: wgpu::BindingResource<'_>,
     ) -> Result<Option<KerrStages>> {
-        let eye = Eye::new(frame, wanted);
-        let current = self.made.as_ref().and_then(|m| m.traced).filter(|(traced, _)| *traced == eye);
-        if current.is_some() && self.made.as_ref().is_some_and(|m| m.flagged == Some(wanted.plane_u)) {
+        let key = KerrKey::new(frame, contents);
+        let current = self.resources.as_ref().and_then(|m| m.traced).filter(|(traced, _)| *traced == key);
+        if current.is_some() && self.resources.as_ref().is_some_and(|m| m.flagged == Some(contents.plane_u)) {
             return Ok(None);
         }
         let uniform = match current {
             Some((_, uniform)) => uniform,
-            None => self.remake(device, frame, wanted)?,
+            None => self.remake(device, frame, contents)?,
         };
-        let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
-        made.traced = Some((eye, uniform));
-        made.flagged = Some(wanted.plane_u);
+        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        resources.traced = Some((key, uniform));
+        resources.flagged = Some(contents.plane_u);
         let view = |texture: &Texture| texture.view.clone();
         let (curve, sky, crossings, flags) =
-            (view(&made.curve), view(&made.sky), view(&made.crossings), view(&made.flags));
+            (view(&resources.curve), view(&resources.sky), view(&resources.crossings), view(&resources.flags));
         let texture = wgpu::BindingResource::TextureView;
-        let lens = made.uniform.as_entire_binding();
+        let lens = resources.uniform.as_entire_binding();
         let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
         let trace_nodes = match current {
             Some(_) => None,
             None => Some(
                 kernels
-                    .get(KernelKey::KerrNodes { delay: wanted.delay, pattern: wanted.pattern })?
+                    .get(KernelKey::KerrNodes { delay: contents.delay, pattern: contents.pattern })?
                     .stage(device, &[&shared])?,
             ),
         };
         let all = [shared.as_slice(), &[texture(&flags)]].concat();
-        let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: wanted.pattern })?.stage(device, &[&all])?;
+        let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: contents.pattern })?.stage(device, &[&all])?;
         Ok(Some(KerrStages { trace_nodes, flag_cells, size: [KERR_COLUMNS, uniform.rows[0] + uniform.rows[1]] }))
     }
 
-    /// Makes room for the eye's tables and writes what the host knows of them.
-    fn remake(&mut self, device: &Device, frame: &LocalFrame, wanted: &Wanted) -> Result<KerrUniform> {
+    /// Makes room for the observer's tables and writes what the host knows of them.
+    fn remake(&mut self, device: &Device, frame: &LocalFrame, contents: &KerrContents) -> Result<KerrUniform> {
         let resolution = Resolution { chi_nodes: KERR_COLUMNS as usize, nodes_per_octave: [KERR_PER_OCTAVE; 2] };
-        let crossings = Crossings { orders: wanted.orders as usize, plane_u: wanted.plane_u, pattern: wanted.pattern };
+        let crossings =
+            Crossings { orders: contents.orders as usize, plane_u: contents.plane_u, pattern: contents.pattern };
         let grid = Grid::new(frame, resolution, crossings)
-            .ok_or_else(|| Error::internal(format!("no lens tables for an eye at r = {} M", frame.r)))?;
+            .ok_or_else(|| Error::internal(format!("no lens tables for an observer at r = {} M", frame.r)))?;
         let rows = [Branch::Outer, Branch::Inner].map(|branch| grid.rows(branch) as u32);
         let needed = [rows[0], rows[0] + rows[1]];
-        let layers = if wanted.pattern { wanted.orders } else { wanted.orders.div_ceil(ORDERS_A_LAYER) };
-        let serves = |m: &Made| (0..2).all(|i| m.rows[i] >= needed[i]) && m.layers >= layers;
-        if !self.made.as_ref().is_some_and(serves) {
-            self.made = None;
-            self.made = Some(Made::new(device, needed.map(|n| n.next_multiple_of(ROWS_STEP)), layers)?);
+        let layers = if contents.pattern { contents.orders } else { contents.orders.div_ceil(ORDERS_A_LAYER) };
+        let serves = |m: &KerrResources| (0..2).all(|i| m.rows[i] >= needed[i]) && m.layers >= layers;
+        if !self.resources.as_ref().is_some_and(serves) {
+            self.resources = None;
+            self.resources = Some(KerrResources::new(device, needed.map(|n| n.next_multiple_of(ROWS_STEP)), layers)?);
         }
-        let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
         let curve = grid.curve();
         let local = |v: DVec3| v.as_vec3().extend(0.0);
         let uniform = KerrUniform {
@@ -195,7 +196,7 @@ impl KerrTables {
             e1: local(curve.e1),
             e2: local(curve.e2),
             rows,
-            orders: wanted.orders,
+            orders: contents.orders,
             capture_u: grid.capture_u() as f32,
         };
         let node = |i: usize| curve.at(std::f64::consts::TAU * i as f64 / CRITICAL_NODES as f64);
@@ -203,37 +204,37 @@ impl KerrTables {
         let table = nodes.windows(2).flat_map(|pair| pair.iter().flat_map(|(t, slope)| [*t as f32, *slope as f32]));
         let column = |chi: f64| [chi.sin(), chi.cos(), curve.at(chi).0, 0.0].map(|v| v as f32);
         let columns = grid.column_angles().iter().flat_map(|chi| column(*chi)).collect::<Vec<f32>>();
-        made.traced = None;
-        device.write(&made.uniform, 0, bytemuck::bytes_of(&uniform))?;
-        device.write_rows(&made.curve, 0, bytemuck::cast_slice(&table.collect::<Vec<f32>>()))?;
-        device.write_rows(&made.curve, 1, bytemuck::cast_slice(&columns))?;
+        resources.traced = None;
+        device.write(&resources.uniform, 0, bytemuck::bytes_of(&uniform))?;
+        device.write_rows(&resources.curve, 0, bytemuck::cast_slice(&table.collect::<Vec<f32>>()))?;
+        device.write_rows(&resources.curve, 1, bytemuck::cast_slice(&columns))?;
         Ok(uniform)
     }
 
     /// Frees the tables.
     pub fn release(&mut self) {
-        self.made = None;
+        self.resources = None;
     }
 
     /// After a submission that failed, nobody knows what the tables hold.
     pub fn forget(&mut self) {
-        if let Some(made) = &mut self.made {
-            made.traced = None;
+        if let Some(resources) = &mut self.resources {
+            resources.traced = None;
         }
     }
 
     /// Group 1 of a shading kernel.
     pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
-        let parts = self.made.as_ref().zip(self.deferred.as_ref());
-        let (made, deferred) = parts.ok_or_else(|| Error::internal("a lens without tables"))?;
-        let tables = [&made.curve, &made.sky, &made.crossings, &made.flags];
+        let parts = self.resources.as_ref().zip(self.deferred.as_ref());
+        let (resources, deferred) = parts.ok_or_else(|| Error::internal("a lens without tables"))?;
+        let tables = [&resources.curve, &resources.sky, &resources.crossings, &resources.flags];
         let tables = tables.map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let (uniform, deferred) = (made.uniform.as_entire_binding(), deferred.as_entire_binding());
+        let (uniform, deferred) = (resources.uniform.as_entire_binding(), deferred.as_entire_binding());
         Ok([uniform].into_iter().chain(tables).chain([deferred]).collect())
     }
 }
 
-impl Made {
+impl KerrResources {
     fn new(device: &Device, rows: [u32; 2], layers: u32) -> Result<Self> {
         let texture = |kind: TextureKind, label: &str, height: u32, layers: u32| {
             device.texture(label, kind.format, kind.dimension, [KERR_COLUMNS, height], layers)

@@ -1,8 +1,8 @@
 //! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens.
 //! Gives shading its group 1 and knows nothing else of it.
 
-use super::kerr::{KerrStages, KerrTables, Wanted};
-use super::schwarzschild::{LensStages, SchwarzschildTables};
+use super::kerr::{KerrContents, KerrStages, KerrTables};
+use super::schwarzschild::{SchwarzschildStages, SchwarzschildTables};
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::texture::Texture;
@@ -11,26 +11,26 @@ use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::COUNT_RUN;
 use crate::gpu::kernel::slots::{TRACED, TextureKind};
-use crate::gpu::kernel::variant::{Source, TraceVariant};
+use crate::gpu::kernel::variant::{RecordSource, TraceVariant};
 use crate::physics::observer::LocalFrame;
 
 /// Bytes of a texel of the record textures.
 const TEXEL: u64 = 16;
 
 /// How a frame's records are to be made.
-pub struct Making {
-    pub source: Source,
+pub struct RecordSetup {
+    pub source: RecordSource,
     /// How rays are traced.
     pub variant: TraceVariant,
     /// Crossings that a record holds at most.
     pub crossings: u32,
-    pub eye: LocalFrame,
-    pub wanted: Wanted,
+    pub observer: LocalFrame,
+    pub contents: KerrContents,
 }
 
-/// All that makes records, kept from frame to frame.
+/// The tables and textures from which records come, kept from frame to frame.
 #[derive(Default)]
-pub struct RecordMakers {
+pub struct RecordStore {
     traced: TracedRecords,
     schwarzschild: SchwarzschildTables,
     kerr: KerrTables,
@@ -40,11 +40,11 @@ pub struct RecordMakers {
 pub enum RecordStages {
     Traced(TraceStages),
     /// Before the frame's first tile, if the tables are stale.
-    Schwarzschild(Option<LensStages>),
+    Schwarzschild(Option<SchwarzschildStages>),
     Kerr(Option<KerrStages>),
 }
 
-impl Making {
+impl RecordSetup {
     /// The layers in which traced records keep crossings and, behind those, the media before each and behind the last.
     fn layers(&self) -> u32 {
         self.crossings + if self.variant.parts { self.crossings + 1 } else { 0 }
@@ -53,60 +53,76 @@ impl Making {
     /// Bytes of a tile's pixel on the device.
     pub fn bytes_per_pixel(&self) -> u64 {
         match self.source {
-            Source::Traced => TEXEL * (2 + u64::from(self.layers())),
-            Source::Schwarzschild { .. } => 0,
-            Source::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
+            RecordSource::Traced => TEXEL * (2 + u64::from(self.layers())),
+            RecordSource::Schwarzschild { .. } => 0,
+            RecordSource::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
         }
     }
 
     /// The source of the records of those pixels that this one leaves pending.
-    pub fn rest(&self) -> Option<Source> {
+    pub fn deferred_source(&self) -> Option<RecordSource> {
         match self.source {
-            Source::Kerr { delay, pattern, moving, .. } => Some(Source::Kerr { delay, pattern, moving, rest: true }),
+            RecordSource::Kerr { delay, pattern, moving, .. } => {
+                Some(RecordSource::Kerr { delay, pattern, moving, deferred: true })
+            }
             _ => None,
         }
     }
 }
 
-impl RecordMakers {
+impl RecordStore {
     /// Makes room for a tile.
-    pub fn prepare(&mut self, device: &Device, making: &Making, tile: [u32; 2]) -> Result<()> {
-        match making.source {
-            Source::Traced => self.traced.prepare(device, tile, making.layers()),
-            Source::Schwarzschild { .. } => Ok(()),
-            Source::Kerr { .. } => self.kerr.prepare(device, tile),
+    pub fn prepare(&mut self, device: &Device, record_setup: &RecordSetup, tile: [u32; 2]) -> Result<()> {
+        match record_setup.source {
+            RecordSource::Traced => self.traced.prepare(device, tile, record_setup.layers()),
+            RecordSource::Schwarzschild { .. } => Ok(()),
+            RecordSource::Kerr { .. } => self.kerr.prepare(device, tile),
         }
     }
 
-    /// The stages that `making` asks for; tables are brought up to its eye.
+    /// The stages that `record_setup` asks for; tables are brought up to its observer.
     pub fn stages(
         &mut self,
         device: &Device,
         kernels: &Kernels,
-        making: &Making,
+        record_setup: &RecordSetup,
         shared: &Shared<'_>,
     ) -> Result<RecordStages> {
         let frame = shared.frame.clone();
-        Ok(match making.source {
-            Source::Traced => RecordStages::Traced(self.traced.stages(device, kernels, making.variant, shared)?),
-            // Only one lens is kept: both together could take 48 MB.
-            Source::Schwarzschild { delay, .. } => {
-                self.kerr.release();
-                RecordStages::Schwarzschild(self.schwarzschild.update(device, kernels, &making.eye, delay, frame)?)
+        Ok(match record_setup.source {
+            RecordSource::Traced => {
+                RecordStages::Traced(self.traced.stages(device, kernels, record_setup.variant, shared)?)
             }
-            Source::Kerr { .. } => {
+            // Only one lens is kept: both together could take 48 MB.
+            RecordSource::Schwarzschild { delay, .. } => {
+                self.kerr.release();
+                RecordStages::Schwarzschild(self.schwarzschild.update(
+                    device,
+                    kernels,
+                    &record_setup.observer,
+                    delay,
+                    frame,
+                )?)
+            }
+            RecordSource::Kerr { .. } => {
                 self.schwarzschild = SchwarzschildTables::default();
-                RecordStages::Kerr(self.kerr.update(device, kernels, &making.eye, &making.wanted, frame)?)
+                RecordStages::Kerr(self.kerr.update(
+                    device,
+                    kernels,
+                    &record_setup.observer,
+                    &record_setup.contents,
+                    frame,
+                )?)
             }
         })
     }
 
     /// Group 1 of a kernel that reads records.
-    pub fn group(&self, source: Source) -> Result<Vec<wgpu::BindingResource<'_>>> {
+    pub fn group(&self, source: RecordSource) -> Result<Vec<wgpu::BindingResource<'_>>> {
         match source {
-            Source::Traced => self.traced.group(),
-            Source::Schwarzschild { .. } => self.schwarzschild.group(),
-            Source::Kerr { .. } => self.kerr.group(),
+            RecordSource::Traced => self.traced.group(),
+            RecordSource::Schwarzschild { .. } => self.schwarzschild.group(),
+            RecordSource::Kerr { .. } => self.kerr.group(),
         }
     }
 
@@ -114,17 +130,17 @@ impl RecordMakers {
     /// `None`: they take none.
     pub fn reset<'a>(
         &'a self,
-        source: Source,
+        source: RecordSource,
         step_sum: &'a Buffer,
         encoder: &mut wgpu::CommandEncoder,
     ) -> Option<&'a Buffer> {
         match source {
-            Source::Traced => {
+            RecordSource::Traced => {
                 encoder.clear_buffer(step_sum, 0, None);
                 Some(step_sum)
             }
-            Source::Schwarzschild { .. } => None,
-            Source::Kerr { .. } => {
+            RecordSource::Schwarzschild { .. } => None,
+            RecordSource::Kerr { .. } => {
                 self.kerr.reset(encoder);
                 self.kerr.deferred()
             }
@@ -153,10 +169,10 @@ impl RecordStages {
 /// Records of traced pixels, of a tile and one pixel around it; they grow and stay.
 #[derive(Default)]
 struct TracedRecords {
-    made: Option<Made>,
+    resources: Option<RecordTextures>,
 }
 
-struct Made {
+struct RecordTextures {
     size: [u32; 2],
     layers: u32,
     textures: [Texture; 3],
@@ -181,25 +197,25 @@ impl TracedRecords {
     /// Makes room for tiles of `tile` pixels with so many layers.
     fn prepare(&mut self, device: &Device, tile: [u32; 2], layers: u32) -> Result<()> {
         let size = tile.map(|side| side + 2);
-        let serves = |m: &Made| (0..2).all(|i| m.size[i] >= size[i]) && m.layers >= layers;
-        if self.made.as_ref().is_some_and(serves) {
+        let serves = |m: &RecordTextures| (0..2).all(|i| m.size[i] >= size[i]) && m.layers >= layers;
+        if self.resources.as_ref().is_some_and(serves) {
             return Ok(());
         }
         // The old ones go first: both together need not fit.
-        self.made = None;
+        self.resources = None;
         let texture = |kind: TextureKind, label: &str, layers: u32| {
             device.texture(label, kind.format, kind.dimension, size, layers)
         };
         let [sky, meta, disk] = TRACED;
         let textures =
             [texture(sky, "record sky", 1)?, texture(meta, "record meta", 1)?, texture(disk, "record disk", layers)?];
-        self.made = Some(Made { size, layers, textures });
+        self.resources = Some(RecordTextures { size, layers, textures });
         Ok(())
     }
 
     fn resources(&self) -> Result<[wgpu::BindingResource<'_>; 3]> {
-        let made = self.made.as_ref().ok_or_else(|| Error::internal("records without textures"))?;
-        Ok(made.textures.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view)))
+        let resources = self.resources.as_ref().ok_or_else(|| Error::internal("records without textures"))?;
+        Ok(resources.textures.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view)))
     }
 
     /// Group 1 of a shading kernel.

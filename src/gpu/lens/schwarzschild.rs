@@ -1,5 +1,5 @@
-//! The tables of a spin-0 lens on the device: built by compute passes when the eye's radius has changed, read by
-//! lens/schwarzschild_record.wgsl. Knows eyes and kernels, no scene.
+//! The tables of a spin-0 lens on the device: built by compute passes when the observer's radius has changed, read by
+//! lens/schwarzschild_record.wgsl. Knows observers and kernels, no scene.
 
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
@@ -17,7 +17,7 @@ use wgpu::BufferUsages as Usage;
 
 /// Nodes beyond the last place that is looked up.
 const MARGIN: f64 = 4.0;
-/// Eyes further in have no captured ray that meets a disk.
+/// Observers further in have no captured ray that meets a disk.
 const INNER_BRANCH_FROM: f64 = 6.0;
 const BRANCHES: u32 = 2;
 
@@ -60,7 +60,7 @@ impl SchwarzschildUniform {
 
 /// Everything that decides the tables' content.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Eye {
+struct SchwarzschildKey {
     r: f64,
     rain: bool,
     delay: bool,
@@ -69,10 +69,10 @@ struct Eye {
 /// The tables; made when first needed.
 #[derive(Default)]
 pub struct SchwarzschildTables {
-    made: Option<Made>,
+    resources: Option<SchwarzschildResources>,
 }
 
-struct Made {
+struct SchwarzschildResources {
     nodes: u32,
     delay: bool,
     uniform: Buffer,
@@ -80,19 +80,19 @@ struct Made {
     swept: Texture,
     u: Texture,
     delays: Texture,
-    filled: Option<Eye>,
+    filled: Option<SchwarzschildKey>,
 }
 
 /// The passes that fill tables.
-pub struct LensStages {
+pub struct SchwarzschildStages {
     find_ends: Stage,
     fill_columns: Stage,
     groups: [u32; 2],
 }
 
 impl SchwarzschildTables {
-    /// Brings the tables up to the eye; the stages to run before they are read, `None` if they are as needed already.
-    /// `frame_uniform` holds the eye.
+    /// Brings the tables up to the observer; the stages to run before they are read, `None` if they are as needed
+    /// already. `frame_uniform` holds the observer.
     pub fn update(
         &mut self,
         device: &Device,
@@ -100,50 +100,52 @@ impl SchwarzschildTables {
         frame: &LocalFrame,
         delay: bool,
         frame_uniform: wgpu::BindingResource<'_>,
-    ) -> Result<Option<LensStages>> {
+    ) -> Result<Option<SchwarzschildStages>> {
         let uniform = SchwarzschildUniform::new(frame);
         let nodes = uniform.nodes[0].max(uniform.nodes[1]);
-        if !self.made.as_ref().is_some_and(|m| m.nodes >= nodes && (m.delay || !delay)) {
-            self.made = None;
-            self.made = Some(Made::new(device, nodes, delay)?);
+        if !self.resources.as_ref().is_some_and(|m| m.nodes >= nodes && (m.delay || !delay)) {
+            self.resources = None;
+            self.resources = Some(SchwarzschildResources::new(device, nodes, delay)?);
         }
-        let made = self.made.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
         // Tables with delays do not serve frames without: another kernel fills them, which may round otherwise.
-        let eye = Eye { r: frame.r, rain: frame.rain, delay };
-        if made.filled == Some(eye) {
+        let key = SchwarzschildKey { r: frame.r, rain: frame.rain, delay };
+        if resources.filled == Some(key) {
             return Ok(None);
         }
-        device.write(&made.uniform, 0, bytemuck::bytes_of(&uniform))?;
-        made.filled = Some(eye);
+        device.write(&resources.uniform, 0, bytemuck::bytes_of(&uniform))?;
+        resources.filled = Some(key);
         let view = |texture: &Texture| texture.view.clone();
-        let (ends, swept, u, delays) = (view(&made.ends), view(&made.swept), view(&made.u), view(&made.delays));
+        let (ends, swept, u, delays) =
+            (view(&resources.ends), view(&resources.swept), view(&resources.u), view(&resources.delays));
         let texture = wgpu::BindingResource::TextureView;
-        let lens = made.uniform.as_entire_binding();
+        let lens = resources.uniform.as_entire_binding();
         let find_ends = kernels
             .get(KernelKey::SchwarzschildEnds)?
             .stage(device, &[&[frame_uniform.clone(), lens.clone(), texture(&ends)]])?;
         let fill_columns = kernels
             .get(KernelKey::SchwarzschildColumns { delay })?
             .stage(device, &[&[frame_uniform, lens, texture(&ends), texture(&swept), texture(&u), texture(&delays)]])?;
-        Ok(Some(LensStages { find_ends, fill_columns, groups: [nodes.div_ceil(LENS_GROUP), BRANCHES] }))
+        Ok(Some(SchwarzschildStages { find_ends, fill_columns, groups: [nodes.div_ceil(LENS_GROUP), BRANCHES] }))
     }
 
     /// After a submission that failed, nobody knows what the tables hold.
     pub fn forget(&mut self) {
-        if let Some(made) = &mut self.made {
-            made.filled = None;
+        if let Some(resources) = &mut self.resources {
+            resources.filled = None;
         }
     }
 
     /// Group 1 of a shading kernel.
     pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
-        let made = self.made.as_ref().ok_or_else(|| Error::internal("a lens without tables"))?;
-        let tables = [&made.swept, &made.u, &made.delays].map(|t| wgpu::BindingResource::TextureView(&t.view));
-        Ok([made.uniform.as_entire_binding()].into_iter().chain(tables).collect())
+        let resources = self.resources.as_ref().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let tables =
+            [&resources.swept, &resources.u, &resources.delays].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        Ok([resources.uniform.as_entire_binding()].into_iter().chain(tables).collect())
     }
 }
 
-impl Made {
+impl SchwarzschildResources {
     fn new(device: &Device, nodes: u32, delay: bool) -> Result<Self> {
         let texture = |kind: TextureKind, label: &str, size: [u32; 2]| {
             device.texture(label, kind.format, kind.dimension, size, BRANCHES)
@@ -167,7 +169,7 @@ impl Made {
     }
 }
 
-impl LensStages {
+impl SchwarzschildStages {
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
         self.find_ends.run(pass, None, self.groups);
         self.fill_columns.run(pass, None, self.groups);

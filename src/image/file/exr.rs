@@ -49,7 +49,7 @@ const BLOCKS_AT_A_TIME: u64 = 6;
 /// Errors: IO; UNSUPPORTED for a compression that is not read; OUT_OF_MEMORY.
 pub(super) fn read(file: impl Read + Seek) -> Result<Loaded> {
     let in_headers = Cell::new(true);
-    let headed = Headed { file, in_headers: &in_headers, taken: 0, probed: 0 };
+    let headed = HeaderLimiter { file, in_headers: &in_headers, taken: 0, probed: 0 };
     let reader = block::read(headed, false).map_err(header_error)?;
     in_headers.set(false);
     let part = check(reader.headers())?;
@@ -95,7 +95,7 @@ fn header_error(error: ::exr::error::Error) -> Error {
 
 /// A file whose headers come first. Reading them fails past `MAX_HEADER_BYTES`, and where there is no memory for
 /// more.
-struct Headed<'a, F> {
+struct HeaderLimiter<'a, F> {
     file: F,
     in_headers: &'a Cell<bool>,
     /// Bytes of headers that were read, and that memory was found for.
@@ -103,7 +103,7 @@ struct Headed<'a, F> {
     probed: u64,
 }
 
-impl<F: Read> Read for Headed<'_, F> {
+impl<F: Read> Read for HeaderLimiter<'_, F> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         if !self.in_headers.get() {
             return self.file.read(into);
@@ -122,7 +122,7 @@ impl<F: Read> Read for Headed<'_, F> {
     }
 }
 
-impl<F: Seek> Seek for Headed<'_, F> {
+impl<F: Seek> Seek for HeaderLimiter<'_, F> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         self.file.seek(to)
     }

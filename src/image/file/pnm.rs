@@ -21,7 +21,7 @@ pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
     let raster = file.seek(SeekFrom::End(0)).map_err(io_error)? - header;
     file.seek(SeekFrom::Start(0)).map_err(io_error)?;
     let ends = Cell::new(0);
-    let decoder = PnmDecoder::new(Ending { file, ends: &ends }).map_err(io_error)?;
+    let decoder = PnmDecoder::new(EndCounter { file, ends: &ends }).map_err(io_error)?;
     let (width, height) = decoder.dimensions();
     let color = decoder.color_type();
     let format = match color {
@@ -78,12 +78,12 @@ pub(super) fn read(mut file: impl BufRead + Seek) -> Result<Loaded> {
 }
 
 /// A file that counts how often it was read at its end.
-struct Ending<'a, F> {
+struct EndCounter<'a, F> {
     file: F,
     ends: &'a Cell<u32>,
 }
 
-impl<F: Read> Read for Ending<'_, F> {
+impl<F: Read> Read for EndCounter<'_, F> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let read = self.file.read(into)?;
         if read == 0 && !into.is_empty() {

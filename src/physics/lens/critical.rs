@@ -1,8 +1,8 @@
-//! The critical curve - the shadow's edge - on the sky of an eye outside the photon region, as a table over the angle
-//! along it, and polar coordinates about its centre. Knows the ray's constants and the local frame; integrates
+//! The critical curve - the shadow's edge - on the sky of an observer outside the photon region, as a table over the
+//! angle along it, and polar coordinates about its centre. Knows the ray's constants and the local frame; integrates
 //! nothing.
 //!
-//! An inward ray is captured when the radial potential has no zero between the eye and the horizon. The potential
+//! An inward ray is captured when the radial potential has no zero between the observer and the horizon. The potential
 //!
 //! ```text
 //! P(u) = u'^2 = E^2 + (a^2 E^2 - K) u^2 + 2 B u^3 - a^2 Q u^4
@@ -21,20 +21,21 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Nodes of the table over chi in [0, 2 pi).
 pub const CRITICAL_NODES: usize = 512;
 
-/// The nearest eye, in radii of the retrograde photon orbit. No spherical photon orbit reaches farther eyes, so that
-/// every captured ray starts inward, and the curve stays away from the directions with n_r = 0.
-pub const NEAREST_EYE: f64 = 1.03;
+/// The nearest observer, in radii of the retrograde photon orbit. No spherical photon orbit reaches farther observers,
+/// so that every captured ray starts inward, and the curve stays away from the directions with n_r = 0.
+pub const NEAREST_OBSERVER: f64 = 1.03;
 
-/// Farthest eye, in M.
-pub const FARTHEST_EYE: f64 = 1e5;
+/// Farthest observer, in M.
+pub const FARTHEST_OBSERVER: f64 = 1e5;
 
 /// The most evaluations of the potential for one node; four to six are usual.
 const MAX_EVALUATIONS: usize = 40;
 
-/// Whether an eye at `frame` has such a curve: outside the photon region, not too far, not falling in the rain frame.
+/// Whether an observer at `frame` has such a curve: outside the photon region, not too far, not falling in the rain
+/// frame.
 pub fn reaches(frame: &LocalFrame) -> bool {
-    let nearest = NEAREST_EYE * photon_orbit(-frame.a.abs());
-    !frame.rain && frame.r > nearest && frame.r <= FARTHEST_EYE
+    let nearest = NEAREST_OBSERVER * photon_orbit(-frame.a.abs());
+    !frame.rain && frame.r > nearest && frame.r <= FARTHEST_OBSERVER
 }
 
 /// The middle of the shadow on the sky of `frame`'s observer, and of circles much like its edge: a unit look
@@ -67,7 +68,7 @@ pub fn capture_margin(c: &Constants) -> f64 {
     radial_potential(c, potential_minimum(c))
 }
 
-/// The critical curve of one eye, about its centre k: n = k cos psi + (e1 sin chi + e2 cos chi) sin psi. The curve
+/// The critical curve of one observer, about its centre k: n = k cos psi + (e1 sin chi + e2 cos chi) sin psi. The curve
 /// lies at psi = R(chi); R(-chi) = R(chi), as the potential knows n_th only by its square.
 #[derive(Clone, Debug)]
 pub struct CriticalCurve {
@@ -95,7 +96,7 @@ pub struct Polar {
 }
 
 impl CriticalCurve {
-    /// `None` for an eye that has none here (`reaches`).
+    /// `None` for an observer that has none here (`reaches`).
     pub fn new(frame: &LocalFrame) -> Option<Self> {
         if !reaches(frame) {
             return None;
@@ -238,7 +239,7 @@ mod tests {
         LocalFrame::new(a, chart(r, theta, 0.4)).unwrap()
     }
 
-    const EYES: [(f64, f64, f64); 9] = [
+    const OBSERVERS: [(f64, f64, f64); 9] = [
         (0.998, 4.2, 1.5),
         (0.998, 1000.0, std::f64::consts::FRAC_PI_2),
         (-0.9, 10.0, 1.2),
@@ -253,7 +254,7 @@ mod tests {
     /// The tabulated curve against the root of the margin between nodes.
     #[test]
     fn interpolation_meets_the_root() {
-        for (a, r, theta) in EYES {
+        for (a, r, theta) in OBSERVERS {
             let frame = frame(a, r, theta);
             let curve = CriticalCurve::new(&frame).unwrap();
             let mut worst = 0.0_f64;
@@ -274,7 +275,7 @@ mod tests {
     /// Just inside rays fall in, just outside they escape, by integration.
     #[test]
     fn rays_beside_the_curve_have_the_fates_it_says() {
-        for (a, r, theta) in EYES {
+        for (a, r, theta) in OBSERVERS {
             let frame = frame(a, r, theta);
             let curve = CriticalCurve::new(&frame).unwrap();
             for i in 0..24 {
@@ -316,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn eyes_in_the_photon_region_have_no_curve() {
+    fn observers_in_the_photon_region_have_no_curve() {
         for (a, r) in [(0.998, 4.0), (0.5, 2.5), (-0.5, 3.5), (0.5, 2e5)] {
             assert!(CriticalCurve::new(&frame(a, r, 1.0)).is_none());
         }

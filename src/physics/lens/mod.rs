@@ -1,10 +1,10 @@
-//! Lens tables: for one eye, the fates of all its light rays, so that looking in a direction costs an interpolation
-//! instead of an integration. Knows light and observers only: no scene, no pixel, no thread.
+//! Lens tables: for one observer, the fates of all its light rays, so that looking in a direction costs an
+//! interpolation instead of an integration. Knows light and observers only: no scene, no pixel, no thread.
 //!
 //! Spin 0: every ray lies in a plane and depends on one number, its angle from the hole. `coordinate`: the logarithmic
-//! axis along which rays are tabulated; `schwarzschild`: the family of rays of one eye, integrated ray by ray;
+//! axis along which rays are tabulated; `schwarzschild`: the family of rays of one observer, integrated ray by ray;
 //! `table`: the tables and looking them up; `plane`: from the ray in its own plane to the chart. With spin:
-//! `critical`: the critical curve on the eye's sky; `kerr`: tables in two dimensions about it.
+//! `critical`: the critical curve on the observer's sky; `kerr`: tables in two dimensions about it.
 
 pub mod coordinate;
 pub mod critical;
@@ -16,7 +16,7 @@ pub mod table;
 pub use coordinate::LENS;
 pub use plane::{OrbitPlane, PlaneImage, PlaneSky, Turn};
 pub use schwarzschild::{Branch, Column, Family, Resolution};
-pub use table::{Crossing, Look, SchwarzschildLens};
+pub use table::{Crossing, SchwarzschildLens, SchwarzschildLookup};
 
 #[cfg(test)]
 mod tests;

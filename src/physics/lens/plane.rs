@@ -1,9 +1,10 @@
 //! Takes a spin-0 ray from its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane,
-//! and how both change with the look direction. Geometry of great circles; the ray itself comes from `table::Look`.
+//! and how both change with the look direction. Geometry of great circles; the ray itself comes from
+//! `table::SchwarzschildLookup`.
 //!
 //! The ray lies at N(phi) = e_r cos phi + T sin phi, T the unit vector of (e_th n_th + e_ph n_ph).
 
-use super::table::{Crossing, Look};
+use super::table::{Crossing, SchwarzschildLookup};
 use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::PI;
@@ -19,7 +20,7 @@ pub struct OrbitPlane {
     pub tangent: DVec3,
     /// sin psi T, as long as the look direction's part across e_r.
     across: DVec3,
-    /// Cosine of the eye's polar angle: exactly 0 in the plane.
+    /// Cosine of the observer's polar angle: exactly 0 in the plane.
     cos_theta: f64,
 }
 
@@ -74,7 +75,7 @@ impl OrbitPlane {
     }
 
     /// The angle at which the ray crosses the equatorial plane for the (`order` + 1)-th time, however far it goes: the
-    /// zeros of N_z = cos(theta) cos(phi) + T_z sin(phi), the eye's own place not counted. `None`: the ray lies in
+    /// zeros of N_z = cos(theta) cos(phi) + T_z sin(phi), the observer's own place not counted. `None`: the ray lies in
     /// that plane.
     pub fn crossing_angle(&self, order: u32) -> Option<f64> {
         if self.cos_theta == 0.0 {
@@ -85,35 +86,36 @@ impl OrbitPlane {
     }
 
     /// The (`order` + 1)-th crossing. `None`: the ray ends before.
-    pub fn crossing(&self, look: &Look, order: u32) -> Option<Crossing> {
-        look.crossing(self.crossing_angle(order)?)
+    pub fn crossing(&self, lookup: &SchwarzschildLookup, order: u32) -> Option<Crossing> {
+        lookup.crossing(self.crossing_angle(order)?)
     }
 
-    pub fn image(&self, look: &Look, crossing: &Crossing) -> PlaneImage {
+    pub fn image(&self, lookup: &SchwarzschildLookup, crossing: &Crossing) -> PlaneImage {
         let at = self.position(crossing.phi);
-        PlaneImage { u: crossing.u, azimuth: at.y.atan2(at.x), delay: look.delay(crossing) }
+        PlaneImage { u: crossing.u, azimuth: at.y.atan2(at.x), delay: lookup.delay(crossing) }
     }
 
     /// How far the crossing moves along the ray with the look direction: N_z stays 0, dphi = -sin(phi) dT_z / N'_z.
-    fn phi_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> f64 {
+    fn phi_change(&self, lookup: &SchwarzschildLookup, crossing: &Crossing, turn: &Turn) -> f64 {
         let (sin, cos) = crossing.phi.sin_cos();
         let rise = self.tangent.z * cos - self.e_r.z * sin;
-        -turn.dtangent.z * sin / (look.sin.max(f64::MIN_POSITIVE) * rise)
+        -turn.dtangent.z * sin / (lookup.sin.max(f64::MIN_POSITIVE) * rise)
     }
 
     /// The change of a crossing's u with the look direction.
-    pub fn u_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> f64 {
-        crossing.u_psi * turn.dpsi + crossing.u_phi * self.phi_change(look, crossing, turn)
+    pub fn u_change(&self, lookup: &SchwarzschildLookup, crossing: &Crossing, turn: &Turn) -> f64 {
+        crossing.u_psi * turn.dpsi + crossing.u_phi * self.phi_change(lookup, crossing, turn)
     }
 
-    /// The change of `image` with the look direction. The delay follows from its gradient (`Look::delay_gradient`).
-    pub fn image_change(&self, look: &Look, crossing: &Crossing, turn: &Turn) -> PlaneImage {
+    /// The change of `image` with the look direction. The delay follows from its gradient
+    /// (`SchwarzschildLookup::delay_gradient`).
+    pub fn image_change(&self, lookup: &SchwarzschildLookup, crossing: &Crossing, turn: &Turn) -> PlaneImage {
         let (at, heading) = (self.position(crossing.phi), self.heading(crossing.phi));
-        let swing = turn.dtangent * (crossing.phi.sin() / look.sin.max(f64::MIN_POSITIVE));
-        let dphi = self.phi_change(look, crossing, turn);
+        let swing = turn.dtangent * (crossing.phi.sin() / lookup.sin.max(f64::MIN_POSITIVE));
+        let dphi = self.phi_change(lookup, crossing, turn);
         let moved = swing + heading * dphi;
         let du = crossing.u_psi * turn.dpsi + crossing.u_phi * dphi;
-        let (by_phi, by_u) = look.delay_gradient(crossing);
+        let (by_phi, by_u) = lookup.delay_gradient(crossing);
         PlaneImage {
             u: du,
             azimuth: (at.x * moved.y - at.y * moved.x) / (at.x * at.x + at.y * at.y),
@@ -123,23 +125,23 @@ impl OrbitPlane {
 
     /// The change of the ray for a small change `dn` (components) of the look direction `n`, dn across n.
     #[inline]
-    pub fn turn(&self, frame: &LocalFrame, look: &Look, dn: DVec3) -> Turn {
+    pub fn turn(&self, frame: &LocalFrame, lookup: &SchwarzschildLookup, dn: DVec3) -> Turn {
         let across = frame.e_theta * dn.y + frame.e_phi * dn.z;
         let along = self.tangent.dot(across);
         // psi = atan2(sin psi, -n_r).
-        Turn { dpsi: look.sin * dn.x + look.cos * along, dtangent: across - self.tangent * along }
+        Turn { dpsi: lookup.sin * dn.x + lookup.cos * along, dtangent: across - self.tangent * along }
     }
 
     /// Where on the sky an escaping ray ends: N(swept).
     #[inline]
-    pub fn sky(&self, look: &Look) -> PlaneSky {
-        let (sin, cos) = look.swept.sin_cos();
+    pub fn sky(&self, lookup: &SchwarzschildLookup) -> PlaneSky {
+        let (sin, cos) = lookup.swept.sin_cos();
         // sin(swept) / sin psi; -d swept / d psi straight outwards, where both vanish.
-        let radial = look.cos < 0.0 && look.sin < RADIAL * look.sin_critical();
-        let sine_ratio = if radial { -look.swept_slope } else { sin / look.sin };
+        let radial = lookup.cos < 0.0 && lookup.sin < RADIAL * lookup.sin_critical();
+        let sine_ratio = if radial { -lookup.swept_slope } else { sin / lookup.sin };
         PlaneSky {
             direction: self.e_r * cos + self.across * sine_ratio,
-            by_psi: (self.tangent * cos - self.e_r * sin) * look.swept_slope,
+            by_psi: (self.tangent * cos - self.e_r * sin) * lookup.swept_slope,
             sine_ratio,
         }
     }

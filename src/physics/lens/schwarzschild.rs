@@ -1,11 +1,11 @@
-//! The light rays of one eye at spin 0, integrated one by one (`Family::column`), as a lens table holds them.
+//! The light rays of one observer at spin 0, integrated one by one (`Family::column`), as a lens table holds them.
 //! Each ray is independent of the others. Knows neither threads nor how the tables are interpolated.
 //!
-//! In the ray's plane, with phi the angle swept from the eye and primes for d/dphi: u'' = -u + 3 u^2, u = 1/r. The eye
-//! is at u_e, the ray leaves it at the angle psi from the inward radius: u' = f u_e (cos psi - beta) / sin psi, with f
-//! = sqrt(1 - 2 u_e), beta = 0 for the static frame and f = 1, beta = sqrt(2 u_e) for the rain frame. Integrated is
-//! the deviation v = u - u_s from the critical ray, which is known in closed form (Darwin 1959, tanh^2 being written
-//! out):
+//! In the ray's plane, with phi the angle swept from the observer and primes for d/dphi: u'' = -u + 3 u^2, u = 1/r. The
+//! observer is at u_e, the ray leaves it at the angle psi from the inward radius: u' = f u_e (cos psi - beta) / sin
+//! psi, with f = sqrt(1 - 2 u_e), beta = 0 for the static frame and f = 1, beta = sqrt(2 u_e) for the rain frame.
+//! Integrated is the deviation v = u - u_s from the critical ray, which is known in closed form (Darwin 1959, tanh^2
+//! being written out):
 //!
 //! ```text
 //! u_s = -1/6 + ((1 - e) / (1 + e))^2 / 2,   e = e_0 exp(-phi),   e_0 = 2 (1/3 - u_e) / (1 + sqrt(2 u_e + 1/3))^2
@@ -14,9 +14,9 @@
 //! ```
 //!
 //! No nearly equal numbers are subtracted, so rays as near the critical one as one likes come out right, in f32 too.
-//! e_0 > 0, = 0, < 0 for eyes outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would lose
-//! by the subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray it
-//! is small where u is well conditioned, so that few points suffice however long the ray winds.
+//! e_0 > 0, = 0, < 0 for observers outside, on, inside the photon sphere. Rays that pass far from it, u << 1/3, would
+//! lose by the subtraction: for them v = u, the same equation with u_s = 0. The tables hold v: beside the critical ray
+//! it is small where u is well conditioned, so that few points suffice however long the ray winds.
 //!
 //! The parameter is sigma, phi = kappa sigma, kappa = g sin psi with g = min(1 / |sin psi|, r / (3 f)): nothing is
 //! singular for radial rays, and past the poles of the sky (sin psi < 0) all goes on smoothly: u and sigma evenly, phi
@@ -31,13 +31,14 @@ use crate::physics::observer::LocalFrame;
 use crate::physics::shadow::critical_direction;
 use std::ops::RangeInclusive;
 
-/// Eyes served, in M.
+/// Observers served, in M.
 pub const RADII: RangeInclusive<f64> = 0.9..=1e6;
-/// Static eyes stay this far from the horizon.
+/// Static observers stay this far from the horizon.
 pub const LEAST_STATIC_RADIUS: f64 = 2.0005;
 /// Captured rays end at this u, inside 6 M, where no thin disk reaches.
 pub const CAPTURE_U: f64 = 0.25;
-/// Captured rays are of use to eyes outside this radius only: those of nearer eyes start inside it and move inwards.
+/// Captured rays are of use to observers outside this radius only: those of nearer observers start inside it and move
+/// inwards.
 const LEAST_CAPTURE_RADIUS: f64 = 6.0;
 /// Escaping rays from |t_hat| = 2^-2 on have v = u; the ray there is in the table in both ways.
 const FREE_OCTAVE: f64 = -2.0;
@@ -49,7 +50,7 @@ const MOST_STEPS: u32 = 10_000;
 pub struct Resolution {
     /// Rays per octave of distance from the critical direction, at least 1.
     pub nodes_per_octave: u32,
-    /// Intervals along a ray from the eye to its end, at least 1.
+    /// Intervals along a ray from the observer to its end, at least 1.
     pub intervals: u32,
     /// Largest step in sigma, > 0.
     pub step: f64,
@@ -72,15 +73,15 @@ impl Default for Resolution {
 pub enum Branch {
     /// Rays that escape, psi > psi_c; end: u = 0.
     Escaping,
-    /// Captured rays, psi < psi_c, of eyes outside 6 M; end: u = `CAPTURE_U`.
+    /// Captured rays, psi < psi_c, of observers outside 6 M; end: u = `CAPTURE_U`.
     Captured,
 }
 
-/// All rays of one eye.
+/// All rays of one observer.
 #[derive(Clone, Copy, Debug)]
 pub struct Family {
     pub r: f64,
-    pub u_eye: f64,
+    pub u_observer: f64,
     pub rain: bool,
     pub with_delay: bool,
     pub resolution: Resolution,
@@ -88,8 +89,8 @@ pub struct Family {
     /// f and beta of the frame.
     f: f64,
     beta: f64,
-    /// e at the eye.
-    e_eye: f64,
+    /// e at the observer.
+    e_observer: f64,
 }
 
 /// The part of a table that holds one ray. x is the node coordinate along the branch, y = phi / swept in [0, 1].
@@ -111,7 +112,7 @@ struct Ray {
     kappa_x: f64,
     /// 1 where v is the deviation from the critical ray, 0 where v = u.
     reference: f64,
-    /// v and dv / d sigma at the eye, and the derivative of du / d sigma by x.
+    /// v and dv / d sigma at the observer, and the derivative of du / d sigma by x.
     v: f64,
     slope: f64,
     slope_x: f64,
@@ -201,7 +202,7 @@ impl Ray {
         Point { e: e[2], v: v + rise(0), w: w + rise(1), dv: p.dv + slope(0), dw: p.dw + slope(1) }
     }
 
-    /// sigma from the eye to where u = `end`. `None`: not within `MOST_STEPS`.
+    /// sigma from the observer to where u = `end`. `None`: not within `MOST_STEPS`.
     fn length(&self, start: Point, end: f64, h: f64) -> Option<f64> {
         let step = Step::new(self, h);
         let side = start.u(self) > end;
@@ -232,7 +233,7 @@ impl Ray {
 }
 
 impl Family {
-    /// `None`: spin, or an eye outside `RADII`, or a static one nearer than `LEAST_STATIC_RADIUS`.
+    /// `None`: spin, or an observer outside `RADII`, or a static one nearer than `LEAST_STATIC_RADIUS`.
     pub fn new(frame: &LocalFrame, with_delay: bool, resolution: Resolution) -> Option<Self> {
         let (r, rain) = (frame.r, frame.rain);
         let served = RADII.contains(&r) && (rain || r >= LEAST_STATIC_RADIUS);
@@ -240,13 +241,13 @@ impl Family {
         if frame.a != 0.0 || !served || !valid {
             return None;
         }
-        let u_eye = 1.0 / r;
-        let (f, beta) = if rain { (1.0, (2.0 * u_eye).sqrt()) } else { (((r - 2.0) / r).sqrt(), 0.0) };
+        let u_observer = 1.0 / r;
+        let (f, beta) = if rain { (1.0, (2.0 * u_observer).sqrt()) } else { (((r - 2.0) / r).sqrt(), 0.0) };
         let (sin, cos) = critical_direction(r, rain);
-        let q = (2.0 * u_eye + 1.0 / 3.0).sqrt();
+        let q = (2.0 * u_observer + 1.0 / 3.0).sqrt();
         Some(Self {
             r,
-            u_eye,
+            u_observer,
             rain,
             with_delay,
             resolution,
@@ -254,7 +255,7 @@ impl Family {
             f,
             beta,
             // 1/3 - u_e = (r - 3) / (3 r)
-            e_eye: 2.0 * (r - 3.0) / (3.0 * r * (1.0 + q).powi(2)),
+            e_observer: 2.0 * (r - 3.0) / (3.0 * r * (1.0 + q).powi(2)),
         })
     }
 
@@ -277,7 +278,7 @@ impl Family {
 
     /// u - v and its derivative by phi.
     pub fn reference(&self, phi: f64) -> (f64, f64) {
-        let e = self.e_eye * (-phi).exp();
+        let e = self.e_observer * (-phi).exp();
         (separatrix(e), separatrix_slope(e))
     }
 
@@ -291,7 +292,7 @@ impl Family {
         let free = index >= self.first_free_column(branch);
         let node = if free { index - 1 } else { index };
         let ray = self.ray(&self.coordinate.angle(sign * self.coordinate.t_hat_at(node as f64)), free);
-        let start = Point { e: self.e_eye, v: ray.v, dv: ray.slope, w: 0.0, dw: ray.slope_x };
+        let start = Point { e: self.e_observer, v: ray.v, dv: ray.slope, w: 0.0, dw: ray.slope_x };
         let Some(length) = ray.length(start, end, self.resolution.step) else { return Ok(None) };
         let points = self.points(&ray, start, length)?;
         let Some(last) = points.last() else { return Ok(None) };
@@ -306,19 +307,19 @@ impl Family {
 
     /// `free`: v = u.
     fn ray(&self, angle: &Angle, free: bool) -> Ray {
-        let (f, u_eye, beta) = (self.f, self.u_eye, self.beta);
+        let (f, u_observer, beta) = (self.f, self.u_observer, self.beta);
         let g = (1.0 / angle.sin.abs().max(f64::MIN_POSITIVE)).min(self.r / (3.0 * f));
         let psi_x = self.coordinate.psi_slope(angle.tan_half);
-        let inverse_b = f * u_eye * (1.0 - beta * angle.cos);
+        let inverse_b = f * u_observer * (1.0 - beta * angle.cos);
         let off = angle.sin_half * (angle.cos_half - beta * angle.cos_mean);
         let off = -2.0 * off / self.coordinate.sin_critical;
         Ray {
             kappa: g * angle.sin,
             kappa_x: g * angle.cos * psi_x,
             reference: if free { 0.0 } else { 1.0 },
-            v: if free { u_eye } else { 0.0 },
-            slope: g * f * u_eye * if free { angle.cos - beta } else { off },
-            slope_x: -g * f * u_eye * angle.sin * psi_x,
+            v: if free { u_observer } else { 0.0 },
+            slope: g * f * u_observer * if free { angle.cos - beta } else { off },
+            slope_x: -g * f * u_observer * angle.sin * psi_x,
             per_tau: 1.0 / (g * inverse_b),
             b: angle.sin / inverse_b,
         }
@@ -387,34 +388,35 @@ impl Family {
 
     /// Impact parameter at E = 1 of the direction (sin psi, cos psi): b = sin psi / (f u_e (1 - beta cos psi)).
     pub fn impact_parameter(&self, sin: f64, cos: f64) -> f64 {
-        sin / (self.f * self.u_eye * (1.0 - self.beta * cos))
+        sin / (self.f * self.u_observer * (1.0 - self.beta * cos))
     }
 
     /// The ray's constants, with the clock in whose form the delay is integrated: rain time where all rays move
     /// outwards, as it has no singularity at the horizon, near or far.
     fn constants(&self, b: f64) -> Constants {
-        let mut constants = Constants::new(0.0, 1.0, b, 0.0, 1.0, self.u_eye);
+        let mut constants = Constants::new(0.0, 1.0, b, 0.0, 1.0, self.u_observer);
         if self.r <= RAIN_CLOCK_RADIUS {
             constants.clock = Clock::Rain;
         }
         constants
     }
 
-    /// `Constants::retardation` by the eye's clock (`LocalFrame::clock`) at the crossing `u` of the ray of impact
-    /// parameter `b`, from the integral part J there. The slopes are du/dtau = b du/dphi, at the eye and there.
-    pub fn delay(&self, b: f64, eye_slope: f64, u: f64, slope: f64, integral: f64) -> f64 {
+    /// `Constants::retardation` by the observer's clock (`LocalFrame::clock`) at the crossing `u` of the ray of impact
+    /// parameter `b`, from the integral part J there. The slopes are du/dtau = b du/dphi, at the observer and there.
+    pub fn delay(&self, b: f64, observer_slope: f64, u: f64, slope: f64, integral: f64) -> f64 {
         let constants = self.constants(b);
-        let rise = constants.delay_boundary(u, slope) - constants.delay_boundary(self.u_eye, eye_slope) + integral;
+        let rise =
+            constants.delay_boundary(u, slope) - constants.delay_boundary(self.u_observer, observer_slope) + integral;
         let retardation = rise + constants.clock_offset(u);
         if self.rain || constants.clock == Clock::Coordinate {
             return retardation;
         }
-        // A static eye keeps t.
-        retardation - rain_offset(self.u_eye, (self.r - 2.0) / self.r)
+        // A static observer keeps t.
+        retardation - rain_offset(self.u_observer, (self.r - 2.0) / self.r)
     }
 
-    /// du/dtau at the eye of the direction (sin psi, cos psi): (cos psi - beta) / (1 - beta cos psi).
-    pub fn eye_slope(&self, cos: f64) -> f64 {
+    /// du/dtau at the observer of the direction (sin psi, cos psi): (cos psi - beta) / (1 - beta cos psi).
+    pub fn observer_slope(&self, cos: f64) -> f64 {
         (cos - self.beta) / (1.0 - self.beta * cos)
     }
 }

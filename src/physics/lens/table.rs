@@ -1,6 +1,6 @@
-//! The lens table of one eye at spin 0, and looking directions up in it: what becomes of a ray and where it is after a
-//! swept angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane` leads to
-//! the chart).
+//! The lens table of one observer at spin 0, and looking directions up in it: what becomes of a ray and where it is
+//! after a swept angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane`
+//! leads to the chart).
 //!
 //! Interpolation: the swept angle cubic Hermite in x; v (`schwarzschild`) bicubic Hermite in (x, y); the delay's
 //! integral part cubic Hermite in y and Lagrange with four nodes in x.
@@ -20,7 +20,7 @@ struct BranchTable {
     delay: Vec<[f64; 2]>,
 }
 
-/// The lens table of one eye. Depends on the eye's radius and frame kind only.
+/// The lens table of one observer. Depends on the observer's radius and frame kind only.
 #[derive(Clone, Debug)]
 pub struct SchwarzschildLens {
     family: Family,
@@ -30,7 +30,7 @@ pub struct SchwarzschildLens {
 
 /// A direction looked up.
 #[derive(Clone, Copy, Debug)]
-pub struct Look<'a> {
+pub struct SchwarzschildLookup<'a> {
     family: &'a Family,
     table: &'a BranchTable,
     /// Column of the node below, and the fraction to the next one.
@@ -54,7 +54,7 @@ pub struct Look<'a> {
     pub swept_slope: f64,
 }
 
-/// A point of a ray, `phi` from the eye.
+/// A point of a ray, `phi` from the observer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     pub phi: f64,
@@ -104,7 +104,7 @@ impl BranchTable {
 }
 
 impl SchwarzschildLens {
-    /// The table for the eye of `frame` at the default resolution, built on this thread. `None`: `Family::new` has
+    /// The table for the observer of `frame` at the default resolution, built on this thread. `None`: `Family::new` has
     /// none, or there is no memory for it.
     pub fn new(frame: &LocalFrame, with_delay: bool) -> Option<Self> {
         Self::build(Family::new(frame, with_delay, Resolution::default())?)
@@ -132,13 +132,13 @@ impl SchwarzschildLens {
 
     /// Looks up the direction `n` (components, unit).
     #[inline]
-    pub fn look(&self, n: DVec3) -> Look<'_> {
+    pub fn look_up(&self, n: DVec3) -> SchwarzschildLookup<'_> {
         let (sin, cos) = (n.yz().length(), -n.x);
         let coordinate = &self.family.coordinate;
         let t_hat = coordinate.t_hat(sin, cos);
         let escaped = t_hat > 0.0;
         let table = if escaped { &self.escaping } else { &self.captured };
-        let mut look = Look {
+        let mut lookup = SchwarzschildLookup {
             family: &self.family,
             table,
             column: 0,
@@ -154,13 +154,13 @@ impl SchwarzschildLens {
             swept_slope: 0.0,
         };
         if !table.swept.is_empty() {
-            look.locate();
+            lookup.locate();
         }
-        look
+        lookup
     }
 }
 
-impl Look<'_> {
+impl SchwarzschildLookup<'_> {
     /// sin psi_c.
     pub fn sin_critical(&self) -> f64 {
         self.family.coordinate.sin_critical
@@ -238,8 +238,8 @@ impl Look<'_> {
             return 0.0;
         }
         let integral = self.delay_integral(crossing.phi);
-        let eye_slope = self.family.eye_slope(self.cos);
-        self.family.delay(self.b, eye_slope, crossing.u, self.b * crossing.u_phi, integral)
+        let observer_slope = self.family.observer_slope(self.cos);
+        self.family.delay(self.b, observer_slope, crossing.u, self.b * crossing.u_phi, integral)
     }
 
     fn delay_integral(&self, phi: f64) -> f64 {
@@ -257,7 +257,7 @@ impl Look<'_> {
     }
 
     /// (d delay / dphi at fixed u, d delay / du at fixed phi): b and u' / (u^2 D), D = 1 - 2 u, ' = d/dtau. The delay
-    /// to the eye is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
+    /// to the observer is the action of the ray at E = 1, whose gradient is the momentum there (Hamilton-Jacobi).
     ///
     /// 0 if the table has no delays.
     pub fn delay_gradient(&self, crossing: &Crossing) -> (f64, f64) {

@@ -36,18 +36,18 @@ impl Sequence {
     }
 }
 
-fn eye(r: f64, theta: f64, rain: bool) -> LocalFrame {
+fn observer(r: f64, theta: f64, rain: bool) -> LocalFrame {
     let frame = LocalFrame::new(0.0, chart(r, theta, 0.7)).unwrap();
     if rain { frame.to_rain() } else { frame }
 }
 
-fn eyes() -> Vec<LocalFrame> {
+fn observers() -> Vec<LocalFrame> {
     let mut all = Vec::new();
     for (i, r) in [2.1, 2.7, 3.0, 3.2, 5.0, 6.5, 12.0, 30.0, 200.0, 1000.0].into_iter().enumerate() {
-        all.push(eye(r, 0.3 + 0.25 * i as f64, false));
+        all.push(observer(r, 0.3 + 0.25 * i as f64, false));
     }
     for (i, r) in [1.0, 1.7, 2.4, 3.0, 4.5, 8.0, 40.0, 1000.0].into_iter().enumerate() {
-        all.push(eye(r, 0.4 + 0.3 * i as f64, true));
+        all.push(observer(r, 0.4 + 0.3 * i as f64, true));
     }
     all
 }
@@ -78,20 +78,20 @@ fn errors(frame: &LocalFrame, resolution: Resolution, rays: usize) -> [Errors; 3
     for _ in 0..rays {
         let psi = sequence.angle(critical);
         let n = sequence.look(psi);
-        let look = lens.look(n);
+        let lookup = lens.look_up(n);
         let traced = trace_look(frame, n, &Settings::exact(0.0)).1;
-        assert_eq!(look.escaped, traced.fate == Fate::Escaped, "r {} psi {psi}", frame.r);
-        if look.escaped {
-            all[0].add((look.swept - traced.swept).abs() / (1.0 + look.swept_slope.abs()));
+        assert_eq!(lookup.escaped, traced.fate == Fate::Escaped, "r {} psi {psi}", frame.r);
+        if lookup.escaped {
+            all[0].add((lookup.swept - traced.swept).abs() / (1.0 + lookup.swept_slope.abs()));
         }
         let plane = OrbitPlane::new(frame, n);
         for expected in traced.crossings.iter().filter(|c| c.u <= 1.0 / 6.0) {
-            let Some(crossing) = plane.crossing(&look, expected.order) else {
+            let Some(crossing) = plane.crossing(&lookup, expected.order) else {
                 panic!("r {} psi {psi}: crossing {} at {} missing", frame.r, expected.order, expected.u);
             };
             let conditioning = (crossing.u_psi.abs() + crossing.u_phi.abs()) / expected.u;
             all[1].add((crossing.u / expected.u - 1.0).abs() / (1.0 + conditioning));
-            let image = plane.image(&look, &crossing);
+            let image = plane.image(&lookup, &crossing);
             // Beside infinity the delay is the radius, known no better than u.
             let scale = (1.0 + expected.delay.abs()) * (1.0 + conditioning);
             all[2].add((image.delay - expected.delay).abs() / scale);
@@ -105,7 +105,7 @@ fn errors(frame: &LocalFrame, resolution: Resolution, rays: usize) -> [Errors; 3
 /// Typical and worst errors at the default resolution.
 #[test]
 fn agrees_with_tracing() {
-    for frame in eyes() {
+    for frame in observers() {
         let [mut swept, mut u, mut delay] = errors(&frame, Resolution::default(), 600);
         let (r, rain) = (frame.r, frame.rain);
         assert!(swept.at(0.5) < 2e-9 && swept.at(1.0) < 3e-8, "r {r} {rain}: {:e} {:e}", swept.at(0.5), swept.at(1.0));
@@ -117,7 +117,7 @@ fn agrees_with_tracing() {
 /// The coarse tables keep what they promise.
 #[test]
 fn coarse_tables_are_as_good_as_f32() {
-    for frame in eyes() {
+    for frame in observers() {
         let [mut swept, mut u, _] = errors(&frame, Resolution::SINGLE, 600);
         assert!(swept.at(0.5) < 3e-8 && swept.at(1.0) < 5e-7, "r {} {:e} {:e}", frame.r, swept.at(0.5), swept.at(1.0));
         assert!(u.at(0.5) < 2e-8 && u.at(1.0) < 2e-7, "r {} {:e} {:e}", frame.r, u.at(0.5), u.at(1.0));
@@ -127,7 +127,7 @@ fn coarse_tables_are_as_good_as_f32() {
 /// Twice the nodes, a sixteenth of the error: the derivatives in the tables are those of the values.
 #[test]
 fn converges_with_fourth_order() {
-    let frame = eye(20.0, 1.0, false);
+    let frame = observer(20.0, 1.0, false);
     let worst = |nodes_per_octave, intervals| {
         let [mut swept, mut u, _] = errors(&frame, Resolution { nodes_per_octave, intervals, step: 0.02 }, 600);
         [swept.at(1.0), u.at(1.0)]
@@ -146,7 +146,7 @@ fn differences<T>(n: DVec3, across: DVec3, h: f64, f: impl Fn(DVec3) -> T) -> [T
 #[test]
 fn sky_changes_as_differences_do() {
     let mut sequence = Sequence(3);
-    for frame in eyes() {
+    for frame in observers() {
         let lens = SchwarzschildLens::new(&frame, false).unwrap();
         let axis = lens.family().coordinate;
         let critical = axis.sin_critical.atan2(axis.cos_critical);
@@ -156,14 +156,14 @@ fn sky_changes_as_differences_do() {
                 if radial { PI - 1e-4 * sequence.next() } else { critical + (PI - critical) * sequence.next() };
             let n = sequence.look(if i == 0 { PI } else { beyond });
             let across = n.cross(DVec3::new(sequence.next(), sequence.next(), 0.2)).normalize();
-            let look = lens.look(n);
+            let lookup = lens.look_up(n);
             let plane = OrbitPlane::new(&frame, n);
             let h = 1e-5 * (beyond - critical).min(axis.sin_critical);
-            let sky = |n: DVec3| OrbitPlane::new(&frame, n).sky(&lens.look(n)).direction;
+            let sky = |n: DVec3| OrbitPlane::new(&frame, n).sky(&lens.look_up(n)).direction;
             let [ahead, behind] = differences(n, across, h, sky);
             let expected = (ahead - behind) / (2.0 * h);
-            let change = plane.sky(&look).change(&plane.turn(&frame, &look, across));
-            let error = (change - expected).length() / (1.0 + look.swept_slope.abs());
+            let change = plane.sky(&lookup).change(&plane.turn(&frame, &lookup, across));
+            let error = (change - expected).length() / (1.0 + lookup.swept_slope.abs());
             assert!(error < 3e-5, "r {} ray {i} psi {beyond}: {change} {expected}", frame.r);
             assert!((sky(n).length() - 1.0).abs() < 1e-7, "r {} {beyond}", frame.r);
         }
@@ -174,7 +174,7 @@ fn sky_changes_as_differences_do() {
 fn images_change_as_differences_of_traces_do() {
     let mut sequence = Sequence(5);
     let mut compared = 0;
-    for frame in eyes() {
+    for frame in observers() {
         let lens = SchwarzschildLens::new(&frame, true).unwrap();
         let axis = lens.family().coordinate;
         let critical = axis.sin_critical.atan2(axis.cos_critical);
@@ -182,11 +182,11 @@ fn images_change_as_differences_of_traces_do() {
             let psi = sequence.angle(critical).max(0.01 * critical);
             let n = sequence.look(psi);
             let across = n.cross(DVec3::new(sequence.next(), sequence.next(), 0.2)).normalize();
-            let (look, plane) = (lens.look(n), OrbitPlane::new(&frame, n));
+            let (lookup, plane) = (lens.look_up(n), OrbitPlane::new(&frame, n));
             let h = 1e-4 * (psi - critical).abs().min(critical).min(psi.sin());
             let traced = differences(n, across, h, |n| trace_look(&frame, n, &Settings::exact(0.0)).1);
             for order in 0..3 {
-                let Some(crossing) = plane.crossing(&look, order) else { continue };
+                let Some(crossing) = plane.crossing(&lookup, order) else { continue };
                 let [Some(ahead), Some(behind)] = [0, 1].map(|i| traced[i].crossings.iter().find(|c| c.order == order))
                 else {
                     continue;
@@ -195,7 +195,7 @@ fn images_change_as_differences_of_traces_do() {
                     continue;
                 }
                 let slope = |f: fn(&PlaneCrossing) -> f64| (f(ahead) - f(behind)) / (2.0 * h);
-                let change = plane.image_change(&look, &crossing, &plane.turn(&frame, &look, across));
+                let change = plane.image_change(&lookup, &crossing, &plane.turn(&frame, &lookup, across));
                 let pairs = [
                     (change.u, slope(|i| i.u), crossing.u),
                     (change.azimuth, slope(|i| i.azimuth), 1.0),
@@ -215,18 +215,18 @@ fn images_change_as_differences_of_traces_do() {
 
 /// Light that starts in the plane crosses it again after half a turn; light that stays in it crosses nowhere.
 #[test]
-fn eye_in_the_plane() {
+fn observer_in_the_plane() {
     let frame = LocalFrame::new(0.0, DVec3::new(20.0, 0.0, 0.0)).unwrap();
     let lens = SchwarzschildLens::new(&frame, false).unwrap();
     for psi in [0.27, 0.3, 0.5] {
         let n = DVec3::new(-f64::cos(psi), -f64::sin(psi), 0.0);
         let traced = trace_look(&frame, n, &Settings::exact(0.0)).1;
-        let (look, plane) = (lens.look(n), OrbitPlane::new(&frame, n));
+        let (lookup, plane) = (lens.look_up(n), OrbitPlane::new(&frame, n));
         for (order, expected) in traced.crossings.iter().enumerate() {
-            let crossing = plane.crossing(&look, order as u32).unwrap();
+            let crossing = plane.crossing(&lookup, order as u32).unwrap();
             assert!((crossing.u / expected.u - 1.0).abs() < 1e-6, "{psi}: {} {}", crossing.u, expected.u);
         }
-        assert!(plane.crossing(&look, traced.crossings.len() as u32).is_none());
+        assert!(plane.crossing(&lookup, traced.crossings.len() as u32).is_none());
         let within = DVec3::new(n.x, 0.0, n.y);
         assert!(OrbitPlane::new(&frame, within).crossing_angle(0).is_none());
     }
@@ -236,14 +236,14 @@ fn eye_in_the_plane() {
 #[test]
 fn the_seam_is_no_step() {
     for r in [2.5, 4.0, 20.0] {
-        let frame = eye(r, 0.5, false);
+        let frame = observer(r, 0.5, false);
         let lens = SchwarzschildLens::new(&frame, true).unwrap();
         let axis = lens.family().coordinate;
         let [below, above] = [0.25 * (1.0 - 1e-12), 0.25 * (1.0 + 1e-12)].map(|t_hat| {
             let angle = axis.angle(t_hat);
-            let look = lens.look(DVec3::new(-angle.cos, angle.sin, 0.0));
-            let crossing = look.crossing(0.6 * look.swept).unwrap();
-            [look.swept, crossing.u, crossing.u_psi, crossing.u_phi, look.delay(&crossing)]
+            let lookup = lens.look_up(DVec3::new(-angle.cos, angle.sin, 0.0));
+            let crossing = lookup.crossing(0.6 * lookup.swept).unwrap();
+            [lookup.swept, crossing.u, crossing.u_psi, crossing.u_phi, lookup.delay(&crossing)]
         });
         for i in 0..5 {
             assert!((above[i] - below[i]).abs() < 1e-6 * (1.0 + below[i].abs()), "r {r}: {below:?} {above:?}");
@@ -257,7 +257,7 @@ fn the_domain_is_served_to_its_ends() {
     for (r, rain) in
         [(0.9, true), (2.0, true), (1e6, true), (2.0005, false), (2.01, false), (6.0001, false), (1e6, false)]
     {
-        let frame = eye(r * (1.0 + if r < 1e6 { 1e-12 } else { -1e-12 }), 1.0, rain);
+        let frame = observer(r * (1.0 + if r < 1e6 { 1e-12 } else { -1e-12 }), 1.0, rain);
         let resolution = Resolution { nodes_per_octave: 8, intervals: 32, step: 0.1 };
         let family = Family::new(&frame, true, resolution).unwrap();
         for branch in [Branch::Escaping, Branch::Captured] {
@@ -274,7 +274,7 @@ fn the_domain_is_served_to_its_ends() {
         assert!(swept.at(0.5) < 1e-7 && swept.at(1.0) < 3e-6, "r {r}: {:e} {:e}", swept.at(0.5), swept.at(1.0));
     }
     for (r, rain) in [(0.89, true), (2.0004, false), (1.1e6, false)] {
-        assert!(SchwarzschildLens::new(&eye(r, 1.0, rain), false).is_none());
+        assert!(SchwarzschildLens::new(&observer(r, 1.0, rain), false).is_none());
     }
     let spinning = LocalFrame::new(0.5, DVec3::new(20.0, 0.0, 0.0)).unwrap();
     assert!(SchwarzschildLens::new(&spinning, false).is_none());
@@ -282,7 +282,7 @@ fn the_domain_is_served_to_its_ends() {
 
 #[test]
 fn columns_that_do_not_fit_make_no_table() {
-    let family = Family::new(&eye(10.0, 1.0, false), false, Resolution::default()).unwrap();
+    let family = Family::new(&observer(10.0, 1.0, false), false, Resolution::default()).unwrap();
     let columns = |branch| -> Vec<_> {
         (0..family.columns(branch)).map(|i| family.column(branch, i).unwrap().unwrap()).collect()
     };

@@ -1,7 +1,7 @@
 //! The footprints of records: changes to the next pixel, against true differences.
 
 use super::errors::Errors;
-use super::observers::{random_eye, shadow_edge, turn};
+use super::observers::{random_observer, shadow_edge, turn};
 use super::truth::{Sight, Truth};
 use super::{TRACERS, both, fail_if_any};
 use crate::random::{Random, count_from};
@@ -22,7 +22,7 @@ fn footprints_agree_with_differences() {
     // The footprints by tracer, and by whether the record was looked up or integrated.
     let mut found: [[Footprints; 2]; 2] = Default::default();
     for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) {
-        let mut scene = random_eye(&mut random, index);
+        let mut scene = random_observer(&mut random, index);
         scene.disk.as_mut().unwrap().turbulence = 1.0;
         let edge = shadow_edge(&scene, &mut random);
         let scale = (5.0 / (scene.camera.position.length() - 1.0).max(1.0)).min(1.0);
@@ -70,7 +70,7 @@ impl Changes {
         let width = truth.lens.mapping.width as usize;
         let (x, y) = ((pixel % width) as f64 + 0.5, (pixel / width) as f64 + 0.5);
         let h = 0.5 * Self::SHARE;
-        let at = |dx: f64, dy: f64| truth.sight(truth.lens.look(x + dx, y + dy));
+        let at = |dx: f64, dy: f64| truth.sight(truth.lens.look_direction(x + dx, y + dy));
         let pairs = [[at(-h, 0.0), at(h, 0.0)], [at(0.0, -h), at(0.0, h)]];
         let escaped = pairs.as_flattened().iter().all(|s| s.fate == Fate::Escaped);
         let sky = pairs.each_ref().map(|[before, after]| (after.direction - before.direction) / Self::SHARE);

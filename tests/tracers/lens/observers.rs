@@ -9,9 +9,9 @@ use bhr::scene::{Camera, LensTables, Motion, Scene};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A random eye: r to 1000 M, one in three falling (to the horizon, and inside it without spin), one in three without
-/// spin.
-pub fn random_eye(random: &mut Random, index: usize) -> Scene {
+/// A random observer: r to 1000 M, one in three falling (to the horizon, and inside it without spin), one in three
+/// without spin.
+pub fn random_observer(random: &mut Random, index: usize) -> Scene {
     let mut scene = Scene::default();
     let any_spin = random.range(-0.998, 0.998);
     let end = random.pick(&[-0.998, 0.998]);
@@ -70,7 +70,7 @@ pub fn turn(scene: &mut Scene, forward: DVec3, random: &mut Random, fov_y: f64) 
 pub fn shadow_edge(scene: &Scene, random: &mut Random) -> Option<DVec3> {
     let truth = Truth::new(scene, 1, 1);
     let observer = truth.lens.observer;
-    let mut dark = Observer::moving(observer.frame, -observer.beta).look(DVec3::NEG_X).0;
+    let mut dark = Observer::moving(observer.frame, -observer.beta).aberrate(DVec3::NEG_X).0;
     let escapes = |n: DVec3| truth.sight(n).fate == Fate::Escaped;
     if escapes(dark) {
         return None;

@@ -1,7 +1,7 @@
 //! Records of one frame beside the truth, ray by ray.
 
 use super::errors::{Bar, Errors};
-use super::observers::{aim, random_eye};
+use super::observers::{aim, random_observer};
 use super::truth::{Conditioning, Frame, Sight, Truth};
 use super::{GPU, PIXEL_4K, TRACERS, both, fail_if_any};
 use crate::random::{Random, count_from};
@@ -116,7 +116,8 @@ impl Frame<'_> {
     }
 }
 
-/// BHR_LENS_OBSERVERS eyes of 1000 rays; half of the frames look at the shadow's edge, with pixels down to 2.5e-6 rad.
+/// BHR_LENS_OBSERVERS observers of 1000 rays; half of the frames look at the shadow's edge, with pixels down to 2.5e-6
+/// rad.
 #[test]
 fn records_agree_with_integration() {
     let (width, height) = (40, 25);
@@ -124,7 +125,7 @@ fn records_agree_with_integration() {
     let mut random = Random(23);
     let mut found: [[Comparison; 2]; 2] = Default::default();
     for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) {
-        let mut scene = random_eye(&mut random, index);
+        let mut scene = random_observer(&mut random, index);
         aim(&mut scene, &mut random);
         let truth = Truth::new(&scene, width, height);
         let rays = truth.rays();

@@ -1,7 +1,7 @@
 //! Scan lines through the lens tables: their errors neither jump nor step.
 
 use super::errors::Errors;
-use super::observers::{random_eye, shadow_edge};
+use super::observers::{random_observer, shadow_edge};
 use super::truth::{Frame, TrueRay, Truth};
 use super::{GPU, PIXEL_4K, TRACERS, both, fail_if_any};
 use crate::random::{Random, count_from};
@@ -71,7 +71,7 @@ fn a_step_would_be_seen() {
 /// the hole's direction, two across the shadow's edge, one anywhere.
 fn scan_lines(scene: &Scene, random: &mut Random) -> Vec<(DVec3, DVec3, f64)> {
     let observer = scene.observer().unwrap();
-    let inward = Observer::moving(observer.frame, -observer.beta).look(DVec3::NEG_X).0;
+    let inward = Observer::moving(observer.frame, -observer.beta).aberrate(DVec3::NEG_X).0;
     let inward = observer.frame.vector(inward);
     let aside = inward.cross(random.direction()).normalize();
     let turned = random.range(0.0, PI / 2.0);
@@ -128,7 +128,7 @@ fn no_seam() {
     // The lines by tracer, and by whether they were looked up (partly, at least) or integrated.
     let mut found: [[Seams; 2]; 2] = Default::default();
     for index in 0..count_from("BHR_LENS_OBSERVERS", 20, 1000) / 5 {
-        let mut scene = random_eye(&mut random, index);
+        let mut scene = random_observer(&mut random, index);
         for (line, (forward, right, width)) in scan_lines(&scene, &mut random).into_iter().enumerate() {
             let fov_y = 2.0 * ((0.5 * width).tan() / f64::from(SAMPLES)).atan();
             scene.camera = Camera { forward, up: right.cross(forward), fov_y, ..scene.camera };

@@ -52,12 +52,12 @@ impl<'a> Truth<'a> {
     /// Through the centre of pixel `index`, counted row by row.
     pub fn look(&self, index: usize) -> DVec3 {
         let width = self.lens.mapping.width as usize;
-        self.lens.look((index % width) as f64 + 0.5, (index / width) as f64 + 0.5)
+        self.lens.look_direction((index % width) as f64 + 0.5, (index / width) as f64 + 0.5)
     }
 
     pub fn sight(&self, look: DVec3) -> Sight {
         let observer = &self.lens.observer;
-        let (n, ratio) = observer.look(look);
+        let (n, ratio) = observer.aberrate(look);
         let (constants, traced) = trace_look(&observer.frame, n, &self.settings);
         let Some(c) = constants else {
             return Sight {

@@ -97,9 +97,9 @@ impl Carter {
     }
 }
 
-fn spins_and_eyes() -> impl Iterator<Item = (f64, f64, f64)> {
-    let eyes = [(8.0, 1.1), (30.0, 0.5), (100.0, 1.45), (1000.0, 0.9)];
-    [0.0, 0.9, -0.6].into_iter().flat_map(move |a| eyes.into_iter().map(move |(r, theta)| (a, r, theta)))
+fn spins_and_observers() -> impl Iterator<Item = (f64, f64, f64)> {
+    let observers = [(8.0, 1.1), (30.0, 0.5), (100.0, 1.45), (1000.0, 0.9)];
+    [0.0, 0.9, -0.6].into_iter().flat_map(move |a| observers.into_iter().map(move |(r, theta)| (a, r, theta)))
 }
 
 /// Look directions past the hole on all sides, from near misses to wide ones.
@@ -130,7 +130,7 @@ fn delays_of_crossings_are_carters_integral() {
         let bar = if tracer == "cpu" { 1e-9 } else { 2e-5 };
         renderer.scene.hole.mass = MASS;
         let (mut compared, mut worst) = (0, 0.0_f64);
-        for (a, r, theta) in spins_and_eyes() {
+        for (a, r, theta) in spins_and_observers() {
             renderer.scene.hole.spin = a;
             for (i, n) in looks(r).enumerate() {
                 let hit = trace(&mut renderer, ray_of(r, theta, n));
@@ -172,7 +172,7 @@ fn paths_keep_carters_time() {
     let mut renderer = cpu();
     renderer.scene.hole.mass = MASS;
     let (mut compared, mut worst) = (0, 0.0_f64);
-    for (a, r, theta) in spins_and_eyes() {
+    for (a, r, theta) in spins_and_observers() {
         renderer.scene.hole.spin = a;
         for (i, n) in looks(r).enumerate().step_by(3) {
             let points = renderer.trace_path(&ray_of(r, theta, n), 40).unwrap();
@@ -201,7 +201,7 @@ fn paths_keep_carters_time() {
     assert!(compared > 1000, "{compared}");
 }
 
-/// The integrator of this file: a radial ray takes r_eye - r + 2 ln((r_eye - 2) / (r - 2)).
+/// The integrator of this file: a radial ray takes r_observer - r + 2 ln((r_observer - 2) / (r - 2)).
 #[test]
 fn integral_here_has_the_closed_form() {
     let (carter, mut s) = start(0.0, 50.0, 1.0, DVec3::NEG_X);

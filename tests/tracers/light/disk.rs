@@ -8,7 +8,7 @@ use bhr::physics::disk_flux::{page_thorne, page_thorne_maximum};
 use bhr::scene::{Disk, View};
 use std::f64::consts::TAU;
 
-const R_EYE: f64 = 1000.0;
+const R_OBSERVER: f64 = 1000.0;
 /// The default disk's.
 const RADII: [f64; 2] = [6.0, 20.0];
 const TEMPERATURE: f64 = 6500.0;
@@ -18,13 +18,13 @@ const TEMPERATURE: f64 = 6500.0;
 fn expected(inclination_degrees: f64, order: u32) -> f64 {
     let i = inclination_degrees.to_radians();
     // b = r sin(psi) / sqrt(1 - 2/r).
-    let sine = |b: f64| b * (1.0 - 2.0 / R_EYE).sqrt() / R_EYE;
+    let sine = |b: f64| b * (1.0 - 2.0 / R_OBSERVER).sqrt() / R_OBSERVER;
     let cosine = |b: f64| (1.0 - sine(b).powi(2)).sqrt();
     const SPOKES: u32 = 240;
     let mut sum = 0.0;
     for k in 0..SPOKES {
         let alpha = TAU * (f64::from(k) + 0.5) / f64::from(SPOKES);
-        let edges = |order| RADII.map(|r| isoradial(R_EYE, i, alpha, order, r));
+        let edges = |order| RADII.map(|r| isoradial(R_OBSERVER, i, alpha, order, r));
         let [inner, outer] = edges(order);
         let parts = match order {
             0 => vec![[inner, outer]],
@@ -36,8 +36,8 @@ fn expected(inclination_degrees: f64, order: u32) -> f64 {
         for [from, to] in parts.into_iter().filter(|[from, to]| to > from) {
             let angle = swept_to_plane(i, alpha, order);
             let seen = |b: f64| {
-                let Some(u) = u_at(R_EYE, b, angle) else { return 0.0 };
-                let g = redshift(R_EYE, i, alpha, b, u);
+                let Some(u) = u_at(R_OBSERVER, b, angle) else { return 0.0 };
+                let g = redshift(R_OBSERVER, i, alpha, b, u);
                 blackbody_luminance(g * TEMPERATURE * temperature(1.0 / u), TEMPERATURE)
             };
             // d Omega = d alpha d(-cos psi); Simpson's rule.
@@ -46,7 +46,7 @@ fn expected(inclination_degrees: f64, order: u32) -> f64 {
             let step = (first - last) / f64::from(INTERVALS);
             for n in 0..=INTERVALS {
                 let cos = first - step * f64::from(n);
-                let b = (1.0 - cos * cos).sqrt() * R_EYE / (1.0 - 2.0 / R_EYE).sqrt();
+                let b = (1.0 - cos * cos).sqrt() * R_OBSERVER / (1.0 - 2.0 / R_OBSERVER).sqrt();
                 let weight = if n == 0 || n == INTERVALS { 1.0 } else { f64::from(2 + 2 * (n % 2)) };
                 sum += weight * step / 3.0 * seen(b) * TAU / f64::from(SPOKES);
             }
@@ -58,11 +58,11 @@ fn expected(inclination_degrees: f64, order: u32) -> f64 {
 /// The sum over the pixels of one order of a square frame `width` M wide.
 fn measured(renderer: &mut bhr::renderer::Renderer, inclination: f64, width: f64, order: u32) -> f64 {
     let size = [900, 900];
-    renderer.scene.camera = camera(R_EYE, inclination, width);
+    renderer.scene.camera = camera(R_OBSERVER, inclination, width);
     renderer.scene.quality.max_disk_order = order;
     let light = light(renderer, size, whole(size));
     let orders = view(renderer, View::Order, size, whole(size));
-    let pixel = width / R_EYE / f64::from(size[1]);
+    let pixel = width / R_OBSERVER / f64::from(size[1]);
     let tangent = |k: usize| (k as f64 + 0.5 - f64::from(size[0]) / 2.0) * pixel;
     let pixels = light.iter().zip(orders).enumerate().filter(|(_, (_, seen))| *seen == f64::from(order));
     let solid_angle = |k: usize| {
@@ -92,7 +92,7 @@ fn summed_light_is_the_integral_over_the_isoradials() {
 
 /// In every pixel of the opaque disk's first two images: light = B(g T(r)) over the luminance of the hottest ring at
 /// rest, g being what the REDSHIFT view shows and r what the tracer says of that pixel's ray: I_nu / nu^3 is the same
-/// at the disk and at the eye.
+/// at the disk and at the observer.
 #[test]
 fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
     let size = [160, 120];

@@ -34,16 +34,16 @@ fn ways() -> [(&'static str, Set); 3] {
     ]
 }
 
-/// Rain time at the eye less t where light left, M, by way of advanced time v = t + r*, r* = r + 2 ln(r/2 - 1),
+/// Rain time at the observer less t where light left, M, by way of advanced time v = t + r*, r* = r + 2 ln(r/2 - 1),
 /// regular at the horizon (Eddington 1924, Finkelstein 1958): T = v - r + 2 sqrt(2 r) - 4 ln(1 + sqrt(r/2))
 /// (Gullstrand 1922). Along light that flies inwards with the impact parameter b, from dt/dr = -1 / (D s), s^2 = 1 -
 /// b^2 u^2 D: dv/du = b^2 / (s (1 + s)).
-fn retardation(r_eye: f64, r_disk: f64, b: f64) -> f64 {
+fn retardation(r_observer: f64, r_disk: f64, b: f64) -> f64 {
     let rate = |u: f64| {
         let s = (1.0 - b * b * u * u * (1.0 - 2.0 * u)).sqrt();
         b * b / (s * (1.0 + s))
     };
-    let (begin, end) = (1.0 / r_disk, 1.0 / r_eye);
+    let (begin, end) = (1.0 / r_disk, 1.0 / r_observer);
     let n = 4000;
     let h = (end - begin) / f64::from(n);
     let simpson = |i: u32| {
@@ -52,7 +52,7 @@ fn retardation(r_eye: f64, r_disk: f64, b: f64) -> f64 {
     };
     let advanced = (0..n).map(simpson).sum::<f64>();
     let tortoise = r_disk + 2.0 * (0.5 * r_disk - 1.0).ln();
-    let rain = r_eye - 2.0 * (2.0 * r_eye).sqrt() + 4.0 * (0.5 * r_eye).sqrt().ln_1p();
+    let rain = r_observer - 2.0 * (2.0 * r_observer).sqrt() + 4.0 * (0.5 * r_observer).sqrt().ln_1p();
     tortoise - rain + advanced
 }
 
@@ -80,7 +80,7 @@ fn light_left_when_advanced_time_says() {
                 let (mut compared, mut worst) = (0, 0.0_f64);
                 for (i, record) in renderer.ray_records(SIZE[0], SIZE[1]).unwrap().iter().enumerate() {
                     let [x, y] = [i % SIZE[0] as usize, i / SIZE[0] as usize].map(|k| k as f64 + 0.5);
-                    let n = lens.look(x, y);
+                    let n = lens.look_direction(x, y);
                     let b = r * n.y.hypot(n.z) / (1.0 + (2.0 / r).sqrt() * n.x);
                     for crossing in &record.crossings {
                         let expected = retardation(r, 1.0 / crossing.u, b);
@@ -138,7 +138,7 @@ fn a_fall_has_no_seam() {
                 let last = pattern(&mut renderer);
                 renderer.scene.time += MASS;
                 let (late, judged) = change(&last, &pattern(&mut renderer));
-                // Beyond what goes on evenly: most of a step is the eye's own way.
+                // Beyond what goes on evenly: most of a step is the observer's own way.
                 let jolts = patterns.windows(3).map(|p| {
                     let ahead = p[0].iter().zip(&p[1]).map(|(a, b)| 2.0 * b - a).collect::<Vec<_>>();
                     change(&ahead, &p[2]).0

@@ -4,13 +4,13 @@
 use bhr::physics::blackbody::radiance_xyz;
 use std::f64::consts::PI;
 
-/// u = 1/r where a ray from the eye at radius `r_eye` with impact parameter `b`, going inward, has swept `angle` about
-/// the hole: u'' = 3 u^2 - u (Darwin 1959), by RK4. `None`: it has fallen in before; not positive: it has escaped
-/// before.
-pub fn u_at(r_eye: f64, b: f64, angle: f64) -> Option<f64> {
+/// u = 1/r where a ray from the observer at radius `r_observer` with impact parameter `b`, going inward, has swept
+/// `angle` about the hole: u'' = 3 u^2 - u (Darwin 1959), by RK4. `None`: it has fallen in before; not positive: it has
+/// escaped before.
+pub fn u_at(r_observer: f64, b: f64, angle: f64) -> Option<f64> {
     let steps = (angle / 0.01).ceil();
     let h = angle / steps;
-    let u0 = 1.0 / r_eye;
+    let u0 = 1.0 / r_observer;
     let (mut u, mut v) = (u0, (1.0 / (b * b) - u0 * u0 * (1.0 - 2.0 * u0)).sqrt());
     let force = |u: f64| 3.0 * u * u - u;
     for _ in 0..steps as u32 {
@@ -30,29 +30,30 @@ pub fn u_at(r_eye: f64, b: f64, angle: f64) -> Option<f64> {
     Some(u)
 }
 
-/// Angle swept until the plane of the disk is met for the (order + 1)-th time, by the ray that an eye at inclination
-/// `i` sees at `alpha` from upward towards its right, about the hole's centre (Luminet 1979, eq. 10).
+/// Angle swept until the plane of the disk is met for the (order + 1)-th time, by the ray that an observer at
+/// inclination `i` sees at `alpha` from upward towards its right, about the hole's centre (Luminet 1979, eq. 10).
 pub fn swept_to_plane(i: f64, alpha: f64, order: u32) -> f64 {
     i.cos().atan2(-i.sin() * alpha.cos()) + f64::from(order) * PI
 }
 
 /// The isoradial: impact parameter at which the ring of radius `r` is seen; bisection, the radius growing with b.
-pub fn isoradial(r_eye: f64, i: f64, alpha: f64, order: u32, r: f64) -> f64 {
+pub fn isoradial(r_observer: f64, i: f64, alpha: f64, order: u32, r: f64) -> f64 {
     let angle = swept_to_plane(i, alpha, order);
     let (mut low, mut high) = (0.01, 4.0 * r + 20.0);
     for _ in 0..50 {
         let b = 0.5 * (low + high);
-        let beyond = u_at(r_eye, b, angle).is_some_and(|u| u < 1.0 / r);
+        let beyond = u_at(r_observer, b, angle).is_some_and(|u| u < 1.0 / r);
         if beyond { high = b } else { low = b }
     }
     0.5 * (low + high)
 }
 
-/// g of light of matter orbiting at u, seen by a static eye at `r_eye` (Luminet 1979, eq. 19, at a finite distance).
-/// `b` is seen at `alpha`: the photon's L / E is -b sin i sin alpha, the matter on the eye's right going away.
-pub fn redshift(r_eye: f64, i: f64, alpha: f64, b: f64, u: f64) -> f64 {
+/// g of light of matter orbiting at u, seen by a static observer at `r_observer` (Luminet 1979, eq. 19, at a finite
+/// distance). `b` is seen at `alpha`: the photon's L / E is -b sin i sin alpha, the matter on the observer's right
+/// going away.
+pub fn redshift(r_observer: f64, i: f64, alpha: f64, b: f64, u: f64) -> f64 {
     let lambda = -b * i.sin() * alpha.sin();
-    (1.0 - 3.0 * u).sqrt() / (1.0 - u.powf(1.5) * lambda) / (1.0 - 2.0 / r_eye).sqrt()
+    (1.0 - 3.0 * u).sqrt() / (1.0 - u.powf(1.5) * lambda) / (1.0 - 2.0 / r_observer).sqrt()
 }
 
 /// Page & Thorne 1974, eq. 15n, without spin; up to a factor.

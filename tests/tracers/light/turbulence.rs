@@ -3,7 +3,7 @@
 
 use super::{both, camera, cpu, hits, light, luminance, whole};
 use crate::frames::Lent;
-use bhr::emit::Place;
+use bhr::emit::EmissionPoint;
 use bhr::renderer::Renderer;
 use bhr::scene::{Disk, Effects, Region, Sky};
 
@@ -97,7 +97,8 @@ fn pattern_goes_round_with_the_orbits() {
         let smooth = smooth(&mut renderer);
         let dt = 12.0;
         let [first, then] = [54.0, 54.0 + dt].map(|time| pattern(&mut renderer, time, &smooth));
-        // Counter-clockwise about the spin is counter-clockwise in the picture: the eye looks down on the north pole.
+        // Counter-clockwise about the spin is counter-clockwise in the picture: the observer looks down on the north
+        // pole.
         let likeness = |k: f64| {
             let pairs = (0..first.len()).filter_map(|n| {
                 let [x, y] = place(n);
@@ -187,8 +188,8 @@ fn pattern_is_seen_at_its_retarded_time() {
                     let mut then = renderer.scene.clone();
                     then.effects = Effects(0);
                     then.time = if delayed { time - crossing.delay } else { time };
-                    let still = Place { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
-                    let at = Place { ln_r: crossing.radius.ln(), azimuth: crossing.azimuth, delay: 0.0 };
+                    let still = EmissionPoint { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
+                    let at = EmissionPoint { ln_r: crossing.radius.ln(), azimuth: crossing.azimuth, delay: 0.0 };
                     let expected = then.emitters().disk.unwrap().turbulence.unwrap().brightness(at, [still; 2]);
                     let found = luminance(seen) / luminance(smooth);
                     assert!(

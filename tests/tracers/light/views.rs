@@ -83,7 +83,7 @@ fn compare(tracer: &str, renderer: &mut Renderer, case: &Case) {
     // The hole's axis being z, the chart's axes are the scene's.
     let looks: Vec<DVec3> = (0..hits.len())
         .map(|k| [k as u32 % SIZE[0], k as u32 / SIZE[0]].map(|v| f64::from(v) + 0.5))
-        .map(|[x, y]| lens.observer.frame.vector(lens.look(x, y)))
+        .map(|[x, y]| lens.observer.frame.vector(lens.look_direction(x, y)))
         .collect();
     let pixel = looks[0].angle_between(looks[1]);
     for shown in [View::Redshift, View::Order, View::Deflection, View::Metric] {

@@ -147,7 +147,7 @@ impl Grid {
         flags
     }
 
-    /// Angles on the eye's sky, rad: a cell's extent along chi and along x, and sin R.
+    /// Angles on the observer's sky, rad: a cell's extent along chi and along x, and sin R.
     fn cell_angles(&self, branch: Branch, column: usize, row: usize) -> CellAngles {
         let (i, j) = (column, row as f64);
         let here = self.direction(branch, i, j + 0.5);

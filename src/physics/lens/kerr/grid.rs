@@ -22,9 +22,9 @@ pub(super) const SLACK: f64 = 1e-8;
 pub(crate) const BEYOND_INFINITY: f64 = 1.0;
 /// A bound on the steps of a ray, which no ray of the grid reaches.
 pub(super) const MAX_STEPS: usize = 2000;
-/// Eyes nearer than this, in M, get the finer outer branch, which has few octaves for them.
-pub(super) const NEAR_EYE: f64 = 15.0;
-/// The least epsilon of `Columns`. An eye yet nearer to the plane has the same columns; the directions within this
+/// Observers nearer than this, in M, get the finer outer branch, which has few octaves for them.
+pub(super) const NEAR_OBSERVER: f64 = 15.0;
+/// The least epsilon of `Columns`. An observer yet nearer to the plane has the same columns; the directions within this
 /// angle of the plane are then integrated.
 pub(super) const NARROWEST_LAYER: f64 = 0.03;
 /// The share of the nodes that gather in the layers of `Columns`.
@@ -78,9 +78,9 @@ pub struct Resolution {
 
 impl Resolution {
     /// The spacing that keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1,
-    /// which matters inside the shadow, and behind an eye near the disk.
-    pub fn for_eye(frame: &LocalFrame) -> Self {
-        Self { chi_nodes: 512, nodes_per_octave: [if frame.r < NEAR_EYE { 32 } else { 16 }, 32] }
+    /// which matters inside the shadow, and behind an observer near the disk.
+    pub fn for_observer(frame: &LocalFrame) -> Self {
+        Self { chi_nodes: 512, nodes_per_octave: [if frame.r < NEAR_OBSERVER { 32 } else { 16 }, 32] }
     }
 }
 
@@ -96,11 +96,11 @@ pub struct Crossings {
 }
 
 /// The coordinate along the critical curve: w = (chi + v) / 2 with tan v = tan chi / epsilon, epsilon = |cot th| of
-/// the eye.
+/// the observer.
 ///
 /// A ray that starts at the angle chi to the plane first meets it after the orbit angle atan2(|cot th|, sin chi) (spin
-/// 0): for an eye near the plane that changes from 0 to pi within epsilon about chi = 0 and pi. Half of the nodes go
-/// there, in even steps of v.
+/// 0): for an observer near the plane that changes from 0 to pi within epsilon about chi = 0 and pi. Half of the nodes
+/// go there, in even steps of v.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     pub(super) epsilon: f64,
@@ -158,7 +158,7 @@ pub struct Grid {
 
 /// A cell of the table, its lower corner's indices, and the fractions inside it.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct GridPosition {
     pub branch: Branch,
     pub column: usize,
     pub row: usize,
@@ -175,7 +175,7 @@ pub struct Place {
 }
 
 impl Grid {
-    /// `None` when the eye is too near the photon region or too far (`CriticalCurve::new`).
+    /// `None` when the observer is too near the photon region or too far (`CriticalCurve::new`).
     pub fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
         let curve = CriticalCurve::new(frame)?;
         let columns = Columns::new(frame, resolution.chi_nodes.max(8));
@@ -254,7 +254,7 @@ impl Grid {
     ///
     /// tan((psi - R) / 2) = (s - T (1 + c)) / (1 + c + T s), with c, s = cos, sin psi and 1 + c = s^2 / (1 - c) beyond
     /// 90 deg.
-    pub fn locate(&self, n: DVec3) -> Option<Place> {
+    pub fn locate(&self, n: DVec3) -> Option<GridPosition> {
         let p = self.curve.polar(n);
         let (t_critical, slope) = self.curve.at(p.chi);
         let one_plus_cos = if p.cos < 0.0 { p.sin * p.sin / (1.0 - p.cos) } else { 1.0 + p.cos };
@@ -273,7 +273,7 @@ impl Grid {
         let column_floor = (column as usize).min(self.columns() - 1);
         let side = side(n);
         let (column_gradient, x_gradient) = self.gradients(&p, w_slope, t, (t_critical, slope));
-        Some(Place {
+        Some(GridPosition {
             branch,
             column: column_floor,
             row: row_floor,
@@ -304,9 +304,9 @@ pub(super) fn side(n: DVec3) -> f64 {
     n.yz().length().max(1e-12)
 }
 
-/// 1 / u - 2 ln(|u| / u_eye) is what the delay diverges like at infinity, E = 1; without it, it passes infinity
-/// smoothly (but for terms of u^2 ln |u|). And 1 / u_eye is what it is from far, which leaves little to round in
+/// 1 / u - 2 ln(|u| / u_observer) is what the delay diverges like at infinity, E = 1; without it, it passes infinity
+/// smoothly (but for terms of u^2 ln |u|). And 1 / u_observer is what it is from far, which leaves little to round in
 /// tables.
-pub fn divergent_delay(u: f64, u_eye: f64) -> f64 {
-    1.0 / u + 1.0 / u_eye - 2.0 * (u / u_eye).abs().max(f64::MIN_POSITIVE).ln()
+pub fn divergent_delay(u: f64, u_observer: f64) -> f64 {
+    1.0 / u + 1.0 / u_observer - 2.0 * (u / u_observer).abs().max(f64::MIN_POSITIVE).ln()
 }

@@ -1,4 +1,4 @@
-//! The Kerr lens table: everything about a ray of one eye as a function of its look direction, tabulated in polar
+//! The Kerr lens table: everything about a ray of one observer as a function of its look direction, tabulated in polar
 //! coordinates about the critical curve (`critical`), interpolated instead of integrated. Physics alone: knows neither
 //! pixels nor threads; callers may spread `Grid::node` and `Grid::flags`, which are one independent task per node and
 //! per cell.
@@ -11,22 +11,22 @@
 //!
 //! A node is `channels` numbers: the sky direction (chart; 0 when captured), then for every order of crossing U = u S,
 //! with u = 1 / r there, continued through infinity to u < 0, and S = (1 - n_r^2)^(1/2) (a straight ray has u S =
-//! u_eye sin(angle): u itself diverges like 1 / S for rays that leave radially), and if wanted the unit vector of its
-//! azimuth and its delay in a form regular at infinity (`regular_delay`). Tables hold them in f32 and by fours, as
+//! u_observer sin(angle): u itself diverges like 1 / S for rays that leave radially), and if wanted the unit vector of
+//! its azimuth and its delay in a form regular at infinity (`regular_delay`). Tables hold them in f32 and by fours, as
 //! interpolation loads them (`Grid::pack`).
 
 mod cells;
 mod grid;
-mod look;
+mod lookup;
 mod node;
 mod table;
 
 pub(crate) use grid::{BEYOND_INFINITY, INWARD, ROWS_ABOVE, ROWS_BELOW};
 pub use grid::{
-    Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, NO_CROSSING, Node, PATTERN_TOLERANCE, POOR_CROSSINGS,
-    PackedNode, Place, Resolution, TOLERANCE, divergent_delay,
+    Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, GridPosition, NO_CROSSING, Node, PATTERN_TOLERANCE,
+    POOR_CROSSINGS, PackedNode, Resolution, TOLERANCE, divergent_delay,
 };
-pub use look::{Crossing, Seen, Sky, Step};
+pub use lookup::{Crossing, GridStep, KerrLookup, Sky};
 pub use table::KerrLens;
 
 #[cfg(test)]

@@ -8,13 +8,14 @@ use arrayvec::ArrayVec;
 use glam::DVec3;
 
 /// The delay less `divergent_delay`, from the state at a crossing: with `Constants::delay`,
-/// 2 (1 + u') ln(|u| / u_eye) - (1 + u') / u + the integral, and (1 + u') / u from u'^2 = P(u) without cancellation.
-fn regular_delay(c: &Constants, eye: &State, there: &State) -> f64 {
+/// 2 (1 + u') ln(|u| / u_observer) - (1 + u') / u + the integral, and (1 + u') / u from u'^2 = P(u) without
+/// cancellation.
+fn regular_delay(c: &Constants, observer: &State, there: &State) -> f64 {
     let (u, du) = (there.u, there.du);
     let below = u * (c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter)));
     let ratio = if du < 0.0 { -below / (1.0 - du) } else { (1.0 + du) / u };
-    let logarithm = (u / c.u_eye).abs().max(f64::MIN_POSITIVE).ln();
-    2.0 * ratio * u * logarithm - ratio + (eye.du - 1.0) / eye.u + there.delay - eye.delay
+    let logarithm = (u / c.u_observer).abs().max(f64::MIN_POSITIVE).ln();
+    2.0 * ratio * u * logarithm - ratio + (observer.du - 1.0) / observer.u + there.delay - observer.delay
 }
 
 /// One node's ray on its way.
@@ -67,7 +68,7 @@ impl<'a> NodeRay<'a> {
         }
     }
 
-    fn cross(&mut self, c: &Constants, eye: &State, settings: &Settings, (from, to, h): (&State, &State, f64)) {
+    fn cross(&mut self, c: &Constants, observer: &State, settings: &Settings, (from, to, h): (&State, &State, f64)) {
         if self.crossings.len() >= self.wanted.orders {
             return;
         }
@@ -76,7 +77,7 @@ impl<'a> NodeRay<'a> {
         if from.u >= self.capture_u {
             (state.drag, state.delay) = (from.drag, from.delay);
         }
-        let delay = if self.wanted.pattern { regular_delay(c, eye, &state) } else { 0.0 };
+        let delay = if self.wanted.pattern { regular_delay(c, observer, &state) } else { 0.0 };
         let direction = state.chart_direction();
         self.crossings.push([state.u * self.side, direction.x, direction.y, delay]);
     }

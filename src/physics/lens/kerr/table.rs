@@ -1,7 +1,7 @@
 //! A whole Kerr lens table, and its rows, of which callers may compute many at a time.
 
 use super::grid::*;
-use super::look::Seen;
+use super::lookup::KerrLookup;
 use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec4};
 
@@ -51,7 +51,7 @@ impl KerrLens {
 
     /// The image along the unit look direction `n` (components of the local frame). `None`: the ray is to be
     /// integrated.
-    pub fn look(&self, n: DVec3) -> Option<Seen<'_>> {
+    pub fn look_up(&self, n: DVec3) -> Option<KerrLookup<'_>> {
         let place = self.grid.locate(n)?;
         let flags = self.flags(place.branch, place.column, place.row);
         let quads = self.grid.quads();
@@ -60,7 +60,7 @@ impl KerrLens {
             let first = (place.row + j).saturating_sub(1) * (self.grid.columns() + REPEATED) + place.column;
             nodes.get(first * quads..(first + 4) * quads).unwrap_or(&[])
         });
-        self.grid.see(place, flags, rows)
+        self.grid.look_up_at(place, flags, rows)
     }
 }
 

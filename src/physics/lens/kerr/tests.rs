@@ -1,7 +1,7 @@
 //! The Kerr lens table against tracing. Part of `kerr`, whose insides it looks at.
 
 use super::grid::*;
-use super::look::*;
+use super::lookup::*;
 use super::*;
 use crate::physics::lens::critical::*;
 use crate::physics::metric::chart;
@@ -36,18 +36,18 @@ impl Random {
 }
 
 /// A table of which only the nodes are computed that are looked at.
-struct Lazy {
+struct LazyTable {
     grid: Grid,
     nodes: HashMap<(usize, usize, usize), Node>,
     rows: [Vec<Vec4>; 4],
 }
 
-impl Lazy {
+impl LazyTable {
     fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
         Some(Self { grid: Grid::new(frame, resolution, wanted)?, nodes: HashMap::new(), rows: Default::default() })
     }
 
-    fn look(&mut self, n: DVec3) -> (Option<Place>, Option<Seen<'_>>) {
+    fn look_up(&mut self, n: DVec3) -> (Option<GridPosition>, Option<KerrLookup<'_>>) {
         let Some(place) = self.grid.locate(n) else { return (None, None) };
         let (branch, columns) = (place.branch, self.grid.columns());
         for i in 0..6 {
@@ -62,7 +62,7 @@ impl Lazy {
             let nodes = (0..4).map(|i| node((place.column + columns + i - 1) % columns, place.row + j - 1));
             *packed = nodes.flat_map(|node| self.grid.pack(node)).collect();
         }
-        (Some(place), self.grid.see(place, flags, self.rows.each_ref().map(|row| row.as_slice())))
+        (Some(place), self.grid.look_up_at(place, flags, self.rows.each_ref().map(|row| row.as_slice())))
     }
 }
 
@@ -153,27 +153,27 @@ impl Measured {
     }
 }
 
-fn compare(lazy: &mut Lazy, count: usize, random: &mut Random) -> Measured {
+fn compare(lazy: &mut LazyTable, count: usize, random: &mut Random) -> Measured {
     let mut m = Measured::default();
     let frame = lazy.grid.frame;
     for _ in 0..count {
         let (kind, n) = aim(&lazy.grid.curve, random);
         let grid = lazy.grid.clone();
-        let (place, look) = lazy.look(n);
+        let (place, lookup) = lazy.look_up(n);
         m.rays += 1;
         m.core += usize::from(place.is_none());
-        let direct = !look.as_ref().is_some_and(Seen::crossings_are_good);
+        let direct = !lookup.as_ref().is_some_and(KerrLookup::crossings_are_good);
         if kind == Aim::Shadow {
             m.about += 1;
             m.about_direct += usize::from(direct && place.is_some());
         }
-        let Some(seen) = look.filter(|_| !direct) else { continue };
+        let Some(seen) = lookup.filter(|_| !direct) else { continue };
         compare_ray(&frame, &grid, n, &seen, &mut m);
     }
     m
 }
 
-fn compare_ray(frame: &LocalFrame, grid: &Grid, n: DVec3, seen: &Seen, m: &mut Measured) {
+fn compare_ray(frame: &LocalFrame, grid: &Grid, n: DVec3, seen: &KerrLookup, m: &mut Measured) {
     let place = &seen.place;
     let (c, start) = frame.start(n).unwrap();
     let truth = trace(&c, &start, &Settings::exact(c.a));
@@ -248,9 +248,9 @@ fn compare_ray(frame: &LocalFrame, grid: &Grid, n: DVec3, seen: &Seen, m: &mut M
 
 const SPINS: [f64; 8] = [0.1, -0.5, 0.9, -0.9, 0.95, 0.998, -0.998, 0.3];
 
-/// Eye number `i`: spins in turn, r log-uniform, theta over the sphere, every fifth in the plane or on the axis or
+/// Observer number `i`: spins in turn, r log-uniform, theta over the sphere, every fifth in the plane or on the axis or
 /// near.
-fn eye(i: usize, random: &mut Random) -> LocalFrame {
+fn observer(i: usize, random: &mut Random) -> LocalFrame {
     let a = SPINS[i % SPINS.len()];
     let r = 4.5 * (1000.0_f64 / 4.5).powf(random.next());
     let theta = match i % 10 {
@@ -271,23 +271,23 @@ fn wanted(a: f64, pattern: bool) -> Crossings {
     Crossings { orders: 4, plane_u: [1.0 / 30.0, 1.0 / isco(a)], pattern }
 }
 
-fn measure(eyes: std::ops::Range<usize>, rays: usize, resolution: Option<Resolution>, pattern: bool) -> Measured {
+fn measure(observers: std::ops::Range<usize>, rays: usize, resolution: Option<Resolution>, pattern: bool) -> Measured {
     let mut all = Measured::default();
-    for i in eyes {
+    for i in observers {
         let mut random = Random(1 + i as u64);
-        let frame = eye(i, &mut random);
-        let resolution = resolution.unwrap_or(Resolution::for_eye(&frame));
-        let mut lazy = Lazy::new(&frame, resolution, wanted(frame.a, pattern)).unwrap();
+        let frame = observer(i, &mut random);
+        let resolution = resolution.unwrap_or(Resolution::for_observer(&frame));
+        let mut lazy = LazyTable::new(&frame, resolution, wanted(frame.a, pattern)).unwrap();
         all.add(compare(&mut lazy, rays, &mut random));
     }
     all
 }
 
-/// The table against integration with steps five times finer, for random eyes and rays.
+/// The table against integration with steps five times finer, for random observers and rays.
 #[test]
 fn table_agrees_with_integration() {
     let mut m = measure(0..40, 250, None, true);
-    m.report("for_eye");
+    m.report("for_observer");
     println!("{}", m.worst);
     assert!(m.about_direct * 100 < m.about, "{} of {} direct", m.about_direct, m.about);
     assert!(m.radius.len() > 4000 && m.sky.len() > 5000);
@@ -302,17 +302,17 @@ fn whole_table_is_its_nodes() {
     let frame = LocalFrame::new(0.9, chart(12.0, 1.2, 0.3)).unwrap();
     let resolution = Resolution { chi_nodes: 128, nodes_per_octave: [16; 2] };
     let lens = KerrLens::new(&frame, resolution, wanted(0.9, true)).unwrap();
-    let mut lazy = Lazy::new(&frame, resolution, wanted(0.9, true)).unwrap();
+    let mut lazy = LazyTable::new(&frame, resolution, wanted(0.9, true)).unwrap();
     let mut random = Random(3);
     let (mut seen, mut crossings) = (0, 0);
     for _ in 0..2000 {
         let (_, n) = aim(lens.grid().curve(), &mut random);
-        match (lens.look(n), lazy.look(n).1) {
+        match (lens.look_up(n), lazy.look_up(n).1) {
             (None, None) => {}
             (Some(a), Some(b)) => {
                 assert_eq!(a.sky().map(|s| s.direction), b.sky().map(|s| s.direction));
                 assert_eq!(a.crossings_are_good(), b.crossings_are_good());
-                let images = |seen: &Seen| seen.crossings().map(|x| (x.order, x.image.u)).collect::<Vec<_>>();
+                let images = |seen: &KerrLookup| seen.crossings().map(|x| (x.order, x.image.u)).collect::<Vec<_>>();
                 assert_eq!(images(&a), images(&b));
                 seen += 1;
                 crossings += images(&a).len();
@@ -327,7 +327,7 @@ fn whole_table_is_its_nodes() {
 #[test]
 fn gradients_are_derivatives() {
     let frame = LocalFrame::new(0.95, chart(14.0, 1.3, 0.3)).unwrap();
-    let mut lazy = Lazy::new(&frame, Resolution::for_eye(&frame), wanted(0.95, false)).unwrap();
+    let mut lazy = LazyTable::new(&frame, Resolution::for_observer(&frame), wanted(0.95, false)).unwrap();
     let mut random = Random(8);
     let (mut skies, mut radii) = (0, 0);
     for _ in 0..300 {
@@ -337,7 +337,7 @@ fn gradients_are_derivatives() {
         }
         let dn = n.any_orthonormal_vector();
         let mut at = |d: f64| {
-            let seen = lazy.look((n + dn * d).normalize()).1.filter(Seen::crossings_are_good)?;
+            let seen = lazy.look_up((n + dn * d).normalize()).1.filter(KerrLookup::crossings_are_good)?;
             let cell = (seen.place.branch, seen.place.column, seen.place.row);
             Some((cell, seen.place.step(dn), seen.sky(), seen.crossings().collect::<Vec<_>>()))
         };

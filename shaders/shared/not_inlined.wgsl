@@ -1,5 +1,5 @@
-// Words of uniforms that by themselves decide an `if`, a `switch` or a loop's end go through `deciding`. Knows no
-// other file; used by kernels, which set `zero` first.
+// Words of uniforms that by themselves decide an `if`, a `switch` or a loop's end go through `not_inlined`. Knows no
+// other file; used by kernels, which set `unknown_zero` first.
 //
 // Why: Mesa's lavapipe (22.3: lvp_inline_uniforms.c, update_inline_shader_state in lvp_execute.c) looks, in kernels of
 // more than 100 values, for branches whose condition is made of nothing but constants and 32-bit words of uniform
@@ -12,9 +12,10 @@
 
 // Set this to the z of workgroup_id or global_invocation_id at the entry point: 0, as every dispatch is one workgroup
 // deep, but no compiler knows; and the same for all threads, so that a GPU's branch stays uniform.
-var<private> zero: u32;
+var<private> unknown_zero: u32;
 
-fn deciding(word: u32) -> u32 {
-    // `zero` comes first: lavapipe notes the words that it meets in a condition before it meets what is not one.
-    return zero + word;
+fn not_inlined(word: u32) -> u32 {
+    // `unknown_zero` comes first: lavapipe notes the words that it meets in a condition before it meets what is not
+    // one.
+    return unknown_zero + word;
 }

@@ -7,9 +7,9 @@ use std::f64::consts::LN_2;
 
 /// A look direction in a table, to be interpolated there.
 #[derive(Clone, Debug)]
-pub struct Seen<'a> {
+pub struct KerrLookup<'a> {
     grid: &'a Grid,
-    pub place: Place,
+    pub place: GridPosition,
     flags: u32,
     /// The four nodes about the cell in each of the four rows about it, one after the other.
     rows: [&'a [Vec4]; 4],
@@ -39,29 +39,33 @@ pub struct Crossing {
 
 /// A small change of a place in a table.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct GridStep {
     column: f64,
     row: f64,
     side: f64,
 }
 
-impl Place {
+impl GridPosition {
     /// The change of column, row and S for a small change `dn` of the look direction (components).
-    pub fn step(&self, dn: DVec3) -> Step {
-        Step { column: self.column_gradient.dot(dn), row: self.row_gradient.dot(dn), side: self.side_gradient.dot(dn) }
+    pub fn step(&self, dn: DVec3) -> GridStep {
+        GridStep {
+            column: self.column_gradient.dot(dn),
+            row: self.row_gradient.dot(dn),
+            side: self.side_gradient.dot(dn),
+        }
     }
 }
 
 impl Sky {
-    /// The change of the direction for a small `step` (`Place::step`).
-    pub fn change(&self, step: &Step) -> DVec3 {
+    /// The change of the direction for a small `step` (`GridPosition::step`).
+    pub fn change(&self, step: &GridStep) -> DVec3 {
         self.by_column * step.column + self.by_row * step.row
     }
 }
 
 impl Crossing {
-    /// The change of the image for a small `step` (`Place::step`).
-    pub fn change(&self, step: &Step) -> PlaneImage {
+    /// The change of the image for a small `step` (`GridPosition::step`).
+    pub fn change(&self, step: &GridStep) -> PlaneImage {
         let sum = |f: fn(&PlaneImage) -> f64| {
             step.column * f(&self.by_column) + step.row * f(&self.by_row) + step.side * f(&self.by_side)
         };
@@ -114,16 +118,16 @@ impl Grid {
     }
 
     /// The image at `place`, from the cell's flags and rows of packed nodes. `None`: the ray is to be integrated.
-    pub fn see<'a>(&'a self, place: Place, flags: u32, rows: [&'a [Vec4]; 4]) -> Option<Seen<'a>> {
+    pub fn look_up_at<'a>(&'a self, place: GridPosition, flags: u32, rows: [&'a [Vec4]; 4]) -> Option<KerrLookup<'a>> {
         if flags & DIRECT != 0 || rows.iter().any(|row| row.len() < 4 * self.quads()) {
             return None;
         }
         let (columns, along_rows) = (Weights::new(place.column_fraction), Weights::new(place.row_fraction));
-        Some(Seen { grid: self, place, flags, rows, columns, along_rows })
+        Some(KerrLookup { grid: self, place, flags, rows, columns, along_rows })
     }
 }
 
-impl Seen<'_> {
+impl KerrLookup<'_> {
     #[inline]
     fn interpolate(&self, quad: usize) -> Interpolated {
         let quads = self.grid.quads();
@@ -158,7 +162,7 @@ impl Seen<'_> {
     }
 
     /// Distance to the critical curve, in the unit that `steps` go at right angles.
-    pub fn curve_distance(&self, steps: &[Step; 2]) -> f64 {
+    pub fn curve_distance(&self, steps: &[GridStep; 2]) -> f64 {
         let rows = steps[0].row.hypot(steps[1].row).max(f64::MIN_POSITIVE);
         // Beyond 90 degrees from the curve d ln |t| rises again: its antipode is not near it.
         let t = self.place.t.abs().max(1.0);

@@ -17,7 +17,7 @@ fn between(place: vec2<f32>) -> vec3<f32> {
 }
 
 @compute @workgroup_size(8, 16)
-fn give_back(@builtin(global_invocation_id) id: vec3<u32>) {
+fn upsample(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= level.fine) {
         return;
     }
@@ -27,9 +27,9 @@ fn give_back(@builtin(global_invocation_id) id: vec3<u32>) {
     let own = vec2<f32>(id.xy / 2u);
     let near = own + half_ / 3.0;
     let far = own - half_;
-    let returned = (225.0 * between(near)
+    let upsampled = (225.0 * between(near)
         + 15.0 * (between(vec2<f32>(far.x, near.y)) + between(vec2<f32>(near.x, far.y)))
         + between(far)) / 256.0;
-    let light = level.own * textureLoad(finer, id.xy, 0).xyz + level.above * returned;
+    let light = level.own * textureLoad(finer, id.xy, 0).xyz + level.above * upsampled;
     textureStore(spread, id.xy, rounded_to_f16(vec4<f32>(light, 1.0)));
 }

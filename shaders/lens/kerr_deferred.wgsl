@@ -15,21 +15,21 @@
 
 // u, azimuth and delay of the crossings of the plane by order: of the pixel, of the next to the right (to the left
 // where a face ends), of the next below. u is 0 where there is none.
-var<private> rest_crossings: array<vec3<f32>, 3u * CROSSINGS_KEPT>;
-var<private> rest_ray: u32;
-var<private> rest_order: u32;
+var<private> deferred_crossings: array<vec3<f32>, 3u * CROSSINGS_KEPT>;
+var<private> deferred_ray: u32;
+var<private> deferred_order: u32;
 // The number of orders up to the last crossing of the pixel's own ray, which is traced last.
-var<private> rest_count: u32;
+var<private> deferred_count: u32;
 // The step from the pixel to its second ray: 1 or -1 pixels.
-var<private> rest_step: f32;
+var<private> deferred_step: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     var azimuth = 0.0;
     if PATTERN {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
-    rest_count = min(crossing.order + 1u, CROSSINGS_KEPT);
-    rest_crossings[rest_ray * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] =
+    deferred_count = min(crossing.order + 1u, CROSSINGS_KEPT);
+    deferred_crossings[deferred_ray * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] =
         vec3<f32>(crossing.u, azimuth, crossing.delay);
 }
 
@@ -46,26 +46,26 @@ fn ray_record(id: vec2<u32>) -> Record {
     let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u,
         frame.opaque_u);
     for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u) {
-        rest_crossings[i] = vec3<f32>(0.0);
+        deferred_crossings[i] = vec3<f32>(0.0);
     }
     let x = pixel_place(id).x;
-    rest_step = select(-1.0, 1.0, same_face(x, x + 1.0));
+    deferred_step = select(-1.0, 1.0, same_face(x, x + 1.0));
     // The pixel itself comes last.
     for (var k = select(1u, 3u, FOOTPRINTS); k > 0u; k -= 1u) {
-        rest_ray = k - 1u;
-        rest_count = 0u;
-        let place = pixel_place(id) + vec2<f32>(f32(rest_ray & 1u) * rest_step, f32(rest_ray >> 1u));
-        let begin = begin_local(local_look(camera_look(place.x, place.y)).n);
+        deferred_ray = k - 1u;
+        deferred_count = 0u;
+        let place = pixel_place(id) + vec2<f32>(f32(deferred_ray & 1u) * deferred_step, f32(deferred_ray >> 1u));
+        let begin = begin_local(aberrate(look_direction(place.x, place.y)).n);
         let traced = trace(begin.c, begin.state, settings);
         record.fate = traced.fate;
         record.steps = traced.steps;
-        if rest_ray == 0u && traced.fate == FATE_ESCAPED {
+        if deferred_ray == 0u && traced.fate == FATE_ESCAPED {
             let end = escape(begin.c, traced);
             record.sky = chart_direction(end.n, end.drag);
-            record.sky_redshift = looked.seen.frequency_ratio / record.energy;
+            record.sky_redshift = lookup.seen.frequency_ratio / record.energy;
         }
     }
-    rest_order = 0u;
+    deferred_order = 0u;
     atomicAdd(&deferred.steps, record.steps);
     return record;
 }
@@ -73,38 +73,38 @@ fn ray_record(id: vec2<u32>) -> Record {
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
     while more_crossings() && crossing.u <= 0.0 {
-        let u = rest_crossings[rest_order].x;
+        let u = deferred_crossings[deferred_order].x;
         if u > 0.0 {
             // The tables' slope is nearly right all the same.
-            let at = interpolate(select(rest_order / 4u, rest_order, PATTERN));
-            let change = looked_up_change(at, select(rest_order % 4u, 0u, PATTERN));
-            looked.on_edge = looked.on_edge || near_disk_edge(u, change);
+            let at = interpolate(select(deferred_order / 4u, deferred_order, PATTERN));
+            let change = looked_up_change(at, select(deferred_order % 4u, 0u, PATTERN));
+            lookup.on_edge = lookup.on_edge || near_disk_edge(u, change);
         }
         if u >= frame.plane_u.x && u <= frame.plane_u.y {
             crossing.u = u;
-            crossing.order = rest_order;
+            crossing.order = deferred_order;
         }
-        rest_order += 1u;
+        deferred_order += 1u;
     }
     if crossing.u > 0.0 {
-        crossing.g = looked.seen.frequency_ratio * redshift_of(begin_local(looked.seen.n).c, crossing.u);
+        crossing.g = lookup.seen.frequency_ratio * redshift_of(begin_local(lookup.seen.n).c, crossing.u);
         if PATTERN {
-            let at = rest_crossings[crossing.order];
-            crossing.place = Place(-log(at.x), at.y, at.z);
-            crossing.dx = rest_change(at, rest_crossings[CROSSINGS_KEPT + crossing.order], rest_step);
-            crossing.dy = rest_change(at, rest_crossings[2u * CROSSINGS_KEPT + crossing.order], 1.0);
+            let at = deferred_crossings[crossing.order];
+            crossing.place = EmissionPoint(-log(at.x), at.y, at.z);
+            crossing.dx = deferred_change(at, deferred_crossings[CROSSINGS_KEPT + crossing.order], deferred_step);
+            crossing.dy = deferred_change(at, deferred_crossings[2u * CROSSINGS_KEPT + crossing.order], 1.0);
         }
     }
     return crossing;
 }
 
 fn more_crossings() -> bool {
-    return rest_order < rest_count;
+    return deferred_order < deferred_count;
 }
 
-fn rest_change(here: vec3<f32>, next: vec3<f32>, step: f32) -> Place {
+fn deferred_change(here: vec3<f32>, next: vec3<f32>, step: f32) -> EmissionPoint {
     if next.x <= 0.0 {
-        return Place(1e30, 0.0, 0.0);
+        return EmissionPoint(1e30, 0.0, 0.0);
     }
-    return Place(-step * log(next.x / here.x), step * wrap_angle(next.y - here.y), step * (next.z - here.z));
+    return EmissionPoint(-step * log(next.x / here.x), step * wrap_angle(next.y - here.y), step * (next.z - here.z));
 }
