@@ -1224,7 +1224,7 @@ typedef struct BhrFrameStats {
     uint64_t frame_index;  /**< Counts the finished frames of a context from 1: images, jobs and windows. */
     uint64_t rays;         /**< Pixels times samples. */
     uint64_t steps;        /**< Integration steps of all rays; rays that were looked up take none. */
-    uint64_t cpu_ns;       /**< From the call's beginning to its end; for a job, from its order until it was done. */
+    uint64_t cpu_ns;       /**< From the call's beginning to its end; for a job, from its request until it was done. */
     uint64_t gpu_ns;       /**< Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
     uint64_t readback_ns;  /**< Time to copy pixels into the host's memory, without the wait for the GPU. */
     uint64_t device_bytes; /**< Device memory that the context holds. */
