@@ -6,7 +6,7 @@ use bhr::physics::disk_flux::{page_thorne, page_thorne_maximum};
 use bhr::physics::geodesic::{Constants, State};
 use bhr::physics::observer::{LocalFrame, Observer};
 use bhr::physics::orbit::{circular_orbit, horizon_outer, isco, photon_orbit, redshift, zamo_omega};
-use bhr::physics::shadow::{CRITICAL_IMPACT_PARAMETER, bardeen_curve, shadow, spherical_photon_orbit};
+use bhr::physics::shadow::{CRITICAL_IMPACT_PARAMETER, shadow};
 use bhr::physics::trace::{Settings, trace};
 use glam::DVec3;
 use serde_json::Value;
@@ -135,6 +135,53 @@ fn redshifts_and_orbits() {
     ] {
         close(found, number(orbits, key), 1e-14, key);
     }
+}
+
+/// A point of the critical curve on the sky of an observer at infinity.
+#[derive(Clone, Copy, Debug)]
+struct CriticalPoint {
+    /// Sky coordinates, M: alpha right, beta up (projected spin axis).
+    alpha: f64,
+    beta: f64,
+}
+
+/// lambda and eta of the spherical photon orbit of radius `r`, a != 0. (Bardeen 1973.)
+fn spherical_photon_orbit(a: f64, r: f64) -> (f64, f64) {
+    let lambda = -(r * r * (r - 3.0) + a * a * (r + 1.0)) / (a * (r - 1.0));
+    let eta = r * r * r * (4.0 * a * a - r * (r - 3.0).powi(2)) / (a * (r - 1.0)).powi(2);
+    (lambda, eta)
+}
+
+/// Upper half (beta >= 0) of Bardeen's curve at inclination `inclination` from the spin axis, `count` points; a != 0.
+/// The lower half mirrors it. beta^2 = eta + a^2 cos^2 i - lambda^2 cot^2 i.
+fn bardeen_curve(a: f64, inclination: f64, count: usize) -> Vec<CriticalPoint> {
+    let (sin, cos) = inclination.sin_cos();
+    let beta2 = |r: f64| {
+        let (lambda, eta) = spherical_photon_orbit(a, r);
+        eta + (a * cos).powi(2) - (lambda * cos / sin).powi(2)
+    };
+    // beta^2 > 0 between two radii, which lie about the polar photon orbit (lambda = 0).
+    let polar = bisect(|r| spherical_photon_orbit(a, r).0 * a, horizon_outer(a) + 1e-9, 4.0);
+    let low = bisect(beta2, photon_orbit(a.abs()) * (1.0 - 1e-12), polar);
+    let high = bisect(beta2, photon_orbit(-a.abs()) * (1.0 + 1e-12), polar);
+    (0..count)
+        .map(|i| {
+            let x = (std::f64::consts::PI * i as f64 / (count - 1).max(1) as f64).cos();
+            let r_photon = 0.5 * (low + high) - 0.5 * (high - low) * x;
+            let (lambda, _) = spherical_photon_orbit(a, r_photon);
+            CriticalPoint { alpha: -lambda / sin, beta: beta2(r_photon).max(0.0).sqrt() }
+        })
+        .collect()
+}
+
+/// The zero of `f` between `x0` and `x1`, where it has opposite signs.
+fn bisect(f: impl Fn(f64) -> f64, mut x0: f64, mut x1: f64) -> f64 {
+    let sign = f(x1) > 0.0;
+    for _ in 0..200 {
+        let middle = 0.5 * (x0 + x1);
+        if (f(middle) > 0.0) == sign { x1 = middle } else { x0 = middle }
+    }
+    0.5 * (x0 + x1)
 }
 
 #[test]

@@ -28,6 +28,18 @@ const ROOMS: [&[&str]; 15] = [
 /// The same within `gpu`.
 const GPU_ROOMS: [&[&str]; 6] = [&["device"], &["kernel"], &["lens"], &["frame", "window"], &["gl_tracer"], &["mod"]];
 
+/// The folders of shaders/, in the same way. The fragment `constants`, which is printed from Rust, lies below them all.
+const SHADER_ROOMS: [&[&str]; 8] = [
+    &["shared"],
+    &["geodesic"],
+    &["camera"],
+    &["records"],
+    &["bloom", "emit", "film", "sky", "window"],
+    &["lens", "traced"],
+    &["shade"],
+    &["refine"],
+];
+
 const LONGEST_FILE: usize = 600;
 const WIDEST_LINE: usize = 120;
 const LARGEST_CIRCLE: usize = 3;
@@ -53,7 +65,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// The modules of the crate and their text, without comments and tests.
 fn modules() -> BTreeMap<Module, String> {
     let all = modules_with_tests();
-    let only_tests = |module: &Module| {
+    let declared_for_tests = |module: &[String]| {
         let Some((name, parent)) = module.split_last() else { return false };
         let declared = all.get(parent).is_some_and(|code| {
             let code = code.replace("#[cfg(test)]\n", "#[cfg(test)] ").replace("pub ", "");
@@ -61,6 +73,8 @@ fn modules() -> BTreeMap<Module, String> {
         });
         declared || name == "memory_absent"
     };
+    // Modules within one that only tests have are theirs as well.
+    let only_tests = |module: &Module| (1..=module.len()).any(|depth| declared_for_tests(&module[..depth]));
     all.iter().filter(|(module, _)| !only_tests(module)).map(|(m, code)| (m.clone(), code.clone())).collect()
 }
 
@@ -198,6 +212,29 @@ fn rooms_import_downward() {
         }
     }
     assert!(upward.is_empty(), "{upward:#?}");
+}
+
+#[test]
+fn shaders_import_downward() {
+    let mut found = Vec::new();
+    let shaders = root().join("shaders");
+    files(&shaders, &mut found);
+    let (mut upward, mut folders) = (Vec::new(), BTreeSet::new());
+    for path in found {
+        let name = path.strip_prefix(&shaders).unwrap().with_extension("").to_str().unwrap().to_owned();
+        let room = |fragment: &str| fragment.split('/').next().unwrap().to_owned();
+        folders.insert(room(&name));
+        let text = fs::read_to_string(&path).unwrap();
+        for import in text.lines().filter_map(|line| line.strip_prefix("#import ")).filter(|i| *i != "constants") {
+            let (from, to) = (room(&name), room(import));
+            if from != to && height(&SHADER_ROOMS, &to) >= height(&SHADER_ROOMS, &from) {
+                upward.push(format!("{name} -> {import}"));
+            }
+        }
+    }
+    assert!(upward.is_empty(), "{upward:#?}");
+    let listed = SHADER_ROOMS.iter().flat_map(|line| line.iter().map(ToString::to_string)).collect();
+    assert_eq!(folders, listed);
 }
 
 #[test]

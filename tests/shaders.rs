@@ -172,7 +172,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("lens/schwarzschild_ends", "find_ends", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("lens/schwarzschild_record", "column_at", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("lens/schwarzschild_record", "next_crossing", "loop", CROSSINGS),
-    ("records/each_deferred", "each_deferred", "for (var i = id.x; i < count; i += groups.x * DEFERRED_GROUP)", LISTED),
+    ("lens/each_deferred", "each_deferred", "for (var i = id.x; i < count; i += groups.x * DEFERRED_GROUP)", LISTED),
     ("records/export", "take_record", "for (var k = 0u; k < EXPORT_CROSSINGS; k += 1u)", CONSTANT),
     ("refine/integrated", "integrated_record", "for (var i = 0u; i < CROSSINGS_KEPT; i += 1u)", CONSTANT),
     ("refine/integrated", "next_integrated", "while more_integrated() && crossing.u <= 0.0", CROSSINGS),

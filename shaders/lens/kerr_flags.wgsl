@@ -14,7 +14,10 @@
 @group(0) @binding(5) var flags_out: texture_storage_2d<r32uint, write>;
 
 // Errors that a cell may have beside KERR_TOLERANCE, which is that of the sky, rad of look direction: of radii of
-// crossings, relative to 1 + conditioning; of azimuths, rad, and delays, relative to the orbital time.
+// crossings, relative to 1 + conditioning; of azimuths, rad, and delays, relative to the orbital time. Both are twice
+// what f64 allows: the fourth differences hold the rounding of f32 as well. Measured at spin 0.9 from r = 30, 320 x 180
+// pixels: with f64's numbers 825 and 714 pixels are integrated, instead of 672, and the worst errors of those looked up
+// go from 1.5e-6 to 8e-7 (radii) and from 2.4e-6 to 2.0e-6 (azimuths); their medians, 8e-8 and 5e-8, stay.
 const KERR_RADIUS_TOLERANCE: f32 = 2e-6;
 const KERR_PATTERN_TOLERANCE: f32 = 2e-5;
 

@@ -18,6 +18,9 @@
 @group(0) @binding(3) var sky_out: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(4) var crossings_out: texture_storage_2d_array<rgba32float, write>;
 
+// In sigma. f64 takes 0.25 and finds each crossing by Newton's method with the integrator; here the step's dense output
+// finds it, whose error goes with the sixth power of the step. Measured as in lens/kerr_flags.wgsl: with 0.25, radii
+// are wrong by 1.3e-7 instead of 8e-8 in the median, and directions by 3.5e-6 instead of 1.5e-6 at worst.
 const KERR_STEP: f32 = 0.2;
 // The most steps of a ray of the table: 2^-10 from the curve a ray ends within sigma 20.
 const KERR_STEPS: u32 = 400u;

@@ -180,7 +180,7 @@ fn edges_of_pixel(through: f32) -> u32 {
     // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
     let rows = length(vec2<f32>(lookup.dx.y, lookup.dy.y));
     let curve = lookup.beyond * f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
-    return edges_looked_up(lookup.on_edge, curve, lookup.cell.y < lens.outer_rows, through);
+    return looked_up_edge(lookup.on_edge, curve, lookup.cell.y < lens.outer_rows, through);
 }
 
 // The next crossing of the disk in the tables.

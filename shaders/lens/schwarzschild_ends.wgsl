@@ -8,7 +8,8 @@
 // x: phi, y: sigma. A row for each branch.
 @group(0) @binding(2) var ends_out: texture_storage_2d<rgba32float, write>;
 
-// Steps in sigma, at 1/r of 1/2 and less, and how many at most: the nearest to critical end at 20.
+// Steps in sigma (as `Resolution::SINGLE` has them), at 1/r of 1/2 and less, and how many at most: the nearest to
+// critical end at 20.
 const END_STEP: f32 = 0.2;
 const END_STEPS: u32 = 400u;
 

@@ -246,7 +246,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
 fn edges_of_pixel(through: f32) -> u32 {
     // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
     let curve = lookup.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(lookup.change), 1e-30);
-    return edges_looked_up(lookup.on_edge, curve, lookup.branch == 0u, through);
+    return looked_up_edge(lookup.on_edge, curve, lookup.branch == 0u, through);
 }
 
 // Gives the crossings once more from the first.

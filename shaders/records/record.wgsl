@@ -93,7 +93,7 @@ fn beyond_right_angle(t: f32) -> f32 {
 }
 
 // EDGE_* of a looked-up pixel that lies `curve` pixels from the critical curve; the rings lie outside it.
-fn edges_looked_up(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
+fn looked_up_edge(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
     let near_ring = PLANE && outside && through > 0.0 && curve < RINGS_REACH;
     let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);
     return select(kind, EDGE_CURVE, through > 0.0 && curve < CURVE_REACH);

@@ -1,4 +1,4 @@
-// Kernel: shades `pass_.refined` samples of each pixel of a list of refine/edges.wgsl, and hands their mean to
+// Kernel: shades `pass_.refined` samples of each pixel of a list of records/edges.wgsl, and hands their mean to
 // take_light in place of the pixel's light. Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are.
 // Knows no way to make records.
 
@@ -6,7 +6,7 @@
 #import camera/observer
 #import camera/projection
 #import records/record
-#import refine/edges
+#import records/edges
 #import shade/shade
 #import shared/not_inlined
 #import shared/frame
@@ -86,7 +86,7 @@ fn refine_sample(entry: u32, count: u32) {
     workgroupBarrier();
 }
 
-// The list of refine/edges.wgsl that this dispatch goes over.
+// The list of records/edges.wgsl that this dispatch goes over.
 fn list_kind() -> u32 {
     return select(1u, 0u, whole_plane);
 }

@@ -3,7 +3,7 @@
 
 #import camera/projection
 #import records/record
-#import refine/edges
+#import records/edges
 #import shade/shade
 #import shared/pass
 #requires fn next_crossing() -> Crossing

@@ -20,10 +20,6 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::ops::Range;
 
-/// All but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast as so many rays are
-/// traced.
-const KERR_RESOLUTION: kerr::Resolution = kerr::Resolution { chi_nodes: 256, nodes_per_octave: [16; 2] };
-
 /// The tables of the last frame that looked rays up in some.
 #[derive(Default)]
 pub struct LensCache {
@@ -107,7 +103,7 @@ fn by_rows<T: Copy + Default + Send, I: Iterator<Item = T>>(
 }
 
 fn build_kerr(frame: &LocalFrame, wanted: Crossings) -> Result<Option<KerrLens>> {
-    let Some(grid) = Grid::new(frame, KERR_RESOLUTION, wanted) else { return Ok(None) };
+    let Some(grid) = Grid::new(frame, kerr::Resolution::COARSE, wanted) else { return Ok(None) };
     let tables = |branch| {
         let rows = 0..grid.rows(branch);
         let nodes = by_rows(rows.clone(), grid.columns() * grid.channels(), |row| grid.node_row(branch, row))?;

@@ -7,7 +7,7 @@ mod lens;
 mod rays;
 mod record;
 mod refine;
-mod shade;
+pub(crate) mod shade;
 
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};

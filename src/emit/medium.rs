@@ -58,7 +58,7 @@ pub(crate) const PIECE: f64 = 0.15;
 
 /// The number of pieces for a part between two places. Those farther out than a hundred times the nearer place count
 /// as there: infinity is as near as that.
-fn pieces(u: f64, v: f64) -> u32 {
+pub(crate) fn pieces(u: f64, v: f64) -> u32 {
     let least = 0.01 * u.max(v).max(f64::MIN_POSITIVE);
     let change = (u.max(least) / v.max(least)).ln().abs();
     (change / PIECE).ceil().clamp(1.0, f64::from(MOST_PIECES)) as u32

@@ -4,7 +4,7 @@
 //! light was made.
 
 pub mod bloom;
-mod false_colour;
+pub(crate) mod false_colour;
 pub(crate) mod tone_map;
 
 use crate::image::PixelFormat;
@@ -71,7 +71,7 @@ impl FilmParams {
         }
     }
 
-    fn view(&self) -> View {
+    pub(crate) fn view(&self) -> View {
         match self.false_colour {
             1 => View::Redshift,
             2 => View::Order,
@@ -193,7 +193,7 @@ fn alpha(params: &FilmParams, alpha: f32) -> f32 {
 
 /// `v` within [0, `most`]; NaN, which no tracer should give, becomes 0: no pixel spreads it.
 #[inline(always)]
-fn limited(v: f32, most: f32) -> f32 {
+pub(crate) fn limited(v: f32, most: f32) -> f32 {
     if v.is_nan() { 0.0 } else { v.max(0.0).min(most) }
 }
 

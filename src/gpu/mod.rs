@@ -9,6 +9,8 @@ mod kernel;
 #[cfg(test)]
 mod layouts;
 mod lens;
+#[cfg(test)]
+mod twins;
 mod window;
 
 pub use device::adapter::{Adapter, Search, adapters, check_built, forget_drivers};

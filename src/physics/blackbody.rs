@@ -129,7 +129,7 @@ impl BlackbodyTable {
     }
 
     /// rgb / Y of a blackbody, not clamped, and ln(Y / T). MIN_TEMPERATURE <= `temperature` <= MAX_TEMPERATURE.
-    fn blackbody_lookup(&self, temperature: f64) -> [f64; 4] {
+    pub(crate) fn blackbody_lookup(&self, temperature: f64) -> [f64; 4] {
         let scale = (BLACKBODY_SIZE - 1) as f64 * (MIN_TEMPERATURE + COORDINATE_TEMPERATURE);
         let position = scale / (temperature + COORDINATE_TEMPERATURE);
         let index = (position as usize).min(BLACKBODY_SIZE - 2);

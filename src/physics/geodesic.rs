@@ -164,7 +164,7 @@ impl Constants {
     }
 
     /// The closed-form part of the time integral up to (u, u').
-    pub(super) fn delay_boundary(&self, u: f64, du: f64) -> f64 {
+    pub(crate) fn delay_boundary(&self, u: f64, du: f64) -> f64 {
         if self.clock == Clock::Rain {
             return 2.0 * du * u.ln() - du / u - 2.0 * (2.0 / u).sqrt() + 4.0 * (2.0 * u).sqrt().ln_1p();
         }

@@ -1,5 +1,5 @@
 //! The Kerr metric in Boyer-Lindquist coordinates (t, r, th, ph), signature - + + +, its inverse, its Christoffel
-//! symbols, and the conversions between Boyer-Lindquist and chart coordinates. Knows nothing of geodesics.
+//! symbols, and the conversion between Boyer-Lindquist and chart coordinates. Knows nothing of geodesics.
 //!
 //! Kerr 1963; Boyer & Lindquist 1967; Bardeen, Press & Teukolsky 1972, eq. 2.1 - 2.4. Schwarzschild is a = 0.
 
@@ -51,20 +51,6 @@ impl Kerr {
         ]
     }
 
-    /// g^ab. Infinite on the horizon and, in g^phph, on the axis.
-    pub fn inverse(&self, r: f64, theta: f64) -> Tensor2 {
-        let p = self.parts(r, theta);
-        let sd = p.sigma * p.delta;
-        let drag = -2.0 * self.a * r / sd;
-        let s2 = p.sin * p.sin;
-        [
-            [-p.big_a / sd, 0.0, 0.0, drag],
-            [0.0, p.delta / p.sigma, 0.0, 0.0],
-            [0.0, 0.0, 1.0 / p.sigma, 0.0],
-            [drag, 0.0, 0.0, (p.delta - self.a * self.a * s2) / (sd * s2)],
-        ]
-    }
-
     /// Gamma^a_bc in closed form (Mueller & Grave 2010, Catalogue of Spacetimes, Kerr in Boyer-Lindquist coordinates;
     /// checked against derivatives of `metric`). Infinite on the horizon and on the axis.
     pub fn christoffel(&self, r: f64, theta: f64) -> Tensor3 {
@@ -102,30 +88,6 @@ impl Kerr {
         set(ph, th, ph, c / s * (1.0 + 2.0 * a2 * r * s2 / sg2));
         gamma
     }
-
-    /// E, L_z and Carter's Q of a four-momentum p^a (Carter 1968): E = -p_t, L_z = p_ph,
-    /// Q = p_th^2 + cos^2 th (a^2 (m^2 - E^2) + L_z^2 / sin^2 th) with m^2 = -p_a p^a.
-    pub fn conserved(&self, r: f64, theta: f64, momentum: [f64; 4]) -> Conserved {
-        let g = self.metric(r, theta);
-        let lower: [f64; 4] = std::array::from_fn(|i| (0..4).map(|j| g[i][j] * momentum[j]).sum());
-        let mass2 = -(0..4).map(|i| lower[i] * momentum[i]).sum::<f64>();
-        let (sin, cos) = theta.sin_cos();
-        let (energy, angular_momentum) = (-lower[0], lower[3]);
-        let polar = if angular_momentum == 0.0 { 0.0 } else { (angular_momentum / sin).powi(2) };
-        let carter = lower[2].powi(2) + cos * cos * (self.a * self.a * (mass2 - energy * energy) + polar);
-        Conserved { energy, angular_momentum, carter }
-    }
-}
-
-/// The constants of a geodesic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conserved {
-    /// E = -p_t.
-    pub energy: f64,
-    /// L_z = p_ph.
-    pub angular_momentum: f64,
-    /// Q.
-    pub carter: f64,
 }
 
 /// (r, th, ph) of a chart position; ph in (-pi, pi], 0 on the axis.
@@ -135,7 +97,8 @@ pub fn boyer_lindquist(position: DVec3) -> (f64, f64, f64) {
     (rho.hypot(position.z), rho.atan2(position.z), azimuth)
 }
 
-/// The chart position of (r, th, ph).
+/// The chart position of (r, th, ph); for tests.
+#[cfg(test)]
 pub fn chart(r: f64, theta: f64, phi: f64) -> DVec3 {
     let (s, c) = theta.sin_cos();
     DVec3::new(r * s * phi.cos(), r * s * phi.sin(), r * c)
@@ -144,6 +107,22 @@ pub fn chart(r: f64, theta: f64, phi: f64) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    impl Kerr {
+        /// g^ab. Infinite on the horizon and, in g^phph, on the axis.
+        pub fn inverse(&self, r: f64, theta: f64) -> Tensor2 {
+            let p = self.parts(r, theta);
+            let sd = p.sigma * p.delta;
+            let drag = -2.0 * self.a * r / sd;
+            let s2 = p.sin * p.sin;
+            [
+                [-p.big_a / sd, 0.0, 0.0, drag],
+                [0.0, p.delta / p.sigma, 0.0, 0.0],
+                [0.0, 0.0, 1.0 / p.sigma, 0.0],
+                [drag, 0.0, 0.0, (p.delta - self.a * self.a * s2) / (sd * s2)],
+            ]
+        }
+    }
 
     const PLACES: [(f64, f64, f64); 5] =
         [(0.0, 3.0, 1.0), (0.5, 2.5, 0.4), (0.9, 10.0, 2.5), (-0.998, 1.5, 1.5), (0.7, 0.9, 0.8)];

@@ -198,7 +198,7 @@ const ROUNDING: f64 = 1e-15;
 /// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method
 /// with the integrator itself, so that dense output only has to be good enough to begin with. Corrections of less than
 /// `slack` in sigma are left out.
-pub(super) fn land(
+pub(crate) fn land(
     c: &Constants,
     s: &Settings,
     from: &State,
@@ -284,7 +284,7 @@ pub fn trace_visited(
 }
 
 /// Tau from the end of a captured ray on to the horizon; spin 0, where u and N are regular there.
-fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
+pub(crate) fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
     if c.a != 0.0 || settings.capture_u < 1.0 / c.r_plus {
         return 0.0;
     }
@@ -294,7 +294,7 @@ fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
 }
 
 /// The crossing of the plane within a step, and its tau from the step's begin.
-fn find_crossing(
+pub(crate) fn find_crossing(
     c: &Constants,
     observer: &State,
     s: &Settings,

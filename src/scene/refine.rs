@@ -104,7 +104,7 @@ pub fn curve_place(index: u32, across: [f64; 2]) -> [f64; 2] {
 }
 
 /// The level of which `share` is `share_below`; `slope` is not 0.
-fn level_of_share(share: f64, slope: [f64; 2]) -> f64 {
+pub(crate) fn level_of_share(share: f64, slope: [f64; 2]) -> f64 {
     let [x, y] = slope.map(f64::abs);
     let (most, least) = (x.max(y), x.min(y));
     let rest = share.min(1.0 - share);
@@ -115,7 +115,7 @@ fn level_of_share(share: f64, slope: [f64; 2]) -> f64 {
 
 /// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or
 /// two sides.
-fn share_below(level: f64, slope: [f64; 2]) -> f64 {
+pub(crate) fn share_below(level: f64, slope: [f64; 2]) -> f64 {
     let [x, y] = slope.map(f64::abs);
     let (most, least) = (x.max(y).max(1e-20), x.min(y));
     if level.abs() <= 0.5 * (most - least) {

@@ -152,7 +152,7 @@ pub fn shifted_map_light(rgb: [f64; 3], g_colour: f64, g_beaming: f64) -> [f64; 
 }
 
 /// Temperature, K, of the blackbody of this ln(blue / red).
-fn colour_temperature(ln_ratio: f64) -> f64 {
+pub(crate) fn colour_temperature(ln_ratio: f64) -> f64 {
     let x = ln_ratio.clamp(COOLEST_RATIO, HOTTEST_RATIO);
     1000.0 / INVERSE_TEMPERATURE.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
 }

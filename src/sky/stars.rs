@@ -18,7 +18,7 @@ pub(crate) const MAX_STAR_LIGHT: f64 = 1e9;
 
 /// Quadratic B-spline, support [-1.5, 1.5]: its values at t + integers sum to 1, so a star's light does not depend on
 /// where between the pixels it lies.
-fn footprint(t: f64) -> f64 {
+pub(crate) fn footprint(t: f64) -> f64 {
     let t = t.abs();
     if t < 0.5 {
         0.75 - t * t
@@ -118,7 +118,7 @@ impl StarIndex {
 
 /// The share that is left, at this footprint, of the stars that the next level leaves out: they go over into the mean
 /// sky as the footprint grows through the second half of the level's margin.
-fn fade(level: u32, radius: f64) -> f64 {
+pub(crate) fn fade(level: u32, radius: f64) -> f64 {
     1.0 - smoothstep(0.5 * margin(level), margin(level), radius)
 }
 

@@ -1,5 +1,5 @@
 //! The second look at pixels that edges run through: their list on the device, and the kernels that go over it
-//! (refine/edges.wgsl, refine/refine.wgsl). Knows kernels and their groups, no records and no light.
+//! (records/edges.wgsl, refine/refine.wgsl). Knows kernels and their groups, no records and no light.
 
 use super::tiles::MAX_BATCH;
 use crate::error::{Error, Result};
@@ -10,7 +10,7 @@ use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{FilmVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
 use wgpu::BufferUsages as Usage;
 
-/// `Edges` of refine/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
+/// `Edges` of records/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
 
 /// Workgroups that share the list: as `DEFERRED_GROUPS` of stages.rs.

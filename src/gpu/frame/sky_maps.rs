@@ -99,12 +99,12 @@ fn upload(device: &Device, map: &SkyMap) -> Result<MapTexture> {
 }
 
 /// The height of the texture of a map whose finest level has this size.
-fn texture_height([width, height]: [u32; 2]) -> u32 {
+pub(in crate::gpu) fn texture_height([width, height]: [u32; 2]) -> u32 {
     if width > 1 { height + (height / 2).max(1) } else { height }
 }
 
 /// Where level `number` begins. Each is at most half as wide as the one before, so that it ends before the next begins.
-fn level_place([width, height]: [u32; 2], number: u32) -> [u32; 2] {
+pub(in crate::gpu) fn level_place([width, height]: [u32; 2], number: u32) -> [u32; 2] {
     if number == 0 { [0, 0] } else { [width - (width >> (number - 1)), height] }
 }
 

@@ -2,11 +2,17 @@
 
 use crate::physics::lens::critical::CRITICAL_NODES;
 
-/// Nodes of a spin-0 lens: per octave of the distance from the critical direction; octaves of them; and in a row.
+/// Nodes of a spin-0 lens: per octave of the distance from the critical direction; octaves of them; and in a row. The
+/// CPU tracer needs a quarter of them (`Resolution::SINGLE`), as its nodes also hold derivatives by the direction, and
+/// what is left of u without the critical ray. Measured from r = 30, 320 x 180 pixels, over (1 + conditioning): radii
+/// of crossings here 9e-8 in the median and 7e-7 at worst, there 4e-8 and 1.4e-6; directions 2e-7 and 1.5e-6, there
+/// 6e-8 and 1.5e-7.
 pub const SCHWARZSCHILD_PER_OCTAVE: f64 = 32.0;
 pub const SCHWARZSCHILD_OCTAVES: f64 = 22.0;
 pub const SCHWARZSCHILD_INTERVALS: u32 = 128;
 /// Nodes of a Kerr lens: around the critical curve, which shares their texture, and per octave of the distance from it.
+/// The CPU tracer, to which a node costs more of a frame, has half as many columns (`kerr::Resolution::COARSE`), and
+/// integrates 2 % of the rays about the shadow.
 pub const KERR_COLUMNS: u32 = CRITICAL_NODES as u32;
 pub const KERR_PER_OCTAVE: usize = 16;
 /// Pixels of a row that a thread of traced/count.wgsl sums.

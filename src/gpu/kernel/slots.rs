@@ -127,7 +127,7 @@ pub fn sum_slots() -> Vec<Slot> {
     vec![Slot::Texture(RADIANCE), Slot::TextureWrite(RADIANCE)]
 }
 
-/// Group 3 of refine/edges.wgsl.
+/// Group 3 of records/edges.wgsl.
 pub fn edge_slots() -> Vec<Slot> {
     vec![Slot::Write]
 }

@@ -28,8 +28,8 @@ impl RecordSource {
     /// The kernel that goes over the pixels: its entry point and its fragment.
     pub(in crate::gpu) fn driver(self, target: Option<PixelTarget>) -> (&'static str, &'static str) {
         match (self, target) {
-            (Self::Kerr { deferred: true, .. }, _) => ("each_deferred", "records/each_deferred"),
-            (_, Some(PixelTarget::Rows)) => ("each_pixel", "records/each_pixel_rows"),
+            (Self::Kerr { deferred: true, .. }, _) => ("each_deferred", "lens/each_deferred"),
+            (_, Some(PixelTarget::Rows)) => ("each_pixel", "film/each_pixel_rows"),
             _ => ("each_pixel", "records/each_pixel"),
         }
     }

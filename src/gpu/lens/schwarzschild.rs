@@ -23,7 +23,7 @@ const BRANCHES: u32 = 2;
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-struct SchwarzschildUniform {
+pub(in crate::gpu) struct SchwarzschildUniform {
     critical: [f32; 4],
     separatrix: f32,
     slope: f32,
@@ -37,7 +37,7 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
 }
 
 impl SchwarzschildUniform {
-    fn new(frame: &LocalFrame) -> Self {
+    pub(in crate::gpu) fn new(frame: &LocalFrame) -> Self {
         let u = 1.0 / frame.r;
         let psi = shadow(&Observer::at_rest(*frame)).radius;
         let half = (0.5 * psi).tan();

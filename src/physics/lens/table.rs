@@ -6,10 +6,9 @@
 //! integral part cubic Hermite in y and Lagrange with four nodes in x.
 
 use super::coordinate::{LEAST_T_HAT, LENS};
-use super::schwarzschild::{Branch, Column, Family, Resolution};
+use super::schwarzschild::{Branch, Column, Family};
 use crate::allocate::with_room;
 use crate::error::Result;
-use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec3Swizzles};
 
 /// The tables of one branch, rays one after the other.
@@ -73,7 +72,7 @@ fn hermite(y0: f64, d0: f64, y1: f64, d1: f64, x: f64) -> (f64, f64) {
 }
 
 /// Lagrange's cubic through the values at -1, 0, 1, 2, at `x`.
-fn lagrange(values: [f64; 4], x: f64) -> f64 {
+pub(crate) fn lagrange(values: [f64; 4], x: f64) -> f64 {
     let (a, b, c) = (x + 1.0, x - 1.0, x - 2.0);
     let weights = [-x * b * c / 6.0, a * b * c / 2.0, -a * x * c / 2.0, a * x * b / 6.0];
     (0..4).map(|i| weights[i] * values[i]).sum()
@@ -104,20 +103,6 @@ impl BranchTable {
 }
 
 impl SchwarzschildLens {
-    /// The table for the observer of `frame` at the default resolution, built on this thread. `None`: `Family::new` has
-    /// none, or there is no memory for it.
-    pub fn new(frame: &LocalFrame, with_delay: bool) -> Option<Self> {
-        Self::build(Family::new(frame, with_delay, Resolution::default())?)
-    }
-
-    /// Builds all columns on this thread. `None`: there is no memory for them.
-    pub fn build(family: Family) -> Option<Self> {
-        let columns =
-            |branch| (0..family.columns(branch)).map(|i| family.column(branch, i).ok()?).collect::<Option<Vec<_>>>();
-        let [escaping, captured] = [columns(Branch::Escaping)?, columns(Branch::Captured)?];
-        Self::from_columns(family, escaping, captured).ok()?
-    }
-
     /// The table from all of `Family::column`, in order. `None`: their number or lengths are not the family's. Errors:
     /// OUT_OF_MEMORY.
     pub fn from_columns(family: Family, escaping: Vec<Column>, captured: Vec<Column>) -> Result<Option<Self>> {

@@ -68,9 +68,22 @@ impl Errors {
     }
 }
 
+/// Builds all columns on this thread. `None`: there is no memory for them.
+fn build(family: Family) -> Option<SchwarzschildLens> {
+    let columns =
+        |branch| (0..family.columns(branch)).map(|i| family.column(branch, i).ok()?).collect::<Option<Vec<_>>>();
+    let [escaping, captured] = [columns(Branch::Escaping)?, columns(Branch::Captured)?];
+    SchwarzschildLens::from_columns(family, escaping, captured).ok()?
+}
+
+/// The table for the observer of `frame`, as fine as the CPU tracer has it.
+fn lens_of(frame: &LocalFrame, with_delay: bool) -> Option<SchwarzschildLens> {
+    build(Family::new(frame, with_delay, Resolution::SINGLE)?)
+}
+
 /// Errors over (1 + conditioning) of the swept angle, of u, and of the delay (over 1 + delay) at crossings outside 6 M.
 fn errors(frame: &LocalFrame, resolution: Resolution, rays: usize) -> [Errors; 3] {
-    let lens = SchwarzschildLens::build(Family::new(frame, true, resolution).unwrap()).unwrap();
+    let lens = build(Family::new(frame, true, resolution).unwrap()).unwrap();
     let axis = lens.family().coordinate;
     let critical = axis.sin_critical.atan2(axis.cos_critical);
     let mut sequence = Sequence(7);
@@ -102,25 +115,15 @@ fn errors(frame: &LocalFrame, resolution: Resolution, rays: usize) -> [Errors; 3
     all
 }
 
-/// Typical and worst errors at the default resolution.
+/// Typical and worst errors.
 #[test]
 fn agrees_with_tracing() {
     for frame in observers() {
-        let [mut swept, mut u, mut delay] = errors(&frame, Resolution::default(), 600);
+        let [mut swept, mut u, mut delay] = errors(&frame, Resolution::SINGLE, 600);
         let (r, rain) = (frame.r, frame.rain);
-        assert!(swept.at(0.5) < 2e-9 && swept.at(1.0) < 3e-8, "r {r} {rain}: {:e} {:e}", swept.at(0.5), swept.at(1.0));
-        assert!(u.at(0.5) < 2e-9 && u.at(1.0) < 2e-8, "r {r} {rain}: {:e} {:e}", u.at(0.5), u.at(1.0));
-        assert!(delay.at(0.5) < 1e-7 && delay.at(1.0) < 4e-6, "r {r} {rain}: {:e} {:e}", delay.at(0.5), delay.at(1.0));
-    }
-}
-
-/// The coarse tables keep what they promise.
-#[test]
-fn coarse_tables_are_as_good_as_f32() {
-    for frame in observers() {
-        let [mut swept, mut u, _] = errors(&frame, Resolution::SINGLE, 600);
-        assert!(swept.at(0.5) < 3e-8 && swept.at(1.0) < 5e-7, "r {} {:e} {:e}", frame.r, swept.at(0.5), swept.at(1.0));
-        assert!(u.at(0.5) < 2e-8 && u.at(1.0) < 2e-7, "r {} {:e} {:e}", frame.r, u.at(0.5), u.at(1.0));
+        assert!(swept.at(0.5) < 3e-8 && swept.at(1.0) < 5e-7, "r {r} {rain}: {:e} {:e}", swept.at(0.5), swept.at(1.0));
+        assert!(u.at(0.5) < 2e-8 && u.at(1.0) < 2e-7, "r {r} {rain}: {:e} {:e}", u.at(0.5), u.at(1.0));
+        assert!(delay.at(0.5) < 5e-7 && delay.at(1.0) < 5e-5, "r {r} {rain}: {:e} {:e}", delay.at(0.5), delay.at(1.0));
     }
 }
 
@@ -147,7 +150,7 @@ fn differences<T>(n: DVec3, across: DVec3, h: f64, f: impl Fn(DVec3) -> T) -> [T
 fn sky_changes_as_differences_do() {
     let mut sequence = Sequence(3);
     for frame in observers() {
-        let lens = SchwarzschildLens::new(&frame, false).unwrap();
+        let lens = lens_of(&frame, false).unwrap();
         let axis = lens.family().coordinate;
         let critical = axis.sin_critical.atan2(axis.cos_critical);
         for i in 0..60 {
@@ -175,7 +178,7 @@ fn images_change_as_differences_of_traces_do() {
     let mut sequence = Sequence(5);
     let mut compared = 0;
     for frame in observers() {
-        let lens = SchwarzschildLens::new(&frame, true).unwrap();
+        let lens = lens_of(&frame, true).unwrap();
         let axis = lens.family().coordinate;
         let critical = axis.sin_critical.atan2(axis.cos_critical);
         for _ in 0..150 {
@@ -204,7 +207,9 @@ fn images_change_as_differences_of_traces_do() {
                 let conditioning = 1.0 + (crossing.u_psi.abs() + crossing.u_phi.abs()) / crossing.u / psi.sin();
                 for (name, (got, expected, scale)) in ["u", "azimuth", "delay"].into_iter().zip(pairs) {
                     let error = (got - expected).abs() / (scale * conditioning);
-                    assert!(error < 5e-5, "r {} psi {psi} {order} {name}: {got} {expected} {error:e}", frame.r);
+                    // The gradient of the delay has u in its denominator, twice.
+                    let limit = if name == "delay" { 1e-3 } else { 2e-4 };
+                    assert!(error < limit, "r {} psi {psi} {order} {name}: {got} {expected} {error:e}", frame.r);
                 }
                 compared += 1;
             }
@@ -217,14 +222,14 @@ fn images_change_as_differences_of_traces_do() {
 #[test]
 fn observer_in_the_plane() {
     let frame = LocalFrame::new(0.0, DVec3::new(20.0, 0.0, 0.0)).unwrap();
-    let lens = SchwarzschildLens::new(&frame, false).unwrap();
+    let lens = lens_of(&frame, false).unwrap();
     for psi in [0.27, 0.3, 0.5] {
         let n = DVec3::new(-f64::cos(psi), -f64::sin(psi), 0.0);
         let traced = trace_look(&frame, n, &Settings::exact(0.0)).1;
         let (lookup, plane) = (lens.look_up(n), OrbitPlane::new(&frame, n));
         for (order, expected) in traced.crossings.iter().enumerate() {
             let crossing = plane.crossing(&lookup, order as u32).unwrap();
-            assert!((crossing.u / expected.u - 1.0).abs() < 1e-6, "{psi}: {} {}", crossing.u, expected.u);
+            assert!((crossing.u / expected.u - 1.0).abs() < 5e-6, "{psi}: {} {}", crossing.u, expected.u);
         }
         assert!(plane.crossing(&lookup, traced.crossings.len() as u32).is_none());
         let within = DVec3::new(n.x, 0.0, n.y);
@@ -237,7 +242,7 @@ fn observer_in_the_plane() {
 fn the_seam_is_no_step() {
     for r in [2.5, 4.0, 20.0] {
         let frame = observer(r, 0.5, false);
-        let lens = SchwarzschildLens::new(&frame, true).unwrap();
+        let lens = lens_of(&frame, true).unwrap();
         let axis = lens.family().coordinate;
         let [below, above] = [0.25 * (1.0 - 1e-12), 0.25 * (1.0 + 1e-12)].map(|t_hat| {
             let angle = axis.angle(t_hat);
@@ -274,15 +279,15 @@ fn the_domain_is_served_to_its_ends() {
         assert!(swept.at(0.5) < 1e-7 && swept.at(1.0) < 3e-6, "r {r}: {:e} {:e}", swept.at(0.5), swept.at(1.0));
     }
     for (r, rain) in [(0.89, true), (2.0004, false), (1.1e6, false)] {
-        assert!(SchwarzschildLens::new(&observer(r, 1.0, rain), false).is_none());
+        assert!(lens_of(&observer(r, 1.0, rain), false).is_none());
     }
     let spinning = LocalFrame::new(0.5, DVec3::new(20.0, 0.0, 0.0)).unwrap();
-    assert!(SchwarzschildLens::new(&spinning, false).is_none());
+    assert!(lens_of(&spinning, false).is_none());
 }
 
 #[test]
 fn columns_that_do_not_fit_make_no_table() {
-    let family = Family::new(&observer(10.0, 1.0, false), false, Resolution::default()).unwrap();
+    let family = Family::new(&observer(10.0, 1.0, false), false, Resolution::SINGLE).unwrap();
     let columns = |branch| -> Vec<_> {
         (0..family.columns(branch)).map(|i| family.column(branch, i).unwrap().unwrap()).collect()
     };

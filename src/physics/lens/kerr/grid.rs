@@ -14,7 +14,8 @@ pub const CORE_OCTAVES: usize = 10;
 /// Rows below the first row of cells in use, and above the row of the axis, for the stencil of the error estimate.
 pub(crate) const ROWS_BELOW: usize = 2;
 pub(crate) const ROWS_ABOVE: usize = 3;
-/// The step in sigma. It gives some 1e-7 for a whole ray, typically much less; f32 resolves no more.
+/// The step in sigma. It gives some 1e-7 for a whole ray, typically much less; f32 resolves no more. (Kernels take
+/// shorter ones: lens/kerr_nodes.wgsl says why.)
 pub(super) const STEP: f64 = 0.25;
 /// The error in sigma to which crossings and ends are found.
 pub(super) const SLACK: f64 = 1e-8;
@@ -22,8 +23,6 @@ pub(super) const SLACK: f64 = 1e-8;
 pub(crate) const BEYOND_INFINITY: f64 = 1.0;
 /// A bound on the steps of a ray, which no ray of the grid reaches.
 pub(super) const MAX_STEPS: usize = 2000;
-/// Observers nearer than this, in M, get the finer outer branch, which has few octaves for them.
-pub(super) const NEAR_OBSERVER: f64 = 15.0;
 /// The least epsilon of `Columns`. An observer yet nearer to the plane has the same columns; the directions within this
 /// angle of the plane are then integrated.
 pub(super) const NARROWEST_LAYER: f64 = 0.03;
@@ -48,7 +47,7 @@ pub const POOR_CROSSINGS: u32 = 1 << 30;
 /// The error that a cell may have: for the sky in rad of look direction, for crossings relative to 1 + conditioning.
 pub const TOLERANCE: f64 = 1e-6;
 /// The error that a cell may have in azimuths, rad, and in delays, relative to the orbital time: it moves a pattern
-/// along its orbit.
+/// along its orbit. (Kernels allow for the rounding of f32 as well: lens/kerr_flags.wgsl.)
 pub const PATTERN_TOLERANCE: f64 = 1e-5;
 
 pub type Node = ArrayVec<f64, CHANNELS_MOST>;
@@ -77,11 +76,9 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// The spacing that keeps all but about 1 % of the rays about the shadow interpolated: rows are wide at |t^| = 1,
-    /// which matters inside the shadow, and behind an observer near the disk.
-    pub fn for_observer(frame: &LocalFrame) -> Self {
-        Self { chi_nodes: 512, nodes_per_octave: [if frame.r < NEAR_OBSERVER { 32 } else { 16 }, 32] }
-    }
+    /// The CPU tracer's: all but 1 % of the pixels of usual frames are interpolated, and the tables are built as fast
+    /// as so many rays are traced.
+    pub const COARSE: Self = Self { chi_nodes: 256, nodes_per_octave: [16; 2] };
 }
 
 /// The crossings of the equatorial plane that are asked for.

@@ -27,6 +27,8 @@ pub use grid::{
     POOR_CROSSINGS, PackedNode, Resolution, TOLERANCE, divergent_delay,
 };
 pub use lookup::{Crossing, GridStep, KerrLookup, Sky};
+#[cfg(test)]
+pub(crate) use node::regular_delay;
 pub use table::KerrLens;
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// The delay less `divergent_delay`, from the state at a crossing: with `Constants::delay`,
 /// 2 (1 + u') ln(|u| / u_observer) - (1 + u') / u + the integral, and (1 + u') / u from u'^2 = P(u) without
 /// cancellation.
-fn regular_delay(c: &Constants, observer: &State, there: &State) -> f64 {
+pub(crate) fn regular_delay(c: &Constants, observer: &State, there: &State) -> f64 {
     let (u, du) = (there.u, there.du);
     let below = u * (c.a2e2 - c.k + u * (2.0 * c.b - u * (c.a * c.a * c.carter)));
     let ratio = if du < 0.0 { -below / (1.0 - du) } else { (1.0 + du) / u };

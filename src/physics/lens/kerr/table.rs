@@ -2,7 +2,6 @@
 
 use super::grid::*;
 use super::lookup::KerrLookup;
-use crate::physics::observer::LocalFrame;
 use glam::{DVec3, Vec4};
 
 /// A whole table.
@@ -19,20 +18,6 @@ pub struct KerrLens {
 const REPEATED: usize = 3;
 
 impl KerrLens {
-    /// Builds the table node by node, cell by cell, on this thread.
-    pub fn new(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<Self> {
-        let grid = Grid::new(frame, resolution, wanted)?;
-        let nodes = [Branch::Outer, Branch::Inner]
-            .map(|branch| -> Vec<f64> { (0..grid.rows(branch)).flat_map(|row| grid.node_row(branch, row)).collect() });
-        let flags = [Branch::Outer, Branch::Inner].map(|branch| -> Vec<u32> {
-            grid.cell_rows(branch).flat_map(|row| grid.flag_row(branch, row, &nodes[branch as usize])).collect()
-        });
-        let packed = [Branch::Outer, Branch::Inner].map(|branch| -> Vec<Vec4> {
-            (0..grid.rows(branch)).flat_map(|row| grid.packed_row(row, &nodes[branch as usize])).collect()
-        });
-        Some(Self::assemble(grid, packed, flags))
-    }
-
     /// Builds the table from what the caller computed for the outer and the inner branch: `Grid::packed_row` of all
     /// rows and `Grid::flag_row` of all `Grid::cell_rows`, in order.
     pub fn assemble(grid: Grid, nodes: [Vec<Vec4>; 2], flags: [Vec<u32>; 2]) -> Self {

@@ -276,7 +276,7 @@ fn measure(observers: std::ops::Range<usize>, rays: usize, resolution: Option<Re
     for i in observers {
         let mut random = Random(1 + i as u64);
         let frame = observer(i, &mut random);
-        let resolution = resolution.unwrap_or(Resolution::for_observer(&frame));
+        let resolution = resolution.unwrap_or(Resolution::COARSE);
         let mut lazy = LazyTable::new(&frame, resolution, wanted(frame.a, pattern)).unwrap();
         all.add(compare(&mut lazy, rays, &mut random));
     }
@@ -287,13 +287,27 @@ fn measure(observers: std::ops::Range<usize>, rays: usize, resolution: Option<Re
 #[test]
 fn table_agrees_with_integration() {
     let mut m = measure(0..40, 250, None, true);
-    m.report("for_observer");
+    m.report("coarse");
     println!("{}", m.worst);
-    assert!(m.about_direct * 100 < m.about, "{} of {} direct", m.about_direct, m.about);
+    assert!(m.about_direct * 40 < m.about, "{} of {} direct", m.about_direct, m.about);
     assert!(m.radius.len() > 4000 && m.sky.len() > 5000);
     assert_eq!((m.wrong_fate, m.wrong_crossings), (0, 0));
     assert!(quantile(&mut m.sky, 0.9999) < 0.01 && quantile(&mut m.sky, 1.0) < 0.1);
     assert!(quantile(&mut m.radius, 0.999) < 1e-5 && quantile(&mut m.redshift, 0.999) < 1e-5);
+}
+
+/// Builds the table node by node, cell by cell, on this thread.
+fn whole(frame: &LocalFrame, resolution: Resolution, wanted: Crossings) -> Option<KerrLens> {
+    let grid = Grid::new(frame, resolution, wanted)?;
+    let nodes = [Branch::Outer, Branch::Inner]
+        .map(|branch| -> Vec<f64> { (0..grid.rows(branch)).flat_map(|row| grid.node_row(branch, row)).collect() });
+    let flags = [Branch::Outer, Branch::Inner].map(|branch| -> Vec<u32> {
+        grid.cell_rows(branch).flat_map(|row| grid.flag_row(branch, row, &nodes[branch as usize])).collect()
+    });
+    let packed = [Branch::Outer, Branch::Inner].map(|branch| -> Vec<Vec4> {
+        (0..grid.rows(branch)).flat_map(|row| grid.packed_row(row, &nodes[branch as usize])).collect()
+    });
+    Some(KerrLens::assemble(grid, packed, flags))
 }
 
 /// A whole table, coarse so that it is quickly built, says what its cells say one by one.
@@ -301,7 +315,7 @@ fn table_agrees_with_integration() {
 fn whole_table_is_its_nodes() {
     let frame = LocalFrame::new(0.9, chart(12.0, 1.2, 0.3)).unwrap();
     let resolution = Resolution { chi_nodes: 128, nodes_per_octave: [16; 2] };
-    let lens = KerrLens::new(&frame, resolution, wanted(0.9, true)).unwrap();
+    let lens = whole(&frame, resolution, wanted(0.9, true)).unwrap();
     let mut lazy = LazyTable::new(&frame, resolution, wanted(0.9, true)).unwrap();
     let mut random = Random(3);
     let (mut seen, mut crossings) = (0, 0);
@@ -327,7 +341,7 @@ fn whole_table_is_its_nodes() {
 #[test]
 fn gradients_are_derivatives() {
     let frame = LocalFrame::new(0.95, chart(14.0, 1.3, 0.3)).unwrap();
-    let mut lazy = LazyTable::new(&frame, Resolution::for_observer(&frame), wanted(0.95, false)).unwrap();
+    let mut lazy = LazyTable::new(&frame, Resolution::COARSE, wanted(0.95, false)).unwrap();
     let mut random = Random(8);
     let (mut skies, mut radii) = (0, 0);
     for _ in 0..300 {

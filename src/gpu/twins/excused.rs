@@ -1,0 +1,115 @@
+//! Functions of shaders/ that are not compared one by one, and why.
+
+/// Why a function has no twin.
+pub enum Why {
+    /// It has no counterpart in Rust, or one that only places, packs, binds or counts.
+    Plumbing(#[allow(dead_code, reason = "the text is for whoever reads the list")] &'static str),
+    /// A test compares what it does in another way: file, test, and what that is.
+    Tested(&'static str, &'static str, #[allow(dead_code, reason = "as above")] &'static str),
+}
+
+use Why::{Plumbing, Tested};
+
+const RECORDS: Why = Tested(
+    "tests/tracers/lens/records.rs",
+    "records_agree_with_integration",
+    "records of both tracers against rays integrated in f64, for random observers",
+);
+const FOOTPRINTS: Why = Tested(
+    "tests/tracers/lens/footprints.rs",
+    "footprints_agree_with_differences",
+    "footprints of both tracers' records against differences of rays integrated in f64",
+);
+const PICTURES: Why = Tested(
+    "tests/tracers/pictures.rs",
+    "gpu_and_cpu_pictures_agree",
+    "pictures of traced rays, whose records come from textures of neighbours, against the CPU tracer's",
+);
+const REFINED: Why = Tested(
+    "tests/tracers/rings.rs",
+    "rings_have_no_gaps_and_as_much_light_as_many_rays_find",
+    "refined pictures of both tracers against the light that many rays find",
+);
+const BLOOM: Why = Tested(
+    "tests/tracers/bloom.rs",
+    "gpu_and_cpu_pictures_agree",
+    "pictures with bloom of both tracers: the grids exist only as whole textures",
+);
+const VOLUMES: Why = Tested(
+    "tests/tracers/volumes.rs",
+    "radial_light_and_depth_are_integrals_over_proper_length",
+    "light and depth of the haze along whole rays of both tracers",
+);
+const NO_VOLUMES: Why = Plumbing("a hook that does nothing where no emitter with depth is");
+const ENTRY: Why = Plumbing("a kernel: it hands what others compute from one to the next");
+const HOOK: Why = Plumbing("a hook: it calls the one function that this kernel has for it");
+const PUTS: Why = Plumbing("it stores a pixel that `develop` made");
+const LIST: Why = Plumbing("it keeps a list of pixels, which the CPU tracer does not need");
+
+/// Fragment, functions, why.
+pub const EXCUSED: &[(&str, &str, Why)] = &[
+    ("bloom/base", "between gather", BLOOM),
+    ("bloom/gather", "kernel coverage tap_weight gather", BLOOM),
+    ("bloom/glare", "tile_light", BLOOM),
+    ("bloom/upsample", "between upsample", BLOOM),
+    ("emit/disk", "disk_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
+    ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
+    ("emit/volumes", "matter_at", HOOK),
+    ("emit/volumes", "add_part", VOLUMES),
+    ("geodesic/rays", "on_part", NO_VOLUMES),
+    ("lens/kerr_nodes", "on_part", NO_VOLUMES),
+    ("lens/kerr_pixel", "medium_before", NO_VOLUMES),
+    ("lens/kerr_deferred", "on_part medium_before", NO_VOLUMES),
+    ("lens/schwarzschild_record", "medium_before", NO_VOLUMES),
+    ("refine/integrated", "on_part medium_before", VOLUMES),
+    ("traced/pixels", "on_part keep_medium", VOLUMES),
+    ("traced/record", "medium_before", VOLUMES),
+    ("film/develop", "develop_tile", ENTRY),
+    ("film/develop_rows", "develop_tile", ENTRY),
+    ("film/light", "write_pixel", BLOOM),
+    ("film/packed", "write_pixel", PUTS),
+    ("film/packed_rows", "keep_words write_pixel write_rows", PUTS),
+    ("film/screen", "write_pixel", PUTS),
+    ("film/summed", "tile_light", Plumbing("it reads the sum of a tile's samples")),
+    ("geodesic/rays", "on_crossing trace_rays", Plumbing("it unpacks and packs what `trace` takes and gives")),
+    ("lens/kerr_flags", "place value", Plumbing("it reads a node beside a cell")),
+    ("lens/kerr_flags", "fourth patch_of stretch_of sky_is_good crossing_flags pattern_is_good flag_cells", RECORDS),
+    ("lens/kerr_nodes", "trace_nodes store_crossing", RECORDS),
+    ("lens/kerr_nodes", "on_crossing", Plumbing("a hook that does nothing here")),
+    ("lens/kerr_nodes", "store_next", Plumbing("it packs crossings by fours")),
+    ("lens/kerr_pixel", "ray_record next_crossing more_crossings", HOOK),
+    ("lens/kerr_pixel", "defer_pixel", LIST),
+    ("lens/kerr_record", "interpolate next_looked_up add_pattern edges_of_pixel", RECORDS),
+    ("lens/kerr_record", "looked_up_change place_change", FOOTPRINTS),
+    ("lens/kerr_deferred", "on_crossing ray_record next_crossing more_crossings", RECORDS),
+    ("lens/schwarzschild_columns", "fill_columns", RECORDS),
+    ("lens/schwarzschild_ends", "find_ends", RECORDS),
+    ("lens/schwarzschild_record", "ray_record next_crossing column_at complete edges_of_pixel", RECORDS),
+    ("lens/schwarzschild_record", "u_change", FOOTPRINTS),
+    ("lens/schwarzschild_record", "more_crossings rewind_crossings defer_pixel", HOOK),
+    ("lens/each_deferred", "each_deferred", ENTRY),
+    ("records/each_pixel", "each_pixel", ENTRY),
+    ("film/each_pixel_rows", "each_pixel", ENTRY),
+    ("records/export", "export_place take_record", Plumbing("it puts records into a buffer, for tests")),
+    ("records/edges", "list_place note_edges listed_pixel", LIST),
+    ("refine/integrated", "on_crossing integrated_record more_integrated next_integrated", REFINED),
+    ("refine/kerr", "ray_record next_crossing more_crossings rewind_crossings", REFINED),
+    ("refine/refine", "refine refine_sample", REFINED),
+    ("refine/refine", "list_kind", LIST),
+    ("refine/refine", "seen_crossing", REFINED),
+    ("refine/traced", "ray_record next_crossing more_crossings rewind_crossings", REFINED),
+    ("shade/only", "take_light", HOOK),
+    ("shade/record", "take_record seen_crossing", HOOK),
+    ("shade/sample", "take_light", Plumbing("it adds a sample's light to the sum of those before")),
+    ("traced/count", "count_steps", Plumbing("it sums the steps of all rays")),
+    (
+        "traced/footprints",
+        "set_traced_pixel traced_neighbours crossing_of_order",
+        Plumbing("it finds a record in textures"),
+    ),
+    ("traced/footprints", "sky_footprint derivative_of_direction derivative_of_place", PICTURES),
+    ("traced/pixels", "on_crossing trace_pixels", PICTURES),
+    ("traced/record", "ray_record next_crossing more_crossings is_steep edge_between edges_of_pixel", PICTURES),
+    ("traced/record", "defer_pixel", HOOK),
+    ("window/present", "cover show", Plumbing("it shows a texture in a window")),
+];

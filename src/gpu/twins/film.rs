@@ -1,0 +1,230 @@
+//! Twins of film, and of the sRGB curve of window/present: from light to pixels. Both sides are f32 here.
+
+use super::inputs::{Inputs, Outputs};
+use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
+use crate::film::{FilmParams, develop, dither, false_colour, limited, srgb_encode, tone_map};
+use crate::gpu::kernel::variant::FROM_UNIFORM;
+use crate::image::PixelFormat;
+use crate::image::file::srgb_to_linear;
+use crate::scene::{Film, ToneMap, View};
+
+const HEAD: &str = "
+#import film/film
+#import film/encode
+#import film/false_colour
+#import film/params
+#import window/present
+var<private> film: FilmParams;
+fn enter_film() {
+    film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), 0u);
+}
+fn out_bytes(words: vec4<u32>, count: u32) {
+    for (var k = 0u; k < count; k += 1u) {
+        for (var b = 0u; b < 4u; b += 1u) { out1(f32((words[k] >> (8u * b)) & 255u)); }
+    }
+}
+";
+
+const LIGHT: usize = 7;
+
+fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
+    let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx][i.random.below(3) as usize];
+    let film = Film { tone_map, exposure_ev: i.random.even(-2.0, 2.0), bloom: 0.0 };
+    let params = FilmParams::new(&film, view, format, i.random.below(2) == 0);
+    i.push(params.exposure.into());
+    [params.tone_map, params.format, params.false_colour].into_iter().for_each(|word| {
+        i.push_word(word);
+    });
+    i.push(params.view_low.into());
+    i.push(params.view_scale.into());
+    i.push_word(params.transparent);
+}
+
+fn params(i: &Inputs) -> FilmParams {
+    FilmParams {
+        exposure: i.f(0),
+        tone_map: i.word(1),
+        format: i.word(2),
+        false_colour: i.word(3),
+        view_low: i.f(4),
+        view_scale: i.f(5),
+        transparent: i.word(6),
+        reserved: 0,
+    }
+}
+
+fn push_light(i: &mut Inputs) {
+    (0..3).for_each(|_| {
+        i.log(6e-5, 1e3);
+    });
+    let odd = [f64::NAN, -1.0, 0.0, f64::INFINITY, 1.0, 65504.0, 70000.0, 6.1e-5, 1e-7, 3e-8];
+    if i.random.below(8) == 0 {
+        i.truncate(i.words.len() - 1);
+        let value = odd[i.random.below(odd.len() as u32) as usize];
+        i.push(value);
+    }
+    i.even(0.0, 1.1);
+    let [x, y] = [i.random.below(8192), i.random.below(8192)];
+    [x, y].into_iter().for_each(|word| {
+        i.push_word(word);
+    });
+}
+
+/// `steps`: by how many codes bytes may differ.
+fn write_pixel(i: &Inputs, o: &mut Outputs, steps: f64) {
+    let light = [0, 1, 2, 3].map(|k| i.f(LIGHT + k));
+    let bytes = develop(&params(i), light, i.word(LIGHT + 4), i.word(LIGHT + 5));
+    bytes.iter().for_each(|byte| o.values.push((f64::from(*byte), steps)));
+}
+
+fn rgb(i: &mut Inputs) {
+    (0..3).for_each(|_| {
+        i.log(1e-5, 1e3);
+    });
+}
+
+fn f3(i: &Inputs) -> [f32; 3] {
+    [0, 1, 2].map(|k| i.f(k))
+}
+
+fn put3(o: &mut Outputs, rgb: [f32; 3]) {
+    o.all(rgb.map(f64::from), 1.0);
+}
+
+fn push_value(i: &mut Inputs) {
+    let views = [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric];
+    let view = views[i.random.below(5) as usize];
+    push_film(i, view, PixelFormat::Rgba8Srgb);
+    let value = match view {
+        View::Order => f64::from(i.random.below(8)) - 2.0,
+        View::Metric => i.random.even(-1.0, 1.0),
+        View::Steps => i.random.log(4.0, 1000.0),
+        _ => i.random.log(0.05, 5.0),
+    };
+    let is_nan = i.random.below(50) == 0;
+    i.push(if is_nan { f64::NAN } else { value });
+}
+
+pub fn group() -> Group {
+    let any = f64::from(FROM_UNIFORM);
+    let all = [("PIXELS", any), ("TONE_MAP", any)];
+    let (film, encode, colours) = ("film/film", "film/encode", "film/false_colour");
+    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(7u), word(11u), word(12u)), pixel_words());";
+    let twins = vec![
+        twin(
+            film,
+            "develop develop_8bit tone_map dither alpha_of is_float is_r32f is_aces is_agx pixel_words",
+            DEVELOP,
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba8Srgb);
+                push_light(i);
+            },
+            |i, o| write_pixel(i, o, 1.0),
+            // Codes of 8 bits, which a rounding decides.
+            1.0,
+        )
+        .with(&all)
+        .exactly(),
+        twin(
+            film,
+            "develop is_rgba32f",
+            DEVELOP,
+            |i| {
+                push_film(i, View::Light, PixelFormat::Bgra8Srgb);
+                push_light(i);
+            },
+            |i, o| write_pixel(i, o, 1.0),
+            1.0,
+        )
+        .with(&all)
+        .exactly(),
+        twin(
+            film,
+            "develop_rgba16f f16_bits",
+            DEVELOP,
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba16F);
+                push_light(i);
+            },
+            |i, o| write_pixel(i, o, 0.0),
+            SAME,
+        )
+        .with(&all)
+        .exactly(),
+        twin(
+            film,
+            "develop_rgba32f",
+            DEVELOP,
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba32F);
+                push_light(i);
+            },
+            |i, o| write_pixel(i, o, 0.0),
+            SAME,
+        )
+        .with(&all)
+        .exactly(),
+        twin(
+            encode,
+            "limited is_nan",
+            "out3(limited(in3(7u), 100.0));",
+            |i| {
+                push_film(i, View::Light, PixelFormat::Rgba8Srgb);
+                push_light(i);
+            },
+            |i, o| o.all([7, 8, 9].map(|k| f64::from(limited(i.f(k), 100.0))), 0.0),
+            SAME,
+        )
+        .exactly(),
+        twin(
+            encode,
+            "srgb_encode",
+            "out3(srgb_encode(in3(0u)));",
+            |i| {
+                (0..3).for_each(|_| {
+                    i.log(1e-5, 1.0);
+                })
+            },
+            |i, o| put3(o, f3(i).map(srgb_encode)),
+            ROUNDING,
+        ),
+        twin(film, "aces balanced", "out3(aces(in3(0u)));", rgb, |i, o| put3(o, tone_map::aces(f3(i))), ROUNDING),
+        twin(film, "agx agx_sigmoid", "out3(agx(in3(0u)));", rgb, |i, o| put3(o, tone_map::agx(f3(i))), TRANSCENDENTAL),
+        twin(
+            film,
+            "dither",
+            "out1(dither(word(0u), word(1u)));",
+            |i| {
+                i.bits();
+                i.bits();
+            },
+            |i, o| o.near(dither(i.word(0), i.word(1)).into(), 0.0),
+            SAME,
+        ),
+        twin(
+            colours,
+            "false_colour scaled sequential diverging lab_encoded",
+            "enter_film(); out3(false_colour(in1(7u)));",
+            push_value,
+            |i, o| {
+                let film = params(i);
+                put3(o, false_colour::false_colour(film.view(), (film.view_low, film.view_scale), i.f(LIGHT)));
+            },
+            // A twentieth of a step of 8 bits: sin and cos are the driver's.
+            2e-4,
+        ),
+        twin(
+            "window/present",
+            "srgb_decode",
+            "out3(srgb_decode(in3(0u)));",
+            |i| {
+                (0..3).for_each(|_| {
+                    i.even(0.0, 1.0);
+                })
+            },
+            |i, o| put3(o, f3(i).map(srgb_to_linear)),
+            TRANSCENDENTAL,
+        ),
+    ];
+    Group { name: "film", head: HEAD.into(), twins, images: Vec::new, tables: Vec::new }
+}

@@ -1,0 +1,299 @@
+//! Twins of shared/blackbody and emit: thermal light, the disk's profile, its turbulence.
+
+use super::inputs::{Inputs, Outputs};
+use super::run::Table;
+use super::scenes::{self, FRAME, FRAMES, Kind, view};
+use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
+pub use crate::emit::EmissionPoint;
+use crate::emit::medium::{Medium, pieces};
+use crate::emit::turbulence::Turbulence;
+use crate::physics::blackbody::{BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE, into_gamut};
+use crate::physics::disk_flux::TemperatureProfile;
+use crate::physics::geodesic::{Constants, State};
+use crate::physics::observer::LocalFrame;
+use crate::physics::orbit::zamo_frequency;
+use crate::random::mix;
+use crate::scene::Scene;
+use crate::sky::StarIndex;
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// The tables of light; each scene's profile lies beside them.
+const HOOKS: &str = "
+@group(1) @binding(13) var<storage, read> light_tables: array<vec4<f32>>;
+@group(1) @binding(14) var<storage, read> profiles: array<vec4<f32>>;
+fn light_table(i: u32) -> vec4<f32> {
+    if i >= PROFILE_OFFSET && i < PROFILE_OFFSET + PROFILE_SIZE {
+        return profiles[word(0u) * PROFILE_SIZE + i - PROFILE_OFFSET];
+    }
+    return light_tables[i];
+}
+fn in_place(k: u32) -> EmissionPoint { return EmissionPoint(in1(k), in1(k + 1u), in1(k + 2u)); }
+";
+
+fn profiles() -> &'static [TemperatureProfile] {
+    static PROFILES: OnceLock<Vec<TemperatureProfile>> = OnceLock::new();
+    let make = || scenes::views().iter().map(|view| TemperatureProfile::new(view.scene.matter_spin())).collect();
+    PROFILES.get_or_init(make)
+}
+
+fn tables() -> Vec<Table> {
+    let light = StarIndex::shared().expect("an index").light_tables().collect::<Vec<_>>();
+    let row = |profile: &TemperatureProfile| {
+        let steps = profile.entries().windows(2).map(|pair| [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0]);
+        steps.chain([[0.0_f32; 4]]).collect::<Vec<_>>()
+    };
+    let rows = profiles().iter().flat_map(row).collect::<Vec<_>>();
+    let mut tables = scenes::tables();
+    tables.push(Table { name: "light_tables", bytes: bytemuck::cast_slice(&light).to_vec() });
+    tables.push(Table { name: "profiles", bytes: bytemuck::cast_slice(&rows).to_vec() });
+    tables
+}
+
+/// A scene, and a place on its disk.
+fn disk_place(i: &mut Inputs) {
+    let kind = [Kind::Spinning, Kind::Static, Kind::Rain][i.random.below(3) as usize];
+    let view = kind.push(i);
+    let [far, near] = view.scene.emitters().disk_u().expect("a disk");
+    i.even(far, near);
+}
+
+/// Cold light is the exponential of a large number, which f32 knows to its rounding.
+fn cold(temperature: f64) -> f64 {
+    1.0 + 22135.0 / temperature.max(MIN_TEMPERATURE) * 0.1
+}
+
+fn shifted(i: &Inputs, o: &mut Outputs) {
+    let table = BlackbodyTable::shared();
+    let light = table.shifted_blackbody(i.x(1), i.x(2), i.x(3), i.x(4));
+    let largest = light.iter().fold(1e-30_f64, |a, &b| a.max(b));
+    o.all(light, largest * cold(i.x(1) * i.x(3)));
+}
+
+fn push_place(i: &mut Inputs) {
+    let view = [Kind::Spinning, Kind::Static][i.random.below(2) as usize].push(i);
+    let delay = turbulence(view).reference_delay;
+    i.even(1.8, 3.0);
+    i.even(-PI, PI);
+    i.even(delay - 40.0, delay + 40.0);
+    for _ in 0..2 {
+        i.signed(1e-4, 0.3);
+        i.signed(1e-4, 0.3);
+        i.signed(1e-4, 3.0);
+    }
+}
+
+fn turbulence(view: &scenes::View) -> Turbulence {
+    view.scene.emitters().disk.and_then(|disk| disk.turbulence).expect("turbulence")
+}
+
+fn place(i: &Inputs, k: usize) -> EmissionPoint {
+    EmissionPoint { ln_r: i.x(k), azimuth: i.x(k + 1), delay: i.x(k + 2) }
+}
+
+pub fn group() -> Group {
+    let (blackbody, disk, turbulent, shift) = ("shared/blackbody", "emit/disk", "emit/turbulence", "emit/shift");
+    let twins = vec![
+        twin(
+            blackbody,
+            "blackbody_lookup",
+            "out4(blackbody_lookup(0u, in1(0u)));",
+            |i| {
+                i.log(MIN_TEMPERATURE * 1.01, MAX_TEMPERATURE * 0.9);
+            },
+            |i, o| {
+                let [r, g, b, ln] = BlackbodyTable::shared().blackbody_lookup(i.x(0));
+                o.all([r, g, b], 1.0);
+                // The difference of the table's and of Wien's exponent.
+                o.near(ln, 1.0 + 22135.0 / i.x(0));
+            },
+            // The nodes are rounded, too, whose ln(Y / T) is about -20.
+            6e-6,
+        ),
+        twin(
+            blackbody,
+            "shifted_blackbody shifted_light",
+            "out3(shifted_blackbody(in1(1u), in1(2u), in1(3u), in1(4u)));",
+            |i| {
+                i.pick(1);
+                let temperature = i.log(150.0, 1e9);
+                i.push(BlackbodyTable::shared().ln_luminance(temperature.max(500.0)));
+                i.log(0.2, 4.0);
+                i.log(0.2, 4.0);
+            },
+            shifted,
+            2e-5,
+        ),
+        twin(
+            blackbody,
+            "into_gamut",
+            "out3(into_gamut(in3(0u)));",
+            |i| i.evens(3, -0.5, 3.0),
+            |i, o| o.v3(DVec3::from_array(into_gamut(i.v3(0).to_array()))),
+            ROUNDING,
+        ),
+        twin(
+            shift,
+            "nu_static_observer",
+            "enter_scene(); out1(nu_static_observer(in1(1u)));",
+            |i| {
+                [Kind::Spinning, Kind::Static, Kind::Rain][i.random.below(3) as usize].push(i);
+                i.even(0.05, 2.0);
+            },
+            |i, o| {
+                let frame = view(i).lens.observer.frame;
+                // The static observer there measures E over its lapse.
+                let here = LocalFrame::new(frame.a, frame.e_r * frame.r).expect("a place");
+                o.put(if frame.rain && !here.rain { i.x(1) / here.lapse } else { 1.0 });
+            },
+            // Beside the horizon the lapse knows less of r than r does.
+            2e-5,
+        ),
+        twin(
+            shift,
+            "zamo_frequency",
+            "enter_scene(); out1(zamo_frequency(in1(1u), in1(2u), in1(3u), in1(4u)));",
+            |i| {
+                disk_place(i);
+                i.even(-0.9, 0.9);
+                i.even(0.1, 1.5);
+                i.even(-6.0, 6.0);
+            },
+            |i, o| {
+                let a = view(i).scene.hole.spin;
+                let nu = |energy: f64, momentum: f64| zamo_frequency(a, i.x(1), i.x(2), energy, momentum);
+                // E and omega L may cancel.
+                o.near(nu(i.x(3), i.x(4)), nu(i.x(3), 0.0).abs() + nu(0.0, i.x(4)).abs());
+            },
+            // At spin 0.998 the ISCO lies where D is 0.01.
+            1e-5,
+        ),
+        twin(
+            "emit/haze",
+            "haze_matter",
+            "enter_scene(); var c: Constants; c.energy = in1(2u); c.angular_momentum = in1(3u); c.nu_local = in1(4u);
+             var s: State; s.u = in1(1u); s.n = in3(6u); out4(haze_matter(c, s, in1(5u)));",
+            |i| {
+                disk_place(i);
+                i.even(0.5, 1.5);
+                i.even(-2.0, 2.0);
+                i.even(0.5, 1.5);
+                i.even(0.5, 2.0);
+                i.direction();
+            },
+            |i, o| {
+                let Scene { hole, haze, .. } = &view(i).scene;
+                let c = Constants::new(hole.spin, i.x(2), i.x(3), 0.0, i.x(4), 0.1);
+                let nothing = State { u: i.x(1), du: 0.0, n: i.v3(6), dn: DVec3::ZERO, drag: 0.0, delay: 0.0 };
+                let (emission, absorption) = haze.expect("haze").matter(&c, &nothing, i.x(5));
+                o.all(emission, 1e-6);
+                o.near(absorption, 1e-6);
+            },
+            // The fifth power of what zamo_frequency gives.
+            6e-5,
+        ),
+        twin(
+            "emit/medium",
+            "medium_with",
+            "out4(medium_with(in4(0u), in3(4u), in1(7u)));",
+            |i| {
+                i.evens(8, 0.0, 1.0);
+                // Thin, even, and thick.
+                let depth = i.random.log(1e-9, 50.0);
+                i.truncate(7);
+                i.push(depth);
+            },
+            |i, o| {
+                let mut medium = Medium { light: i.v3(0).to_array(), through: i.x(3) };
+                medium.add(i.v3(4).to_array(), i.x(7));
+                o.all(medium.light, 0.0);
+                o.put(medium.through);
+            },
+            TRANSCENDENTAL,
+        ),
+        twin(
+            "emit/volumes",
+            "pieces",
+            "out1(f32(pieces(in1(0u), in1(1u))));",
+            |i| {
+                i.log(1e-6, 0.5);
+                let ratio = i.random.log(1e-3, 1e3);
+                let sign = if i.random.below(8) == 0 { -1.0 } else { 1.0 };
+                i.push(sign * ratio * i.x(0));
+            },
+            // Where the quotient is all but whole one more or less is as good.
+            |i, o| o.near(f64::from(pieces(i.x(0), i.x(1))), 1.0),
+            SAME,
+        ),
+        twin(
+            disk,
+            "disk_covers",
+            "enter_scene(); out1(disk_covers(in1(1u)));",
+            |i| {
+                let view = Kind::Spinning.push(i);
+                let [far, near] = view.scene.emitters().disk_u().expect("a disk");
+                i.even(0.5 * far, 1.5 * near);
+            },
+            |i, o| {
+                let [far, near] = view(i).scene.emitters().disk_u().expect("a disk").map(|u| f64::from(u as f32));
+                o.put(f64::from(u8::from(i.x(1) >= far && i.x(1) <= near)));
+            },
+            SAME,
+        ),
+        twin(
+            disk,
+            "temperature_profile",
+            "enter_scene(); out1(temperature_profile(in1(1u)));",
+            disk_place,
+            |i, o| o.near(profiles()[i.word(0) as usize].at(1.0 / i.x(1)), 1.0),
+            // It rises like the root of the distance from the ISCO, which the uniform has rounded.
+            1e-4,
+        ),
+        twin(
+            disk,
+            "disk_light",
+            "enter_scene(); out3(disk_light(in1(1u), Shift(in1(2u), in1(3u))));",
+            |i| {
+                disk_place(i);
+                i.log(0.3, 2.0);
+                i.log(0.3, 2.0);
+            },
+            |i, o| {
+                let disk = view(i).scene.disk.expect("a disk");
+                let temperature = disk.temperature * profiles()[i.word(0) as usize].at(1.0 / i.x(1));
+                let table = BlackbodyTable::shared();
+                let reference = table.ln_luminance(disk.temperature);
+                let light =
+                    table.shifted_blackbody(temperature, reference, i.x(2), i.x(3)).map(|v| v * disk.brightness);
+                let gain = i.x(3).powi(4) / i.x(2).powi(4) * disk.brightness;
+                o.all(light, gain * 1e-3);
+            },
+            // As the profile and its light.
+            2e-4,
+        ),
+        twin(
+            turbulent,
+            "turbulent_brightness turbulent_octaves cells_across gradient_noise slope",
+            "enter_scene(); out1(turbulent_brightness(in_place(1u), in_place(4u), in_place(7u)));",
+            push_place,
+            |i, o| o.near(turbulence(view(i)).brightness(place(i, 1), [place(i, 4), place(i, 7)]), 1.0),
+            // Delays are rounded at their own size, and the pattern is as steep as 40 cells around.
+            3e-4,
+        ),
+        twin(
+            turbulent,
+            "mix_bits",
+            "out_word(mix_bits(word(0u)));",
+            |i| {
+                i.bits();
+            },
+            |i, o| o.word(mix(i.word(0))),
+            SAME,
+        ),
+    ];
+    let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\
+                   fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {}\n\
+                   fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n";
+    Group { name: "light", head: [imports, FRAME, FRAMES, HOOKS].concat(), twins, images: Vec::new, tables }
+}

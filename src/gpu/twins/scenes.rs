@@ -1,0 +1,151 @@
+//! Scenes that twins see through the uniform `frame`, as the GPU tracer writes it: items name one by its number.
+
+use super::inputs::{Inputs, Random};
+use super::run::Table;
+use super::sky;
+use crate::emit::haze::Haze;
+use crate::gpu::frame::settings::for_f32;
+use crate::gpu::frame::uniforms::FrameUniform;
+use crate::physics::metric::chart;
+use crate::scene::observer::Lens;
+use crate::scene::{Camera, Effects, Motion, Projection, Region, Scene, Sky};
+use glam::{DQuat, DVec3};
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Names the scene of an item, by its word 0. For fragments that require `frame`.
+pub const FRAME: &str = "#import shared/frame\nvar<private> frame: Frame;\n";
+/// For fragments that bind `frame` themselves.
+pub const FRAMES: &str = "
+#import shared/frame
+@group(1) @binding(15) var<storage, read> frames: array<Frame>;
+fn enter_scene() { frame = frames[word(0u)]; }
+";
+
+pub struct View {
+    pub scene: Scene,
+    pub lens: Lens,
+    pub uniform: FrameUniform,
+}
+
+/// The kinds of scenes, of which there are so many each, one kind after the other.
+#[derive(Clone, Copy)]
+pub enum Kind {
+    /// A spinning hole, and observers that move in every way.
+    Spinning,
+    /// Spin 0, static, orbiting or moving observers.
+    Static,
+    /// Spin 0, falling observers outside the photon sphere and inside the horizon.
+    Rain,
+}
+
+pub const EACH: u32 = 16;
+
+impl Kind {
+    /// Whether rays of it spin, and by which clock: the pipeline constants.
+    pub fn constants(self) -> [(&'static str, f64); 3] {
+        let spinning = f64::from(u8::from(matches!(self, Self::Spinning)));
+        [("SPINNING", spinning), ("DELAY", 1.0), ("PROJECTION", f64::from(crate::gpu::kernel::variant::FROM_UNIFORM))]
+    }
+
+    /// Pushes the number of one of its scenes.
+    pub fn push(self, i: &mut Inputs) -> &'static View {
+        let number = self as u32 * EACH + i.random.below(EACH);
+        i.push_word(number);
+        &views()[number as usize]
+    }
+}
+
+/// The scene of an item.
+pub fn view(i: &Inputs) -> &'static View {
+    &views()[i.word(0) as usize]
+}
+
+pub fn views() -> &'static [View] {
+    static VIEWS: OnceLock<Vec<View>> = OnceLock::new();
+    VIEWS.get_or_init(|| {
+        let kinds = [Kind::Spinning, Kind::Static, Kind::Rain];
+        kinds.into_iter().flat_map(|kind| (0..EACH).map(move |number| made(kind, number))).collect()
+    })
+}
+
+fn made(kind: Kind, number: u32) -> View {
+    let mut random = Random(1000 * kind as u64 + u64::from(number));
+    let mut scene = Scene::default();
+    let (mut r, mut theta) = (random.log(4.5, 200.0), random.even(0.1, PI - 0.1));
+    scene.camera.motion = [Motion::Static, Motion::Velocity, Motion::FreeFall][number as usize % 3];
+    match kind {
+        Kind::Spinning => scene.hole.spin = random.even(-0.998, 0.998),
+        Kind::Static => scene.camera.motion = [Motion::Static, Motion::Velocity, Motion::Orbit][number as usize % 3],
+        Kind::Rain => {
+            scene.camera.motion = Motion::FreeFall;
+            r = if number.is_multiple_of(2) { random.even(1.0, 2.9) } else { r };
+        }
+    }
+    if number % 8 == 7 {
+        theta = 0.5 * PI;
+    }
+    scene.hole.mass = random.log(0.1, 10.0);
+    let mut place = chart(r, theta, random.even(0.0, 6.0));
+    if number % 8 == 7 {
+        place.z = 0.0;
+    }
+    scene.camera = Camera {
+        projection: [Projection::Perspective, Projection::Fisheye, Projection::Equirect, Projection::Cube]
+            [(number / 4) as usize % 4],
+        position: place * scene.hole.mass,
+        forward: random.direction() - place.normalize() * 1.5,
+        up: random.direction(),
+        fov_y: random.even(0.3, 1.5),
+        velocity: random.direction() * random.even(0.0, 0.9),
+        motion: scene.camera.motion,
+    };
+    let disk = scene.disk.as_mut().expect("the default scene has a disk");
+    disk.retrograde = number.is_multiple_of(5);
+    disk.opacity = [1.0, 0.5, 0.7][number as usize % 3];
+    disk.brightness = random.log(0.1, 10.0);
+    disk.temperature = random.log(1000.0, 50_000.0);
+    disk.turbulence = random.even(0.2, 1.0);
+    disk.seed = random.bits();
+    scene.haze =
+        Some(Haze { radius: random.log(2.0, 50.0), brightness: random.log(0.1, 10.0), absorption: random.share() });
+    scene.time = random.even(0.0, 1e4);
+    scene.sky.orientation = DQuat::from_xyzw(random.share(), random.share(), random.share(), 1.0).normalize();
+    scene.sky.flags = Sky::STARS | Sky::GRID | Sky::MAP;
+    scene.sky.stars_brightness = random.log(0.5, 2.0);
+    scene.sky.map_brightness = random.log(0.1, 2.0);
+    scene.sky_map = Some(sky::map().clone());
+    scene.effects =
+        if number.is_multiple_of(2) { Effects(Effects::ALL) } else { Effects(random.bits() as u32 & Effects::ALL) };
+    let height = 90;
+    let full_width = if scene.camera.projection == Projection::Cube { 6 * height } else { 160 };
+    let region = Region { full_width, full_height: height, x: 0, y: 0 };
+    let lens = scene.lens(&region).unwrap_or_else(|error| panic!("scene {number}: {error}"));
+    let mut uniform = FrameUniform::new(&scene, &lens, &for_f32(scene.pixel_settings()), 4).expect("a uniform");
+    let size = sky::map().levels()[0].size;
+    uniform.map_sizes = [size[0], size[1], size[0], size[1]];
+    View { scene, lens, uniform }
+}
+
+pub fn tables() -> Vec<Table> {
+    let bytes = views().iter().flat_map(|view| bytemuck::bytes_of(&view.uniform).to_vec()).collect();
+    vec![Table { name: "frames", bytes }]
+}
+
+/// Pushes a place of the frame, pixels, within it and a little beside.
+pub fn push_place(i: &mut Inputs, view: &View) {
+    let mapping = &view.lens.mapping;
+    i.even(-1.0, mapping.width + 1.0);
+    i.even(-1.0, mapping.height + 1.0);
+}
+
+/// A look direction in the local frame that light can come from.
+pub fn push_look(i: &mut Inputs, view: &View) -> DVec3 {
+    let frame = &view.lens.observer.frame;
+    loop {
+        let n = i.random.direction();
+        if frame.momenta().energy(n) > 0.02 {
+            return i.vector(n);
+        }
+    }
+}
