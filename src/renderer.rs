@@ -274,8 +274,10 @@ impl Renderer {
             (View::Light, PixelFormat::R32F) => {
                 return Err(Error::argument("format R32F holds views other than LIGHT; set another view or format"));
             }
-            (view, PixelFormat::Rgba16F | PixelFormat::Rgba32F) if view != View::Light => {
-                return Err(Error::argument(format!("view {view:?} goes into 8-bit formats or R32F, not {format}")));
+            (View::Light, _) | (_, PixelFormat::R32F) => {}
+            (view, format) if !format.is_developed() => {
+                let view = format!("{view:?}").to_uppercase();
+                return Err(Error::argument(format!("view {view} goes into 8-bit formats or R32F, not {format}")));
             }
             _ => {}
         }

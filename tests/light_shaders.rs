@@ -134,7 +134,8 @@ impl Gpu {
         let pixels = match film.format {
             1 | 2 => 0,
             3 | 4 => 1,
-            _ => 2,
+            5 => 2,
+            other => panic!("which kernel develops format {other}?"),
         };
         let constants = [
             ("PIXELS", f64::from(pixels)),

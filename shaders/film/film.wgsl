@@ -48,9 +48,14 @@ fn is_agx() -> bool {
     return TONE_MAP == TONE_MAP_AGX;
 }
 
+// Whether a pixel has two words or four, and not one.
+fn has_several_words() -> bool {
+    return is_float();
+}
+
 // 32-bit words of a pixel.
 fn pixel_words() -> u32 {
-    return select(1u, select(2u, 4u, is_rgba32f()), is_float());
+    return select(1u, select(2u, 4u, is_rgba32f()), has_several_words());
 }
 
 // One pixel, in the first pixel_words() of the four words.

@@ -13,7 +13,7 @@ fn write_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let words = develop(radiance, place.x, place.y);
     let i = id.y * (pass_.size.x - 2u) + id.x;
     // This is no loop over words[k]: with one, frames at spin 0.9 take 11 % longer (H200).
-    if is_float() {
+    if has_several_words() {
         let first = pixel_words() * i;
         pixels[first] = words.x;
         pixels[first + 1u] = words.y;

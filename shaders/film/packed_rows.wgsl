@@ -20,7 +20,7 @@ fn keep_words(words: vec4<u32>) {
     // No loop, as in packed.wgsl.
     let first = pixel_words() * rows_index;
     row_words[first] = words.x;
-    if is_float() {
+    if has_several_words() {
         row_words[first + 1u] = words.y;
         if is_rgba32f() {
             row_words[first + 2u] = words.z;

@@ -174,7 +174,7 @@ fn weights(sigmas: &[f64]) -> (Vec<f64>, f64) {
 impl Bloom {
     /// Whether a frame of this kind has any.
     pub fn is_shown(film: &Film, view: View, format: PixelFormat) -> bool {
-        film.bloom > 0.0 && view == View::Light && format.is_8bit()
+        film.bloom > 0.0 && view == View::Light && format.is_developed()
     }
 
     /// The bloom of a whole frame; `None`: it has none. Errors: OUT_OF_MEMORY.

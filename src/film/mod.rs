@@ -63,6 +63,10 @@ impl FilmParams {
         [r, g, b, limited(a, 1.0)]
     }
 
+    fn pixel_format(&self) -> PixelFormat {
+        PixelFormat::of_number(self.format).unwrap_or(PixelFormat::Rgba8Srgb)
+    }
+
     fn tone_map_kind(&self) -> ToneMap {
         match self.tone_map {
             1 => ToneMap::Aces,
@@ -85,7 +89,7 @@ impl FilmParams {
     /// The word of red, green, blue, alpha codes: the first in the lowest byte, or blue for BGRA8.
     #[inline(always)]
     fn packed_8bit(&self, [r, g, b, a]: [u32; 4]) -> u32 {
-        let (low, high) = if self.format == 2 { (b, r) } else { (r, b) };
+        let (low, high) = if self.format == PixelFormat::Bgra8Srgb as u32 { (b, r) } else { (r, b) };
         low | g << 8 | high << 16 | a << 24
     }
 }
@@ -96,11 +100,7 @@ pub type PackedPixel = ArrayVec<u8, 16>;
 /// One pixel of the frame: a row of one, as `develop_row`.
 pub fn develop(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> PackedPixel {
     let mut bytes = [0; 16];
-    let length = match params.format {
-        3 => 8,
-        4 => 16,
-        _ => 4,
-    };
+    let length = params.pixel_format().bytes_per_pixel();
     develop_row(params, &[radiance.map(f64::from)], x, y, &mut bytes[..length]);
     bytes[..length].iter().copied().collect()
 }
@@ -109,14 +109,23 @@ pub fn develop(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32) -> Packe
 /// view, its value first. (`x`, `y`): the first pixel's place in the whole frame, which the dither goes by, so that
 /// tiles join without a seam.
 pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, out: &mut [u8]) {
-    match (params.format, params.false_colour != 0, params.tone_map_kind()) {
-        (3, ..) => write_row(radiance, x, out, |v, _| develop_rgba16f(params, v)),
-        (4, ..) => write_row(radiance, x, out, |v, _| develop_rgba32f(params, v)),
-        (5, ..) => write_row(radiance, x, out, |v, _| [v[0].to_bits()]),
-        (_, true, _) => write_row(radiance, x, out, |v, _| [params.packed_8bit(false_colour_codes(params, v[0]))]),
-        (_, _, ToneMap::None) => write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::clip)]),
-        (_, _, ToneMap::Aces) => write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::aces)]),
-        (_, _, ToneMap::Agx) => write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::agx)]),
+    use PixelFormat::{Bgra8Srgb, R32F, Rgba8Srgb, Rgba16F, Rgba32F};
+    match (params.pixel_format(), params.false_colour != 0, params.tone_map_kind()) {
+        (Rgba16F, ..) => write_row(radiance, x, out, |v, _| develop_rgba16f(params, v)),
+        (Rgba32F, ..) => write_row(radiance, x, out, |v, _| develop_rgba32f(params, v)),
+        (R32F, ..) => write_row(radiance, x, out, |v, _| [v[0].to_bits()]),
+        (Rgba8Srgb | Bgra8Srgb, true, _) => {
+            write_row(radiance, x, out, |v, _| [params.packed_8bit(false_colour_codes(params, v[0]))]);
+        }
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::None) => {
+            write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::clip)]);
+        }
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Aces) => {
+            write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::aces)]);
+        }
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Agx) => {
+            write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::agx)]);
+        }
     }
 }
 

@@ -47,9 +47,19 @@ impl PixelFormat {
         }
     }
 
-    /// Codes of 8 bits, which film makes; the others hold numbers as they are.
-    pub fn is_8bit(self) -> bool {
-        self.channel_bytes() == 1
+    /// The format whose value in `BHR_FORMAT_*` this is.
+    pub fn of_number(number: u32) -> Option<Self> {
+        [Self::Rgba8Srgb, Self::Bgra8Srgb, Self::Rgba16F, Self::Rgba32F, Self::R32F]
+            .into_iter()
+            .find(|format| *format as i32 as u32 == number)
+    }
+
+    /// Codes, which film makes of light and of views' values; the others hold numbers as they are.
+    pub fn is_developed(self) -> bool {
+        match self {
+            Self::Rgba8Srgb | Self::Bgra8Srgb => true,
+            Self::Rgba16F | Self::Rgba32F | Self::R32F => false,
+        }
     }
 
     /// Bytes of one channel; pixels and rows are aligned to it.

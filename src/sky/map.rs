@@ -78,9 +78,9 @@ impl SkyMap {
                     *out = std::array::from_fn(|c| channels.get(c).map_or(0.0, |bytes| f32::from_ne_bytes(*bytes)));
                 }
             }),
-            PixelFormat::R32F => Err(Error::argument(
-                "equirect format is R32F; a sky map has colours: RGBA8_SRGB, BGRA8_SRGB, RGBA16F or RGBA32F",
-            )),
+            format => Err(Error::argument(format!(
+                "equirect format is {format}; a sky map has colours: RGBA8_SRGB, BGRA8_SRGB, RGBA16F or RGBA32F"
+            ))),
         }
     }
 

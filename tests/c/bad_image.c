@@ -107,7 +107,7 @@ static void alignment(Watch *watch) {
 }
 
 static void constants(Watch *watch) {
-    static const BhrFormat unknown[] = {0, 6, -1, 1000, INT32_MIN};
+    static const BhrFormat unknown[] = {0, 99, -1, 1000, INT32_MIN};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
         BhrImage image = good_image();
         image.format = unknown[i];

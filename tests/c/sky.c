@@ -65,7 +65,7 @@ static void odd_content(BhrContext *context) {
 static void formats(Watch *watch) {
     static const BhrFormat good[] = {BHR_FORMAT_RGBA8_SRGB, BHR_FORMAT_BGRA8_SRGB, BHR_FORMAT_RGBA16F,
                                      BHR_FORMAT_RGBA32F};
-    static const BhrFormat bad[] = {0, -1, 6, 99, BHR_FORMAT_R32F};
+    static const BhrFormat bad[] = {0, -1, 99, 1000, BHR_FORMAT_R32F};
     BhrImage               map = image_of(BHR_FORMAT_RGBA32F, WIDTH, HEIGHT, map_pixels, sizeof map_pixels);
     memset(map_pixels, 0x3c, sizeof map_pixels);
     for (size_t i = 0; i < COUNT_OF(good); i++) {

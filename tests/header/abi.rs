@@ -82,7 +82,9 @@ fn comment_before(text: &str, word: &str) -> String {
     let declares = |line: &&str| is_word(line) && !line.trim_start().starts_with(['*', '/']);
     let line = text.lines().find(declares).unwrap_or_else(|| panic!("{word} is not declared"));
     let before = &text[..line.as_ptr() as usize - text.as_ptr() as usize];
-    let comment = before.rfind("/**").map_or("", |begin| &before[begin..]);
+    // A constant in a table has its comment behind it.
+    let behind = line.split_once("/**<").map(|(_, comment)| comment);
+    let comment = behind.unwrap_or_else(|| before.rfind("/**").map_or("", |begin| &before[begin..]));
     comment.split(['*', ' ', '\n']).filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
 }
 

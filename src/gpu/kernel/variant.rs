@@ -98,7 +98,7 @@ impl FilmVariant {
             PixelFormat::R32F => PixelKind::R32F,
         };
         let shows_light = view == View::Light;
-        let tone_map = if shows_light && pixels == PixelKind::EightBit { film.tone_map } else { ToneMap::None };
+        let tone_map = if shows_light && format.is_developed() { film.tone_map } else { ToneMap::None };
         Self { pixels: Some(pixels), false_colour: !shows_light, tone_map: Some(tone_map), target }
     }
 

@@ -113,7 +113,8 @@ pub fn group() -> Group {
     let twins = vec![
         twin(
             film,
-            "develop develop_8bit tone_map dither alpha_of is_float is_r32f is_aces is_agx pixel_words",
+            "develop develop_8bit tone_map dither alpha_of is_float is_r32f is_aces is_agx pixel_words \
+             has_several_words",
             DEVELOP,
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);

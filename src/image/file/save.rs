@@ -17,15 +17,21 @@ enum FileKind {
 /// Errors: UNSUPPORTED, with the extension to use instead.
 fn kind_for(path: &Path, format: PixelFormat) -> Result<FileKind> {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    match (extension.as_str(), format.is_8bit()) {
-        ("png", true) => Ok(FileKind::Png),
-        ("ppm", true) => Ok(FileKind::Ppm),
-        ("exr", false) => Ok(FileKind::Exr),
-        _ => Err(Error::unsupported(format!(
-            "path {} has extension \"{extension}\"; {format:?} is saved to {}",
-            path.display(),
-            if format.is_8bit() { ".png or .ppm" } else { ".exr" }
-        ))),
+    let kinds = kinds_of(format);
+    let fits = kinds.iter().find(|(known, _)| *known == extension);
+    fits.map(|(_, kind)| *kind).ok_or_else(|| {
+        let known = kinds.iter().map(|(known, _)| format!(".{known}")).collect::<Vec<_>>();
+        let known = if known.is_empty() { "no file".into() } else { known.join(" or ") };
+        let path = path.display();
+        Error::unsupported(format!("path {path} has extension \"{extension}\"; {format} is saved to {known}"))
+    })
+}
+
+/// The extensions that pixels of a format are saved under.
+fn kinds_of(format: PixelFormat) -> &'static [(&'static str, FileKind)] {
+    match format {
+        PixelFormat::Rgba8Srgb | PixelFormat::Bgra8Srgb => &[("png", FileKind::Png), ("ppm", FileKind::Ppm)],
+        PixelFormat::Rgba16F | PixelFormat::Rgba32F | PixelFormat::R32F => &[("exr", FileKind::Exr)],
     }
 }
 
