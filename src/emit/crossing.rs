@@ -19,7 +19,7 @@ pub struct Crossing {
     pub order: u32,
     /// g of matter on the circular geodesic there, the camera's motion included.
     pub g: f64,
-    /// The place and time; known where an emitter needs them ([`Needs`]).
+    /// The place and time; known where an emitter needs them (`Needs` of `emit`).
     pub place: EmissionPoint,
     /// Change of `place` to the next pixel right and down; ln_r 1e30 where it is not known.
     pub footprint: [EmissionPoint; 2],
