@@ -25,7 +25,7 @@ struct Bars {
 const F64: Bars = Bars { worst: 1e-9, most: 1e-9, azimuth: 1e-7, fate_delta: 0.0 };
 const F32: Bars = Bars { worst: 2e-5, most: 2e-6, azimuth: 2e-3, fate_delta: 1e-5 };
 /// Pixels that are integrated, at their own, larger step: judged by the conditioning that differences between pixels
-/// show, which is too small beside the shadow. tests/tracers/lens.rs has their true one.
+/// show, which is too small beside the shadow. tests/tracers/lens/records.rs has their true one.
 const PIXEL: Bars = Bars { worst: 1e-4, most: 1e-4, azimuth: 2e-3, fate_delta: 1e-5 };
 /// RK4 at its default step: ten times the f32 bars.
 const RK4: Bars = Bars { worst: 2e-4, most: 2e-5, azimuth: 2e-2, fate_delta: 1e-4 };

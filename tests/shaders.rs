@@ -244,8 +244,8 @@ fn loops_of(block: &Block, function: &str, source: &str, found: &mut Vec<(String
     }
 }
 
-/// wgpu is told that every loop of the shaders ends (`Loops::Proven` in src/gpu/kernels.rs): a new loop, or one with
-/// another head, goes on the list once somebody knows why it does.
+/// wgpu is told that every loop of the shaders ends (`Loops::Proven` in src/gpu/kernel/kernels.rs): a new loop, or one
+/// with another head, goes on the list once somebody knows why it does.
 #[test]
 fn every_loop_ends_for_a_reason() {
     let mut listed = BTreeSet::new();

@@ -25,7 +25,7 @@ fn step_ray(c: Constants, s: State, h: f32) -> Step {
     return Step(nystrom_step(c, s, h), 0.0);
 }
 
-// Order 5 (geodesic/nystrom.wgsl); without spin N turns evenly, which is exact.
+// Order 5 (src/physics/integrator.rs); without spin N turns evenly, which is exact.
 fn nystrom_step(c: Constants, s: State, h: f32) -> State {
     let h2 = h * h;
     let f1 = u_acceleration(c, s.u);

@@ -1,6 +1,6 @@
 // The lens of an observer outside the photon region of a spinning hole, as tables over the look direction in polar
 // coordinates (psi, chi) about the centre of the critical curve psi = R(chi). Shared by the kernels that build the
-// tables and those that read them; mirrors src/physics/lens/kerr.rs, where the reasons are.
+// tables and those that read them; mirrors src/physics/lens/kerr/, where the reasons are.
 //
 // Columns: w = (chi + v) / 2, tan v = tan chi / epsilon, KERR_COLUMNS around. Rows: log2 of t_hat = |tan((psi - R) /
 // 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row KERR_ROWS_BELOW standing for 2^-KERR_OCTAVES; those of the inner

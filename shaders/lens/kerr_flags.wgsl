@@ -1,5 +1,5 @@
 // Kernel: what may happen in each cell of the tables of lens/kerr.wgsl, and whether it may be interpolated; one thread
-// a cell. Mirrors `Patch` of src/physics/lens/kerr.rs.
+// a cell. Mirrors `Patch` of src/physics/lens/kerr/cells.rs.
 
 #import constants
 #import lens/kerr

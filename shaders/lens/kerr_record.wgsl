@@ -1,4 +1,4 @@
-// Looks rays up in the tables of lens/kerr.wgsl. Mirrors src/physics/lens/kerr.rs and src/cpu/lens.rs.
+// Looks rays up in the tables of lens/kerr.wgsl. Mirrors src/physics/lens/kerr/ and src/cpu/lens.rs.
 
 #import constants
 #import camera/observer

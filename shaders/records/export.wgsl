@@ -1,4 +1,4 @@
-// Writes the ray records of a tile into a buffer, for tests: src/gpu/export.rs reads them.
+// Writes the ray records of a tile into a buffer, for tests: src/gpu/frame/export.rs reads them.
 
 #import constants
 #import records/record

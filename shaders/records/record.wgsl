@@ -80,7 +80,8 @@ struct Crossing {
 fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;
-    let sum = abs(change.x) + abs(change.y);
+    // Without a disk, whose edges are (1, 0) then, there are none.
+    let sum = select(0.0, abs(change.x) + abs(change.y), far <= near);
     let steep = u >= far && u <= near && sum > STEEP_CHANGE * u;
     return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }

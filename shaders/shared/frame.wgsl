@@ -1,4 +1,4 @@
-// The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/uniforms.rs.
+// The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms.rs.
 
 #import shared/not_inlined
 #requires var frame: Frame

@@ -67,7 +67,7 @@ fn map_place(towards: vec3<f32>) -> vec2<f32> {
     );
 }
 
-// Where a level begins in the texture (level_place of src/gpu/sky_maps.rs).
+// Where a level begins in the texture (level_place of src/gpu/frame/sky_maps.rs).
 fn level_place(finest: vec2<u32>, level: u32) -> vec2<i32> {
     let below = vec2<u32>(finest.x - (finest.x >> (max(level, 1u) - 1u)), finest.y);
     return vec2<i32>(select(below, vec2<u32>(0u), level == 0u));

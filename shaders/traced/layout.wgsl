@@ -7,11 +7,11 @@
 //                   delay (with DELAY, else 0). With PARTS, from layer frame.medium_layer on, the medium before each
 //                   crossing and behind the last (emit/medium.wgsl).
 
-// x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge; bit 16 + k:
-// it is the disk's. y: steps. z, w: E and L; in the METRIC view z is plane_u.
+// x: bits 0 .. 1 the fate; bit 2 + k, k < 14: the crossing of order k lies inside the disk's inner edge, or is kept
+// outside its outer edge; bit 16 + k: it is kept. y: steps. z, w: E and L; in the METRIC view z is plane_u.
 struct TracedMeta {
     fate: u32,
-    inside: u32,
+    beside_disk: u32,
     orders: u32,
     steps: u32,
     energy: f32,
@@ -19,7 +19,7 @@ struct TracedMeta {
 }
 
 fn pack_meta(m: TracedMeta) -> vec4<u32> {
-    return vec4<u32>(m.fate | ((m.inside & 0x3fffu) << 2u) | (m.orders << 16u), m.steps,
+    return vec4<u32>(m.fate | ((m.beside_disk & 0x3fffu) << 2u) | (m.orders << 16u), m.steps,
         bitcast<u32>(m.energy), bitcast<u32>(m.angular_momentum));
 }
 

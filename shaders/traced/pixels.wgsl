@@ -25,16 +25,19 @@ override AZIMUTH: bool = true;
 var<private> pixel: vec2<u32>;
 var<private> frequency_ratio: f32;
 var<private> disk_orders: u32;
-var<private> inside_orders: u32;
+var<private> beside_orders: u32;
 var<private> plane_u: f32;
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if crossing.order == 0u {
         plane_u = crossing.u;
     }
-    // Without a disk its edges are (1, 0).
-    if crossing.u > max(frame.disk_u.x, frame.disk_u.y) {
-        inside_orders |= 1u << crossing.order;
+    // Without a disk, whose edges are (1, 0) then, inside all that shines; (1, 0) is nothing's range, too.
+    let disk = frame.disk_u.x <= frame.disk_u.y;
+    let edge = select(max(frame.plane_u.x, frame.plane_u.y), frame.disk_u.y, disk);
+    // Crossings that are kept outside the disk count as well: those on the disk, which are kept, too, differ from them.
+    if crossing.u > edge || (disk && crossing.u < frame.disk_u.x && crossing.u >= frame.plane_u.x) {
+        beside_orders |= 1u << crossing.order;
     }
     if crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y {
         var azimuth = 0.0;
@@ -72,7 +75,7 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     let c = begin.c;
     frequency_ratio = begin.frequency_ratio;
     disk_orders = 0u;
-    inside_orders = 0u;
+    beside_orders = 0u;
     plane_u = 0.0;
     medium = NO_MEDIUM;
     var sky = vec4<f32>(0.0);
@@ -93,7 +96,7 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     textureStore(record_sky, pixel, sky);
     m.orders = disk_orders;
-    m.inside = inside_orders;
+    m.beside_disk = beside_orders;
     if frame.view == VIEW_METRIC {
         m.energy = plane_u;
     }

@@ -255,7 +255,7 @@ impl<'a> LensLookup<'a> {
     /// `curve`: distance to the critical curve, pixels; `outside`: the ray escapes.
     fn note_edge(&self, record: &mut Record, on_edge: bool, outside: bool, curve: f64) {
         let seen = if record.fate == Fate::Hidden { f64::INFINITY } else { curve };
-        record.edge = looked_up_edge(on_edge, outside && self.recorder.disk_u.is_some(), seen);
+        record.edge = looked_up_edge(on_edge, outside && self.recorder.plane_u.is_some(), seen);
     }
 
     fn look_direction(&self, x: f64, y: f64) -> LookDirection {

@@ -92,7 +92,10 @@ impl<'a> Recorder<'a> {
         let Some([outer, inner]) = self.plane_u else { return };
         let within = |u: f64| u >= outer && u <= inner;
         let edge = self.disk_u.map_or(inner, |[_, inner]| inner);
-        record.inside = traced.crossings.iter().filter(|x| x.u > edge).fold(0, |bits, x| bits | 1 << (x.order & 15));
+        // Crossings that are kept outside the disk count as well, so that those on the disk, which are kept, differ.
+        let beyond = |u: f64| self.disk_u.is_some_and(|[outer, _]| u < outer && within(u));
+        let off_disk = traced.crossings.iter().filter(|x| x.u > edge || beyond(x.u));
+        record.beside_disk = off_disk.fold(0, |bits, x| bits | 1 << (x.order & 15));
         record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| Crossing {
             u: x.u,
             order: x.order,
@@ -140,7 +143,7 @@ fn edge_between(here: &Record, there: &Record) -> Edge {
     if here.fate != there.fate && here.fate != Fate::Hidden && there.fate != Fate::Hidden {
         return Edge::Curve;
     }
-    let alike = here.fate == there.fate && here.inside == there.inside && orders(here) == orders(there);
+    let alike = here.fate == there.fate && here.beside_disk == there.beside_disk && orders(here) == orders(there);
     if alike { Edge::None } else { Edge::Disk }
 }
 

@@ -63,6 +63,10 @@ impl<'a> Refiner<'a> {
                 let of_order = orders.as_ref().and_then(|orders| orders.get(crossing.order as usize));
                 crossing.share = of_order.map_or(0.0, |crossings| crossings.covered_share(index));
                 if let Some([outer, inner]) = self.plane_u {
+                    // Where nothing shines g may be no number at all.
+                    if crossing.share == 0.0 && !(crossing.u >= outer && crossing.u <= inner) {
+                        crossing.g = 1.0;
+                    }
                     crossing.u = crossing.u.clamp(outer, inner);
                 }
             }

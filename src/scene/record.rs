@@ -25,8 +25,8 @@ pub struct Record {
     pub steps: u32,
     /// 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
     pub plane_u: f64,
-    /// Orders of crossings inside the disk's inner edge, a bit each.
-    pub inside: u16,
+    /// Orders of crossings inside the disk's inner edge, or kept outside its outer edge, a bit each.
+    pub beside_disk: u16,
     /// The edge that runs through the pixel.
     pub edge: Edge,
     pub crossings: ArrayVec<Crossing, CROSSINGS_KEPT>,
@@ -46,7 +46,7 @@ impl Record {
             angular_momentum: 0.0,
             steps: 0,
             plane_u: 0.0,
-            inside: 0,
+            beside_disk: 0,
             edge: Edge::None,
             crossings: ArrayVec::new(),
             media: Media::new(),
@@ -65,7 +65,7 @@ impl Record {
         self.angular_momentum = 0.0;
         self.steps = 0;
         self.plane_u = 0.0;
-        self.inside = 0;
+        self.beside_disk = 0;
         self.edge = Edge::None;
     }
 }

@@ -55,7 +55,7 @@ pub fn imported(bytes: &[u8]) -> Record {
         angular_momentum: momentum,
         steps: steps as u32,
         plane_u,
-        inside: 0,
+        beside_disk: 0,
         edge: Edge::None,
         crossings: rest.as_chunks().0.iter().take(count as usize).map(crossing).collect(),
         media: Media::new(),

@@ -118,7 +118,7 @@ pub fn group() -> Group {
             layout,
             "pack_meta unpack_meta",
             "let m = unpack_meta(pack_meta(TracedMeta(word(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u))));
-             out_word(m.fate); out_word(m.inside); out_word(m.orders); out_word(m.steps); out1(m.energy);
+             out_word(m.fate); out_word(m.beside_disk); out_word(m.orders); out_word(m.steps); out1(m.energy);
              out1(m.angular_momentum);",
             |i| {
                 i.pick(4);
