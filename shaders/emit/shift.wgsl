@@ -1,18 +1,20 @@
-// How effects let the frequency shifts of light show. Mirrors src/cpu/shade.rs. Knows no light.
+// The parts of light's frequency shift that a scene's effects (BHR_EFFECT_*) show. Mirrors src/cpu/shade.rs and
+// src/physics/orbit.rs. Knows no emitter and no colour.
 
 #import constants
 #import shared/frame
 
-// False: an effect that colours light or changes its brightness is switched off.
+// True: every effect on the colour or brightness of light is on, and g is used as it is. False: at least one is off.
 override ALL_EFFECTS: bool = true;
 
-// How the effects let frequency shifts show: the shift that colours, and the one that beams.
+// Ratios of seen to emitted frequency: the one that shading uses for colour, and the one for brightness (beaming).
 struct Shift {
     colour: f32,
     beaming: f32,
 }
 
-// g = g_gravity g_doppler, split at the local static observers (ZAMOs); `gravity` is the former.
+// Leaves out of g what the effects switch off. g = gravity * Doppler shift; `gravity` is between the ZAMOs (without
+// spin: static observers) at the emitter and at the camera. Beaming takes all of g or nothing.
 fn visible_shift(g: f32, gravity: f32) -> Shift {
     var colour = g;
     if (frame.effects & EFFECT_DOPPLER_SHIFT) == 0u {
@@ -34,7 +36,8 @@ fn nu_static_observer(energy: f32) -> f32 {
     return energy / sqrt(static_lapse);
 }
 
-// nu measured by the ZAMO at (u, cos theta) (physics/orbit.rs).
+// The frequency that the ZAMO at 1/r = u and cos theta = `cosine` measures (src/physics/orbit.rs). frame.hole is a, r+,
+// r-; d = Delta / r^2; big_a = A / r^4; omega is the ZAMO's angular velocity.
 fn zamo_frequency(u: f32, cosine: f32, energy: f32, angular_momentum: f32) -> f32 {
     let a2u2 = frame.hole.x * frame.hole.x * u * u;
     let d = (1.0 - frame.hole.y * u) * (1.0 - frame.hole.z * u);

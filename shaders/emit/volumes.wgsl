@@ -31,7 +31,7 @@ fn add_part(c: Constants, from_state: State, begin: f32, end: f32, ratio: f32) {
         let x = f32(i / 3u) + 0.5 + OFFSET * (f32(place) - 1.0);
         let weight = select(5.0 / 18.0, 8.0 / 18.0, place == 1u) * size;
         let there = step_ray(c, from_state, begin + size * x).state;
-        // Beyond infinity, and at the horizon, is nothing.
+        // No matter is past infinity (u <= 0), where the last step of a ray may end, nor within the horizon.
         if there.u > 0.0 && there.u < 1.0 / c.r_plus {
             let a_cosine = c.a * there.n.z;
             // d lambda / d tau = Sigma (`Part::length`).

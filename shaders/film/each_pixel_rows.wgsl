@@ -1,4 +1,6 @@
-// Kernel: does what records/each_pixel.wgsl does, for film/packed_rows.wgsl.
+// Kernel: makes the record of each pixel of a tile and hands it to take_record, as records/each_pixel.wgsl does; but a
+// workgroup gathers its 32 x 4 pixels and writes them row by row, which is faster where the pixels lie in the host's
+// memory (film/packed_rows.wgsl says by how much).
 
 #import constants
 #import film/packed_rows
@@ -10,7 +12,9 @@
 #requires fn defer_pixel(id: vec2<u32>)
 #requires fn take_record(id: vec2<u32>, record: Record)
 
-// 32 threads that run together take 8 x 4 pixels that lie together; four times 32 take the 32 x 4 of a workgroup.
+// Thread i does not take pixel (i % 32, i / 32): each 32 consecutive threads, which a GPU runs together, take a block
+// of 8 x 4 neighbouring pixels, whose rays take much the same steps. Four such blocks side by side are the workgroup's
+// 32 x 4 pixels.
 @compute @workgroup_size(32, 4)
 fn each_pixel(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) i: u32) {
     unknown_zero = group.z;
@@ -19,6 +23,7 @@ fn each_pixel(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
     let corner = group.xy * vec2<u32>(ROWS_WIDTH, ROWS_PIXELS / ROWS_WIDTH);
     let id = corner + vec2<u32>(x, y);
     rows_index = y * ROWS_WIDTH + x;
+    // Deferred pixels are written by a later kernel; until then their words are 0.
     keep_words(vec4<u32>(0u));
     if !outside_tile(id) {
         let record = ray_record(id);

@@ -1,17 +1,21 @@
-// The lens of an observer outside the photon region of a spinning hole, as tables over the look direction in polar
-// coordinates (psi, chi) about the centre of the critical curve psi = R(chi). Shared by the kernels that build the
-// tables and those that read them; mirrors src/physics/lens/kerr/, where the reasons are.
+// Tables of what becomes of the rays of one observer, who is outside the photon region of a spinning hole: sky
+// direction and crossings of the equatorial plane, by look direction. Look directions are in polar coordinates about
+// the centre of the shadow: psi is the angle from the centre, chi the angle around it, psi = R(chi) the critical curve
+// (the shadow's edge). Shared by the kernels that build the tables and those that read them. The reasons are in
+// src/physics/lens/kerr/mod.rs and grid.rs.
 //
-// Columns: w = (chi + v) / 2, tan v = tan chi / epsilon, KERR_COLUMNS around. Rows: log2 of t_hat = |tan((psi - R) /
-// 2)| / tan(R / 2), KERR_PER_OCTAVE an octave, row KERR_ROWS_BELOW standing for 2^-KERR_OCTAVES; those of the inner
-// branch (captured) follow those of the outer (escaping).
+// Columns: KERR_COLUMNS even steps of w = (chi + v) / 2 over [0, 2 pi), where tan v = tan chi / epsilon and epsilon =
+// |cot theta| of the observer, within 0.03 .. 1. Rows: KERR_PER_OCTAVE to an octave of t_hat = |tan((psi - R) / 2)| /
+// tan(R / 2); row KERR_ROWS_BELOW stands for t_hat = 2^-KERR_OCTAVES. The rows of rays that escape (outer branch) come
+// first, those of captured rays (inner branch) follow.
 
 #import constants
 #import lens/axis
 #requires var lens: KerrLens
 
 struct KerrLens {
-    // The centre, and the directions of chi = 90 degrees and 0; local components. w of the first: epsilon.
+    // Unit vectors as (n_r, n_theta, n_phi) of the local frame: the shadow's centre (k.w is epsilon), then the
+    // directions in which chi is 90 degrees (e1) and 0 (e2).
     k: vec4<f32>,
     e1: vec4<f32>,
     e2: vec4<f32>,
@@ -19,12 +23,13 @@ struct KerrLens {
     inner_rows: u32,
     // The number of crossings of the plane that a node holds.
     orders: u32,
-    // 1/r beyond which an inward ray is captured.
+    // A ray that moves inward past this 1/r, in 1/M, is captured.
     capture_u: f32,
 }
 
-// Nodes hold where the light of a crossing left, and when: a layer for each order with u, the unit vector of the
-// azimuth and the regular delay; else a layer for each four orders with their u.
+// True: the crossings' table has a layer for each order, a texel being (u, x and y of the unit vector to the emission
+// point, delay less the part that diverges at infinity, M). False: a texel holds u of four orders, and a layer serves
+// those four.
 override PATTERN: bool = false;
 
 // First row of the branch among all rows.
@@ -37,14 +42,14 @@ fn kerr_radial(sine: f32, cosine: f32) -> vec3<f32> {
     return lens.e1.xyz * sine + lens.e2.xyz * cosine;
 }
 
-// Look direction of a node at tan(psi / 2) = a / b.
+// The look direction at the angle psi from the centre, where tan(psi / 2) = a / b; `chi` is (sin chi, cos chi).
 fn kerr_direction(chi: vec2<f32>, a: f32, b: f32) -> vec3<f32> {
     let norm = 1.0 / (a * a + b * b);
     return lens.k.xyz * ((b - a) * (b + a) * norm) + kerr_radial(chi.x, chi.y) * (2.0 * a * b * norm);
 }
 
-// The look direction of row `row` among all rows, or half a row on; `column` holds sin chi, cos chi and tan(R / 2)
-// there.
+// The look direction of the node in `row` (outer rows first), or half a row farther, which gives the width of a cell;
+// `column` holds sin chi, cos chi and tan(R / 2) of the node's column.
 fn kerr_node_direction(column: vec4<f32>, row: u32, half_row: bool) -> vec3<f32> {
     let inner = row >= lens.outer_rows;
     let node = i32(row - kerr_first_row(inner)) - i32(KERR_ROWS_BELOW);

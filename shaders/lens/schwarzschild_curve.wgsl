@@ -1,5 +1,6 @@
-// The parts that the kernels which build the tables of lens/schwarzschild.wgsl share: the ray of a node, followed in
-// sigma = S tau, in which all rays take steps of like size; phi = kappa sigma.
+// The ray of a node of the tables of lens/schwarzschild.wgsl, for the kernels that build them. A ray is followed in
+// sigma = S tau, tau being Mino time and S Constants.scale, in which all rays are about equally long. The angle that
+// it sweeps is phi = kappa sigma. The formulas are in src/physics/lens/schwarzschild.rs.
 
 #import constants
 #import camera/observer
@@ -11,21 +12,24 @@
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> lens: SchwarzschildLens;
 
-// Rays this near to the critical one are followed as deviations from it: nothing else could start them in f32.
+// Rays with t_hat below this are followed as deviations from the critical ray: in f32 their start would otherwise be
+// lost in rounding.
 const NEARLY_CRITICAL: f32 = 0.0625;
 
 // A curve u(sigma) = u_s + v, u_s being the separatrix or 0.
 struct Curve {
-    // u' and S are those of `begin`.
+    // The constants of the ray.
     c: Constants,
+    // sqrt(K) / S.
     kappa: f32,
-    // e0 of the separatrix u_s = -1/6 + ((1 - e) / (1 + e))^2 / 2, e = e0 exp(-phi).
+    // e at the observer. The separatrix (critical ray) is u_s = -1/6 + ((1 - e) / (1 + e))^2 / 2, e = e0 exp(-phi).
     e0: f32,
+    // Whether v is the deviation from the separatrix; if not, u_s = 0 and v = u.
     deviates: bool,
     // v and dv/dsigma at the observer.
     v: f32,
     dv: f32,
-    // -1 beyond psi = pi (or 0), where everything continues on the other side.
+    // -1 for nodes past psi = pi or psi = 0: their rays are on the other side of the axis, and phi counts as negative.
     side: f32,
 }
 
@@ -35,6 +39,7 @@ struct CurvePoint {
     dv: f32,
 }
 
+// The start of the ray at t = tan((psi - psi_c) / 2); `t_hat` is |t| / lens.critical.w.
 fn curve_of(t: f32, t_hat: f32) -> Curve {
     let half_c = lens.critical.x;
     // tan(psi / 2) = a / b
@@ -57,6 +62,7 @@ fn curve_of(t: f32, t_hat: f32) -> Curve {
         let sin_half = t * cos_half;
         let middle = lens.critical.z * cos_half - lens.critical.y * sin_half;
         curve.v = 0.0;
+        // v'(0) of src/physics/lens/schwarzschild.rs, by sigma; its f is lens.slope, its u_e frame.place.x.
         curve.dv = curve.kappa * -2.0 * lens.slope * frame.place.x * sin_half
             * (cos_half - beta * middle) / (sine * lens.critical.y);
     } else {

@@ -1,5 +1,5 @@
-// Ray records without spin, looked up in the tables of lens/schwarzschild.wgsl. Mirrors
-// src/physics/lens/schwarzschild.rs and src/cpu/lens.rs.
+// Ray records about a hole without spin, looked up in the tables of lens/schwarzschild.wgsl. Mirrors
+// src/physics/lens/schwarzschild.rs, src/physics/lens/plane.rs and src/cpu/lens.rs.
 
 #import constants
 #import camera/observer
@@ -13,30 +13,35 @@
 #import shared/pass
 
 @group(1) @binding(0) var<uniform> lens: SchwarzschildLens;
+// Filled by lens/schwarzschild_columns.wgsl, which has the layouts: the swept angle by (node, branch); u and the
+// delay's integral by (node, interval, branch).
 @group(1) @binding(1) var lens_swept: texture_2d<f32>;
 @group(1) @binding(2) var lens_u: texture_2d_array<f32>;
 @group(1) @binding(3) var lens_delay: texture_2d_array<f32>;
 
-// The record at hand: what its crossings need.
+// The results of ray_record that the later calls for the same pixel use.
 struct Lookup {
     // Look direction in the local frame, and nu(camera) / nu(local frame).
     seen: LookDirection,
     branch: u32,
     place: AxisPosition,
-    // Angle to the end of the ray, and to the first crossing of the plane; the number of the next crossing.
+    // The angle about the hole from the observer to the end of the ray, rad.
     swept: f32,
+    // The same to its first crossing of the plane.
     first: f32,
+    // The number of the next crossing.
     order: u32,
-    // d(swept) / d(place), and of the change to the next pixel right and down: d(place), and of the ray's plane about
-    // e_r.
+    // d(swept) / d(place), place being the coordinate in nodes.
     swept_slope: f32,
+    // From this pixel to the next right and below: the change of place, and the angle by which the ray's plane turns
+    // about e_r, rad.
     change: vec2<f32>,
     turn: vec2<f32>,
     // d(first crossing's angle) to the next pixel right and down: the same for every crossing.
     first_change: vec2<f32>,
     // Whether an edge of the disk runs through the pixel at a crossing given so far.
     on_edge: bool,
-    // beyond_right_angle(t).
+    // The factor beyond_right_angle of records/record.wgsl.
     beyond: f32,
     // Unit vectors of the ray's plane (with e_r) and across it, chart.
     along: vec3<f32>,
@@ -51,11 +56,11 @@ fn ray_record(id: vec2<u32>) -> Record {
     let seen = aberrate(view.look);
     let n = seen.n;
     let energy = local_energy(n);
-    // The components of these changes along n turn nothing below.
+    // Below, only the components of these changes at right angles to n count.
     let dx = aberrate_change(seen, view.dx);
     let dy = aberrate_change(seen, view.dy);
 
-    // cos psi = -n_r.
+    // n is (n_r, n_theta, n_phi), and the hole lies towards -e_r: cos psi = -n.x; s is sin psi.
     let s2 = dot(n.yz, n.yz);
     let s = sqrt(s2);
     let t = lens_tangent(-n.x, s2, lens.critical.x);
@@ -90,7 +95,8 @@ fn ray_record(id: vec2<u32>) -> Record {
     lookup.on_edge = false;
     lookup.beyond = beyond_right_angle(t);
     if PLANE {
-        // N_z stays 0 (OrbitPlane::image_change); both factors change sign from crossing to crossing.
+        // The crossing moves so that N_z stays 0: dphi = -sin(phi) dT_z / N_z' (OrbitPlane::phi_change). That is the
+        // same for every crossing, because sin(phi) and N_z' change sign together from one to the next.
         let turn = sincos(min(lookup.first, PI));
         let rise = lookup.along.z * turn.y - frame.e_r.z * turn.x;
         lookup.first_change = lookup.turn * (-lookup.across.z * turn.x / rise);
@@ -105,8 +111,8 @@ fn ray_record(id: vec2<u32>) -> Record {
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
         record.sky = e_r * turn.y + lookup.along * turn.x;
-        // The direction changes by psi in the ray's plane, and by sin(swept) / sin(psi) across it; outward, where both
-        // sines vanish, by their slopes' ratio.
+        // The sky direction changes by d(swept) in the ray's plane, and across it by sin(swept) / sin(psi) times the
+        // change of look direction. For rays that leave radially both sines vanish: the limit is -d(swept) / d(psi).
         let swept_psi = swept_slope * slope;
         let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
         record.footprint = Footprint(lookup.along * turn.y - e_r * turn.x, lookup.across,
@@ -115,14 +121,14 @@ fn ray_record(id: vec2<u32>) -> Record {
     return record;
 }
 
-// E of the look direction n, at nu_local = 1: the lapse, or 1 - sqrt(2 u) cos psi in the rain frame; <= 0: no light
-// comes from there.
+// E of light along the look direction n that the local frame's observer measures at frequency 1: the lapse; in the
+// rain frame 1 - sqrt(2 u) cos psi. If it is not above 0, no light comes from there.
 fn local_energy(n: vec3<f32>) -> f32 {
     return select(frame.place.w, 1.0 + frame.place.w * n.x, frame.rain != 0u);
 }
 
-// phi of the first zero of N_z = cos(theta) cos(phi) - sin(theta) n_theta sin(phi), in (0, pi]; never for a ray in the
-// plane.
+// The angle phi in (0, pi] at which the ray first crosses the plane: the first zero of N_z = cos(theta) cos(phi) -
+// sin(theta) n_theta sin(phi), n_theta being of the unit tangent. 1e30 for a ray that lies in the plane.
 fn first_crossing_angle(n_theta: f32) -> f32 {
     let sine = frame.place.y;
     let cosine = frame.place.z;
@@ -140,8 +146,8 @@ fn next_crossing() -> Crossing {
         return crossing;
     }
     var phi = lookup.first + PI * f32(lookup.order);
-    // Left at its end: lavapipe runs a loop's body once more than a condition at its begin says. (There what is found
-    // must be kept apart, too: lanes that have left go on writing.)
+    // The loop tests at its end: with a test at its start, Mesa's lavapipe runs the body once more than it should.
+    // Lanes that have left go on writing there, too, so nothing is written once a crossing has been found.
     loop {
         let at = column_at(lens_u, phi / max(lookup.swept, 1e-6));
         let u = at.x;
@@ -171,7 +177,7 @@ fn medium_before(k: u32) -> vec4<f32> {
     return vec4<f32>(0.0, 0.0, 0.0, 1.0);
 }
 
-// Whether there is one only next_crossing finds out.
+// Always true: whether there is a further crossing is known only after next_crossing has looked for it.
 fn more_crossings() -> bool {
     return true;
 }
@@ -183,8 +189,8 @@ fn u_change(at: vec3<f32>, phi: f32) -> vec2<f32> {
         + at.z * ((lookup.first_change - y * lookup.swept_slope * lookup.change) / lookup.swept);
 }
 
-// The value of a table over (place, y), and its derivatives by place and by y. It is cubic in both: Hermite in y,
-// Lagrange in place.
+// A table's value at the record's place and y = phi / swept, 0 .. 1, then d/d(place) and d/dy. Interpolation is cubic:
+// Lagrange over nodes, Hermite over y.
 fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
     let scaled = clamp(y, 0.0, 1.0) * f32(LENS_INTERVALS);
     let j = min(u32(scaled), LENS_INTERVALS - 1u);
@@ -219,7 +225,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
     let turn = sincos(phi);
     let n = frame.e_r.xyz * turn.y + lookup.along * turn.x;
     let tangent = lookup.along * turn.y - frame.e_r.xyz * turn.x;
-    // u' by tau.
+    // du/dtau.
     let kappa = sqrt(c.k);
     let du = at.z / lookup.swept * kappa;
     (*crossing).place = EmissionPoint(-log(u), arctan2(n.y, n.x), 0.0);
@@ -234,7 +240,8 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
     let phi_change = lookup.first_change;
     let azimuth_change = (lookup.turn * swing + phi_change * around) / rho2;
     let du_change = u_change(at, phi);
-    // The gradient of the travel time at its far end is the photon's momentum: b along phi, -u' / (D u^2) along u.
+    // The gradient of the travel time at the emission point is the photon's momentum over E (Hamilton-Jacobi):
+    // sqrt(K) / E along phi, and du/dtau / (u^2 (1 - 2 u) E) along u.
     var delay_change = vec2<f32>(0.0);
     if DELAY {
         delay_change = (kappa * phi_change + du / (u * u * (1.0 - 2.0 * u)) * du_change) / c.energy;
@@ -244,12 +251,12 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
 }
 
 fn edges_of_pixel(through: f32) -> u32 {
-    // d(place) = LENS_PER_OCTAVE / ln 2 dt / t.
+    // The distance from the critical curve in pixels, as d(place) = LENS_PER_OCTAVE / ln 2 (dt / t).
     let curve = lookup.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(lookup.change), 1e-30);
     return looked_up_edge(lookup.on_edge, curve, lookup.branch == 0u, through);
 }
 
-// Gives the crossings once more from the first.
+// Makes next_crossing begin again with the first crossing.
 fn rewind_crossings() {
     lookup.order = 0u;
 }

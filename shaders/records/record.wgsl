@@ -1,16 +1,18 @@
-// The ray record of a pixel: the one interface between lensing and shading. src/scene/record.rs has the same fields.
-// However records are made, the fragment that makes them (one of traced/, lens/ or refine/) declares
+// The ray record of a pixel: the one interface between lensing and shading. Its counterpart is src/scene/record.rs,
+// where crossings and media are members; here the functions below give them one by one. A file of traced/, lens/ or
+// refine/ makes the records of a kernel, and declares those of these functions that the kernel calls:
 //
 //     fn ray_record(id: vec2<u32>) -> Record   gives the record of the tile's pixel `id`;
-//     fn next_crossing() -> Crossing           gives its crossings one by one, front to back, where emitters shine;
+//     fn next_crossing() -> Crossing           gives its next crossing of the plane at which something shines, nearest
+//                                              to the observer first;
 //     fn more_crossings() -> bool              says whether next_crossing may give one more;
-//     fn medium_before(k: u32) -> vec4<f32>    gives, with VOLUMES, the medium (emit/medium.wgsl) before the crossing
-//                                              given as number k, or behind the last if k is their count;
-//     fn rewind_crossings()                    begins with the first crossing again (for samples);
+//     fn medium_before(k: u32) -> vec4<f32>    gives the medium (emit/medium.wgsl) before crossing k of those given,
+//                                              counted from 0, or behind the last of them; only with VOLUMES;
+//     fn rewind_crossings()                    makes next_crossing begin again with the first (refine/ reads twice);
 //     fn defer_pixel(id: vec2<u32>)            leaves a pixel whose record is FATE_PENDING to a later kernel;
 //     fn edges_of_pixel(through: f32) -> u32   says which edge, EDGE_*, runs through the pixel, once its crossings have
-//                                              been given; `through` is the share of the light behind the disk
-//                                              that the disk lets pass.
+//                                              been given; `through` is the share of the light from behind that
+//                                              matter lets pass.
 //
 // The fragment that uses records declares take_record, and shading declares seen_crossing.
 
@@ -25,23 +27,24 @@ struct EmissionPoint {
 }
 
 struct Record {
+    // FATE_*.
     fate: u32,
     // Integration steps spent on the pixel.
     steps: u32,
-    // E and L, scaled so that the local frame's observer measures 1.
+    // E, and L_z in M, scaled so that the observer of the local frame measures frequency 1.
     energy: f32,
     angular_momentum: f32,
-    // 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
+    // 1/r of the first crossing of the plane, even where nothing shines; 0 without one. Set for VIEW_METRIC only.
     plane_u: f32,
     // nu(camera) / nu(at infinity); 0 unless escaped.
     sky_redshift: f32,
-    // Sky direction, chart, and its footprint.
+    // The direction in which the ray escapes, a unit vector in chart axes (z along the spin), and its footprint.
     sky: vec3<f32>,
     footprint: Footprint,
 }
 
-// Changes of a unit vector to the next pixel right and down, in two unit vectors at right angles to it and to each
-// other; 1e30 where nothing is known.
+// A direction's change from a pixel to its neighbour on the right (dx) and below (dy), rad, as components along p and
+// q; these and the direction are unit vectors at right angles to each other. 1e30 where the change is not known.
 struct Footprint {
     p: vec3<f32>,
     q: vec3<f32>,
@@ -61,12 +64,15 @@ fn footprint_of(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> Footprint {
     return Footprint(p, q, vec2<f32>(dot(dx, p), dot(dx, q)), vec2<f32>(dot(dy, p), dot(dy, q)));
 }
 
-// A crossing where emitters shine; u is 0 when there is no further one.
+// A crossing of the equatorial plane where something shines.
 struct Crossing {
+    // 1/r, in 1/M; 0 when there is no further crossing.
     u: f32,
+    // nu(camera) / nu(matter on the circular orbit there).
     g: f32,
+    // The number of the crossing along the ray, from 0.
     order: u32,
-    // ln_r; azimuth and delay where shading needs them, else 0.
+    // The place and time at which the light left; azimuth and delay are 0 where shading does not need them.
     place: EmissionPoint,
     // With FOOTPRINTS: change to the next pixel right and down.
     dx: EmissionPoint,
@@ -75,8 +81,8 @@ struct Crossing {
     share: f32,
 }
 
-// Whether an edge of the disk runs through the pixel whose crossing lies at u, or u changes steeply there; `change`:
-// of u to the next pixel right and down.
+// Whether an edge of the disk runs through a pixel whose ray crosses the plane at 1/r = u, or u changes so steeply
+// there that one ray is not enough. `change` is the change of u to the next pixel right and below.
 fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;
@@ -86,14 +92,16 @@ fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
 }
 
-// The factor by which d ln |t| by pixel, t = tan of half the angle from the critical curve, is too large beyond 90
-// degrees from the curve, whose antipode is not near it.
+// Lookups take sin d / (change of d per pixel) for the distance from the critical curve in pixels, d being the angle
+// from the curve. Beyond 90 degrees sin d falls again, as if the curve were near; this factor, 1 / sin d there and 1
+// elsewhere, undoes that. t = tan(d / 2).
 fn beyond_right_angle(t: f32) -> f32 {
     let most = max(abs(t), 1.0);
     return 0.5 * (most + 1.0 / most);
 }
 
-// EDGE_* of a looked-up pixel that lies `curve` pixels from the critical curve; the rings lie outside it.
+// The edge, EDGE_*, that runs through a looked-up pixel `curve` pixels from the critical curve. Outside the curve and
+// near it lie the thin rings that are the disk's images of higher order.
 fn looked_up_edge(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
     let near_ring = PLANE && outside && through > 0.0 && curve < RINGS_REACH;
     let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);
@@ -105,7 +113,7 @@ fn looked_up_edge(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32
 override PLANE: bool = true;
 override FOOTPRINTS: bool = true;
 override VOLUMES: bool = false;
-// Whether next_crossing can give crossings of the plane where nothing shines as well, and whether it is to.
+// WHOLE_PLANE: the kernel can make next_crossing give crossings where nothing shines, too; it does while whole_plane.
 override WHOLE_PLANE: bool = false;
 var<private> whole_plane: bool;
 

@@ -1,5 +1,6 @@
-// Ray records of samples with spin, as the tables of lens/kerr.wgsl have them, else integrated. The sky's footprint is
-// the tables' in either case; those of integrated crossings are the tables' as well, or there are none.
+// Ray records about a spinning hole for the extra rays of pixels that are refined: looked up in the tables of
+// lens/kerr.wgsl, or integrated where the tables are not exact enough. Footprints always come from the tables; an
+// integrated crossing that the tables do not have has none.
 
 #import constants
 #import lens/kerr
@@ -30,7 +31,7 @@ fn next_crossing() -> Crossing {
     }
     var crossing = next_integrated();
     if PATTERN && crossing.u > 0.0 {
-        // Footprints need not be as exact: the tables' serve where they hold the same crossing.
+        // A footprint need not be as exact as u: that of the tables serves if their crossing of this order is the same.
         let alike = interpolate(crossing.order);
         if abs(alike.value.x / crossing.u - 1.0) < SAME_CROSSING {
             crossing.dx = place_change(crossing.u, alike, lookup.dx);
@@ -44,7 +45,7 @@ fn more_crossings() -> bool {
     return !integrated || more_integrated();
 }
 
-// Gives the crossings once more from the first.
+// Makes next_crossing begin again with the first crossing.
 fn rewind_crossings() {
     kept_order = 0u;
     lookup.flags = lookup.all_flags;

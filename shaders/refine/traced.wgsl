@@ -31,7 +31,7 @@ fn more_crossings() -> bool {
     return more_integrated();
 }
 
-// Gives the crossings once more from the first.
+// Makes next_crossing begin again with the first crossing.
 fn rewind_crossings() {
     kept_order = 0u;
 }

@@ -1,13 +1,12 @@
-//! The matter that shines or absorbs near the hole: what a scene's emitters are, what each needs to know of a ray, and
-//! the light that it sends along it. Mirrored by `shaders/emit/`. Knows no cameras, no pixels and no tracer.
+//! The matter that shines or absorbs near the hole: the emitters of a scene, the facts about a ray that each needs, and
+//! the light that each adds to a ray. Mirrored by `shaders/emit/`. A camera enters only as a ratio of frequencies,
+//! pixels only as the change of a crossing to the next pixel; knows nothing else of either, and no tracer.
 //!
 //! A ray meets emitters in two ways. Those in the equatorial plane are asked at each crossing of the plane
 //! ([`PlaneLight::at_crossing`]); those with depth are asked along every part of the ray between two crossings
 //! ([`Emitters::along`]), and only scenes that have one pay for it: their rays are traced one by one.
 //!
-//! To add an emitter: a file here and one in `shaders/emit/`, a field in [`Emitters`], its values in the uniform, and
-//! the call in [`PlaneLight::at_crossing`] and `shaders/emit/plane.wgsl`, or in [`Emitters::along`] and
-//! `shaders/emit/volumes.wgsl`.
+//! To add an emitter, follow "Where to change what" in ARCHITECTURE.md.
 
 pub mod along;
 pub mod crossing;
@@ -24,7 +23,7 @@ use haze::Haze;
 use medium::Medium;
 use thin_disk::{DiskLight, ThinDisk};
 
-/// The things that emitters must be told of a ray, beside where it crosses the plane and with which g.
+/// The facts about a ray that emitters ask for, beside 1/r of each crossing and its g = nu(camera) / nu(matter).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// Azimuths of crossings, and how the place of a crossing changes to the next pixel.
@@ -38,7 +37,7 @@ pub struct Needs {
 /// The emitters of a scene, in units of M (`Scene::emitters`).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Emitters {
-    /// `None`: there is none, or all of it lies where nothing shines.
+    /// `None`: the scene has no disk, or all of it lies inside the ISCO, where no matter orbits.
     pub disk: Option<ThinDisk>,
     pub haze: Option<Haze>,
 }
@@ -53,8 +52,8 @@ impl Emitters {
         }
     }
 
-    /// The interval of 1/r, outer end first, in which crossings of the plane are to be kept: all emitters of the plane
-    /// lie in it. `None`: there are none.
+    /// The range of 1/r, outer end first, in 1/M, in which crossings of the plane are kept: all emitters of the plane
+    /// lie in it, of which the disk is the only one so far. `None`: nothing shines in the plane.
     pub fn plane_u(&self) -> Option<[f64; 2]> {
         self.disk.map(|disk| disk.u)
     }
@@ -89,7 +88,7 @@ impl Emitters {
     }
 }
 
-/// The emitters of the plane with the tables of their light.
+/// The emitters in the equatorial plane, with the tables from which their light is computed.
 pub struct PlaneLight {
     disk: Option<DiskLight>,
 }
@@ -99,7 +98,7 @@ impl PlaneLight {
         Self { disk: emitters.disk.map(DiskLight::new) }
     }
 
-    /// The light that a crossing adds to a ray of which the share `open` comes this far.
+    /// The light that a crossing adds, and its opacity. `open` is the share of light from here that reaches the camera.
     pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, open: f64) -> Emission {
         match &self.disk {
             Some(disk) if crossing.share > 0.0 => disk.at_crossing(crossing, shift, open),

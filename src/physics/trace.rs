@@ -1,5 +1,7 @@
 //! One light ray from its start to its fate: steps, crossings of the equatorial plane, escape and capture. The only
-//! driver of the integrators. Mirrored by `shaders/geodesic/trace.wgsl`.
+//! driver of the integrators; knows no light, no camera and no pixel. Mirrored by `shaders/geodesic/trace.wgsl`.
+//!
+//! Lengths and times are in M, u = 1/r, tau is Mino time, and steps are measured in sigma = S tau (`Constants::scale`).
 
 use super::geodesic::{Constants, State};
 use super::integrator::{Method, Quintic, held_inside, step, step_limit};
@@ -17,24 +19,25 @@ pub const CROSSINGS_KEPT: usize = 16;
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
     pub method: Method,
-    /// Step in sigma of the fixed-step methods; the first and largest x 5 of the adaptive one.
+    /// Step in sigma of the fixed-step methods; the first step of the adaptive one, whose steps never exceed 0.5.
     pub step: f64,
-    /// Error per step of the adaptive method.
+    /// The greatest error of an accepted step of the adaptive method, as the integrator measures it.
     pub tolerance: f64,
     /// A ray that needs more steps is unresolved.
     pub max_steps: u32,
-    /// Crossings to find, at most `CROSSINGS_KEPT`; the ray is followed to its fate all the same.
+    /// The number of crossings to keep, at most `CROSSINGS_KEPT`; the ray is followed to its fate all the same.
     pub max_crossings: usize,
     /// Integrate the delay.
     pub delay: bool,
-    /// 1/r beyond which a ray that moves inwards counts as captured. At most 1/r+; smaller skips what no one asks for.
+    /// 1/r beyond which a ray that moves inwards counts as captured: at most 1/r+. A smaller value saves steps where no
+    /// crossing so near the horizon matters.
     pub capture_u: f64,
-    /// A crossing with 1/r in this interval ends the ray: what lies behind is hidden.
+    /// A kept crossing with 1/r in this interval ends the ray: the matter there hides everything behind it.
     pub opaque_u: Option<[f64; 2]>,
 }
 
 impl Settings {
-    /// The exact settings: everything down to the horizon is traced.
+    /// Settings for reference values: small steps, every crossing, everything down to the horizon.
     pub fn exact(a: f64) -> Self {
         Self {
             method: Method::Nystrom,
@@ -62,38 +65,40 @@ pub enum Fate {
 /// A crossing of the equatorial plane.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneCrossing {
+    /// 1/r.
     pub u: f64,
     /// Azimuth in the chart, in (-pi, pi].
     pub azimuth: f64,
-    /// `Constants::retardation`; 0 unless asked for.
+    /// The time from the crossing to the observer (`Constants::retardation`); 0 unless `Settings::delay`.
     pub delay: f64,
     /// Number of this crossing along the ray, from 0.
     pub order: u32,
 }
 
-/// The end of a ray.
+/// The result of tracing a ray.
 #[derive(Clone, Debug)]
 pub struct RayTrace {
     pub fate: Fate,
     /// Asymptotic chart direction, unit; 0 unless escaped.
     pub direction: DVec3,
-    /// sqrt(K) tau to infinity, or to the horizon: the orbit angle of a spin-0 ray. NaN with spin or unresolved.
+    /// sqrt(K) tau, the angle about the hole that a ray without spin sweeps, rad: to infinity, to the horizon, or to
+    /// `Settings::capture_u` if that is farther out. NaN with spin, and for rays that are unresolved or hidden.
     pub swept: f64,
     pub steps: u32,
     pub crossings: ArrayVec<PlaneCrossing, CROSSINGS_KEPT>,
 }
 
-/// One accepted step, for those who follow a ray.
+/// One accepted step of `follow`.
 pub struct Segment<'a> {
     pub from: &'a State,
     pub to: &'a State,
-    /// Tau at `from`, and the step.
+    /// Mino time at `from`, and the length of the step in it.
     pub tau: f64,
     pub h: f64,
 }
 
-/// A part of a ray in which it crosses no plane: a step, or what lies of it on one side of a crossing. The momentum of
-/// the light is that of `constants` and of the states.
+/// A stretch of a ray without a kept crossing: a step, or the part of a step before or after a crossing. `constants`
+/// and the states give the light's momentum.
 pub struct Part<'a> {
     pub constants: &'a Constants,
     /// The state at the observer.
@@ -106,21 +111,21 @@ pub struct Part<'a> {
 }
 
 impl Part<'_> {
-    /// The state at the share `x` of the part's tau, 0 .. 1. Beyond infinity u is negative.
+    /// The state at the share `x`, 0 .. 1, of the part's Mino time. A part may reach past infinity, where u < 0.
     pub fn at(&self, x: f64) -> State {
         let tau = self.begin + (self.end - self.begin) * x;
         step(self.settings.method, self.constants, self.from, tau, self.settings.delay).0
     }
 
-    /// The affine length of the part were it everywhere as at `there`, M, in the parameter by which the observer of
-    /// the local frame measures frequency 1: d lambda / d tau = Sigma = r^2 + a^2 cos^2 theta (Carter 1968).
+    /// The affine length of the part, if d(lambda)/d(tau) were all along what it is at `there`: Sigma = r^2 +
+    /// a^2 cos^2 theta (Carter 1968). lambda is scaled so that the observer of the local frame measures frequency 1.
     pub fn length(&self, there: &State) -> f64 {
         let a_cos = self.constants.a * there.n.z;
         (self.end - self.begin) * self.constants.nu_local * (1.0 / (there.u * there.u) + a_cos * a_cos)
     }
 }
 
-/// Someone who is told of a ray's course while it is traced.
+/// The receiver of a ray's parts and crossings, in order, while the ray is traced: emitters with depth need them.
 pub trait Visitor {
     /// The next part of the ray.
     fn part(&mut self, part: &Part<'_>);
@@ -128,13 +133,13 @@ pub trait Visitor {
     fn crossing(&mut self, crossing: &PlaneCrossing);
 }
 
-/// No one.
+/// The receiver that ignores everything.
 impl Visitor for () {
     fn part(&mut self, _: &Part<'_>) {}
     fn crossing(&mut self, _: &PlaneCrossing) {}
 }
 
-/// Why the stepping loop ended: the last segment, in which the end lies.
+/// The reason why the stepping loop ended.
 enum End {
     Escaped,
     Captured,
@@ -142,12 +147,13 @@ enum End {
     Hidden,
 }
 
-/// Steps of an adaptive method: next = 0.9 h (tolerance / error)^(1/5), at most 5 times more or less.
+/// The next step of an adaptive method: 0.9 h (tolerance / error)^(1/5), at least h / 5 and at most 5 h.
 fn next_step(h: f64, error: f64, tolerance: f64) -> f64 {
     h * (0.9 * (tolerance / error.max(1e-300)).powf(0.2)).clamp(0.2, 5.0)
 }
 
-/// Follows the ray, calling `visit` for every accepted step until it returns false; the last one is where it ended.
+/// Follows the ray and calls `visit` for every accepted step, until the ray ends or `visit` returns false. Gives the
+/// reason, and the number of steps, rejected ones included.
 fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl FnMut(&Segment) -> bool) -> (End, u32) {
     let adaptive = settings.method == Method::DormandPrince;
     let u_plus = 1.0 / c.r_plus;
@@ -158,8 +164,8 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     let h_most = if adaptive { 0.5 / c.scale } else { h_wish };
     for count in 1..=settings.max_steps {
         let limit = step_limit(c, &state, settings.step);
-        // Inside the horizon the step limit alone decides: steps in sigma would change u of nearly radial rays without
-        // end.
+        // Inside the horizon one fixed step in sigma could change u of a nearly radial ray by any amount: only the step
+        // limit, and the adaptive method's own choice, bound steps there.
         let inside = state.u >= u_plus;
         let h = match (inside, adaptive) {
             (true, false) => limit,
@@ -170,7 +176,7 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
         let next = held_inside(c, next);
         if adaptive {
             h_wish = next_step(h, error, settings.tolerance);
-            // NaN is no error to accept; a step too small to change anything is.
+            // A NaN error is rejected; a step too small to change anything is accepted whatever its error.
             let accepted = error <= settings.tolerance || h * c.scale <= 1e-9;
             if !accepted {
                 continue;
@@ -182,7 +188,7 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
         if next.u <= 0.0 {
             return (End::Escaped, count);
         }
-        // Capture is told from the state, not from a change of side: the step rule stops short of the horizon.
+        // Steps stop short of the horizon, so capture is not a step across it but a state near it that moves inwards.
         if next.du > 0.0 && (next.u >= settings.capture_u || u_plus - next.u < 1e-6 * u_plus) {
             return (End::Captured, count);
         }
@@ -192,12 +198,12 @@ fn follow(c: &Constants, start: &State, settings: &Settings, visit: &mut impl Fn
     (End::OutOfSteps, settings.max_steps)
 }
 
-/// Below this a sigma of order 1 is rounding.
+/// Corrections of sigma smaller than this are rounding error, sigma being of order 1.
 const ROUNDING: f64 = 1e-15;
 
-/// The state where a quantity is 0 inside the step of `h` from `from`: a partial step, corrected by Newton's method
-/// with the integrator itself, so that dense output only has to be good enough to begin with. Corrections of less than
-/// `slack` in sigma are left out.
+/// The state inside the step from `from` at which a quantity is 0, and its Mino time from there. `value` gives the
+/// quantity and its slope by tau; `guess` comes from dense output. Newton's method with the integrator itself follows,
+/// at most three times; corrections below `slack` in sigma are left out.
 pub(crate) fn land(
     c: &Constants,
     s: &Settings,
@@ -225,7 +231,7 @@ pub fn trace(constants: &Constants, start: &State, settings: &Settings) -> RayTr
     trace_visited(constants, start, settings, &mut ())
 }
 
-/// [`trace`], of which `visitor` is told: of all parts of the ray and of the crossings that are kept, in order.
+/// [`trace`], with `visitor` told of all parts of the ray and of the crossings that are kept, in order.
 pub fn trace_visited(
     constants: &Constants,
     start: &State,
@@ -283,7 +289,8 @@ pub fn trace_visited(
     result
 }
 
-/// Tau from the end of a captured ray on to the horizon; spin 0, where u and N are regular there.
+/// Mino time from the end of a captured ray to the horizon, without spin, where u and N are regular. 0 with spin, and
+/// where `Settings::capture_u` ends rays farther out.
 pub(crate) fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -> f64 {
     if c.a != 0.0 || settings.capture_u < 1.0 / c.r_plus {
         return 0.0;
@@ -304,7 +311,7 @@ pub(crate) fn find_crossing(
     let (from, to) = (segment.from, segment.to);
     let guess = segment.h * Quintic::of_n_z(c, from, to, segment.h).root();
     let (state, h) = land(c, s, from, guess, ROUNDING, |s| (s.n.z, s.dn.z));
-    // The ray is outside the horizon, by the contract's margin, and on this side of infinity.
+    // bhr.h promises crossings down to r+ (1 + 1e-5); past infinity, u <= 0, there are none.
     let outermost = 1.0 / (c.r_plus * (1.0 + 1e-5));
     if !(state.u > 0.0 && state.u <= outermost) {
         return None;
@@ -313,7 +320,8 @@ pub(crate) fn find_crossing(
     Some((PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order }, h))
 }
 
-/// Traces the look direction `n` (components, unit) of `frame`; the ray that no light can come from is captured.
+/// Traces along the look direction `n` (unit, components in `frame`). Where no light can come from that direction it
+/// gives no constants, and a captured ray.
 pub fn trace_look(frame: &LocalFrame, n: DVec3, settings: &Settings) -> (Option<Constants>, RayTrace) {
     trace_look_visited(frame, n, settings, &mut ())
 }
@@ -354,7 +362,7 @@ impl PlaneCrossing {
     }
 }
 
-/// A point of a ray's path: chart position and time since the photon left it (<= 0 when read as scene time: `-delay`).
+/// A point of a ray's path: its place in the chart, and the time from there to the observer.
 #[derive(Clone, Copy, Debug)]
 pub struct PathPoint {
     pub position: DVec3,

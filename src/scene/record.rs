@@ -1,5 +1,5 @@
-//! The ray record of a pixel: the one interface between lensing and shading, on both tracers
-//! (shaders/records/record.wgsl has the same fields). However it was made, shading cannot tell. Plain data.
+//! The ray record of a pixel: the one interface between lensing and shading, on both tracers; its counterpart is
+//! shaders/records/record.wgsl. However it was made, shading cannot tell. Plain data.
 
 use super::refine::Edge;
 use crate::emit::medium::Media;

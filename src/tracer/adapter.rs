@@ -1,6 +1,7 @@
-//! The adapters that tracers run on, as hosts hear of them. Finds none.
+//! The description of an adapter, as programs that use bhr get it. Plain values: src/tracers.rs lists the adapters of a
+//! machine, src/gpu/device/adapter.rs finds the GPUs.
 
-/// The interfaces a tracer may run on (`BHR_BACKEND_*`).
+/// The interface through which a tracer reaches its adapter: a graphics API, or none for the CPU (`BHR_BACKEND_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Backend {
@@ -11,7 +12,7 @@ pub enum Backend {
     Gl = 5,
 }
 
-/// As in `BHR_BACKEND_*`.
+/// The part of the C constant's name after `BHR_BACKEND_`.
 impl std::fmt::Display for Backend {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
@@ -28,12 +29,14 @@ impl std::fmt::Display for Backend {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AdapterInfo {
     pub backend: Backend,
-    /// A GPU with memory of its own.
+    /// Whether it is a GPU with memory of its own.
     pub discrete: bool,
-    /// No hardware behind it: a software driver, or the CPU tracer.
+    /// Whether no hardware is behind it: a software driver, or the CPU tracer.
     pub software: bool,
+    /// PCI ids of vendor and device; 0 for the CPU tracer.
     pub vendor_id: u32,
     pub device_id: u32,
     pub name: String,
+    /// Name and version of the driver; empty where it is not known.
     pub driver: String,
 }

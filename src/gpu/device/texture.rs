@@ -1,18 +1,18 @@
-//! Textures on a device: counted while they exist, like buffers.
+//! Textures on a device, which counts their bytes while they exist.
 
 use super::wgpu_device::Device;
 use crate::error::{Error, Result};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A texture as a kernel declares it.
+/// The format and the dimension with which a kernel declares a texture.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct TextureKind {
     pub format: wgpu::TextureFormat,
     pub dimension: wgpu::TextureViewDimension,
 }
 
-/// The texture that a window is filled from: 8-bit codes, whatever curve they follow.
+/// The texture that is copied to a window. Its 8-bit values are display codes already: no transfer function is applied.
 pub const SCREEN: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
 
@@ -25,8 +25,8 @@ pub struct Texture {
 }
 
 impl Device {
-    /// A texture, of `layers` layers if `dimension` is an array, that kernels write and read. Errors: as
-    /// [`Device::scoped`].
+    /// A texture that kernels write and read. `size` is columns and rows; `layers` is 1 unless `dimension` is an array.
+    /// Errors: as [`Device::scoped`].
     pub fn texture(
         &self,
         label: &str,
@@ -64,6 +64,7 @@ impl Device {
         layers: u32,
         usage: wgpu::TextureUsages,
     ) -> Result<Texture> {
+        // Kept bind groups hold textures that this one may replace, and both together need not fit in memory.
         self.bindings.clear();
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
         let (raw, view) = self.scoped(label, |device| {
@@ -86,28 +87,31 @@ impl Device {
         Ok(Texture { view, raw, bytes, total })
     }
 
-    /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is no
+    /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is not a
     /// whole number of rows; as [`Device::scoped`].
     pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
         self.write_part(texture, [0, first_row], texture.raw.width(), data)
     }
 
-    /// The same of `width` columns, from the place `first` on.
+    /// Writes a rectangle of `width` columns whose first texel is `first` (column, row); the length of `data` decides
+    /// its rows. Errors: as [`Self::write_rows`].
     pub fn write_part(&self, texture: &Texture, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
         let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
         if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
-            return Err(Error::internal(format!("{} bytes are no rows of {row_bytes}", data.len())));
+            let size = data.len();
+            return Err(Error::internal(format!("{size} bytes are not a whole number of rows of {row_bytes} bytes")));
         }
         self.write_texels(&texture.raw, first, width, row_bytes as usize, data)
     }
 }
 
 fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
+    // None only for formats without one texel size (combined depth and stencil, planar), which bhr does not make.
     format.block_copy_size(None).unwrap_or(0).into()
 }
 
 impl Texture {
-    /// In texels.
+    /// Columns and rows, in texels.
     pub fn size(&self) -> [u32; 2] {
         [self.raw.width(), self.raw.height()]
     }
