@@ -13,23 +13,39 @@ fn main() -> io::Result<()> {
     list_shaders()
 }
 
-/// Writes shaders.rs: name and text of every file of shaders/, in order.
+/// Writes shaders.rs: name and text of every file of shaders/, in order. The compiler completes the paths, because
+/// checkouts may share a target folder and this list with it.
 fn list_shaders() -> io::Result<()> {
     println!("cargo:rerun-if-changed=shaders");
+    println!("cargo:rerun-if-env-changed=CARGO_MANIFEST_DIR");
     let variable = |name: &str| std::env::var(name).map(PathBuf::from).map_err(io::Error::other);
-    let folder = variable("CARGO_MANIFEST_DIR")?.join("shaders");
     let mut list = Vec::new();
-    for room in entries(&folder)? {
-        for file in entries(&room)?.into_iter().filter(|path| path.extension().is_some_and(|e| e == "wgsl")) {
-            let name = file.with_extension("").strip_prefix(&folder).map_err(io::Error::other)?.to_owned();
-            let name = name.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/");
-            list.push(format!("({name:?}, include_str!({file:?})),\n"));
+    for (room, path) in entries(&variable("CARGO_MANIFEST_DIR")?.join("shaders"))? {
+        if !path.is_dir() {
+            return Err(io::Error::other(format!("{} is no folder of shaders", path.display())));
+        }
+        for (file, path) in entries(&path)? {
+            let Some(file) = file.strip_suffix(".wgsl").filter(|_| path.is_file()) else {
+                return Err(io::Error::other(format!("{} is no file of WGSL", path.display())));
+            };
+            let text = format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/shaders/{room}/{file}.wgsl\"))");
+            list.push(format!("(\"{room}/{file}\", {text}),\n"));
         }
     }
     list.sort();
     std::fs::write(variable("OUT_DIR")?.join("shaders.rs"), format!("&[\n{}]\n", list.concat()))
 }
 
-fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    std::fs::read_dir(folder)?.map(|entry| entry.map(|entry| entry.path())).collect()
+/// Names and paths of what a folder holds, but for hidden files, which editors and desktops leave.
+fn entries(folder: &Path) -> io::Result<Vec<(String, PathBuf)>> {
+    let about = |error| io::Error::other(format!("{}: {error}", folder.display()));
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(about)? {
+        let entry = entry.map_err(about)?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if !name.starts_with('.') {
+            found.push((name, entry.path()));
+        }
+    }
+    Ok(found)
 }
