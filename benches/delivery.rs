@@ -45,7 +45,7 @@ fn presenting(spin: f64) {
     let software = adapter.info.software;
     let mut tracer = GpuTracer::new(adapter).expect("a tracer");
     let device = tracer.device();
-    let mut scene = Scene::default();
+    let mut scene = Scene::plain();
     scene.hole.spin = spin;
     // Frames that are written into the host's memory take as long as the bus.
     scene.quality.mapped_pixels = Some(false);
@@ -212,7 +212,7 @@ fn main() {
     println!();
     let bus = copy_bandwidth();
     for spin in [0.0, 0.9] {
-        renderer.scene = Scene::default();
+        renderer.scene = Scene::plain();
         renderer.scene.hole.spin = spin;
         println!("\njobs, 1920 x 1080 RGBA8, spin {spin}");
         std::thread::sleep(Duration::from_secs(1));

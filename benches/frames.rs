@@ -4,7 +4,7 @@
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
-use bhr::scene::{Camera, LensTables, Method, Projection, Sky};
+use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky};
 use criterion::Criterion;
 use glam::DQuat;
 use std::cell::RefCell;
@@ -39,6 +39,8 @@ enum Change {
 impl Stage {
     fn new(backend: Option<Backend>, [width, height]: [u32; 2], set: impl FnOnce(&mut Renderer)) -> Self {
         let mut renderer = Renderer::new(RendererOptions { backend, ..Default::default() }).expect("a renderer");
+        // The default scene of 0.1.0, so that times can be compared.
+        renderer.scene = Scene::plain();
         // Kernels that write into the host's memory take as long as the bus: that is for benches/delivery.rs.
         renderer.scene.quality.mapped_pixels = Some(false);
         set(&mut renderer);
@@ -173,6 +175,15 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
             );
         }
     }
+    for a in [0.0, 0.9, 0.998] {
+        let default = move |r: &mut Renderer| {
+            // Quality stays: it says that frames are not written into the host's memory.
+            let plain = std::mem::take(&mut r.scene);
+            r.scene.quality = plain.quality;
+            r.scene.hole.spin = a;
+        };
+        measured(&format!("default scene, spin {a}"), size, Change::Nothing, Box::new(default));
+    }
     for a in [0.5, 0.998] {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
     }
@@ -184,6 +195,10 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
     measured("spin 0, no Milky Way", size, Change::Nothing, Box::new(|r| r.scene.sky.flags = Sky::STARS));
     let procedural = |r: &mut Renderer| r.scene.sky.flags |= Sky::PROCEDURAL;
     measured("spin 0, procedural stars too", size, Change::Nothing, Box::new(procedural));
+    for (how, sampler) in [("by a sampler", true), ("texel by texel", false)] {
+        let sky = move |r: &mut Renderer| r.scene.quality.map_sampler = Some(sampler);
+        measured(&format!("spin 0, Milky Way {how}"), size, Change::Nothing, Box::new(sky));
+    }
     measured("spin 0, neither", size, Change::Nothing, Box::new(|r| (r.scene.disk, r.scene.sky.flags) = (None, 0)));
     let turbulent = |r: &mut Renderer| r.scene.disk.iter_mut().for_each(|d| d.turbulence = 1.0);
     measured("spin 0, turbulent", size, Change::Nothing, Box::new(turbulent));
@@ -199,14 +214,20 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
 fn cpu(criterion: &mut Criterion, times: &Times) {
     let size = [1280, 720];
     for a in [0.0, 0.9] {
-        let name = format!("cpu 1280x720 default scene, spin {a}");
+        let name = format!("cpu 1280x720 plain scene, spin {a}");
         measure(criterion, times, &name, || Stage::new(Some(Backend::Cpu), size, spin(a)));
     }
     let far = |renderer: &mut Renderer| {
         let position = renderer.scene.camera.position * 10.0;
-        renderer.scene.camera = Camera { position, forward: -position, ..Camera::default() };
+        renderer.scene.camera = Camera { position, forward: -position, ..Camera::plain() };
     };
     measure(criterion, times, "cpu 1280x720 from 300 M, spin 0", || Stage::new(Some(Backend::Cpu), size, far));
+    for (name, flags) in [("nothing", 0), ("stars alone", Sky::STARS), ("Milky Way alone", Sky::MILKY_WAY)] {
+        let sky = move |r: &mut Renderer| (r.scene.disk, r.scene.sky.flags) = (None, flags);
+        measure(criterion, times, &format!("cpu 1280x720 {name}, spin 0"), || {
+            Stage::new(Some(Backend::Cpu), size, sky)
+        });
+    }
 }
 
 fn main() {

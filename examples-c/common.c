@@ -8,7 +8,6 @@
 
 #include "common.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,8 +34,22 @@ const Choice MOTIONS[] = {{"static", BHR_MOTION_STATIC},
                           {"orbit", BHR_MOTION_ORBIT},
                           {"velocity", BHR_MOTION_VELOCITY},
                           {NULL, 0}};
+const Choice PRESETS[] = {{"cinematic", BHR_PRESET_CINEMATIC},
+                          {"physical", BHR_PRESET_PHYSICAL},
+                          {"observatory", BHR_PRESET_OBSERVATORY},
+                          {"teaching", BHR_PRESET_TEACHING},
+                          {NULL, 0}};
 const Choice TONE_MAPS[] = {
     {"none", BHR_TONE_MAP_NONE}, {"aces", BHR_TONE_MAP_ACES}, {"agx", BHR_TONE_MAP_AGX}, {NULL, 0}};
+const Choice COLOUR_MAPS[] = {{"none", BHR_COLOUR_MAP_NONE}, {"afmhot", BHR_COLOUR_MAP_AFMHOT}, {NULL, 0}};
+const Choice VIEWS[] = {{"light", BHR_VIEW_LIGHT}, {"redshift", BHR_VIEW_REDSHIFT},     {"order", BHR_VIEW_ORDER},
+                        {"steps", BHR_VIEW_STEPS}, {"deflection", BHR_VIEW_DEFLECTION}, {"metric", BHR_VIEW_METRIC},
+                        {NULL, 0}};
+const Choice PROJECTIONS[] = {{"perspective", BHR_PROJECTION_PERSPECTIVE},
+                              {"fisheye", BHR_PROJECTION_FISHEYE},
+                              {"equirect", BHR_PROJECTION_EQUIRECT},
+                              {"cube", BHR_PROJECTION_CUBE},
+                              {NULL, 0}};
 
 const char *choice_name(const Choice *choices, int32_t value) {
     for (; choices->name != NULL; choices++) {
@@ -45,179 +58,6 @@ const char *choice_name(const Choice *choices, int32_t value) {
         }
     }
     return "?";
-}
-
-/* ---- command line ---- */
-
-/* Puts the number that `text` begins with into *out and returns where it ends; NULL when there is none or it overflows.
- * strtod alone would skip leading blanks. */
-static const char *read_double(const char *text, double *out) {
-    char *end;
-    if (isspace((unsigned char)text[0])) {
-        return NULL;
-    }
-    errno = 0;
-    double value = strtod(text, &end);
-    /* Underflow sets ERANGE too, but gives a usable number. */
-    if (end == text || (errno == ERANGE && (value > 1.0 || value < -1.0))) {
-        return NULL;
-    }
-    *out = value;
-    return end;
-}
-
-/* As read_double, digits only: strtoul alone would take "-1" for a large number. */
-static const char *read_uint(const char *text, uint32_t *out) {
-    char *end;
-    if (!isdigit((unsigned char)text[0])) {
-        return NULL;
-    }
-    errno = 0;
-    unsigned long value = strtoul(text, &end, 10);
-    if (errno == ERANGE || value > UINT32_MAX) {
-        return NULL;
-    }
-    *out = (uint32_t)value;
-    return end;
-}
-
-static int read_vector(const char *text, double out[3]) {
-    double value[3];
-    for (int i = 0; i < 3; i++) {
-        text = read_double(text, &value[i]);
-        if (text == NULL || *text != (i < 2 ? ',' : '\0')) {
-            return 0;
-        }
-        text++;
-    }
-    memcpy(out, value, sizeof value);
-    return 1;
-}
-
-static int read_size(const char *text, uint32_t out[2]) {
-    uint32_t value[2];
-    text = read_uint(text, &value[0]);
-    if (text == NULL || *text != 'x') {
-        return 0;
-    }
-    text = read_uint(text + 1, &value[1]);
-    if (text == NULL || *text != '\0') {
-        return 0;
-    }
-    memcpy(out, value, sizeof value);
-    return 1;
-}
-
-static int read_choice(const char *text, const Choice *choices, int32_t *out) {
-    for (; choices->name != NULL; choices++) {
-        if (strcmp(text, choices->name) == 0) {
-            *out = choices->value;
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* 1 when all of `text` is a value of the option's kind; only then is the target written. */
-static int read_value(const Option *option, const char *text) {
-    const char *end;
-    double      number;
-    uint32_t    whole;
-    switch (option->kind) {
-    case OPTION_DOUBLE:
-        end = read_double(text, &number);
-        if (end == NULL || *end != '\0') {
-            return 0;
-        }
-        *(double *)option->target = number;
-        return 1;
-    case OPTION_UINT:
-        end = read_uint(text, &whole);
-        if (end == NULL || *end != '\0') {
-            return 0;
-        }
-        *(uint32_t *)option->target = whole;
-        return 1;
-    case OPTION_VECTOR:
-        return read_vector(text, option->target);
-    case OPTION_SIZE:
-        return read_size(text, option->target);
-    case OPTION_CHOICE:
-        return read_choice(text, option->choices, option->target);
-    case OPTION_TEXT:
-        *(const char **)option->target = text;
-        return text[0] != '\0';
-    case OPTION_FLAG:
-        break;
-    }
-    return 0;
-}
-
-static void print_value_name(FILE *out, const Option *option) {
-    if (option->kind == OPTION_FLAG) {
-        return;
-    }
-    if (option->kind != OPTION_CHOICE) {
-        fprintf(out, " %s", option->value);
-        return;
-    }
-    for (const Choice *choice = option->choices; choice->name != NULL; choice++) {
-        fprintf(out, "%c%s", choice == option->choices ? ' ' : '|', choice->name);
-    }
-}
-
-static const Option *find_option(const Option *options, size_t count, const char *argument, size_t length) {
-    for (size_t i = 0; i < count; i++) {
-        if (strlen(options[i].name) == length && strncmp(options[i].name, argument, length) == 0) {
-            return &options[i];
-        }
-    }
-    return NULL;
-}
-
-int options_parse(const Option *options, size_t count, int argc, char **argv) {
-    for (int i = 1; i < argc; i++) {
-        const char   *value = strchr(argv[i], '=');
-        size_t        length = value != NULL ? (size_t)(value - argv[i]) : strlen(argv[i]);
-        const Option *option = find_option(options, count, argv[i], length);
-        if (option == NULL) {
-            fprintf(stderr, "%s: unknown option '%s'; --help lists them\n", argv[0], argv[i]);
-            return EXIT_USAGE;
-        }
-        if (option->kind == OPTION_FLAG) {
-            if (value != NULL) {
-                fprintf(stderr, "%s: %s takes no value\n", argv[0], option->name);
-                return EXIT_USAGE;
-            }
-            *(int *)option->target = 1;
-            continue;
-        }
-        if (value != NULL) {
-            value++;
-        } else if (i + 1 < argc) {
-            value = argv[++i];
-        } else {
-            fprintf(stderr, "%s: %s needs a value:", argv[0], option->name);
-            print_value_name(stderr, option);
-            fputc('\n', stderr);
-            return EXIT_USAGE;
-        }
-        if (!read_value(option, value)) {
-            fprintf(stderr, "%s: '%s' is no value for %s, which takes", argv[0], value, option->name);
-            print_value_name(stderr, option);
-            fputc('\n', stderr);
-            return EXIT_USAGE;
-        }
-    }
-    return 0;
-}
-
-void options_print(FILE *out, const Option *options, size_t count) {
-    for (size_t i = 0; i < count; i++) {
-        fprintf(out, "  %s", options[i].name);
-        print_value_name(out, &options[i]);
-        fprintf(out, "\n        %s\n", options[i].help);
-    }
 }
 
 /* ---- reports ---- */

@@ -1,5 +1,5 @@
-/* common.h -- what the example programs, in C and C++, share: a table of command-line options, names of constants, a
- * clock, reports of failures. Needs libc and bhr.h only; knows no scene and makes no frame. */
+/* common.h -- what the example programs, in C and C++, share: names of constants, a clock, reports of failures. Needs
+ * libc and bhr.h only; knows no scene and makes no frame. */
 #ifndef EXAMPLES_COMMON_H
 #define EXAMPLES_COMMON_H
 
@@ -18,38 +18,13 @@ extern "C" {
 /* Exit statuses: 0, EXIT_FAILURE (1) when something could not be done, EXIT_USAGE when the command line is wrong. */
 #define EXIT_USAGE 2
 
-/* ---- command line ---- */
 typedef struct Choice {
     const char *name;
     int32_t     value;
 } Choice;
 
-typedef enum OptionKind {  /* what Option.target points to */
-    OPTION_FLAG,           /* int: becomes 1; takes no value */
-    OPTION_DOUBLE,         /* double */
-    OPTION_VECTOR,         /* double[3], written x,y,z */
-    OPTION_UINT,           /* uint32_t */
-    OPTION_SIZE,           /* uint32_t[2], written WxH */
-    OPTION_CHOICE,         /* int32_t: the value of one of `choices` */
-    OPTION_TEXT            /* const char *: the argument itself */
-} OptionKind;
-
-typedef struct Option {
-    const char   *name;    /* with its dashes */
-    OptionKind    kind;
-    void         *target;  /* holds the default; written only when the option is given */
-    const char   *value;   /* what --help calls the value; NULL for flags and choices */
-    const char   *help;
-    const Choice *choices; /* OPTION_CHOICE: ends with a NULL name; else NULL */
-} Option;
-
-/* Reads `--name value` and `--name=value`. 0, or EXIT_USAGE after a message on stderr. Ranges are left to the
- * library, whose messages name them. */
-int  options_parse(const Option *options, size_t count, int argc, char **argv);
-void options_print(FILE *out, const Option *options, size_t count);
-
 /* ---- names ---- */
-extern const Choice BACKENDS[], METHODS[], MOTIONS[], TONE_MAPS[];
+extern const Choice BACKENDS[], METHODS[], MOTIONS[], PRESETS[], TONE_MAPS[], COLOUR_MAPS[], VIEWS[], PROJECTIONS[];
 const char *choice_name(const Choice *choices, int32_t value); /* "?" for none of them */
 
 /* ---- reports ---- */

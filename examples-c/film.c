@@ -4,7 +4,7 @@
  * in degrees. */
 #include "common.h"
 #include "picture.h"
-#include "scene.h"
+#include "scene_options.h"
 #include "vectors.h"
 #include "video.h"
 
@@ -25,11 +25,15 @@ typedef enum Look { LOOK_IN, LOOK_OUT, LOOK_SIDE } Look;
 static const Choice LOOKS[] = {{"in", LOOK_IN}, {"out", LOOK_OUT}, {"side", LOOK_SIDE}, {NULL, 0}};
 
 typedef struct Settings {
-    const char *output, *video;
-    uint32_t    frames, rate, size[2], samples;
-    double      from, to, elevation, fov;
-    int32_t     look, projection, backend;
-    int         no_clock, help;
+    SceneInput    *input; /* the look: laid over the preset once there is a context, by these arguments */
+    const Options *options;
+    int            argc;
+    char         **argv;
+    const char    *output, *video;
+    uint32_t       frames, rate, size[2], samples;
+    double         from, to, elevation, fov;
+    int32_t        look, projection, backend;
+    int            no_clock, help;
 } Settings;
 
 /* A frame under way: job is NULL when there is none. */
@@ -56,18 +60,21 @@ static double time_left(double radius) {
     return 2.0 / 3.0 * sqrt(0.5 * radius * radius * radius);
 }
 
-static BhrStatus begin_fall(Scene *scene, const Settings *s) {
-    static const SceneOptions BEGINNING = {.mass = 1.0, .azimuth = -90.0, .disk_outer = 16.0, .turbulence = 0.8,
-                                           .exposure = -1.5, .view = BHR_VIEW_LIGHT};
-    SceneOptions              options = BEGINNING;
-    options.distance = s->from;
-    options.elevation = s->elevation;
-    options.fov = s->fov;
-    BhrStatus status = scene_init(scene, &options);
-    scene->camera.motion = BHR_MOTION_FREE_FALL;
-    scene->camera.projection = s->projection;
+/* The look where it differs from the library's, before the options. */
+static void begin_look(Scene *scene) {
+    scene->disk.outer_radius = 16.0;
+    scene->disk.turbulence = 0.8;
+    scene->film.exposure_ev = -1.5;
     scene->film.tone_map = BHR_TONE_MAP_AGX;
     scene->film.bloom = 0.15;
+}
+
+static BhrStatus begin_fall(Scene *scene, const Settings *s) {
+    *scene = s->input->scene;
+    BhrStatus status = bhr_camera_orbit(&scene->camera, s->from, -0.5 * PI, s->elevation * PI / 180.0);
+    scene->camera.fov_y = s->fov * PI / 180.0;
+    scene->camera.motion = BHR_MOTION_FREE_FALL;
+    scene->camera.projection = s->projection;
     scene->quality.samples_per_pixel = s->samples;
     camera_make_orthonormal(&scene->camera);
     camera_turn(&scene->camera, s->look == LOOK_OUT ? PI : s->look == LOOK_SIDE ? -0.5 * PI : 0.0, 0.0);
@@ -171,6 +178,9 @@ static int prepare(Film *film) {
         }
     }
     BhrStatus status = create_context_on(s->backend, &film->context);
+    if (status >= 0 && scene_input_finish(s->input, film->context, s->options, s->argc, s->argv) != 0) {
+        return 0;
+    }
     if (status >= 0) {
         status = begin_fall(&film->scene, s);
     }
@@ -255,33 +265,43 @@ static int check(const Settings *s) {
 }
 
 static int run(int argc, char **argv) {
-    Settings s = {.output = "film-out", .frames = 240, .rate = 24, .size = {640, 360}, .samples = 4, .from = 12.0,
-                  .to = 0.05, .elevation = 20.0, .fov = 100.0, .look = LOOK_IN,
-                  .projection = BHR_PROJECTION_PERSPECTIVE, .backend = BHR_BACKEND_AUTO};
-    const Option options[] = {
-        {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be; default film-out", NULL},
-        {"--video", OPTION_TEXT, &s.video, "FILE", "a video instead of pictures, by ffmpeg; overwritten", NULL},
-        {"--frames", OPTION_UINT, &s.frames, "N", "1 to 99999, evenly spaced in proper time; default 240", NULL},
-        {"--fps", OPTION_UINT, &s.rate, "N", "frames per second of the video; default 24", NULL},
-        {"--size", OPTION_SIZE, s.size, "WxH", "pixels; default 640x360", NULL},
-        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256; default 4", NULL},
-        {"--from", OPTION_DOUBLE, &s.from, "R", "the first frame's radius in M; default 12", NULL},
-        {"--to", OPTION_DOUBLE, &s.to, "R", "the last frame's radius in M; default 0.05", NULL},
-        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "above the disk's plane; default 20", NULL},
-        {"--fov", OPTION_DOUBLE, &s.fov, "DEG", "vertical field of view; default 100", NULL},
-        {"--projection", OPTION_CHOICE, &s.projection, NULL, "default perspective; fisheye for domes", PROJECTIONS},
-        {"--look", OPTION_CHOICE, &s.look, NULL, "to the hole, from it, or across; default in", LOOKS},
-        {"--no-clock", OPTION_FLAG, &s.no_clock, NULL, "writes no proper time and radius into the picture", NULL},
-        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
-        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+    SceneInput input;
+    Options    options = {.count = 0};
+    Settings   s = {.input = &input, .options = &options, .argc = argc, .argv = argv, .output = "film-out",
+                    .frames = 240, .rate = 24, .size = {640, 360}, .samples = 4, .from = 12.0, .to = 0.05,
+                    .elevation = 20.0, .fov = 100.0, .look = LOOK_IN, .projection = BHR_PROJECTION_PERSPECTIVE,
+                    .backend = BHR_BACKEND_AUTO};
+    const Option own[] = {
+        {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be", NULL, NULL},
+        {"--video", OPTION_TEXT, &s.video, "FILE", "a video instead of pictures, by ffmpeg; overwritten", NULL, NULL},
+        {"--frames", OPTION_UINT, &s.frames, "N", "evenly spaced in proper time", NULL, "1 to 99999"},
+        {"--fps", OPTION_UINT, &s.rate, "N", "frames per second of the video", NULL, "1 to 1000"},
+        {"--size", OPTION_SIZE, s.size, "WxH", "pixels", NULL, NULL},
+        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel", NULL, "1 to 256"},
+        {"--from", OPTION_DOUBLE, &s.from, "R", "the first frame's radius in M", NULL, NULL},
+        {"--to", OPTION_DOUBLE, &s.to, "R", "the last frame's radius in M", NULL, NULL},
+        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "above the disk's plane", NULL, NULL},
+        {"--fov", OPTION_DOUBLE, &s.fov, "DEG", "vertical field of view", NULL, NULL},
+        {"--projection", OPTION_CHOICE, &s.projection, NULL, "fisheye for domes", PROJECTIONS, NULL},
+        {"--look", OPTION_CHOICE, &s.look, NULL, "to the hole, from it, or across", LOOKS, NULL},
+        {"--no-clock", OPTION_FLAG, &s.no_clock, NULL, "writes no proper time and radius into the picture", NULL, NULL},
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
     };
-    int result = options_parse(options, COUNT_OF(options), argc, argv);
+    BhrStatus status = scene_input_init(&input);
+    if (status < 0) {
+        return report_failure("begin", status);
+    }
+    begin_look(&input.scene);
+    options_add(&options, own, COUNT_OF(own));
+    options_add_scene(&options, &input, SCENE_PRESET | SCENE_DISK | SCENE_SKY | SCENE_FILM | SCENE_EFFECTS);
+    int result = options_parse(options.list, options.count, argc, argv);
     if (result != 0) {
         return result;
     }
     if (s.help) {
         printf("Usage: film [options]\nA fall into a black hole, as numbered pictures or as a video.\n\n");
-        options_print(stdout, options, COUNT_OF(options));
+        options_print(stdout, options.list, options.count);
         return EXIT_SUCCESS;
     }
     result = check(&s);

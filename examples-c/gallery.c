@@ -1,6 +1,6 @@
 /* gallery.c -- named scenes into PNG files, and a contact sheet of them: what the renderer can show, each in a few
  * lines. Lengths are in units of the hole's mass M, angles in degrees. */
-#include "common.h"
+#include "options.h"
 #include "picture.h"
 #include "scene.h"
 
@@ -27,13 +27,10 @@ static const SceneOptions BEGINNING = {
     .azimuth = -90.0,
     .elevation = 6.0,
     .fov = 50.0,
-    .disk_outer = 16.0,
-    .turbulence = 0.8,
+    .disk_outer = 17.0,
+    .turbulence = 1.0,
     .exposure = 0.0,
-    .view = BHR_VIEW_LIGHT,
 };
-
-static const double BLOOM = 0.2;
 
 /* Puts the camera there, looking at the hole. */
 static BhrStatus stand(Scene *scene, double distance, double azimuth, double elevation, double fov) {
@@ -67,6 +64,28 @@ static void stand_before(Scene *scene, double right_ascension, double declinatio
 
 /* ---- the scenes ---- */
 
+/* The scene of a new context. */
+static BhrStatus cinematic(Scene *scene) {
+    return bhr_camera_init(&scene->camera, sizeof scene->camera);
+}
+
+static BhrStatus physical(Scene *scene) {
+    scene->spin = 0.9;
+    scene->disk.emission_law = BHR_DISK_LIMB_DARKENED;
+    return stand(scene, 44.0, 90.0, 14.0, 46.0);
+}
+
+/* The hole of M87 is seen from 17 degrees off the disk's axis; the preset's beam is made for this distance. */
+static BhrStatus observatory(Scene *scene) {
+    scene->spin = 0.9;
+    return stand(scene, 30.0, 160.0, 73.0, 60.0);
+}
+
+static BhrStatus teaching(Scene *scene) {
+    scene->spin = 0.6;
+    return stand(scene, 26.0, 90.0, 12.0, 50.0);
+}
+
 static BhrStatus schwarzschild_edge_on(Scene *scene) {
     return stand(scene, 30.0, 110.0, 4.0, 45.0);
 }
@@ -77,17 +96,15 @@ static BhrStatus schwarzschild_face_on(Scene *scene) {
 
 static BhrStatus kerr(Scene *scene) {
     scene->spin = 0.998;
-    scene->disk.temperature = 18000.0; /* of the hottest ring; what is farther out shall be hot enough to be seen */
-    scene->film.exposure_ev = 1.0;
-    scene->sky.map_brightness = 0.5;
+    scene->film.exposure_ev = -0.5;
+    scene->disk.brightness = 0.15; /* the disk reaches so far in that its middle outshines the rest */
     return stand(scene, 32.0, 75.0, 9.0, 42.0);
 }
 
 static BhrStatus translucent(Scene *scene) {
     scene->spin = 0.9;
     scene->disk.opacity = 0.5;
-    scene->disk.temperature = 12000.0;
-    scene->disk.turbulence = 1.0;
+    scene->disk.temperature = 4500.0;
     return stand(scene, 30.0, -90.0, 20.0, 45.0);
 }
 
@@ -96,16 +113,14 @@ static const double ORION[2] = {83.0, 1.0};
 
 static BhrStatus orion(Scene *scene) {
     scene->has_disk = 0;
-    scene->film.exposure_ev = -0.5;
-    scene->sky.map_brightness = 2.0;
+    scene->film.exposure_ev = 2.0;
     stand_before(scene, ORION[0], ORION[1], 1e9, 34.0); /* from so far the hole bends nothing that shows */
     return BHR_OK;
 }
 
 static BhrStatus einstein_ring(Scene *scene) {
     scene->has_disk = 0;
-    scene->film.exposure_ev = -0.5;
-    scene->sky.map_brightness = 2.0;
+    scene->film.exposure_ev = 2.0;
     stand_before(scene, ORION[0], ORION[1], 100.0, 34.0);
     return BHR_OK;
 }
@@ -113,12 +128,13 @@ static BhrStatus einstein_ring(Scene *scene) {
 /* The Milky Way's middle becomes a ring. */
 static BhrStatus galactic_centre(Scene *scene) {
     scene->has_disk = 0;
+    scene->film.exposure_ev = 0.5;
     stand_before(scene, 266.4, -28.9, 40.0, 60.0);
     return BHR_OK;
 }
 
 static BhrStatus fall(Scene *scene, double radius) {
-    scene->film.exposure_ev = -2.0; /* ahead all light is bluer and brighter */
+    scene->film.exposure_ev = -1.5; /* ahead all light is bluer and brighter */
     scene->camera.motion = BHR_MOTION_FREE_FALL;
     return stand(scene, radius, -90.0, 25.0, 110.0);
 }
@@ -171,6 +187,7 @@ static BhrStatus grid(Scene *scene) {
 
 /* The views of one scene, whose disk is opaque: false colour is legible without stars behind it. */
 static BhrStatus view(Scene *scene, BhrView which) {
+    scene->disk.edge_softness = 0.0;
     scene->view = which;
     scene->spin = 0.9;
     return stand(scene, 30.0, -90.0, 12.0, 45.0);
@@ -201,30 +218,46 @@ typedef struct Exhibit {
     const char *name;
     const char *about;
     uint32_t    shape[2]; /* width : height */
+    BhrPreset   look;     /* that the scene begins with */
     BhrStatus (*describe)(Scene *scene);
 } Exhibit;
 
+#define CINEMATIC BHR_PRESET_CINEMATIC
+
 static const Exhibit EXHIBITS[] = {
-    {"schwarzschild-edge-on", "no spin, from 4 degrees above the disk's plane", {16, 9}, schwarzschild_edge_on},
-    {"schwarzschild-face-on", "no spin, from near the axis", {16, 9}, schwarzschild_face_on},
-    {"kerr-0.998", "the fastest hole that accretion makes: the disk reaches in to 1.24 M", {16, 9}, kerr},
-    {"translucent", "a thin disk: the images of all orders through each other", {16, 9}, translucent},
-    {"orion", "the constellation with no hole before it", {16, 9}, orion},
-    {"einstein-ring", "the same, with a hole 100 M away before its centre", {16, 9}, einstein_ring},
-    {"galactic-centre", "the middle of the Milky Way behind a hole", {16, 9}, galactic_centre},
-    {"grid", "the coordinates of a random sky: all of them again within the Einstein ring", {16, 9}, grid},
-    {"fall-4", "free fall, at r = 4 M, looking in", {16, 9}, fall_4},
-    {"fall-2.5", "free fall, at r = 2.5 M", {16, 9}, fall_2_5},
-    {"fall-1.5", "free fall, inside the horizon, at r = 1.5 M", {16, 9}, fall_1_5},
-    {"orbiting-observer", "in orbit at r = 7 M, at 0.45 of the speed of light", {16, 9}, orbiting_observer},
-    {"dome-master", "half the sky for a planetarium", {1, 1}, dome_master},
-    {"equirect", "the whole sky, 360 x 180 degrees", {2, 1}, equirect},
-    {"cube", "the whole sky as the faces of a cube: right left up down front back", {6, 1}, cube},
-    {"view-redshift", "false colour: frequency here over frequency there", {16, 9}, view_redshift},
-    {"view-order", "false colour: which image of the disk", {16, 9}, view_order},
-    {"view-deflection", "false colour: how far the light was bent", {16, 9}, view_deflection},
-    {"view-steps", "false colour: integration steps per pixel", {16, 9}, view_steps},
-    {"view-metric", "false colour: -g_tt where the light met the disk's plane", {16, 9}, view_metric},
+    {"cinematic", "what the library shows first: the look of a film", {16, 9}, CINEMATIC, cinematic},
+    {"physical", "spin 0.9, a smooth and limb-darkened disk, no glare, no tone curve",
+     {16, 9}, BHR_PRESET_PHYSICAL, physical},
+    {"observatory", "as the Event Horizon Telescope would show it",
+     {16, 9}, BHR_PRESET_OBSERVATORY, observatory},
+    {"teaching", "colours that are frequency shifts, and a grid on the sky",
+     {16, 9}, BHR_PRESET_TEACHING, teaching},
+    {"schwarzschild-edge-on", "no spin, from 4 degrees above the disk's plane",
+     {16, 9}, CINEMATIC, schwarzschild_edge_on},
+    {"schwarzschild-face-on", "no spin, from near the axis", {16, 9}, CINEMATIC, schwarzschild_face_on},
+    {"kerr-0.998", "the fastest hole that accretion makes: the disk reaches in to 1.24 M",
+     {16, 9}, CINEMATIC, kerr},
+    {"translucent", "a thin disk: the images of all orders through each other",
+     {16, 9}, CINEMATIC, translucent},
+    {"orion", "the constellation with no hole before it", {16, 9}, CINEMATIC, orion},
+    {"einstein-ring", "the same, with a hole 100 M away before its centre", {16, 9}, CINEMATIC, einstein_ring},
+    {"galactic-centre", "the middle of the Milky Way behind a hole", {16, 9}, CINEMATIC, galactic_centre},
+    {"grid", "the coordinates of a random sky: all of them again within the Einstein ring",
+     {16, 9}, CINEMATIC, grid},
+    {"fall-4", "free fall, at r = 4 M, looking in", {16, 9}, CINEMATIC, fall_4},
+    {"fall-2.5", "free fall, at r = 2.5 M", {16, 9}, CINEMATIC, fall_2_5},
+    {"fall-1.5", "free fall, inside the horizon, at r = 1.5 M", {16, 9}, CINEMATIC, fall_1_5},
+    {"orbiting-observer", "in orbit at r = 7 M, at 0.45 of the speed of light",
+     {16, 9}, CINEMATIC, orbiting_observer},
+    {"dome-master", "half the sky for a planetarium", {1, 1}, CINEMATIC, dome_master},
+    {"equirect", "the whole sky, 360 x 180 degrees", {2, 1}, CINEMATIC, equirect},
+    {"cube", "the whole sky as the faces of a cube: right left up down front back", {6, 1}, CINEMATIC, cube},
+    {"view-redshift", "false colour: frequency here over frequency there", {16, 9}, CINEMATIC, view_redshift},
+    {"view-order", "false colour: which image of the disk", {16, 9}, CINEMATIC, view_order},
+    {"view-deflection", "false colour: how far the light was bent", {16, 9}, CINEMATIC, view_deflection},
+    {"view-steps", "false colour: integration steps per pixel", {16, 9}, CINEMATIC, view_steps},
+    {"view-metric", "false colour: -g_tt where the light met the disk's plane",
+     {16, 9}, CINEMATIC, view_metric},
 };
 
 /* ---- the contact sheet ---- */
@@ -273,7 +306,7 @@ typedef struct Settings {
     const char *output;
     const char *only; /* NULL: all scenes */
     uint32_t    width, samples;
-    int32_t     backend;
+    int32_t     backend, preset; /* BHR_PRESET_*; NO_PRESET: each scene's own look */
     int         list, help;
 } Settings;
 
@@ -282,10 +315,16 @@ static int set_scene(BhrContext *context, const Settings *s, const Exhibit *exhi
     Scene     scene;
     BhrStatus status = scene_init(&scene, &BEGINNING);
     if (status >= 0) {
-        scene.film.tone_map = BHR_TONE_MAP_AGX;
-        scene.film.bloom = BLOOM;
         scene.quality.samples_per_pixel = s->samples;
+        status = scene_set_preset(&scene, context, exhibit->look);
+    }
+    if (status >= 0) {
         status = exhibit->describe(&scene);
+    }
+    if (status >= 0 && s->preset != NO_PRESET) {
+        const int has_disk = scene.has_disk;
+        status = scene_set_preset(&scene, context, s->preset);
+        scene.has_disk = has_disk;
     }
     if (status >= 0) {
         status = scene_apply(&scene, context);
@@ -400,15 +439,17 @@ static int check(const char *program, const Settings *s) {
 }
 
 static int run(int argc, char **argv) {
-    Settings     s = {.output = "gallery-out", .width = 960, .samples = 8, .backend = BHR_BACKEND_AUTO};
+    Settings     s = {.output = "gallery-out", .width = 960, .samples = 8, .backend = BHR_BACKEND_AUTO,
+                      .preset = NO_PRESET};
     const Option options[] = {
-        {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be; default gallery-out", NULL},
-        {"--only", OPTION_TEXT, &s.only, "NAME", "this scene alone, and no contact sheet", NULL},
-        {"--width", OPTION_UINT, &s.width, "N", "pixels across, 16 to 16384, to fit the shape; default 960", NULL},
-        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256; default 8", NULL},
-        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
-        {"--list", OPTION_FLAG, &s.list, NULL, "names the scenes", NULL},
-        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+        {"--output", OPTION_TEXT, &s.output, "FOLDER", "for the pictures; made if need be", NULL, NULL},
+        {"--only", OPTION_TEXT, &s.only, "NAME", "this scene alone, and no contact sheet", NULL, NULL},
+        {"--width", OPTION_UINT, &s.width, "N", "pixels across, 16 to 16384, to fit the shape", NULL, NULL},
+        {"--preset", OPTION_CHOICE, &s.preset, NULL, "this look for all scenes, instead of their own", PRESETS, NULL},
+        {"--samples", OPTION_UINT, &s.samples, "N", "per pixel, 1 to 256", NULL, NULL},
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
+        {"--list", OPTION_FLAG, &s.list, NULL, "names the scenes", NULL, NULL},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
     };
     int result = options_parse(options, COUNT_OF(options), argc, argv);
     if (result != 0) {

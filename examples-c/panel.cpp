@@ -8,7 +8,7 @@
 //   panel/inspector    rays and the metric, asked at once     panel/metric_map   g_tt over a plane
 //   panel/app          the loop                               panel/steps_plot   integration steps
 //   panel/window       GLFW, OpenGL, Dear ImGui               panel/performance  how fast frames come
-#include "common.h"
+#include "options.h"
 #include "panel/app.h"
 
 #include <cstdio>
@@ -45,17 +45,22 @@ int main(int argc, char **argv) {
     int32_t    backend = BHR_BACKEND_AUTO;
     int        help = 0;
     const Option table[] = {
-        {"--size", OPTION_SIZE, options.size, "WxH", "of the window; a display may scale it; default 1600x1000",
-         nullptr},
-        {"--backend", OPTION_CHOICE, &backend, nullptr, "what traces the light; default auto", BACKENDS},
-        {"--paused", OPTION_FLAG, &options.paused, nullptr, "begins with the scene's time at rest", nullptr},
-        {"--bare", OPTION_FLAG, &options.bare, nullptr, "nothing but the picture, at the window's size", nullptr},
-        {"--frames", OPTION_UINT, &options.frames, "N", "ends after N pictures, the same ones each time", nullptr},
-        {"--hold", OPTION_DOUBLE, &options.hold, "SECONDS", "ends after so long; with --frames: after those", nullptr},
-        {"--screenshot", OPTION_TEXT, &options.screenshot, "FILE", "at the end saves the window's content", nullptr},
-        {"--picture", OPTION_TEXT, &options.picture, "FILE", "at the end saves the last picture", nullptr},
-        {"--verbose", OPTION_FLAG, &options.verbose, nullptr, "tells what happens: stdout; bhr's log: stderr", nullptr},
-        {"--help", OPTION_FLAG, &help, nullptr, "this text", nullptr},
+        {"--size", OPTION_SIZE, options.size, "WxH", "of the window; a display may scale it", nullptr, nullptr},
+        {"--backend", OPTION_CHOICE, &backend, nullptr, "what traces the light", BACKENDS, nullptr},
+        {"--preset", OPTION_CHOICE, &options.preset, nullptr, "the look that it begins with", PRESETS, nullptr},
+        {"--paused", OPTION_FLAG, &options.paused, nullptr, "begins with the scene's time at rest", nullptr, nullptr},
+        {"--bare", OPTION_FLAG, &options.bare, nullptr, "nothing but the picture, at the window's size",
+         nullptr, nullptr},
+        {"--frames", OPTION_UINT, &options.frames, "N", "ends after N pictures, the same ones each time; 0: never",
+         nullptr, nullptr},
+        {"--hold", OPTION_DOUBLE, &options.hold, "SECONDS", "ends after so long, or so long after --frames; -1: never",
+         nullptr, nullptr},
+        {"--screenshot", OPTION_TEXT, &options.screenshot, "FILE", "at the end saves the window's content",
+         nullptr, nullptr},
+        {"--picture", OPTION_TEXT, &options.picture, "FILE", "at the end saves the last picture", nullptr, nullptr},
+        {"--verbose", OPTION_FLAG, &options.verbose, nullptr, "tells what happens: stdout; bhr's log: stderr",
+         nullptr, nullptr},
+        {"--help", OPTION_FLAG, &help, nullptr, "this text", nullptr, nullptr},
     };
     const int result = options_parse(table, COUNT_OF(table), argc, argv);
     if (result != 0) {

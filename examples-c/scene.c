@@ -3,31 +3,28 @@
 
 #include "vectors.h"
 
-/* The first look: a fast hole seen from a little above a disk with structure, so that its light turns and bends. */
+/* The first look is the library's default scene: the camera is at (0, 26, 2.5). */
 const SceneOptions SCENE_DEFAULTS = {
     .mass = 1.0,
-    .spin = 0.7,
-    .distance = 34.0,
-    .azimuth = 20.0,
-    .elevation = 10.0,
-    .fov = 42.0,
-    .disk_outer = 15.0,
-    .turbulence = 0.8,
-    .exposure = 0.5,
-    .view = BHR_VIEW_LIGHT,
+    .spin = 0.0,
+    .distance = 26.12,
+    .azimuth = 90.0,
+    .elevation = 5.492,
+    .fov = 45.0,
+    .disk_outer = 17.0,
+    .turbulence = 1.0,
+    .exposure = 0.0,
 };
 
-const Choice VIEWS[] = {{"light", BHR_VIEW_LIGHT}, {"redshift", BHR_VIEW_REDSHIFT},     {"order", BHR_VIEW_ORDER},
-                        {"steps", BHR_VIEW_STEPS}, {"deflection", BHR_VIEW_DEFLECTION}, {"metric", BHR_VIEW_METRIC},
-                        {NULL, 0}};
-const Choice PROJECTIONS[] = {{"perspective", BHR_PROJECTION_PERSPECTIVE},
-                              {"fisheye", BHR_PROJECTION_FISHEYE},
-                              {"equirect", BHR_PROJECTION_EQUIRECT},
-                              {"cube", BHR_PROJECTION_CUBE},
-                              {NULL, 0}};
-
-/* The library's defaults. */
-static BhrStatus fill_in(Scene *scene) {
+BhrStatus scene_defaults(Scene *scene) {
+    scene->mass = 1.0;
+    scene->spin = 0.0;
+    scene->axis[0] = scene->axis[1] = 0.0;
+    scene->axis[2] = 1.0;
+    scene->time = 0.0;
+    scene->effects = BHR_EFFECT_ALL;
+    scene->view = BHR_VIEW_LIGHT;
+    scene->has_disk = scene->has_sky = 1;
     BhrStatus status = bhr_camera_init(&scene->camera, sizeof scene->camera);
     if (status >= 0) {
         status = bhr_disk_init(&scene->disk, sizeof scene->disk);
@@ -44,30 +41,49 @@ static BhrStatus fill_in(Scene *scene) {
     return status;
 }
 
-BhrStatus scene_init(Scene *scene, const SceneOptions *options) {
-    BhrStatus status = fill_in(scene);
-    if (status < 0) {
-        return status;
-    }
+void scene_begin(Scene *scene, const SceneOptions *options) {
     scene->mass = options->mass;
     scene->spin = options->spin;
-    scene->time = 0.0;
-    scene->effects = BHR_EFFECT_ALL;
-    scene->view = options->view;
-    scene->has_disk = !options->no_disk;
-    scene->has_sky = !options->no_sky;
     scene->disk.outer_radius = options->disk_outer;
     scene->disk.turbulence = options->turbulence;
     scene->film.exposure_ev = options->exposure;
     scene->camera.fov_y = options->fov * PI / 180.0;
+}
+
+BhrStatus scene_init(Scene *scene, const SceneOptions *options) {
+    BhrStatus status = scene_defaults(scene);
+    if (status < 0) {
+        return status;
+    }
+    scene_begin(scene, options);
     return bhr_camera_orbit(&scene->camera, options->distance * options->mass, options->azimuth * PI / 180.0,
                             options->elevation * PI / 180.0);
+}
+
+BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset) {
+    int32_t   present;
+    BhrStatus status = bhr_set_preset(context, preset);
+    if (status >= 0) {
+        status = bhr_get_disk(context, &scene->disk, &present);
+    }
+    if (status >= 0) {
+        scene->has_disk = present;
+        status = bhr_get_sky(context, &scene->sky);
+    }
+    if (status >= 0) {
+        scene->has_sky = 1;
+        status = bhr_get_film(context, &scene->film);
+    }
+    return status >= 0 ? bhr_get_effects(context, &scene->effects) : status;
 }
 
 BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
     BhrStatus status = bhr_set_mass(context, scene->mass);
     if (status >= 0) {
         status = bhr_set_spin(context, scene->spin);
+    }
+    if (status >= 0) {
+        status = bhr_set_axis(context, scene->axis);
     }
     if (status >= 0) {
         status = bhr_set_time(context, scene->time);

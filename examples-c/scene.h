@@ -7,9 +7,12 @@
 
 #include <bhr.h>
 
+#define NO_PRESET (-1) /* none of BHR_PRESET_* */
+
 typedef struct Scene {
     double     mass; /* scene lengths */
     double     spin; /* a / M */
+    double     axis[3];
     double     time; /* scene lengths */
     BhrCamera  camera;
     BhrDisk    disk;
@@ -22,20 +25,26 @@ typedef struct Scene {
     BhrQuality quality;
 } Scene;
 
-/* The first scene, as the command line describes it. Lengths in units of M, angles in degrees. */
+/* A scene that a program begins with, where it differs from the library's. Lengths in units of M, angles in degrees. */
 typedef struct SceneOptions {
-    double  mass, spin;
-    double  distance, azimuth, elevation, fov;
-    double  disk_outer, turbulence, exposure;
-    int     no_disk, no_sky;
-    int32_t view;
+    double mass, spin;
+    double distance, azimuth, elevation, fov;
+    double disk_outer, turbulence, exposure;
 } SceneOptions;
 
 extern const SceneOptions SCENE_DEFAULTS;
-extern const Choice       VIEWS[], PROJECTIONS[];
 
-/* The defaults of the library with the options laid over them. Errors: as the library's. */
+/* The library's defaults. Errors: as the library's. */
+BhrStatus scene_defaults(Scene *scene);
+
+/* Lays a program's beginning over them, without the camera's place. */
+void scene_begin(Scene *scene, const SceneOptions *options);
+
+/* Both, and the camera's place. Errors: as the library's. */
 BhrStatus scene_init(Scene *scene, const SceneOptions *options);
+
+/* The look alone, disk, sky, film and effects, of a preset, as the context has it then. Errors: as the library's. */
+BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset);
 
 /* Sets all of it in a context; at the first failure stops and returns it. What was the same before costs nothing. */
 BhrStatus scene_apply(const Scene *scene, BhrContext *context);

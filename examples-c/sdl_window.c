@@ -1,7 +1,7 @@
 /* sdl_window.c -- a black hole in a window of SDL2: all that a host has to do for frames in a window of its own, from
  * the handle to every status that a frame can come back with. Drag with the mouse to go about the hole. Needs SDL 2.26,
  * for sizes in pixels; needs no renderer and no OpenGL of SDL's. */
-#include "common.h"
+#include "options.h"
 
 #define SDL_MAIN_HANDLED /* main stays main, on Windows too */
 #include <SDL.h>
@@ -298,13 +298,13 @@ static int run(const Settings *s) {
 int main(int argc, char **argv) {
     Settings     s = {.size = {1280, 720}};
     const Option options[] = {
-        {"--size", OPTION_SIZE, s.size, "WxH", "of the window, in SDL's units; default 1280x720", NULL},
-        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
-        {"--frames", OPTION_UINT, &s.frames, "N", "ends after N frames, 1/60 s apart", NULL},
-        {"--screenshot", OPTION_TEXT, &s.screenshot, "FILE", "saves the last picture, .png or .ppm", NULL},
-        {"--hold", OPTION_DOUBLE, &s.hold, "SECONDS", "keeps the last picture before it ends", NULL},
-        {"--verbose", OPTION_FLAG, &s.verbose, NULL, "the library's log on stderr", NULL},
-        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+        {"--size", OPTION_SIZE, s.size, "WxH", "of the window, in SDL's units", NULL, NULL},
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
+        {"--frames", OPTION_UINT, &s.frames, "N", "ends after N frames, 1/60 s apart; 0: never", NULL, NULL},
+        {"--screenshot", OPTION_TEXT, &s.screenshot, "FILE", "saves the last picture, .png or .ppm", NULL, NULL},
+        {"--hold", OPTION_DOUBLE, &s.hold, "SECONDS", "keeps the last picture before it ends", NULL, NULL},
+        {"--verbose", OPTION_FLAG, &s.verbose, NULL, "the library's log on stderr", NULL, NULL},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
     };
     int result = options_parse(options, COUNT_OF(options), argc, argv);
     if (result != 0) {

@@ -1,7 +1,7 @@
 /* trace_ray.c -- one photon around a black hole, in numbers: its path, crossings of the equatorial plane, deflection,
  * fate. The light is followed backward, from a static observer (ZAMO) into the direction it looks. Asks for
  * rays; makes no image. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
-#include "common.h"
+#include "options.h"
 #include "vectors.h"
 
 #include <math.h>
@@ -324,18 +324,19 @@ static int run(int argc, char **argv) {
     Settings s = {
         .mass = 1.0, .distance = 30.0, .impact = NAN, .angle = NAN, .backend = BHR_BACKEND_CPU, .rows = 16};
     const Option options[] = {
-        {"--mass", OPTION_DOUBLE, &s.mass, "M", "in scene lengths; default 1", NULL},
-        {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -0.999 to 0.999; default 0", NULL},
-        {"--distance", OPTION_DOUBLE, &s.distance, "R", "the observer's radius in M; default 30", NULL},
-        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "the observer above the equatorial plane; default 0", NULL},
-        {"--impact", OPTION_DOUBLE, &s.impact, "B", "impact parameter in M, for spin 0; looks towards the hole", NULL},
-        {"--angle", OPTION_DOUBLE, &s.angle, "DEG", "look direction, from the hole's centre; at any spin", NULL},
+        {"--mass", OPTION_DOUBLE, &s.mass, "M", "in scene lengths", NULL, NULL},
+        {"--spin", OPTION_DOUBLE, &s.spin, "A", "a / M, -0.999 to 0.999", NULL, NULL},
+        {"--distance", OPTION_DOUBLE, &s.distance, "R", "the observer's radius in M", NULL, NULL},
+        {"--elevation", OPTION_DOUBLE, &s.elevation, "DEG", "the observer above the equatorial plane", NULL, NULL},
+        {"--impact", OPTION_DOUBLE, &s.impact, "B", "impact parameter in M, for spin 0; looks towards the hole",
+         NULL, NULL},
+        {"--angle", OPTION_DOUBLE, &s.angle, "DEG", "look direction, from the hole's centre; at any spin", NULL, NULL},
         {"--position-angle", OPTION_DOUBLE, &s.position_angle, "DEG",
-         "to which side of the hole: 0 up (default), 90 right (+azimuth)", NULL},
-        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces it; default cpu, in double precision", BACKENDS},
-        {"--method", OPTION_CHOICE, &s.method, NULL, "of integration; default auto", METHODS},
-        {"--rows", OPTION_UINT, &s.rows, "N", "of the printed path; default 16", NULL},
-        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+         "to which side of the hole: 0 up, 90 right (+azimuth)", NULL, NULL},
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces it", BACKENDS, NULL},
+        {"--method", OPTION_CHOICE, &s.method, NULL, "of integration", METHODS, NULL},
+        {"--rows", OPTION_UINT, &s.rows, "N", "of the printed path", NULL, NULL},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
     };
     int result = options_parse(options, COUNT_OF(options), argc, argv);
     if (result != 0) {

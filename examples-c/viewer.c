@@ -1,6 +1,7 @@
 /* viewer.c -- a black hole in a window, to fly around in: how a host hands its window to bhr, presents frames, follows
  * sizes, and lives through a lost window or GPU. Its camera, scene, quality, input and pictures are in viewer_*.c.
  * Lengths on the command line are in units of the hole's mass M, angles in degrees. */
+#include "scene_options.h"
 #include "viewer.h"
 #include "viewer_input.h"
 
@@ -17,13 +18,16 @@
 #define MOST_FAILURES 3 /* frames in a row, before it gives up */
 
 typedef struct Settings {
-    uint32_t     size[2];
-    SceneOptions scene;
-    int32_t      motion, backend, present;
-    uint32_t     frames;
-    double       rate, hold;
-    const char  *screenshot;
-    int          validation, verbose, help;
+    uint32_t       size[2];
+    SceneInput    *input;         /* laid over the preset once there is a context: with these arguments */
+    const Options *options;
+    int            argc;
+    char         **argv;
+    int32_t        backend, present;
+    uint32_t       frames;
+    double         rate, hold;
+    const char    *screenshot;
+    int            validation, verbose, help;
 } Settings;
 
 static const Choice PRESENT_MODES[] = {{"vsync", BHR_PRESENT_VSYNC},
@@ -352,10 +356,13 @@ static int is_software(const BhrContext *context) {
 }
 
 static int set_first_scene(Viewer *v, const Settings *s) {
-    BhrStatus status = scene_init(&v->scene, &s->scene);
-    if (status >= 0) {
-        status = scene_apply(&v->scene, v->context);
+    if (scene_input_finish(s->input, v->context, s->options, s->argc, s->argv) != 0) {
+        return 0;
     }
+    v->scene = s->input->scene;
+    const int32_t motion = v->scene.camera.motion; /* the pilot sets the motion */
+    v->scene.camera.motion = BHR_MOTION_STATIC;
+    BhrStatus status = scene_apply(&v->scene, v->context);
     if (status < 0) {
         report_failure("set the scene", status);
         return 0;
@@ -363,7 +370,8 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->first = v->good = v->scene;
     v->tried_view = v->scene.view;
     v->tried_projection = v->scene.camera.projection;
-    v->pilot.motion = s->motion;
+    v->preset = s->input->preset; /* the key goes on from there; from none to the first */
+    v->pilot.motion = motion;
     v->pilot.steered = 1;
     v->pace = FIRST_PACE;
     governor_init(&v->governor, s->rate > 0.0 ? s->rate : display_rate(), is_software(v->context) ? 0.25 : 1.0);
@@ -431,45 +439,43 @@ static int view(const Settings *s) {
 /* ---- command line ---- */
 
 static int run(int argc, char **argv) {
-    Settings      s = {.scene = SCENE_DEFAULTS};
-    SceneOptions *o = &s.scene;
-    const Option  options[] = {
-        {"--size", OPTION_SIZE, s.size, "WxH", "of the window; default 1280x720", NULL},
-        {"--mass", OPTION_DOUBLE, &o->mass, "M", "in scene lengths; default 1", NULL},
-        {"--spin", OPTION_DOUBLE, &o->spin, "A", "a / M, -0.999 to 0.999; default 0.7", NULL},
-        {"--distance", OPTION_DOUBLE, &o->distance, "R", "camera's radius in M; default 34", NULL},
-        {"--azimuth", OPTION_DOUBLE, &o->azimuth, "DEG", "camera's azimuth about the spin axis; default 20", NULL},
-        {"--elevation", OPTION_DOUBLE, &o->elevation, "DEG", "camera above the disk's plane; default 10", NULL},
-        {"--fov", OPTION_DOUBLE, &o->fov, "DEG", "vertical field of view, below 180; default 42", NULL},
-        {"--motion", OPTION_CHOICE, &s.motion, NULL, "of the camera; default static", MOTIONS},
-        {"--disk-outer", OPTION_DOUBLE, &o->disk_outer, "R", "in M; default 15", NULL},
-        {"--turbulence", OPTION_DOUBLE, &o->turbulence, "X", "structure of the disk, 0 to 1; default 0.8", NULL},
-        {"--no-disk", OPTION_FLAG, &o->no_disk, NULL, "leaves the disk out", NULL},
-        {"--no-stars", OPTION_FLAG, &o->no_sky, NULL, "makes the sky black", NULL},
-        {"--exposure", OPTION_DOUBLE, &o->exposure, "EV", "stops, -20 to 20; default 0.5", NULL},
-        {"--view", OPTION_CHOICE, &o->view, NULL, "what a pixel shows; default light", VIEWS},
-        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light; default auto", BACKENDS},
-        {"--present", OPTION_CHOICE, &s.present, NULL, "how frames reach the screen; default vsync", PRESENT_MODES},
-        {"--rate", OPTION_DOUBLE, &s.rate, "FPS", "that the quality gives way to; default the display's", NULL},
-        {"--frames", OPTION_UINT, &s.frames, "N", "ends after N frames, 1/60 s of the scene apart", NULL},
-        {"--screenshot", OPTION_TEXT, &s.screenshot, "FILE", "saves the last picture, .png or .ppm", NULL},
-        {"--hold", OPTION_DOUBLE, &s.hold, "SECONDS", "keeps the last picture before it ends", NULL},
-        {"--validation", OPTION_FLAG, &s.validation, NULL, "the graphics driver's checks, reported on stderr", NULL},
-        {"--verbose", OPTION_FLAG, &s.verbose, NULL, "the library's log on stderr", NULL},
-        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL},
+    SceneInput   input;
+    Options      options = {.count = 0};
+    Settings     s = {.input = &input, .options = &options, .argc = argc, .argv = argv};
+    const Option first[] = {{"--size", OPTION_SIZE, s.size, "WxH", "of the window; 0x0: 1280x720", NULL, NULL}};
+    const Option last[] = {
+        {"--backend", OPTION_CHOICE, &s.backend, NULL, "what traces the light", BACKENDS, NULL},
+        {"--present", OPTION_CHOICE, &s.present, NULL, "how frames reach the screen", PRESENT_MODES, NULL},
+        {"--rate", OPTION_DOUBLE, &s.rate, "FPS", "that the quality gives way to; 0: the display's", NULL, NULL},
+        {"--frames", OPTION_UINT, &s.frames, "N", "ends after N frames, 1/60 s of the scene apart; 0: never", NULL,
+         NULL},
+        {"--screenshot", OPTION_TEXT, &s.screenshot, "FILE", "saves the last picture, .png or .ppm", NULL, NULL},
+        {"--hold", OPTION_DOUBLE, &s.hold, "SECONDS", "keeps the last picture before it ends", NULL, NULL},
+        {"--validation", OPTION_FLAG, &s.validation, NULL, "the graphics driver's checks, reported on stderr", NULL,
+         NULL},
+        {"--verbose", OPTION_FLAG, &s.verbose, NULL, "the library's log on stderr", NULL, NULL},
+        {"--help", OPTION_FLAG, &s.help, NULL, "this text", NULL, NULL},
     };
-    int result = options_parse(options, COUNT_OF(options), argc, argv);
+    BhrStatus status = scene_input_init(&input);
+    if (status < 0) {
+        return report_failure("begin", status);
+    }
+    scene_input_begin(&input, &SCENE_DEFAULTS);
+    options_add(&options, first, COUNT_OF(first));
+    options_add_scene(&options, &input, ALL_OF_SCENE & ~SCENE_QUALITY); /* the quality follows the rate */
+    options_add(&options, last, COUNT_OF(last));
+    int result = options_parse(options.list, options.count, argc, argv);
     if (result != 0) {
         return result;
     }
     if (s.help) {
         printf("Usage: viewer [options]\nA black hole in a window. Lengths in units of its mass M.\n\n");
-        options_print(stdout, options, COUNT_OF(options));
+        options_print(stdout, options.list, options.count);
         printf("\nKeys:\n");
         input_print_keys();
         return EXIT_SUCCESS;
     }
-    if (s.motion == BHR_MOTION_VELOCITY) {
+    if (input.scene.camera.motion == BHR_MOTION_VELOCITY) {
         fprintf(stderr, "%s: --motion velocity is not for a camera that moves by itself\n", argv[0]);
         return EXIT_USAGE;
     }

@@ -142,6 +142,17 @@ static void toggle_adaptive(Viewer *v, double unused) {
     SAY(v, v->governor.enabled ? "quality follows the display's rate" : "quality as it is set, whatever the rate");
 }
 
+/* The next look: disk, stars, film and effects; hole and camera stay. */
+static void cycle_preset(Viewer *v, double unused) {
+    (void)unused;
+    v->preset = (v->preset + 1) % (BHR_PRESET_TEACHING + 1);
+    BhrStatus status = scene_set_preset(&v->scene, v->context, v->preset);
+    if (status < 0) {
+        report_failure("set the preset", status);
+    }
+    SAY(v, "preset: %s", choice_name(PRESETS, v->preset));
+}
+
 static void cycle_tone_map(Viewer *v, double unused) {
     (void)unused;
     v->scene.film.tone_map = (v->scene.film.tone_map + 1) % (BHR_TONE_MAP_AGX + 1);
@@ -177,6 +188,7 @@ static void reset(Viewer *v, double unused) {
     v->paused = 0;
     v->tried_view = v->scene.view;
     v->tried_projection = v->scene.camera.projection;
+    v->preset = NO_PRESET;
     SAY(v, "back to the beginning");
 }
 
@@ -280,6 +292,7 @@ static const Key KEYS[] = {
     {GLFW_KEY_UP, 0, "Up", "expose more", change_exposure, 0.25, 0},
     {GLFW_KEY_DOWN, 0, "Down", "expose less", change_exposure, -0.25, 0},
     {GLFW_KEY_G, 0, NULL, "change the tone map", cycle_tone_map, 0, 0},
+    {GLFW_KEY_Y, 0, NULL, "change the look: cinematic, physical, observatory, teaching", cycle_preset, 0, 0},
 
     {GLFW_KEY_L, 0, NULL, "let the quality follow the display's rate, or not", toggle_adaptive, 0, 0},
     {GLFW_KEY_B, 0, NULL, "take more samples a pixel", change_samples, 2, 0},

@@ -67,9 +67,10 @@
  * Structs
  *   Structs that may grow begin with struct_size: sizeof the struct that the program was compiled with. A size smaller
  *   than in the library's first version is BHR_ERROR_INVALID_ARGUMENT. A field that a program's struct does not reach
- *   has its default as input, and is not written as output. A struct larger than this library's is accepted as input
- *   when the rest of it is zero, and as output the rest is zeroed. Fields named reserved are 0. The *_init functions
- *   clear struct_size bytes and fill in the defaults. Structs and arrays need no alignment; pixels do (BhrImage).
+ *   is not written as output, and as input means what the library did without it. A struct larger than this library's
+ *   is accepted as input when the rest of it is zero, and as output the rest is zeroed. Fields named reserved are 0.
+ *   The *_init functions clear struct_size bytes and fill in the defaults: of BhrDisk and BhrFilm those of the release
+ *   whose struct has that size. Structs and arrays need no alignment; pixels do (BhrImage).
  *
  * Pointers
  *   A pointer is NULL only where this header says that it may be. Everything that is passed in is copied before the
@@ -313,14 +314,15 @@ typedef struct BhrContextOptions {
 BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_size);
 
 /**
- * Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30, 5)
- * that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With BHR_BACKEND_AUTO it
- * succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a driver the CPU
- * tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks.
- * Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another
- * platform, for any window in a library that was built without the cargo feature window, and for BHR_BACKEND_GL in
- * one that was built without the feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot
- * be opened, or cannot present to compatible_window.
+ * Makes a context with the default scene, that of BHR_PRESET_CINEMATIC: a hole of mass 1 without spin, a turbulent
+ * golden disk with soft edges, glare, the stars and the Milky Way, and a camera at (0, 26, 2.5) that looks at the
+ * hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With BHR_BACKEND_AUTO it succeeds on every
+ * machine: an adapter that cannot be opened is passed over, without a GPU or a driver the CPU tracer serves, and the
+ * log says why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
+ * INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform, for any window in a
+ * library that was built without the cargo feature window, and for BHR_BACKEND_GL in one that was built without the
+ * feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
+ * compatible_window.
  */
 BhrStatus bhr_context_create(uint32_t abi_version,
                              const BhrContextOptions *options,
@@ -453,12 +455,12 @@ typedef int32_t BhrMotion;
 typedef struct BhrCamera {
     uint32_t struct_size;     /**< sizeof(BhrCamera). */
     BhrProjection projection; /**< BHR_PROJECTION_*. Default PERSPECTIVE. */
-    double position[3];       /**< Default (0, -30, 5). Not (0, 0, 0). */
+    double position[3];       /**< Default (0, 26, 2.5). Not (0, 0, 0). */
     double forward[3];        /**< Any non-zero length. Default: towards the hole. */
     double up[3];             /**< Any non-zero length, not parallel to forward. Default +z. */
     /**
      * Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default
-     * pi / 3.
+     * pi / 4.
      */
     double fov_y;
     BhrMotion motion;  /**< BHR_MOTION_*. Default STATIC. */
@@ -520,7 +522,58 @@ BhrStatus bhr_camera_advance(const BhrContext *context,
 
 /* ---- accretion disk ---- */
 
-#define BHR_DISK_RETROGRADE 1u /**< BhrDisk.flags: the matter orbits towards -ph. */
+/** BhrDisk.flags: the matter orbits towards -ph. */
+#define BHR_DISK_RETROGRADE 1u
+
+/**
+ * BhrDisk.flags: matter shines on its way from the ISCO to the horizon, too. There it keeps the energy and the
+ * angular momentum of the orbit at the ISCO and falls freely (Cunningham 1975, ApJ 202, 788): light, emission law,
+ * views and the g of single rays are those of matter that moves so. Its flux is a model: inside the hottest
+ * ring it is never less than half of that ring's, down to the horizon (that of Page and Thorne falls to 0 at the
+ * ISCO). The disk is not translucent at its inner edge then, and
+ * turbulence fades out within the outer third of the way from the ISCO to the centre. BHR_DISK_AT_MEDIAN means the
+ * orbiting part of the disk, so that light from outside the hottest ring stays as it is without the flag. Rays are
+ * integrated one by one, without lens tables, which takes longer. Since 0.2.0.
+ */
+#define BHR_DISK_PLUNGES 2u
+
+/**
+ * The ring at whose radius a disk has the stated temperature and brightness. Whichever it is, the
+ * temperature goes along the radius as the fourth root of the Page-Thorne flux, and the luminance is that of a
+ * blackbody so hot.
+ * Since 0.2.0.
+ */
+typedef int32_t BhrDiskReference;
+
+/**
+ * The hottest ring of the profile: at spin 0 r = 9.55 M, at spin 0.998 r = 1.58 M. Where that ring moves inwards, the
+ * rest of the disk darkens. Since 0.2.0.
+ */
+#define BHR_DISK_AT_HOTTEST 0
+
+/**
+ * The ring that halves the disk's area, r^2 = (inner^2 + outer^2) / 2, where of a soft outer edge the outermost
+ * quarter of its fading does not count: the disk as a whole keeps its look when spin or edges change. (The median
+ * luminance of the pixels of the default disk, seen from r = 30 M and 10 degrees above it, stays within a factor of
+ * 1.5 from spin -0.998 to 0.998.) What is farther in is hotter and brighter, at high spin by far. Since 0.2.0.
+ */
+#define BHR_DISK_AT_MEDIAN 1
+
+/**
+ * How the disk's light depends on the angle to its normal, in the frame of its matter. The flux is the same.
+ * Since 0.2.0.
+ */
+typedef int32_t BhrEmissionLaw;
+
+/** The disk's surface shines alike in all directions. Since 0.2.0. */
+#define BHR_DISK_ISOTROPIC 0
+
+/**
+ * As an atmosphere of free electrons, which is what the inner parts of bright disks are (Chandrasekhar 1960,
+ * "Radiative Transfer", table XXIV, linear between its angles): 1.269 times as bright along the normal, 0.414 times at
+ * grazing angles. Since 0.2.0.
+ */
+#define BHR_DISK_LIMB_DARKENED 1
 
 /**
  * A geometrically thin disk in the equatorial plane, on circular geodesics, with the Page-Thorne flux. Radii in
@@ -528,19 +581,34 @@ BhrStatus bhr_camera_advance(const BhrContext *context,
  */
 typedef struct BhrDisk {
     uint32_t struct_size; /**< sizeof(BhrDisk). */
-    uint32_t flags;       /**< BHR_DISK_* bits. Default 0: prograde. */
-    double inner_radius;  /**< In M, 0 .. 1e6. 0 (default): the ISCO. Matter inside the ISCO does not shine. */
-    double outer_radius;  /**< In M, greater than inner_radius, to 1e6. Default 20. */
-    double temperature;   /**< Kelvin at the hottest radius of the profile, 500 .. 1e9. Default 6500. */
-    double opacity;       /**< 0 .. 1. Default 1. */
-    double brightness;    /**< 0 .. 1e6. Default 1: the hottest ring at rest has luminance 1. */
+    uint32_t flags;       /**< Any of BHR_DISK_RETROGRADE | BHR_DISK_PLUNGES. Default 0. */
     /**
-     * Contrast of the structure that orbits with the matter, from 0, smooth (default), to 1. It makes the disk lighter
-     * and darker by turns, and bhr_set_time carries it along. A pattern lives for 120 M, and every 60 M a new one
-     * begins: two at a time fade in and out.
+     * In M, 0 .. 1e6. The disk begins here, but not inside the ISCO, or with BHR_DISK_PLUNGES not inside the horizon.
+     * Default 0: at the ISCO, or at the horizon.
+     */
+    double inner_radius;
+    double outer_radius; /**< In M, greater than inner_radius, to 1e6. Default 17. */
+    double temperature;  /**< Kelvin at the ring that `reference` says, 500 .. 1e9. Default 3500. */
+    double opacity;      /**< 0 .. 1. Default 1. */
+    double brightness;   /**< 0 .. 1e6: the luminance of that ring at rest. Default 0.6. */
+    /**
+     * Contrast of the structure that orbits with the matter, from 0, smooth, to 1 (default): streaks along the orbit,
+     * lighter and darker by turns, with the smooth disk's light for their mean. bhr_set_time carries them along, at
+     * any time to 1e9 M and more, forwards and backwards. At every radius a pattern lives for about one orbit
+     * there, and fades into the next.
      */
     double turbulence;
     uint64_t seed; /**< Selects the turbulence: the same seed always gives the same pattern. Any number. Default 0. */
+    /** BHR_DISK_AT_*. Default AT_MEDIAN; AT_HOTTEST in structs of 0.1.0's size. Since 0.2.0. */
+    BhrDiskReference reference;
+    BhrEmissionLaw emission_law; /**< BHR_DISK_ISOTROPIC (default), BHR_DISK_LIMB_DARKENED. Since 0.2.0. */
+    /**
+     * 0 sharp .. 1, default 0.4. Opacity and light fade to nothing over this share of the way from the inner edge (the
+     * ISCO, if matter plunges) to the outer one, at its end. Near the ISCO opacity falls with the flux, where that is
+     * less than this share of the hottest ring's. A disk that inner_radius cuts off outside the hottest ring is sharp
+     * there. Since 0.2.0.
+     */
+    double edge_softness;
 } BhrDisk;
 
 /**
@@ -551,7 +619,7 @@ BhrStatus bhr_disk_init(BhrDisk *disk, size_t struct_size);
 
 /**
  * Sets the disk; NULL: no disk. A new context has the default one. Errors: INVALID_ARGUMENT for a number outside
- * its range or an unknown flag.
+ * its range, or an unknown flag, reference or emission_law.
  */
 BhrStatus bhr_set_disk(BhrContext *context, const BhrDisk *disk);
 
@@ -576,7 +644,10 @@ BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_pr
  */
 #define BHR_IMAGE_BOTTOM_UP 2u
 
-/** A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest. */
+/**
+ * A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring
+ * that BhrDisk.reference names, if the disk's brightness is 1.
+ */
 typedef int32_t BhrFormat;
 
 #define BHR_FORMAT_RGBA8_SRGB 1 /**< 4 bytes: red, green, blue with the sRGB curve, alpha. */
@@ -670,8 +741,8 @@ BhrStatus bhr_image_release(BhrImage *image);
 #define BHR_SKY_PROCEDURAL 2u
 
 /**
- * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s). It is true to
- * about a degree, and next to the stars eight times as bright as the eye sees it.
+ * BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.5 s). It is true to
+ * about a degree, finer clouds and dust are made up, and next to the stars eight times as bright as the eye sees it.
  */
 #define BHR_SKY_MILKY_WAY 4u
 
@@ -737,32 +808,69 @@ BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 /** The curve from light to pixels. */
 typedef int32_t BhrToneMap;
 
-#define BHR_TONE_MAP_NONE 0 /**< No curve: light above 1 is clipped. */
-#define BHR_TONE_MAP_ACES 1 /**< A filmic curve after ACES. */
-#define BHR_TONE_MAP_AGX 2  /**< The AgX curve. */
+/** No curve: light above 1 is clipped. */
+#define BHR_TONE_MAP_NONE 0
+
+/**
+ * A filmic curve: the fit of ACES 1.0 by Stephen Hill (2015) after a factor 1 / 0.6, as three.js has it; middle grey,
+ * 0.18, becomes 127 of 255.
+ */
+#define BHR_TONE_MAP_ACES 1
+
+/**
+ * AgX (T. Sobotka, 2022), base look, with the primaries of Blender's, as three.js has it; middle grey becomes 128 of
+ * 255, and bright saturated light goes to white with less shift of its hue than under ACES.
+ */
+#define BHR_TONE_MAP_AGX 2
+
+/** The colours of a picture. Since 0.2.0. */
+typedef int32_t BhrColourMap;
+
+/** The picture has the colours of the light. Since 0.2.0. */
+#define BHR_COLOUR_MAP_NONE 0
+
+/**
+ * The map afmhot of matplotlib and gnuplot, in which the Event Horizon Telescope publishes its images: with s, the
+ * luminance (Y of Rec. 709) of the exposed light after the tone map, 0 .. 1, red is 2 s, green 2 s - 1/2 and blue 2 s
+ * - 1, each within 0 .. 1, in sRGB code values. With BHR_TONE_MAP_NONE s is linear in the light. Since 0.2.0.
+ */
+#define BHR_COLOUR_MAP_AFMHOT 1
 
 /**
  * How light becomes pixels. It applies to 8-bit formats and windows only, because float formats hold linear radiance;
- * and to BHR_VIEW_LIGHT only, because the other views show values. In this order: exposure, bloom, tone map, the sRGB
- * curve, dithering.
+ * and to BHR_VIEW_LIGHT only, because the other views show values. In this order: exposure, bloom, beam, tone map, the
+ * sRGB curve or the colour map, dithering.
  */
 typedef struct BhrFilm {
     uint32_t struct_size; /**< sizeof(BhrFilm). */
     BhrToneMap tone_map;  /**< BHR_TONE_MAP_*. Default ACES. */
     double exposure_ev;   /**< Stops, -20 .. 20. Default 0. */
     /**
-     * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off (default) .. 1. A pixel keeps
-     * 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K, of
-     * integral 1, falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about
-     * H / 4: the eye's 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from
-     * 2 H away, with r0 = H / 180, r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is
-     * lost: what would leave the frame is reflected at its border. Light is limited to 65504 after exposure. In
-     * transparent images glare is added light, and alpha stays coverage. Glare comes from the whole frame: with a
-     * region set, 8-bit images of light are INVALID_STATE when they are rendered. It spreads over the picture, not
-     * over the sphere: in EQUIRECT and CUBE frames seams and faces' borders interrupt it. Frames above 25 megapixels
-     * (12 on the CPU) are traced twice, as their light is not kept.
+     * Glare: the share of the light that the eye's or a camera's optics scatter. 0 off .. 1, default 0.25. A pixel
+     * keeps 1 - 0.4 bloom of its light L, and the rest spreads: out = (1 - s) L + s (L * K), s = 0.4 bloom, where K,
+     * of integral 1, falls with the distance r as (r^2 + r0^2)^(-3/2) + (r^2 + r0^2)^-1 / r1, cut off smoothly about H
+     * / 4: the eye's 10 / theta^3 + 10 / theta^2 (Spencer et al., SIGGRAPH 1995) for a frame of height H seen from 2 H
+     * away, with r0 = H / 180, r1 = H / 28 = 1 degree. So it looks the same at every resolution. No light is lost:
+     * what would leave the frame is reflected at its border. Light is limited to 65504 after exposure. In transparent
+     * images glare is added light, and alpha stays coverage. Glare comes from the whole frame: with a region set,
+     * 8-bit images of light are INVALID_STATE when they are rendered; but where no bhr_set_film came after the context
+     * was made, or after the last bhr_set_preset, they are rendered without glare. It spreads over the
+     * picture, not over the sphere: in EQUIRECT and CUBE frames seams and faces' borders interrupt it. Frames above 25
+     * megapixels (12 on the CPU) are traced twice, as their light is not kept.
      */
     double bloom;
+    /**
+     * The full width at half maximum of a Gaussian that the picture is spread by, as by the beam of a telescope; in
+     * frame heights, 0 off (default) .. 1. In a PERSPECTIVE frame an angle w at its middle is w / (2 tan(fov_y / 2))
+     * heights. For how the Event Horizon Telescope saw M87*, take half the bright ring's diameter: the beam is
+     * 20 microarcseconds wide, the ring 42. What would leave the frame is mirrored at its border, and alpha is left
+     * alone. With a region set, 8-bit images of light are INVALID_STATE when they are rendered, also when a preset set
+     * the beam; EQUIRECT and CUBE frames and large ones are as for bloom. Beams of less than 7 pixels are not quite
+     * Gaussian, but of the right width. Since 0.2.0.
+     */
+    double beam_fwhm;
+    BhrColourMap colour_map; /**< BHR_COLOUR_MAP_*. Default NONE. Since 0.2.0. */
+    uint32_t reserved;       /**< 0. Since 0.2.0. */
 } BhrFilm;
 
 /**
@@ -771,7 +879,7 @@ typedef struct BhrFilm {
  */
 BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
 
-/** Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map. */
+/** Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map or colour map. */
 BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
 
 /** The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
@@ -793,6 +901,9 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
  */
 BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 
+/** The effects as they are set. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL. */
+BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
+
 /**
  * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera,
  * which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time
@@ -800,6 +911,71 @@ BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
  * falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
  */
 BhrStatus bhr_set_time(BhrContext *context, double time);
+
+/* ---- presets: named looks ---- */
+
+/**
+ * A named look: values for disk, sky, film and effects that setters can then change. Since 0.2.0.
+ *
+ * Each preset sets all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky. Hole, camera,
+ * time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host that shows its own map
+ * sets BHR_SKY_MAP again. An empty cell has the first column's value.
+ *
+ * ```text
+ * field                  if empty     CINEMATIC    PHYSICAL     OBSERVATORY  TEACHING
+ * disk.flags             0
+ * disk.inner_radius      0 (ISCO)
+ * disk.outer_radius      20           17                        12           12
+ * disk.temperature       6500         3500                      15000        5000
+ * disk.opacity           1
+ * disk.brightness        1            0.6                                    0.6
+ * disk.turbulence        0            1
+ * disk.seed              0
+ * disk.reference         AT_MEDIAN
+ * disk.emission_law      ISOTROPIC
+ * disk.edge_softness     0            0.4
+ * sky.flags              STARS        STARS        STARS        0            GRID
+ *                        | MILKY_WAY  | MILKY_WAY  | MILKY_WAY
+ * sky.stars_brightness   1
+ * sky.map_brightness     1
+ * film.tone_map          ACES                      NONE         NONE         NONE
+ * film.exposure_ev       0                         -2           -0.5
+ * film.bloom             0            0.25
+ * film.beam_fwhm         0                                      0.15
+ * film.colour_map        NONE                                   AFMHOT
+ * effects                ALL                                                 DOPPLER_SHIFT | GRAVITY_SHIFT
+ * ```
+ */
+typedef int32_t BhrPreset;
+
+/**
+ * The default: a golden disk with structure and soft edges, its approaching side nearly white, and glare, as a film
+ * would show it. Since 0.2.0.
+ */
+#define BHR_PRESET_CINEMATIC 0
+
+/**
+ * As a physicist expects it: a smooth disk, no glare, no tone curve; light is shown as it is, two stops down, until it
+ * clips. Since 0.2.0.
+ */
+#define BHR_PRESET_PHYSICAL 1
+
+/**
+ * As the Event Horizon Telescope shows its sources: a ring blurred by a Gaussian beam, its luminance in one colour
+ * map, on a black sky. The beam is about half the bright ring's diameter, as for M87*, where that ring is 0.3 of the
+ * frame's height: 30 M away at a fov_y of 60 degrees. M87* is seen from 73 degrees above the disk's
+ * plane. Since 0.2.0.
+ */
+#define BHR_PRESET_OBSERVATORY 2
+
+/**
+ * For lessons: a grid on the sky, which shows the lensing, and a smooth disk whose colours are those of the frequency
+ * shifts, but which motion makes neither brighter nor darker: beaming and light delay are off. Since 0.2.0.
+ */
+#define BHR_PRESET_TEACHING 3
+
+/** Gives the scene a look: the values of BhrPreset. Since 0.2.0. Errors: INVALID_ARGUMENT for an unknown preset. */
+BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
 
 /* ---- quality ---- */
 
@@ -828,8 +1004,8 @@ BhrStatus bhr_set_time(BhrContext *context, double time);
  * | max_disk_order, at most      | 15                           | 15; beyond 1e4 M 11                          |
  * | ... of a turbulent disk      | 15                           | 3; beyond 1e4 M 2                            |
  *
- * Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays and
- * BHR_VIEW_METRIC.
+ * Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays,
+ * BHR_VIEW_METRIC and disks with BHR_DISK_PLUNGES.
  */
 typedef int32_t BhrMethod;
 
@@ -932,7 +1108,7 @@ BhrStatus bhr_set_view(BhrContext *context, BhrView view);
 
 /**
  * The part of a larger frame that an image holds: for tiles, dome walls and render farms. Tiles that are joined have
- * the same bytes as the frame.
+ * the same bytes as the frame, unless that has glare (BhrFilm.bloom).
  */
 typedef struct BhrRegion {
     uint32_t struct_size; /**< sizeof(BhrRegion). */
@@ -944,8 +1120,9 @@ typedef struct BhrRegion {
 } BhrRegion;
 
 /**
- * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Bloom comes
- * from the whole frame: with both set, 8-bit images of light are INVALID_STATE when they are rendered. An image that
+ * Sets the region; NULL: images are whole frames. Images, jobs and camera rays obey it, windows do not. Glare
+ * and beams come from the whole frame: with a region, 8-bit images of light with a film that has either are
+ * INVALID_STATE when they are rendered; of the default film the glare is left out (BhrFilm.bloom). An image that
  * reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
  * INVALID_ARGUMENT.
  */
@@ -970,7 +1147,7 @@ BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for a
  * bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
  * INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for
- * bloom with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
+ * bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
  * DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the
  * message says so, and what is not yet rendered is untouched.
  */
@@ -1134,10 +1311,14 @@ typedef struct BhrRay {
 
 /** A crossing of the equatorial plane outside the horizon. Within one BHR_ABI_VERSION it does not grow. */
 typedef struct BhrCrossing {
-    double radius;   /**< Boyer-Lindquist r, scene lengths. */
-    double azimuth;  /**< Boyer-Lindquist ph in the chart, (-pi, pi]. */
-    double redshift; /**< g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO. */
-    double delay;    /**< Coordinate time since the photon left, scene lengths; NaN from inside the horizon. */
+    double radius;  /**< Boyer-Lindquist r, scene lengths. */
+    double azimuth; /**< Boyer-Lindquist ph in the chart, (-pi, pi]. */
+    /**
+     * g = nu(camera) / nu(emitter on the disk's circular orbit); inside the ISCO that of falling matter with
+     * BHR_DISK_PLUNGES, else NaN.
+     */
+    double redshift;
+    double delay; /**< Coordinate time since the photon left, scene lengths; NaN from inside the horizon. */
 } BhrCrossing;
 
 /** How a ray ends. */
@@ -1187,8 +1368,8 @@ BhrStatus bhr_camera_ray(const BhrContext *context,
 
 /**
  * Traces count rays on the context's backend. The scene's disk does not matter: crossings are those of the bare
- * equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter turns as the
- * disk's flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
+ * equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter moves as the
+ * disk's flags say, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
  * an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at least
  * 56 and 184, the sizes of the first version; both arrays are packed. A ray that is longer than this library's must be
  * 0 beyond it; a longer hit is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or

@@ -251,8 +251,8 @@ impl Renderer {
         self.stats.last()
     }
 
-    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a region with bloom; a
-    /// format that does not go with the view.
+    /// The request to a tracer for an image of `size`. Errors: a region that the image overruns; a region with bloom or
+    /// a beam; a format that does not go with the view.
     fn request(
         &self,
         format: PixelFormat,
@@ -264,10 +264,13 @@ impl Renderer {
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
         let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
-        if blooms && set {
+        if blooms && set && !(self.scene.film.glare_is_optional && self.scene.film.beam_fwhm == 0.0) {
+            let film = &self.scene.film;
+            let spread = [("bloom", "glare", film.bloom), ("beam_fwhm", "its light", film.beam_fwhm)];
+            let (name, light, value) = if film.bloom > 0.0 { spread[0] } else { spread[1] };
             return Err(Error::state(format!(
-                "film bloom is {}: glare comes from the whole frame, and a region is set; set no region, or bloom 0",
-                self.scene.film.bloom
+                "film {name} is {value}: {light} comes from the whole frame, and a region is set; set no region, or \
+                 {name} 0"
             )));
         }
         match (self.scene.view, format) {
@@ -295,8 +298,9 @@ impl Renderer {
     /// Renders the scene into `target`, tile by tile; `region` `None`: the target is the whole frame.
     ///
     /// Errors: INVALID_ARGUMENT for a region that the image overruns or a format that does not go with the view;
-    /// INVALID_STATE where the camera's motion cannot be, for a cube of another shape, or for bloom with a region;
-    /// CANCELLED when `progress` returns false (tiles not yet begun are untouched); whatever the device reports.
+    /// INVALID_STATE where the camera's motion cannot be, for a cube of another shape, or for bloom or a beam with a
+    /// region; CANCELLED when `progress` returns false (tiles not yet begun are untouched); whatever the device
+    /// reports.
     pub fn render(
         &mut self,
         target: &mut ImageMut<'_>,

@@ -571,7 +571,7 @@ mod tests {
 
     #[test]
     fn a_cube_keeps_its_shape_in_any_window() {
-        let mut scene = Scene::default();
+        let mut scene = Scene::plain();
         for (size, scale) in
             [([1280, 720], 1.0), ([1280, 720], 0.33), ([600, 100], 1.0), ([9, 900], 1.0), ([1, 1], 0.5)]
         {

@@ -6,7 +6,7 @@
 use bhr::physics::trace;
 use bhr::renderer::{Backend, Renderer, RendererOptions, adapters};
 use bhr::scene::record::Record;
-use bhr::scene::{Camera, Disk, Fate, Hit, LensTables, Method, Motion, Projection, Ray, Region};
+use bhr::scene::{Camera, Disk, Fate, Hit, LensTables, Method, Motion, Projection, Ray, Region, Scene};
 use glam::DVec3;
 use serde_json::Value;
 use std::f64::consts::PI;
@@ -31,12 +31,15 @@ const PIXEL: Bars = Bars { worst: 1e-4, most: 1e-4, azimuth: 2e-3, fate_delta: 1
 const RK4: Bars = Bars { worst: 2e-4, most: 2e-5, azimuth: 2e-2, fate_delta: 1e-4 };
 
 fn cpu() -> Renderer {
-    Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap()
+    let mut renderer = Renderer::new(RendererOptions { backend: Some(Backend::Cpu), ..Default::default() }).unwrap();
+    renderer.scene = Scene::plain();
+    renderer
 }
 
 fn gpu() -> Renderer {
-    let renderer = Renderer::new(RendererOptions::default()).unwrap();
+    let mut renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts): {:?}", adapters());
+    renderer.scene = Scene::plain();
     renderer
 }
 

@@ -415,7 +415,7 @@ fn a_frame_whose_device_ends_while_it_is_copied_is_lost() {
         format: PixelFormat::Rgba32F,
         transparent: false,
     };
-    let scene = Scene { disk: None, ..Scene::default() };
+    let scene = Scene { disk: None, ..Scene::plain() };
     let (copying, begun) = std::sync::mpsc::channel();
     let (ended, end) = std::sync::mpsc::channel();
     let end = std::sync::Mutex::new(end);
@@ -515,7 +515,7 @@ fn a_device_may_end_at_any_moment_of_a_frame() {
                 sum += pixels.iter().map(|byte| u64::from(*byte)).sum::<u64>();
                 Ok(())
             };
-            let rendered = tracer.render(&Scene::default(), &request, &mut sink, &mut |_| true);
+            let rendered = tracer.render(&Scene::plain(), &request, &mut sink, &mut |_| true);
             *frames += u32::from(rendered.is_ok());
             rendered.map(|_| sum)
         };

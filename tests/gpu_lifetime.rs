@@ -77,6 +77,7 @@ fn allocated() -> u64 {
 fn left_by_frames(size: [u32; 2], count: u32, set: fn(&mut Scene)) -> u64 {
     let mut renderer = Renderer::new(RendererOptions::default()).unwrap();
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
+    renderer.scene = Scene::plain();
     set(&mut renderer.scene);
     // Pipelines that are made ahead belong to no frame.
     renderer.settled_waits();

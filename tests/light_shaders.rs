@@ -140,6 +140,7 @@ impl Gpu {
         let constants = [
             ("PIXELS", f64::from(pixels)),
             ("TONE_MAP", f64::from(film.tone_map)),
+            ("COLOUR_MAP", f64::from(film.colour_map)),
             ("FALSE_COLOUR", f64::from(u32::from(film.false_colour != 0))),
         ];
         let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -176,7 +177,7 @@ impl Gpu {
 }
 
 fn no_film() -> FilmParams {
-    FilmParams::new(&Film::default(), View::Light, PixelFormat::Rgba8Srgb, false)
+    FilmParams::new(&Film::plain(), View::Light, PixelFormat::Rgba8Srgb, false)
 }
 
 fn xyz0(v: DVec3) -> [f32; 4] {
@@ -262,14 +263,14 @@ fn gpu_film_agrees() {
     let mut cases = Vec::new();
     for tone_map in tone_maps {
         for format in formats {
-            let film = Film { tone_map, exposure_ev: 0.5, bloom: 0.0 };
+            let film = Film { tone_map, exposure_ev: 0.5, ..Film::plain() };
             cases.push(FilmParams::new(&film, View::Light, format, format != PixelFormat::Rgba16F));
         }
     }
     for view in [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric] {
-        cases.push(FilmParams::new(&Film::default(), view, PixelFormat::Rgba8Srgb, false));
+        cases.push(FilmParams::new(&Film::plain(), view, PixelFormat::Rgba8Srgb, false));
     }
-    cases.push(FilmParams::new(&Film::default(), View::Redshift, PixelFormat::R32F, false));
+    cases.push(FilmParams::new(&Film::plain(), View::Redshift, PixelFormat::R32F, false));
     for params in cases {
         let tolerance = if params.format <= 2 { 1 } else { 0 };
         for (item, words) in items.iter().zip(gpu.run("run_film", params, &items)) {

@@ -70,7 +70,14 @@ fn translate(shader: &str, source: &str) -> Result<usize, String> {
         .validate(&module)
         .map_err(|e| format!("{shader}: {}", e.emit_to_string(source)))?;
     for point in &module.entry_points {
-        let at = |what: &str, error: &dyn Error| format!("{shader}, {} to {what}: {error}", point.name);
+        let at = |what: &str, error: &dyn Error| {
+            let (mut message, mut cause) = (format!("{shader}, {} to {what}: {error}", point.name), error.source());
+            while let Some(error) = cause {
+                message += &format!(": {error}");
+                cause = error.source();
+            }
+            message
+        };
         let (module, info) = process_overrides(&module, &info, Some((point.stage, &point.name)), &Default::default())
             .map_err(|error| at("constants", &error))?;
         let entry = Entry { module: &module, info: &info, stage: point.stage, name: &point.name };
@@ -126,15 +133,20 @@ const CROSSINGS: Because = Because("it counts crossings, of which the host allow
 const ORDERS: Because = Because("it counts crossings that a table holds, of which the host asks for 16 at most");
 const SAMPLES: Because = Because("it counts a pixel's samples, of which the host asks for 4 or 32");
 const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most");
+const TURBULENCE: Because = Because("it counts bands or generations, 2 at most, or taps, 8 at most");
 const PIECES: Because = Because("it counts three times the pieces of a part of a ray, of which there are 24 at most");
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
 
 /// Every loop: fragment, function, the loop's head, and why it ends. Loops of a function stand in their order.
 const LOOPS: &[(&str, &str, &str, Because)] = &[
+    ("bloom/beam", "spread_beam", "for (var quarter = 0; quarter < BEAM_QUARTERS; quarter += 1)", CONSTANT),
+    ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
-    ("emit/turbulence", "turbulent_octaves", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("emit/streaks", "streak_exponent", "for (var i = 0u; i < u32(count); i += 1u)", TURBULENCE),
+    ("emit/turbulence", "turbulent_brightness", "for (var k = 0u; k < bands; k += 1u)", TURBULENCE),
+    ("emit/turbulence", "turbulent_brightness", "for (var old = 0u; old < alive; old += 1u)", TURBULENCE),
     ("emit/volumes", "add_part", "for (var i = 0u; i < 3u * count; i += 1u)", PIECES),
     ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
     ("geodesic/integrator", "quintic_root", "for (var i = 0; i < 4; i++)", CONSTANT),
@@ -179,7 +191,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     (
         "refine/refine",
         "is_ragged",
-        "for (var k = 0u; k < min(not_inlined(frame.max_crossings), CROSSINGS_KEPT); k += 1u)",
+        "for (var k = 0u; k < min(not_inlined(frame.max_crossings), LANE_ORDERS); k += 1u)",
         CONSTANT,
     ),
     ("refine/refine", "is_ragged", "for (var s = 0u; s < 4u; s += 1u)", CONSTANT),
@@ -191,7 +203,11 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         "for (var first = group.x * pixels; first < count; first += groups.x * pixels)",
         LISTED,
     ),
-    ("refine/refine", "refine_sample", "for (var k = 0u; k < CROSSINGS_KEPT; k += 1u)", CONSTANT),
+    ("refine/refine", "refine_sample", "for (var k = 0u; k < LANE_ORDERS; k += 1u)", CONSTANT),
+    ("refine/refine", "strips_of", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
+    ("refine/refine", "strips_of", "for (var i = 0u; i < 2u; i += 1u)", CONSTANT),
+    ("refine/refine", "strips_of", "for (var i = 1u; i < SEARCH_STEPS + 3u; i += 1u)", CONSTANT),
+    ("refine/refine", "strips_of", "for (var i = 0u; i < 2u; i += 1u)", CONSTANT),
     ("refine/refine", "refine_sample", "for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u)", CROSSINGS),
     (
         "shade/shade",
@@ -203,7 +219,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         "sky/map",
         "map_light",
         "for (var k = 0u; k < count; k += 1u)",
-        Because("it counts a pixel's taps, 7 at most (MAX_SPREAD), on two levels"),
+        Because("it counts a pixel's taps, 129 at most (MOST_SPREAD), on two levels"),
     ),
     (
         "sky/stars",

@@ -6,15 +6,15 @@
 mod frames;
 
 use bhr::image::PixelFormat;
-use bhr::renderer::{Backend, Renderer, RendererOptions};
-use frames::{differing, picture};
+use bhr::renderer::{Backend, RendererOptions};
+use frames::{differing, picture, plain};
 
 const SIZE: [u32; 2] = [96, 54];
 
-/// A spinning hole before the Milky Way, with the disk and everything else at its default but for a thinner disk, so
-/// that what is behind it counts.
+/// A spinning hole before the Milky Way, with the disk and everything else of the plain scene but for a thinner disk,
+/// so that what is behind it counts.
 fn smoke(backend: Backend) -> Vec<u8> {
-    let mut renderer = Renderer::new(RendererOptions { backend: Some(backend), ..Default::default() }).unwrap();
+    let mut renderer = plain(RendererOptions { backend: Some(backend), ..Default::default() });
     assert_eq!(renderer.adapter().backend, backend);
     renderer.scene.hole.spin = 0.7;
     let disk = renderer.scene.disk.as_mut().unwrap();

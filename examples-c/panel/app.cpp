@@ -59,7 +59,7 @@ App::~App() {
 }
 
 std::string App::start() {
-    Result result = scene_.begin();
+    Result result = scene_.begin(options_.preset);
     if (result.ok()) {
         result = inspector_.create();
     }

@@ -21,6 +21,7 @@ struct AppOptions {
     uint32_t    frames = 0;   // to show before the program ends; 0: no such end
     double      hold = -1.0;  // seconds to stay open, after those frames if there are some; < 0: until closed
     const char *screenshot = nullptr, *picture = nullptr; // files to write at the end
+    BhrPreset   preset = NO_PRESET; // the look that it begins with
     int         bare = 0, paused = 0, verbose = 0;
 };
 

@@ -51,6 +51,9 @@ double Inspector::disk_inner() const {
     if (disk_.inner_radius > 0.0) {
         return disk_.inner_radius * mass_;
     }
+    if (plunges()) {
+        return numbers_.horizon_radius;
+    }
     return retrograde() ? numbers_.isco_retrograde : numbers_.isco_prograde;
 }
 

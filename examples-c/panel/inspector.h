@@ -37,9 +37,10 @@ public:
     double             mass() const { return mass_; }
     double             spin() const { return spin_; }
     bool               has_disk() const { return has_disk_; }
-    // The disk's radii, scene lengths: BhrDisk's with 0 replaced by the ISCO of its matter.
+    // The disk's radii, scene lengths: BhrDisk's with 0 replaced by the ISCO of its matter, or by the horizon.
     double disk_inner() const;
     double disk_outer() const { return disk_.outer_radius * mass_; }
+    bool   plunges() const { return (disk_.flags & BHR_DISK_PLUNGES) != 0; }
     bool   retrograde() const { return (disk_.flags & BHR_DISK_RETROGRADE) != 0; }
 
 private:

@@ -1,7 +1,7 @@
 // scene.cpp -- see scene.h.
 #include "scene.h"
 
-Result Scene::begin() {
+Result Scene::begin(BhrPreset preset) {
     camera_ = with_defaults(bhr_camera_init);
     camera_.fov_y = 45.0 * DEGREE;
     read_back();
@@ -12,7 +12,7 @@ Result Scene::begin() {
     if (result.ok()) {
         BhrDisk disk = disk_;
         disk.turbulence = 0.6;
-        result = set_disk(&disk);
+        result = preset == NO_PRESET ? set_disk(&disk) : set_preset(preset);
     }
     return result;
 }
@@ -39,6 +39,7 @@ void Scene::read_back() {
     bhr_get_sky(context_, &sky_);
     film_ = sized<BhrFilm>();
     bhr_get_film(context_, &film_);
+    bhr_get_effects(context_, &effects_);
     quality_ = sized<BhrQuality>();
     bhr_get_quality(context_, &quality_);
 }
@@ -49,6 +50,10 @@ Result Scene::set_mass(double mass) {
 
 Result Scene::set_spin(double spin) {
     return accepted(bhr_set_spin(context_, spin), true);
+}
+
+Result Scene::set_preset(BhrPreset preset) {
+    return accepted(bhr_set_preset(context_, preset), true);
 }
 
 Result Scene::set_axis(const double axis[3]) {

@@ -16,12 +16,14 @@ struct Hole {
     double axis[3] = {0.0, 0.0, 1.0};
 };
 
+constexpr BhrPreset NO_PRESET = -1;
+
 class Scene {
 public:
     explicit Scene(BhrContext *context) : context_(context) {}
 
     // The scene that the panel begins with.
-    Result begin();
+    Result begin(BhrPreset preset); // or NO_PRESET
 
     // The values in force.
     const Hole       &hole() const { return hole_; }
@@ -50,6 +52,7 @@ public:
     Result set_sky(const BhrSky &sky);
     Result set_film(const BhrFilm &film);
     Result set_quality(const BhrQuality &quality);
+    Result set_preset(BhrPreset preset);
     Result set_view(BhrView view);
     Result set_effects(uint32_t effects);
     Result set_time(double time);

@@ -193,10 +193,13 @@ void SettingsPanel::disk(Scene &scene) {
     }
     ImGui::SameLine(LABEL_EMS * ImGui::GetFontSize());
     const auto set = [&] { return scene.set_disk(&disk); };
-    flag("retrograde", disk.flags, BHR_DISK_RETROGRADE, [&](uint32_t flags) {
+    const auto set_flags = [&](uint32_t flags) {
         disk.flags = flags;
         return set();
-    });
+    };
+    flag("retrograde", disk.flags, BHR_DISK_RETROGRADE, set_flags);
+    ImGui::SameLine();
+    flag("plunges", disk.flags, BHR_DISK_PLUNGES, set_flags);
     const auto field = [&](const char *label, double BhrDisk::*member, double low, double high, const char *format,
                            bool logarithmic) {
         number(label, disk.*member, low, high, format, logarithmic, [&](double value) {
@@ -204,7 +207,9 @@ void SettingsPanel::disk(Scene &scene) {
             return set();
         });
     };
-    field("inner / M", &BhrDisk::inner_radius, 0.0, 20.0, disk.inner_radius > 0.0 ? "%.2f" : "ISCO", false);
+    const char *begin = (disk.flags & BHR_DISK_PLUNGES) != 0 ? "horizon" : "ISCO";
+    const char *innermost = disk.inner_radius > 0.0 ? "%.2f" : begin;
+    field("inner / M", &BhrDisk::inner_radius, 0.0, 20.0, innermost, false);
     field("outer / M", &BhrDisk::outer_radius, 2.0, 100.0, "%.2f", true);
     field("temperature", &BhrDisk::temperature, 500.0, 1e6, "%.0f K", true);
     field("opacity", &BhrDisk::opacity, 0.0, 1.0, "%.2f", false);
@@ -268,6 +273,9 @@ void SettingsPanel::film(Scene &scene) {
     if (!section("Film", true)) {
         return;
     }
+    constexpr const char *presets[] = {"cinematic", "physical", "observatory", "teaching"};
+    // None of them is in force once something else was changed: so none is shown as chosen.
+    choice("preset", -1, presets, 4, BHR_PRESET_CINEMATIC, [&](int32_t preset) { return scene.set_preset(preset); });
     BhrFilm               film = scene.film();
     constexpr const char *tone_maps[] = {"none", "ACES", "AgX"};
     choice("tone map", film.tone_map, tone_maps, 3, BHR_TONE_MAP_NONE, [&](int32_t tone_map) {
@@ -280,6 +288,15 @@ void SettingsPanel::film(Scene &scene) {
     });
     number("bloom", film.bloom, 0.0, 1.0, "%.2f", false, [&](double bloom) {
         film.bloom = bloom;
+        return scene.set_film(film);
+    });
+    number("beam", film.beam_fwhm, 0.0, 1.0, "%.3f", false, [&](double fwhm) {
+        film.beam_fwhm = fwhm;
+        return scene.set_film(film);
+    });
+    constexpr const char *colour_maps[] = {"none", "afmhot"};
+    choice("colour map", film.colour_map, colour_maps, 2, BHR_COLOUR_MAP_NONE, [&](int32_t colour_map) {
+        film.colour_map = colour_map;
         return scene.set_film(film);
     });
 }

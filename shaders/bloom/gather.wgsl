@@ -11,7 +11,8 @@ override GRID: bool = true;
 
 @group(0) @binding(0) var<uniform> level: BloomLevel;
 @group(0) @binding(1) var finer: texture_2d<f32>;
-@group(0) @binding(2) var gathered: texture_storage_2d<rgba16float, write>;
+@group(0) @binding(2) var smooth_: sampler;
+@group(0) @binding(3) var gathered: texture_storage_2d<rgba16float, write>;
 
 // The weight of tap `tap`, wherever the cell lies; 0 beyond the taps.
 fn kernel(tap: i32) -> f32 {
@@ -43,15 +44,38 @@ fn tap_weight(tap: i32, i: i32, cell: i32, cells: u32, fine: u32, tail: vec4<f32
     return select(0.0, (kernel(tap) + before + after) * coverage(i32(fine) - 1 - i, tail), there);
 }
 
+// The light of finer cells at a place between their centres, which lie at whole numbers.
+fn between(place: vec2<f32>) -> vec3<f32> {
+    return textureSampleLevel(finer, smooth_, (place + 0.5) / vec2<f32>(textureDimensions(finer)), 0.0).xyz;
+}
+
+// The light that a cell gathers from a grid whose ends are far away: of the six finer cells along a side, which give
+// 1 5 10 10 5 1 parts of 32, each two are one sample.
+fn gathered_within(cell: vec2<i32>) -> vec3<f32> {
+    let middle = vec2<f32>(2 * cell) + 0.5;
+    const REACH: f32 = 5.0 / 3.0;
+    let rows = vec3<f32>(middle.y - REACH, middle.y, middle.y + REACH);
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < 3u; i += 1u) {
+        let y = rows[i];
+        let sides = between(vec2<f32>(middle.x - REACH, y)) + between(vec2<f32>(middle.x + REACH, y));
+        sum += select(6.0, 20.0, i == 1u) * (6.0 * sides + 20.0 * between(vec2<f32>(middle.x, y)));
+    }
+    return sum / 1024.0;
+}
+
 @compute @workgroup_size(8, 16)
 fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
     if any(id.xy >= level.count) {
         return;
     }
-    let taps = select(2 * STEP, 6, GRID);
+    let most = select(2 * STEP, 6, GRID);
     let cell = vec2<i32>(level.first + id.xy);
-    let corner = STEP * cell - (taps - STEP) / 2;
+    let corner = STEP * cell - (most - STEP) / 2;
     let last = vec2<i32>(level.fine) - 1;
+    // No taps where samples do, which software drivers take as well.
+    let within = GRID && all(cell > vec2<i32>(0)) && all(corner + 5 < last - 2);
+    let taps = select(most, 0, within);
     var sum = vec3<f32>(0.0);
     var weights = 0.0;
     for (var y = 0; y < taps; y += 1) {
@@ -64,6 +88,10 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>) {
             sum += weight * textureLoad(finer, place, 0).xyz;
             weights += weight;
         }
+    }
+    if within {
+        sum = gathered_within(cell);
+        weights = 1.0;
     }
     textureStore(gathered, level.first + id.xy, rounded_to_f16(vec4<f32>(sum / weights, 1.0)));
 }

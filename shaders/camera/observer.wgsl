@@ -13,6 +13,8 @@ struct RayBegin {
     frequency_ratio: f32,
     // False: no light can come from there (rain frame, E <= 0).
     has_light: bool,
+    // Q.
+    carter: f32,
 }
 
 // The look direction in the local frame for `look` in the camera's own (aberration; beta = 0 leaves it), and
@@ -73,6 +75,11 @@ fn begin_local(n: vec3<f32>) -> RayBegin {
     return begin;
 }
 
+// Record::polar_momentum of a ray; `ratio`: nu(camera) / nu(local frame).
+fn polar_momentum(begin: RayBegin, ratio: f32) -> f32 {
+    return sqrt(max(begin.carter, 0.0)) / (begin.c.nu_local * ratio);
+}
+
 fn constants(energy: f32, angular_momentum: f32, carter: f32, k: f32, nu_local: f32) -> Constants {
     let a = frame.hole.x;
     let a2e2 = a * a * energy * energy;
@@ -97,6 +104,7 @@ fn begin_zamo(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     let carter = polar * polar + c * c * (w * w - a * a * energy * energy);
     let k = polar * polar + w * w - a * a * c * c * energy * energy;
     (*begin).c = constants(energy, s * w, carter, k, 1.0);
+    (*begin).carter = carter;
     (*begin).state = State(u, frame.zamo.w * p.x, frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).has_light = true;
@@ -113,13 +121,38 @@ fn begin_rain(begin: ptr<function, RayBegin>, n: vec3<f32>) {
     let w = p.z * e / u;
     let cw = frame.place.z * w;
     let k = polar * polar + w * w;
-    (*begin).c = constants(1.0, frame.place.y * w, polar * polar + cw * cw, k, e);
+    (*begin).carter = polar * polar + cw * cw;
+    (*begin).c = constants(1.0, frame.place.y * w, (*begin).carter, k, e);
     (*begin).state = State(u, e * (p.x - beta), frame.e_r.xyz,
         -(frame.e_theta.xyz * polar + frame.e_phi.xyz * w), 0.0, 0.0);
     (*begin).has_light = energy > 0.0;
 }
 
-// g of the disk's matter for the local frame's observer (physics::orbit::redshift).
+// g of the disk's matter for the local frame's observer, of light that crosses the plane at 1/r = u with u' = du
+// (Matter::redshift of src/physics/plunge.rs).
+fn redshift_at(c: Constants, u: f32, du: f32) -> f32 {
+    if u * frame.plunge.x > 1.0 {
+        return c.nu_local / plunging_frequency(c, u, du);
+    }
+    return redshift_of(c, u);
+}
+
+// The frequency that plunging matter measures (Plunge::frequency).
+fn plunging_frequency(c: Constants, u: f32, du: f32) -> f32 {
+    let plunge = frame.plunge;
+    let u2 = u * u;
+    let x = c.angular_momentum - c.a * c.energy;
+    let w_matter = plunge.y - plunge.z * u2;
+    let w_light = c.energy - c.a * x * u2;
+    let excess = max(plunge.x * u - 1.0, 0.0);
+    let infall = sqrt(2.0 / (3.0 * plunge.x)) * excess * sqrt(excess);
+    let outwards = (w_matter * w_light + infall * du) / horizon_function(c, u);
+    let inwards = (w_matter * w_matter * c.b * u2 + (1.0 + plunge.w * plunge.w * u2) * du * du)
+        / (w_matter * w_light - infall * du);
+    return select(inwards, outwards, du >= 0.0) - plunge.w * x * u2;
+}
+
+// The same, matter being on its circular orbit (physics::orbit::redshift).
 fn redshift_of(c: Constants, u: f32) -> f32 {
     let v = sign(frame.hole.w) * u * sqrt(u);
     return c.nu_local * sqrt(max(1.0 - 3.0 * u + 2.0 * c.a * v, 0.0))

@@ -1,5 +1,6 @@
 // The disk's light at a crossing. Mirrors src/emit/thin_disk.rs. The table of the temperature profile comes from
-// src/physics/disk_flux.rs and lies at PROFILE_OFFSET; an entry is the value and the step to the next one.
+// src/physics/disk_flux.rs and lies at PROFILE_OFFSET; an entry is the value and the step to the next one. Its other
+// half is the table of src/physics/limb_darkening.rs.
 
 #import constants
 #import emit/shift
@@ -7,6 +8,7 @@
 #import records/record
 #import shared/blackbody
 #import shared/frame
+#import shared/not_inlined
 #requires fn light_table(i: u32) -> vec4<f32>
 
 // How much of a crossing at u the disk covers: all or nothing.
@@ -15,14 +17,40 @@ fn disk_covers(u: f32) -> f32 {
 }
 
 // The light that a crossing on the disk adds to a ray of which the share `open` comes this far; w: the share of the
-// light behind that it hides.
-fn disk_at_crossing(crossing: Crossing, shift: Shift, open: f32) -> vec4<f32> {
+// light behind that it hides. `mu`: |cosine| of the ray's angle to the normal, as the matter sees it.
+fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
     var structure = 1.0;
     if FOOTPRINTS {
         structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
     }
-    let opacity = frame.disk.z * crossing.share;
-    return vec4<f32>(open * opacity * structure * disk_light(crossing.u, shift), opacity);
+    let profile = disk_profile(crossing.u);
+    let opacity = frame.disk.z * crossing.share * left_by_edges(crossing.u, profile);
+    return vec4<f32>(open * opacity * structure * emission_law(mu) * disk_light(profile, shift), opacity);
+}
+
+// The light at the angle of cosine `mu`, over that of an isotropic surface of the same flux (thin_disk.rs).
+fn emission_law(mu: f32) -> f32 {
+    if not_inlined(bitcast<u32>(frame.surface.x)) == 0u {
+        return 1.0;
+    }
+    let x = clamp(mu, 0.0, 1.0) * f32(PROFILE_SIZE - 1u);
+    let i = min(u32(x), PROFILE_SIZE - 2u);
+    let entry = light_table(PROFILE_OFFSET + i);
+    return entry.z + entry.w * (x - f32(i));
+}
+
+// The share of the disk's opacity that its edges leave at 1/r = u (SoftEdges::left).
+fn left_by_edges(u: f32, profile: f32) -> f32 {
+    let edges = frame.soft_edges;
+    let fade = select(1.0, clamp((edges.x - 1.0 / u) * edges.y, 0.0, 1.0), edges.y > 0.0);
+    let squared = profile * profile;
+    let flux = select(1.0, min(squared * squared * edges.w, 1.0), edges.w > 0.0 && u > edges.z);
+    return fade * fade * (3.0 - 2.0 * fade) * flux;
+}
+
+// The disk's temperature at 1/r = u, in that of the hottest ring (ThinDisk::profile).
+fn disk_profile(u: f32) -> f32 {
+    return max(temperature_profile(u), select(0.0, frame.surface.z, u > frame.surface.y));
 }
 
 // T(r) / T_max (TemperatureProfile::at).
@@ -35,8 +63,8 @@ fn temperature_profile(u: f32) -> f32 {
     return (entry.x + entry.y * (x - f32(i))) * root * sqrt(root);
 }
 
-// Linear radiance of the opaque, smooth disk at 1/r = u.
-fn disk_light(u: f32, shift: Shift) -> vec3<f32> {
-    let temperature = frame.disk.x * temperature_profile(u);
+// Linear radiance of the opaque, smooth disk where its temperature is `profile`, in that of the hottest ring.
+fn disk_light(profile: f32, shift: Shift) -> vec3<f32> {
+    let temperature = frame.disk.x * profile;
     return shifted_blackbody(temperature, frame.disk.y, shift.colour, shift.beaming) * frame.disk.w;
 }

@@ -6,7 +6,7 @@
 #import records/record
 
 // The light that a crossing adds to a ray of which the share `open` comes this far; w: the share of the light behind
-// that it hides.
-fn emitted_at_crossing(crossing: Crossing, shift: Shift, open: f32) -> vec4<f32> {
-    return disk_at_crossing(crossing, shift, open);
+// that it hides. `mu`: |cosine| of the ray's angle to the normal of the plane, as the matter sees it.
+fn emitted_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
+    return disk_at_crossing(crossing, shift, mu, open);
 }

@@ -1,76 +1,68 @@
 // The structure of the disk. Mirrors src/emit/turbulence.rs, where the reasons are. Knows no colours.
 
 #import constants
+#import emit/streaks
 #import records/record
 #import shared/frame
 #import shared/math
 
+// Texels in a radian, and in an e-fold of the radius.
+const TEXELS_AROUND: f32 = f32(STREAK_COLUMNS) / TAU;
+const TEXELS_ACROSS: f32 = f32(STREAK_ROWS) / STREAK_PERIOD;
+
 // The factor on the disk's radiance. dx, dy: the change of `at` to the next pixel.
 fn turbulent_brightness(at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint) -> f32 {
-    let since = frame.turbulence.y + (frame.turbulence.z - at.delay);
-    let births = floor(since / (0.5 * LIFETIME));
-    let generation = frame.pattern.y + bitcast<u32>(i32(births));
-    let age = since - births * (0.5 * LIFETIME);
-    let young = turbulent_octaves(generation, age, at, dx, dy);
-    let old = turbulent_octaves(generation - 1u, age + 0.5 * LIFETIME, at, dx, dy);
-    let factors = 1.0 + frame.turbulence.x * AMPLITUDES * clamp(young + old, vec4<f32>(-1.0), vec4<f32>(1.0));
-    return factors.x * factors.y * factors.z * factors.w;
-}
-
-// The share of one generation in each octave.
-fn turbulent_octaves(generation: u32, age: f32, at: EmissionPoint, dx: EmissionPoint, dy: EmissionPoint) -> vec4<f32> {
     let sense = sign(frame.hole.w);
     let root_cube = exp(1.5 * at.ln_r);
     let omega = sense / (root_cube + sense * frame.hole.x);
     let shear = -1.5 * root_cube * omega * omega * sense;
-    let turn = (at.azimuth - omega * age) / TAU;
-    let footprint = max(cells_across(dx, shear * age, omega), cells_across(dy, shear * age, omega));
-    let weight = GAIN * sincos(PI * age / LIFETIME).x;
-    var shares = vec4<f32>(0.0);
-    for (var i = 0u; i < 4u; i += 1u) {
-        let finer = 1u << i;
-        let key = mix_bits(i + mix_bits(generation + frame.pattern.x));
-        let visible = clamp(2.0 - 2.0 * footprint * f32(finer), 0.0, 1.0);
-        let along = at.ln_r * CELLS_PER_E_FOLD * f32(finer);
-        shares[i] = weight * visible * gradient_noise(along, turn, CELLS_AROUND * finer, key);
-    }
-    return shares;
-}
+    // Azimuth fixed to the matter, and ln r, in texels.
+    let right = vec2<f32>((dx.azimuth + omega * dx.delay) * TEXELS_AROUND, dx.ln_r * TEXELS_ACROSS);
+    let down = vec2<f32>((dy.azimuth + omega * dy.delay) * TEXELS_AROUND, dy.ln_r * TEXELS_ACROSS);
+    let sheared = shear * (TEXELS_AROUND / TEXELS_ACROSS);
 
-// Cells of the coarsest octave in a change of place.
-fn cells_across(d: EmissionPoint, sheared: f32, omega: f32) -> f32 {
-    let turn = (d.azimuth - sheared * d.ln_r + omega * d.delay) / TAU;
-    let x = abs(d.ln_r * CELLS_PER_E_FOLD);
-    let y = abs(turn * f32(CELLS_AROUND));
-    // length() would not do: a square may overflow.
-    let most = max(max(x, y), 1e-30);
-    return most * length(vec2<f32>(x, y) / most);
+    let left = clamp(1.0 + (at.ln_r - frame.turbulence.z) / PLUNGE_FADE, 0.0, 1.0);
+    let place = at.ln_r / BAND;
+    let border = floor(place + 0.5);
+    let across = (place - border) * (2.0 / BAND_FADE);
+    let blends = abs(across) < 1.0;
+    let shares = sincos(0.25 * PI * (across + 1.0));
+    // One band shows or two, of one generation or two: as many turns as are needed, since lavapipe runs whatever an
+    // `if` leaves out.
+    let first = i32(border) - select(1, 0, across >= 1.0);
+    let bands = select(1u, 2u, blends);
+    var exponent = 0.0;
+    for (var k = 0u; k < bands; k += 1u) {
+        let share = select(1.0, select(shares.y, shares.x, k == 1u), blends);
+        let number = first + i32(k);
+        let band = frame.bands[clamp(number - bitcast<i32>(frame.pattern.y), 0, i32(MOST_BANDS) - 1)];
+        let spacing = bitcast<f32>(band.y);
+        let since = bitcast<f32>(band.x) + (frame.turbulence.y - at.delay);
+        let births = floor(since / spacing);
+        let young = since - births * spacing;
+        let generation = band.z + bitcast<u32>(i32(births));
+        let grown = min(young / (GENERATION_FADE * spacing), 1.0);
+        let fades = sincos(0.5 * PI * grown);
+        let alive = select(1u, 2u, grown < 1.0);
+        for (var old = 0u; old < alive; old += 1u) {
+            let weight = share * select(1.0, select(fades.x, fades.y, old == 1u), alive == 2u);
+            let age = young + f32(old) * spacing;
+            let key = mix_bits(bitcast<u32>(number) + mix_bits(generation - old + frame.pattern.x));
+            let from_seed = vec2<f32>(vec2<u32>(key & 0xffffu, key >> 16u)) / 65536.0;
+            let shift = vec2<f32>(-sheared * age, 0.0);
+            exponent += streak_exponent(
+                frame.turbulence.x * left * weight,
+                vec2<f32>((at.azimuth - omega * age) / TAU, at.ln_r / STREAK_PERIOD) + from_seed,
+                right + shift * right.y,
+                down + shift * down.y,
+            );
+        }
+    }
+    return exp(exponent);
 }
 
 fn mix_bits(bits: u32) -> u32 {
     var x = (bits ^ (bits >> 16u)) * 0x7feb352du;
     x = (x ^ (x >> 15u)) * 0x846ca68bu;
     return x ^ (x >> 16u);
-}
-
-fn gradient_noise(along: f32, turns: f32, around: u32, key: u32) -> f32 {
-    let x = along + f32(key & 0xffffu) / 65536.0;
-    let turn = turns + f32(key >> 16u) / 65536.0;
-    let y = (turn - floor(turn)) * f32(around);
-    let column = floor(x);
-    let row = min(u32(y), around - 1u);
-    let d = vec2<f32>(x - column, y - f32(row));
-    let first = bitcast<u32>(i32(column));
-    let here = mix_bits(row + key);
-    let next = mix_bits((row + 1u) % around + key);
-    let s = d * d * d * (d * (d * 6.0 - 15.0) + 10.0);
-    let low = mix(slope(first + here, d), slope(first + 1u + here, d - vec2<f32>(1.0, 0.0)), s.x);
-    let high = mix(slope(first + next, d - vec2<f32>(0.0, 1.0)), slope(first + 1u + next, d - 1.0), s.x);
-    return mix(low, high, s.y);
-}
-
-// The gradient of a corner, times the offset from it.
-fn slope(corner: u32, offset: vec2<f32>) -> f32 {
-    let h = mix_bits(corner);
-    return dot(vec2<f32>(f32(h & 0xffffu), f32(h >> 16u)) / 32767.5 - 1.0, offset);
 }

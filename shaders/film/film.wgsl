@@ -3,6 +3,7 @@
 // over constants, which src/gpu/device/specialise.rs leaves out.
 
 #import constants
+#import film/colour_map
 #import film/false_colour
 #import film/encode
 #import film/params
@@ -12,6 +13,8 @@
 override TONE_MAP: u32 = 1u;
 // The pixel formats that a kernel is made for: RGBA8 and BGRA8 (0), RGBA16F and RGBA32F, R32F, or FROM_UNIFORM.
 override PIXELS: u32 = 0u;
+// The number of the ColourMap that a kernel is made for, or FROM_UNIFORM.
+override COLOUR_MAP: u32 = 0u;
 // Whether a kernel is made for the views other than light.
 override FALSE_COLOUR: bool = false;
 
@@ -48,6 +51,13 @@ fn is_agx() -> bool {
     return TONE_MAP == TONE_MAP_AGX;
 }
 
+fn has_colour_map() -> bool {
+    if COLOUR_MAP == FROM_UNIFORM {
+        return not_inlined(film.colour_map) != COLOUR_MAP_NONE;
+    }
+    return COLOUR_MAP != COLOUR_MAP_NONE;
+}
+
 // Whether a pixel has two words or four, and not one.
 fn has_several_words() -> bool {
     return is_float();
@@ -82,7 +92,7 @@ fn develop_8bit(radiance: vec4<f32>, x: u32, y: u32) -> vec4<u32> {
         // Most of the sky is black, and black stays black, whatever the dither.
         var colour = vec3<u32>(0u);
         if is_agx() || any(scene != vec3<f32>(0.0)) {
-            colour = vec3<u32>(srgb_encode(tone_map(scene)) * 255.0 + dither(x, y));
+            colour = vec3<u32>(shown_colour(scene) * 255.0 + dither(x, y));
         }
         codes = vec4<u32>(colour, u32(alpha_of(radiance.w) * 255.0 + 0.5));
     }
@@ -118,6 +128,17 @@ fn dither(x: u32, y: u32) -> f32 {
     return f32(noise >> 16u) / 65536.0;
 }
 
+// The sRGB-encoded colour of exposed light.
+fn shown_colour(scene: vec3<f32>) -> vec3<f32> {
+    var colour = vec3<f32>(0.0);
+    if has_colour_map() {
+        colour = afmhot(tone_map(vec3<f32>(luminance(scene))).x);
+    } else {
+        colour = srgb_encode(tone_map(scene));
+    }
+    return colour;
+}
+
 fn tone_map(rgb: vec3<f32>) -> vec3<f32> {
     var mapped = clamp(rgb, vec3<f32>(0.0), vec3<f32>(1.0));
     if is_aces() {
@@ -134,7 +155,7 @@ fn balanced(m: mat3x2<f32>, c: vec3<f32>) -> vec3<f32> {
 }
 
 fn aces(rgb: vec3<f32>) -> vec3<f32> {
-    let v = balanced(ACES_IN, rgb);
+    let v = balanced(ACES_IN, rgb * ACES_EXPOSURE);
     let fit = (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
     return clamp(balanced(ACES_OUT, fit), vec3<f32>(0.0), vec3<f32>(1.0));
 }
@@ -143,7 +164,8 @@ fn agx(rgb: vec3<f32>) -> vec3<f32> {
     let inset = max(balanced(AGX_IN, rgb), vec3<f32>(1e-10));
     let x = clamp((log2(inset) - AGX_LOW) / AGX_SPAN, vec3<f32>(0.0), vec3<f32>(1.0));
     let curve = vec3<f32>(agx_sigmoid(x.x), agx_sigmoid(x.y), agx_sigmoid(x.z));
-    return pow(clamp(balanced(AGX_OUT, curve), vec3<f32>(0.0), vec3<f32>(1.0)), vec3<f32>(2.2));
+    let shown = pow(max(balanced(AGX_OUT, curve), vec3<f32>(0.0)), vec3<f32>(2.2));
+    return clamp(balanced(AGX_REC709, shown), vec3<f32>(0.0), vec3<f32>(1.0));
 }
 
 fn agx_sigmoid(x: f32) -> f32 {

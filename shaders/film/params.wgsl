@@ -11,5 +11,5 @@ struct FilmParams {
     view_low: f32,
     view_scale: f32,
     transparent: u32,
-    reserved: u32,
+    colour_map: u32,
 }

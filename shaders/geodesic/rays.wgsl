@@ -17,7 +17,7 @@ struct RayStart {
 }
 
 // Four words of N and drag (at infinity or at a crossing), then: fate, steps, crossing count, tau; or u, delay, order,
-// 0.
+// u'.
 struct RayEnd {
     n: vec4<f32>,
     rest: vec4<u32>,
@@ -44,7 +44,8 @@ var<private> crossing_count: u32;
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     crossing_count += 1u;
     ray_ends[ray_end + crossing_count] = RayEnd(vec4<f32>(crossing.n, crossing.drag),
-        vec4<u32>(bitcast<u32>(crossing.u), bitcast<u32>(crossing.delay), crossing.order, 0u));
+        vec4<u32>(bitcast<u32>(crossing.u), bitcast<u32>(crossing.delay), crossing.order,
+            bitcast<u32>(crossing.du)));
 }
 
 // Hosts' rays meet no emitter.

@@ -33,6 +33,8 @@ struct PlaneCrossing {
     order: u32,
     // Tau from the begin of the step in which it lies.
     tau: f32,
+    // u' there.
+    du: f32,
 }
 
 struct RayTrace {
@@ -168,7 +170,7 @@ fn crossing_state(c: Constants, start: State, to: State, h: f32) -> CrossingStat
 fn find_crossing(c: Constants, observer: State, start: State, to: State, h: f32, order: u32) -> PlaneCrossing {
     let found = crossing_state(c, start, to, h);
     let there = found.at;
-    var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order, found.tau);
+    var crossing = PlaneCrossing(there.u, there.n, there.drag, 0.0, order, found.tau, there.du);
     if DELAY {
         crossing.delay = retardation(c, observer.u, observer.du, there.u, there.du, there.delay - observer.delay);
     }

@@ -30,7 +30,7 @@ fn axis_position(t_hat: f32, octaves: f32, per_octave: f32, last: u32) -> AxisPo
     let octave = (f32(bits >> 23u) - 127.0 + octaves) * per_octave;
     let x = per_octave * log2_mantissa(bitcast<f32>((bits & 0x7fffffu) | 0x3f800000u));
     let node = min(u32(octave) + u32(x), last);
-    return AxisPosition(node, x + octave - f32(node));
+    return AxisPosition(node, x + (octave - f32(node)));
 }
 
 // t_hat of a node, which may lie before the axis' begin.

@@ -43,6 +43,9 @@ fn medium_before(k: u32) -> vec4<f32> {
 
 fn ray_record(id: vec2<u32>) -> Record {
     var record = look_up(id);
+    if lookup.cell.y < lens.outer_rows {
+        record = with_looked_up_sky(record);
+    }
     let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings, frame.capture_u,
         frame.opaque_u);
     for (var i = 0u; i < 3u * CROSSINGS_KEPT; i += 1u) {
@@ -67,6 +70,11 @@ fn ray_record(id: vec2<u32>) -> Record {
     }
     deferred_order = 0u;
     atomicAdd(&deferred.steps, record.steps);
+    return record;
+}
+
+// It has its sky.
+fn with_sky(record: Record) -> Record {
     return record;
 }
 

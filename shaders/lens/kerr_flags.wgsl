@@ -125,7 +125,8 @@ fn crossing_flags(p: Patch, k: u32, order: u32) -> u32 {
     // Pixels beside an edge look for it, too; as `REACHED_U` of scene/refine.rs.
     let near = frame.plane_u.y * 1.15;
     let far = frame.plane_u.x / 1.5;
-    if near < far || p.low[k] - margin > near || p.high[k] + margin < far {
+    let reach = far * select(1.0, KERR_NARROW_REACH, order > 0u);
+    if near < far || p.low[k] - margin > near || p.high[k] + margin < reach {
         return 0u;
     }
     let bit = 1u << order;

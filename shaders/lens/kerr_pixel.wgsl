@@ -9,6 +9,10 @@ fn ray_record(id: vec2<u32>) -> Record {
     return look_up(id);
 }
 
+fn with_sky(record: Record) -> Record {
+    return with_looked_up_sky(record);
+}
+
 fn next_crossing() -> Crossing {
     return next_looked_up();
 }

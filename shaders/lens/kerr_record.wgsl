@@ -53,7 +53,7 @@ struct Lookup {
 
 var<private> lookup: Lookup;
 
-// FATE_PENDING: not in the tables; footprint and fate are nearly right all the same.
+// FATE_PENDING: not in the tables; what they hold is nearly right all the same.
 fn look_up(id: vec2<u32>) -> Record {
     let at = pixel_place(id);
     let view = camera_view(at.x, at.y);
@@ -107,22 +107,28 @@ fn look_up(id: vec2<u32>) -> Record {
     lookup.dx = vec2<f32>(column_change.x, row_change.x);
     lookup.dy = vec2<f32>(column_change.y, row_change.y);
 
-    var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0,
-        vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    var record = Record(FATE_CAPTURED, 0u, energy, begin.c.angular_momentum / begin.c.nu_local,
+        polar_momentum(begin, seen.frequency_ratio), 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if !inner {
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
-        let sky = interpolate(KERR_SKY_LAYER);
-        let inverse = inverseSqrt(dot(sky.value.xyz, sky.value.xyz));
-        record.sky = sky.value.xyz * inverse;
-        let dx = (sky.by_column.xyz * lookup.dx.x + sky.by_row.xyz * lookup.dx.y) * inverse;
-        let dy = (sky.by_column.xyz * lookup.dy.x + sky.by_row.xyz * lookup.dy.y) * inverse;
-        record.footprint = footprint_of(record.sky, dx, dy);
     }
     if t_hat < exp2(-KERR_OCTAVES) || (lookup.flags & KERR_DIRECT) != 0u {
         record.fate = FATE_PENDING;
     }
     return record;
+}
+
+// The record at hand, which lies outside the critical curve, with its sky as the tables have it.
+fn with_looked_up_sky(record: Record) -> Record {
+    let sky = interpolate(KERR_SKY_LAYER);
+    let inverse = inverseSqrt(dot(sky.value.xyz, sky.value.xyz));
+    let dx = (sky.by_column.xyz * lookup.dx.x + sky.by_row.xyz * lookup.dx.y) * inverse;
+    let dy = (sky.by_column.xyz * lookup.dy.x + sky.by_row.xyz * lookup.dy.y) * inverse;
+    var whole = record;
+    whole.sky = sky.value.xyz * inverse;
+    whole.footprint = footprint_of(whole.sky, dx, dy);
+    return whole;
 }
 
 // tan(R / 2) and its derivative by chi at a place of the curve's own table: cubic Hermite.
@@ -176,11 +182,11 @@ fn looked_up_change(at: Interpolated, lane: u32) -> vec2<f32> {
     return vec2<f32>(dot(by, lookup.dx), dot(by, lookup.dy));
 }
 
-fn edges_of_pixel(through: f32) -> u32 {
+fn edges_of_pixel(through: f32, turn: f32) -> u32 {
     // d(row) = KERR_PER_OCTAVE / ln 2 dt / t.
     let rows = length(vec2<f32>(lookup.dx.y, lookup.dy.y));
     let curve = lookup.beyond * f32(KERR_PER_OCTAVE) * 1.4426950408889634 / max(rows, 1e-30);
-    return looked_up_edge(lookup.on_edge, curve, lookup.cell.y < lens.outer_rows, through);
+    return looked_up_edge(lookup.on_edge, turn, curve, through);
 }
 
 // The next crossing of the disk in the tables.
@@ -190,10 +196,11 @@ fn next_looked_up() -> Crossing {
         return crossing;
     }
     var orders = lookup.flags & 0xffffu;
+    var at: Interpolated;
     while orders != 0u && crossing.u <= 0.0 {
         let order = firstTrailingBit(orders);
         orders &= orders - 1u;
-        let at = interpolate(select(order / 4u, order, PATTERN));
+        at = interpolate(select(order / 4u, order, PATTERN));
         let lane = select(order % 4u, 0u, PATTERN);
         let u = at.value[lane];
         lookup.on_edge = lookup.on_edge || near_disk_edge(u, looked_up_change(at, lane));
@@ -208,7 +215,7 @@ fn next_looked_up() -> Crossing {
         crossing.g = lookup.seen.frequency_ratio * redshift_of(c, crossing.u);
     }
     if PATTERN && crossing.u > 0.0 {
-        add_pattern(&crossing, interpolate(crossing.order));
+        add_pattern(&crossing, at);
     }
     return crossing;
 }

@@ -31,8 +31,11 @@ struct Lookup {
     first: f32,
     // The number of the next crossing.
     order: u32,
-    // d(swept) / d(place), place being the coordinate in nodes.
+    // d(swept) / d(place), place being the coordinate in nodes, and d(place) / d(psi).
     swept_slope: f32,
+    slope: f32,
+    // sin psi.
+    sine: f32,
     // From this pixel to the next right and below: the change of place, and the angle by which the ray's plane turns
     // about e_r, rad.
     change: vec2<f32>,
@@ -87,6 +90,8 @@ fn ray_record(id: vec2<u32>) -> Record {
     lookup.swept = swept;
     lookup.order = 0u;
     lookup.swept_slope = swept_slope;
+    lookup.slope = slope;
+    lookup.sine = s;
     lookup.change = slope * d_psi;
     lookup.turn = d_across / max(s, 1e-6);
     lookup.along = frame.e_theta.xyz * tangent.x + frame.e_phi.xyz * tangent.y;
@@ -104,21 +109,29 @@ fn ray_record(id: vec2<u32>) -> Record {
 
     // L = r sin(theta) p_phi, p = -n.
     let momentum = -frame.place.y * n.z / frame.place.x;
-    var record = Record(FATE_CAPTURED, 0u, energy, momentum, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+    let polar = polar_momentum(begin_local(n), seen.frequency_ratio);
+    var record = Record(FATE_CAPTURED, 0u, energy, momentum, polar, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if escaped {
-        let turn = sincos(swept);
-        let e_r = frame.e_r.xyz;
         record.fate = FATE_ESCAPED;
         record.sky_redshift = seen.frequency_ratio / energy;
-        record.sky = e_r * turn.y + lookup.along * turn.x;
-        // The sky direction changes by d(swept) in the ray's plane, and across it by sin(swept) / sin(psi) times the
-        // change of look direction. For rays that leave radially both sines vanish: the limit is -d(swept) / d(psi).
-        let swept_psi = swept_slope * slope;
-        let across = select(turn.x / max(s, 1e-6), -swept_psi, s < 1e-3 && n.x > 0.0);
-        record.footprint = Footprint(lookup.along * turn.y - e_r * turn.x, lookup.across,
-            vec2<f32>(swept_psi * d_psi.x, across * d_across.x), vec2<f32>(swept_psi * d_psi.y, across * d_across.y));
     }
     return record;
+}
+
+fn with_sky(record: Record) -> Record {
+    let turn = sincos(lookup.swept);
+    let e_r = frame.e_r.xyz;
+    var whole = record;
+    whole.sky = e_r * turn.y + lookup.along * turn.x;
+    // The sky direction changes by d(swept) in the ray's plane, and across it by sin(swept) / sin(psi) times the change
+    // of look direction, which is sin(swept) times the turn of the plane. For rays that leave radially both sines
+    // vanish: the limit of their ratio is -d(swept) / d(psi).
+    let radial = lookup.sine < 1e-3 && lookup.seen.n.x > 0.0;
+    let across = select(turn.x, -lookup.swept_slope * lookup.slope * max(lookup.sine, 1e-6), radial) * lookup.turn;
+    let along = lookup.swept_slope * lookup.change;
+    whole.footprint = Footprint(lookup.along * turn.y - e_r * turn.x, lookup.across, vec2<f32>(along.x, across.x),
+        vec2<f32>(along.y, across.y));
+    return whole;
 }
 
 // E of light along the look direction n that the local frame's observer measures at frequency 1: the lapse; in the
@@ -146,6 +159,8 @@ fn next_crossing() -> Crossing {
         return crossing;
     }
     var phi = lookup.first + PI * f32(lookup.order);
+    // The table of u at the crossing.
+    var there = vec3<f32>(0.0);
     // The loop tests at its end: with a test at its start, Mesa's lavapipe runs the body once more than it should.
     // Lanes that have left go on writing there, too, so nothing is written once a crossing has been found.
     loop {
@@ -158,6 +173,7 @@ fn next_crossing() -> Crossing {
         if comes && is_wanted(u) && crossing.u <= 0.0 {
             crossing.u = u;
             crossing.order = lookup.order;
+            there = at;
         }
         lookup.order += 1u;
         phi += PI;
@@ -167,7 +183,7 @@ fn next_crossing() -> Crossing {
         }
     }
     if crossing.u > 0.0 {
-        complete(&crossing, lookup.first + PI * f32(crossing.order));
+        complete(&crossing, lookup.first + PI * f32(crossing.order), there);
     }
     return crossing;
 }
@@ -213,7 +229,8 @@ fn column_at(columns: texture_2d_array<f32>, y: f32) -> vec3<f32> {
     return vec3<f32>(dot(value, base), dot(change, base), dot(value, base_slope));
 }
 
-fn complete(crossing: ptr<function, Crossing>, phi: f32) {
+// `at`: the table of u at the crossing.
+fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
     let begin = begin_local(lookup.seen.n);
     let c = begin.c;
     let u = (*crossing).u;
@@ -221,7 +238,6 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
     if !FOOTPRINTS {
         return;
     }
-    let at = column_at(lens_u, phi / lookup.swept);
     let turn = sincos(phi);
     let n = frame.e_r.xyz * turn.y + lookup.along * turn.x;
     let tangent = lookup.along * turn.y - frame.e_r.xyz * turn.x;
@@ -250,10 +266,10 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32) {
     (*crossing).dy = EmissionPoint(-du_change.y / u, azimuth_change.y, delay_change.y);
 }
 
-fn edges_of_pixel(through: f32) -> u32 {
+fn edges_of_pixel(through: f32, turn: f32) -> u32 {
     // The distance from the critical curve in pixels, as d(place) = LENS_PER_OCTAVE / ln 2 (dt / t).
     let curve = lookup.beyond * f32(LENS_PER_OCTAVE) * 1.4426950408889634 / max(length(lookup.change), 1e-30);
-    return looked_up_edge(lookup.on_edge, curve, lookup.branch == 0u, through);
+    return looked_up_edge(lookup.on_edge, turn, curve, through);
 }
 
 // Makes next_crossing begin again with the first crossing.

@@ -5,6 +5,7 @@
 #import shared/frame
 #import shared/pass
 #requires fn next_crossing() -> Crossing
+#requires fn with_sky(record: Record) -> Record
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
@@ -31,8 +32,12 @@ fn take_record(id: vec2<u32>, record: Record) {
         count += 1u;
     }
     exported[at] = vec4<f32>(f32(record.fate), f32(record.steps), f32(count), record.plane_u);
-    exported[at + 1u] = vec4<f32>(record.sky, record.sky_redshift);
-    let f = record.footprint;
+    var whole = record;
+    if record.fate == FATE_ESCAPED {
+        whole = with_sky(record);
+    }
+    exported[at + 1u] = vec4<f32>(whole.sky, record.sky_redshift);
+    let f = whole.footprint;
     exported[at + 2u] = vec4<f32>(f.p * f.dx.x + f.q * f.dx.y, record.energy);
     exported[at + 3u] = vec4<f32>(f.p * f.dy.x + f.q * f.dy.y, record.angular_momentum);
 }

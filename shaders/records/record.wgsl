@@ -3,6 +3,8 @@
 // refine/ makes the records of a kernel, and declares those of these functions that the kernel calls:
 //
 //     fn ray_record(id: vec2<u32>) -> Record   gives the record of the tile's pixel `id`;
+//     fn with_sky(record: Record) -> Record    gives that record, whose ray escapes, with the sky's direction and
+//                                              footprint: many a pixel shows no sky, and need not find them;
 //     fn next_crossing() -> Crossing           gives its next crossing of the plane at which something shines, nearest
 //                                              to the observer first;
 //     fn more_crossings() -> bool              says whether next_crossing may give one more;
@@ -10,13 +12,16 @@
 //                                              counted from 0, or behind the last of them; only with VOLUMES;
 //     fn rewind_crossings()                    makes next_crossing begin again with the first (refine/ reads twice);
 //     fn defer_pixel(id: vec2<u32>)            leaves a pixel whose record is FATE_PENDING to a later kernel;
-//     fn edges_of_pixel(through: f32) -> u32   says which edge, EDGE_*, runs through the pixel, once its crossings have
-//                                              been given; `through` is the share of the light from behind that
-//                                              matter lets pass.
+//     fn edges_of_pixel(through: f32, turn: f32) -> u32
+//                                              says which edge, EDGE_*, runs through the pixel of the record, once its
+//                                              crossings have been given as far as they are seen; `through` is the
+//                                              share of the light from behind that matter lets pass, `turn` is turn_of
+//                                              of the record where its sky is seen, else 0.
 //
-// The fragment that uses records declares take_record, and shading declares seen_crossing.
+// The fragment that uses records declares take_record, and shading declares seen_crossing and seen_sky.
 
 #import constants
+#import shared/fate
 #import shared/frame
 
 // Where and when the light of a crossing left, or the change of it from pixel to pixel.
@@ -34,11 +39,14 @@ struct Record {
     // E, and L_z in M, scaled so that the observer of the local frame measures frequency 1.
     energy: f32,
     angular_momentum: f32,
+    // |p_theta| at the plane, which is sqrt(Q), M, of light that has frequency 1 at the camera (src/scene/record.rs).
+    polar_momentum: f32,
     // 1/r of the first crossing of the plane, even where nothing shines; 0 without one. Set for VIEW_METRIC only.
     plane_u: f32,
     // nu(camera) / nu(at infinity); 0 unless escaped.
     sky_redshift: f32,
-    // The direction in which the ray escapes, a unit vector in chart axes (z along the spin), and its footprint.
+    // The direction in which the ray escapes, a unit vector in chart axes (z along the spin), and its footprint;
+    // with_sky sets both.
     sky: vec3<f32>,
     footprint: Footprint,
 }
@@ -68,7 +76,7 @@ fn footprint_of(d: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> Footprint {
 struct Crossing {
     // 1/r, in 1/M; 0 when there is no further crossing.
     u: f32,
-    // nu(camera) / nu(matter on the circular orbit there).
+    // nu(camera) / nu(the matter there).
     g: f32,
     // The number of the crossing along the ray, from 0.
     order: u32,
@@ -81,15 +89,16 @@ struct Crossing {
     share: f32,
 }
 
-// Whether an edge of the disk runs through a pixel whose ray crosses the plane at 1/r = u, or u changes so steeply
-// there that one ray is not enough. `change` is the change of u to the next pixel right and below.
+// Whether an edge of the disk that shows runs through a pixel whose ray crosses the plane at 1/r = u, or u changes so
+// steeply there that one ray is not enough. `change` is the change of u to the next pixel right and below.
 fn near_disk_edge(u: f32, change: vec2<f32>) -> bool {
     let far = frame.disk_u.x;
     let near = frame.disk_u.y;
     // Without a disk, whose edges are (1, 0) then, there are none.
     let sum = select(0.0, abs(change.x) + abs(change.y), far <= near);
     let steep = u >= far && u <= near && sum > STEEP_CHANGE * u;
-    return steep || abs(u - far) < EDGE_REACH * sum || abs(u - near) < EDGE_REACH * sum;
+    let through = abs(vec2<f32>(u) - frame.disk_u) < vec2<f32>(EDGE_REACH * sum);
+    return steep || any(through & (vec2<f32>(sum) >= frame.shown_edges.xy));
 }
 
 // Lookups take sin d / (change of d per pixel) for the distance from the critical curve in pixels, d being the angle
@@ -100,12 +109,23 @@ fn beyond_right_angle(t: f32) -> f32 {
     return 0.5 * (most + 1.0 / most);
 }
 
-// The edge, EDGE_*, that runs through a looked-up pixel `curve` pixels from the critical curve. Outside the curve and
-// near it lie the thin rings that are the disk's images of higher order.
-fn looked_up_edge(on_edge: bool, curve: f32, outside: bool, through: f32) -> u32 {
-    let near_ring = PLANE && outside && through > 0.0 && curve < RINGS_REACH;
-    let kind = select(EDGE_NONE, EDGE_DISK, on_edge || near_ring);
+// The edge, EDGE_*, that runs through a looked-up pixel `curve` pixels from the critical curve; `turn` is turn_of.
+fn looked_up_edge(on_edge: bool, turn: f32, curve: f32, through: f32) -> u32 {
+    let kind = max(select(EDGE_NONE, EDGE_DISK, on_edge), select(EDGE_NONE, turning_edge(turn), through > 0.0));
     return select(kind, EDGE_CURVE, through > 0.0 && curve < CURVE_REACH);
+}
+
+// The edge of a pixel whose sky direction turns by so much to the next pixels.
+fn turning_edge(turn: f32) -> u32 {
+    return select(select(EDGE_NONE, EDGE_DISK, turn > TURN), EDGE_CURVE, turn > FAST_TURN);
+}
+
+// The turn of the sky direction to the next pixels, rad; 0 where the ray does not escape.
+fn turn_of(record: Record) -> f32 {
+    // A turn that is not known counts as a fast one.
+    let dx = min(abs(record.footprint.dx), vec2<f32>(1e6));
+    let dy = min(abs(record.footprint.dy), vec2<f32>(1e6));
+    return select(0.0, sqrt(dot(dx, dx) + dot(dy, dy)), record.fate == FATE_ESCAPED);
 }
 
 // Whether anything shines in the plane, whether shading needs the footprint of crossings, and whether emitters with

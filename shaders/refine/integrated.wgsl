@@ -12,8 +12,8 @@
 #import shared/math
 #import shared/pass
 
-// u, azimuth and delay by order; u is 0 where there is none.
-var<private> kept_crossings: array<vec3<f32>, CROSSINGS_KEPT>;
+// u, azimuth, delay and u' by order; u is 0 where there is none.
+var<private> kept_crossings: array<vec4<f32>, CROSSINGS_KEPT>;
 var<private> kept_order: u32;
 // Orders up to that of the last crossing.
 var<private> kept_count: u32;
@@ -35,7 +35,8 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         medium = NO_MEDIUM;
     }
     kept_count = min(crossing.order + 1u, CROSSINGS_KEPT);
-    kept_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] = vec3<f32>(crossing.u, azimuth, crossing.delay);
+    kept_crossings[min(crossing.order, CROSSINGS_KEPT - 1u)] =
+        vec4<f32>(crossing.u, azimuth, crossing.delay, crossing.du);
 }
 
 fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
@@ -49,7 +50,7 @@ fn medium_before(k: u32) -> vec4<f32> {
 // The record of the sample at pixel_place(id), without footprints.
 fn integrated_record(id: vec2<u32>) -> Record {
     for (var i = 0u; i < CROSSINGS_KEPT; i += 1u) {
-        kept_crossings[i] = vec3<f32>(0.0);
+        kept_crossings[i] = vec4<f32>(0.0);
     }
     kept_order = 0u;
     kept_count = 0u;
@@ -62,7 +63,8 @@ fn integrated_record(id: vec2<u32>) -> Record {
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
-        begin.c.angular_momentum / begin.c.nu_local, 0.0, 0.0, vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
+        begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0, 0.0,
+        vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if begin.has_light {
         // Nothing hides what is behind where the disk may cover but a part of the sample's cell.
         let opaque_u = select(frame.opaque_u, vec2<f32>(1.0, 0.0), whole_plane);
@@ -101,7 +103,7 @@ fn next_integrated() -> Crossing {
         if is_wanted(at.x) {
             crossing.u = at.x;
             crossing.order = kept_order;
-            crossing.g = kept_ratio * redshift_of(kept_constants, at.x);
+            crossing.g = kept_ratio * redshift_at(kept_constants, at.x, at.w);
             crossing.place = EmissionPoint(-log(at.x), at.y, at.z);
             crossing.dx = EmissionPoint(1e30, 0.0, 0.0);
             crossing.dy = EmissionPoint(1e30, 0.0, 0.0);

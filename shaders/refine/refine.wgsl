@@ -3,32 +3,67 @@
 // Knows no way to make records.
 
 #import constants
+#import camera/critical
 #import camera/observer
 #import camera/projection
 #import records/record
 #import records/edges
 #import shade/shade
+#import shared/fate
+#import shared/math
 #import shared/not_inlined
 #import shared/frame
 #import shared/pass
 #requires fn ray_record(id: vec2<u32>) -> Record
 #requires fn next_crossing() -> Crossing
 #requires fn rewind_crossings()
+#requires fn with_sky(record: Record) -> Record
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
 
-// The samples of a pixel: 4 on edges of the disk, where the cover of each one's cell is computed (whole_plane); 32
-// where the critical curve runs, as what lies beside it is too thin for that.
+// The samples of a pixel: 4, its quarters, or two in each of the strips along the critical curve.
 var<private> samples: u32;
 
 const LANES: u32 = 64u;
+const NO_LANE: u32 = LANES;
+// The orders of crossings that samples are compared by: images of higher ones are e^-pi as wide each, far below what
+// shows. Every one takes workgroup memory, which bounds how many threads run at once.
+const LANE_ORDERS: u32 = 8u;
 
-// The sample of each thread: u of its crossings by order, 0 where there is none; its fate; its light.
-var<workgroup> lane_u: array<f32, LANES * CROSSINGS_KEPT>;
-var<workgroup> lane_fate: array<u32, LANES>;
+// The sample of each thread: u of its crossings by order, 0 where there is none, and with FOOTPRINTS their azimuth and
+// delay; its sky direction, and its fate as a number; its light times its share of the pixel.
+var<workgroup> lane_u: array<f32, LANES * LANE_ORDERS>;
+var<workgroup> lane_place: array<vec2<f32>, LANES * LANE_ORDERS>;
+var<workgroup> lane_sky: array<vec4<f32>, LANES>;
 var<workgroup> lane_light: array<vec4<f32>, LANES>;
 var<workgroup> listed: u32;
 
 var<private> lane: u32;
+// The lanes of the samples before and after this one along the strip or row, and before and after across; NO_LANE
+// where there is none.
+var<private> beside: vec4<u32>;
+
+// The strips of a pixel along the critical curve. Distances are in pixels, positive where rays escape.
+struct Strips {
+    // Unit vector from the curve outwards, in pixels right and down.
+    normal: vec2<f32>,
+    // The distance of the pixel's centre.
+    level: f32,
+    // The change of the curve's level in a pixel, at the curve.
+    slope: f32,
+    // `spread` of the least and the greatest distance in the pixel.
+    range: vec2<f32>,
+    // The number of strips where rays are captured.
+    captured: u32,
+}
+
+struct Cell {
+    // Place in the pixel, 0 .. 1, were the curve straight.
+    place: vec2<f32>,
+    // The distance from the curve that it is meant to have.
+    distance: f32,
+    // The cell's share of the pixel.
+    weight: f32,
+}
 
 @compute @workgroup_size(64)
 fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>,
@@ -36,7 +71,7 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
     unknown_zero = group.z;
     lane = i;
     samples = not_inlined(pass_.refined);
-    whole_plane = samples == EDGE_SAMPLES;
+    whole_plane = true;
     if i == 0u {
         let limit = arrayLength(&edges.pixels);
         listed = min(atomicLoad(&edges.counts[list_place(list_kind())]), limit);
@@ -52,31 +87,38 @@ fn refine(@builtin(workgroup_id) group: vec3<u32>, @builtin(num_workgroups) grou
 // nothing.
 fn refine_sample(entry: u32, count: u32) {
     let id = listed_pixel(list_kind(), min(entry, count - 1u));
-    if whole_plane {
-        sample_shift = quarter_place() - 0.5;
-    } else {
-        sample_shift = curve_place(across_curve(id)) - 0.5;
+    let weight = go_to_cell(id);
+    var record = ray_record(id);
+    if record.fate == FATE_ESCAPED {
+        record = with_sky(record);
     }
-    let record = ray_record(id);
-    lane_fate[lane] = record.fate;
-    for (var k = 0u; k < CROSSINGS_KEPT; k += 1u) {
-        lane_u[lane * CROSSINGS_KEPT + k] = 0.0;
+    lane_sky[lane] = vec4<f32>(record.sky, f32(record.fate));
+    for (var k = 0u; k < LANE_ORDERS; k += 1u) {
+        lane_u[lane * LANE_ORDERS + k] = 0.0;
     }
-    if whole_plane {
-        for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u) {
-            let crossing = next_crossing();
-            if crossing.u <= 0.0 {
-                break;
-            }
-            lane_u[lane * CROSSINGS_KEPT + min(crossing.order, CROSSINGS_KEPT - 1u)] = crossing.u;
+    for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u) {
+        let crossing = next_crossing();
+        if crossing.u <= 0.0 {
+            break;
         }
-        rewind_crossings();
+        if crossing.order >= LANE_ORDERS {
+            break;
+        }
+        let at = lane * LANE_ORDERS + crossing.order;
+        lane_u[at] = crossing.u;
+        if FOOTPRINTS {
+            lane_place[at] = vec2<f32>(crossing.place.azimuth, crossing.place.delay);
+        }
     }
+    rewind_crossings();
     workgroupBarrier();
-    lane_light[lane] = shade_record(id, record);
+    if record.fate == FATE_ESCAPED {
+        record.footprint = cell_footprint(record.sky);
+    }
+    lane_light[lane] = weight * shade_record(id, record);
     workgroupBarrier();
     if entry < count && sample_index() == 0u {
-        if whole_plane && is_ragged() {
+        if in_quarters() && is_ragged() {
             // It turns out to need the samples of EDGE_CURVE.
             note_edges(id, EDGE_CURVE);
         } else {
@@ -86,13 +128,46 @@ fn refine_sample(entry: u32, count: u32) {
     workgroupBarrier();
 }
 
+fn in_quarters() -> bool {
+    return samples == EDGE_SAMPLES;
+}
+
 // The list of records/edges.wgsl that this dispatch goes over.
 fn list_kind() -> u32 {
-    return select(1u, 0u, whole_plane);
+    return select(1u, 0u, in_quarters());
 }
 
 fn sample_index() -> u32 {
     return lane % samples;
+}
+
+// Goes to the place of this thread's sample in the tile's pixel `id`; the share of the pixel that it stands for.
+fn go_to_cell(id: vec2<u32>) -> f32 {
+    sample_shift = vec2<f32>(0.0);
+    if in_quarters() {
+        sample_shift = quarter_place() - 0.5;
+        beside = beside_cell(true, true, 2u);
+        return 0.25;
+    }
+    go_to_pixel(pixel_place(id));
+    let strips = strips_of();
+    let strip = sample_index() / 2u;
+    let cell = strip_cell(strips);
+    let outside = strip >= strips.captured;
+    beside = beside_cell(strip > 0u && (strip > strips.captured || !outside),
+        strip + 1u < STRIPS && (strip + 1u < strips.captured || outside), 2u);
+    sample_shift = corrected_place(strips, cell) - 0.5;
+    return cell.weight;
+}
+
+// The lanes beside this one: one apart along the strip or row, `step` apart across, if they are `before` or `after`.
+fn beside_cell(before: bool, after: bool, step: u32) -> vec4<u32> {
+    let odd = (lane & 1u) != 0u;
+    let second = (lane & 2u) != 0u;
+    let along = select(vec2<u32>(NO_LANE, lane + 1u), vec2<u32>(lane - 1u, NO_LANE), odd);
+    let has_before = before && (second || !in_quarters());
+    let has_after = after && (!second || !in_quarters());
+    return vec4<u32>(along, select(NO_LANE, lane - step, has_before), select(NO_LANE, lane + step, has_after));
 }
 
 // The place of this thread's sample in its pixel, 0 .. 1: the middle of its quarter.
@@ -100,46 +175,142 @@ fn quarter_place() -> vec2<f32> {
     return vec2<f32>(f32(lane & 1u), f32((lane >> 1u) & 1u)) * 0.5 + 0.25;
 }
 
-// The same in strips at right angles to `across`.
-fn curve_place(across: vec2<f32>) -> vec2<f32> {
-    const GOLDEN: f32 = 0.618033988749895;
-    let i = f32(sample_index());
-    let n = f32(samples);
-    let along = fract((i - 0.5 * (n - 1.0)) * GOLDEN + 0.5);
-    // Less is rounding, at the shadow's very centre.
-    let normal = select(vec2<f32>(1.0, 0.0), across * inverseSqrt(dot(across, across)), dot(across, across) > 1e-30);
+// A point in the direction seen at the pixel's centre, and its changes to the next pixel right and down: the image
+// plane, or its tangent, which goes on beyond the border of a cube's face.
+var<private> level_origin: vec3<f32>;
+var<private> level_right: vec3<f32>;
+var<private> level_down: vec3<f32>;
+
+// Goes to the pixel about `at`.
+fn go_to_pixel(at: vec2<f32>) {
+    let p = camera_point(at.x, at.y);
+    level_origin = in_frame(p.at);
+    level_right = in_frame(p.dx);
+    level_down = in_frame(p.dy);
+}
+
+// The level of the critical curve at so many pixels right of the pixel's centre and below it.
+fn level_at(off: vec2<f32>) -> f32 {
+    return curve_level(aberrate(normalize(level_origin + level_right * off.x + level_down * off.y)).n);
+}
+
+// The scale on which strips are of equal width, and back.
+fn spread(distance: f32) -> f32 {
+    let x = abs(distance) / NARROWEST;
+    let size = log(x + sqrt(x * x + 1.0));
+    return select(size, -size, distance < 0.0);
+}
+
+fn gathered(x: f32) -> f32 {
+    return 0.5 * NARROWEST * (exp(x) - exp(-x));
+}
+
+// The strips of the pixel that go_to_pixel went to. (Loops keep the places few where compilers put all of level_at.)
+fn strips_of() -> Strips {
+    var change = vec2<f32>(0.0);
+    for (var i = 0u; i < 4u; i += 1u) {
+        let axis = select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), i >= 2u);
+        let side = select(-1.0, 1.0, (i & 1u) == 1u);
+        change += axis * (side * level_at(axis * (side * LEVEL_STEP)) / (2.0 * LEVEL_STEP));
+    }
+    let steepness = max(length(change), 1e-20);
+    let normal = select(vec2<f32>(1.0, 0.0), change / steepness, steepness > 1e-20);
+    // The level here, and one step of Newton's method from here, which nearly everywhere does.
+    var here = 0.0;
+    var rest = 0.0;
+    for (var i = 0u; i < 2u; i += 1u) {
+        rest = level_at(normal * (-here / steepness)) / steepness;
+        here = select(here, rest * steepness, i == 0u);
+        if abs(here) >= FARTHEST * steepness {
+            break;
+        }
+    }
+    let step = -here / steepness;
+    if abs(step) >= FARTHEST || (abs(step) < SEARCH_REACH && abs(rest) <= EVEN_LEVEL) {
+        return strips_at(select(rest, 0.0, abs(step) >= FARTHEST) - step, normal, steepness);
+    }
+    // The level on both sides, then the Illinois method: places and levels on both sides of the curve.
+    var low = vec2<f32>(0.0);
+    var high = vec2<f32>(0.0);
+    var found = 0.0;
+    var side = 0.0;
+    for (var i = 1u; i < SEARCH_STEPS + 3u; i += 1u) {
+        let met = (low.x * high.y - high.x * low.y) / max(high.y - low.y, 1e-20);
+        found = select(select(met, SEARCH_REACH, i == 2u), -SEARCH_REACH, i == 1u);
+        let value = level_at(normal * found);
+        let outside = value > 0.0;
+        // While the ends are looked at: `low` and `high` are they, and then one of them the centre.
+        let searching = i > 2u;
+        low.y *= select(1.0, 0.5, searching && outside && side > 0.0);
+        high.y *= select(1.0, 0.5, searching && !outside && side < 0.0);
+        high = select(high, vec2<f32>(found, value), i == 2u || (searching && outside));
+        low = select(low, vec2<f32>(found, value), i == 1u || (searching && !outside));
+        side = select(0.0, select(-1.0, 1.0, outside), searching);
+        if i == 2u {
+            if !(low.y < 0.0 && high.y > 0.0) {
+                break;
+            }
+            high = select(high, vec2<f32>(0.0, here), here > 0.0);
+            low = select(vec2<f32>(0.0, here), low, here > 0.0);
+        }
+    }
+    if side == 0.0 {
+        return strips_at(here / steepness, normal, steepness);
+    }
+    var rise = 0.0;
+    for (var i = 0u; i < 2u; i += 1u) {
+        let beyond = select(-1.0, 1.0, i == 1u);
+        rise += beyond * level_at(normal * (found + beyond * LEVEL_STEP));
+    }
+    return strips_at(-found, normal, max(rise / (2.0 * LEVEL_STEP), 1e-20));
+}
+
+fn strips_at(distance: f32, normal: vec2<f32>, slope: f32) -> Strips {
+    let level = clamp(distance, -FARTHEST, FARTHEST);
+    let reach = 0.5 * (abs(normal.x) + abs(normal.y));
+    let range = vec2<f32>(spread(level - reach), spread(level + reach));
+    let inside = max(-range.x, 0.0) * CAPTURED_DENSITY;
+    let share = f32(STRIPS) * inside / max(inside + max(range.y, 0.0), 1e-20);
+    let both = clamp(u32(round(share)), FEWEST_STRIPS, STRIPS - FEWEST_STRIPS);
+    let captured = select(select(both, STRIPS, range.y <= 0.0), 0u, range.x >= 0.0);
+    return Strips(normal, level, slope, range, captured);
+}
+
+// The distance at `strip`, a whole number at the begin of one of those on the side `outside` of the curve.
+fn strip_distance(strips: Strips, outside: bool, strip: f32) -> f32 {
+    let captured = f32(strips.captured);
+    let first = select(strips.range.x, max(strips.range.x, 0.0), outside);
+    let last = select(min(strips.range.y, 0.0), strips.range.y, outside);
+    let share = select(strip / max(captured, 1.0), (strip - captured) / max(f32(STRIPS) - captured, 1.0), outside);
+    return gathered(first + (last - first) * share);
+}
+
+// The cell of this thread's sample.
+fn strip_cell(strips: Strips) -> Cell {
+    let strip = f32(sample_index() / 2u);
+    let outside = sample_index() / 2u >= strips.captured;
+    let normal = strips.normal;
+    let begin = strip_distance(strips, outside, strip) - strips.level;
+    let middle = strip_distance(strips, outside, strip + 0.5) - strips.level;
+    let end = strip_distance(strips, outside, strip + 1.0) - strips.level;
     let tangent = vec2<f32>(-normal.y, normal.x);
-    let foot = normal * level_of_share((i + 0.5) / n, normal);
+    let foot = normal * middle;
     let wide = select(vec2<f32>(1e-6), tangent, abs(tangent) > vec2<f32>(1e-6));
     let one = (-0.5 - foot) / wide;
     let other = (0.5 - foot) / wide;
     let begins = max(min(one, other), vec2<f32>(-1.0));
     let ends = min(max(one, other), vec2<f32>(1.0));
-    return 0.5 + foot + tangent * mix(max(begins.x, begins.y), min(ends.x, ends.y), along);
+    let share = 0.25 + 0.5 * f32(lane & 1u);
+    let along = mix(max(begins.x, begins.y), min(ends.x, ends.y), share);
+    let weight = 0.5 * (share_below(end, normal) - share_below(begin, normal));
+    return Cell(0.5 + foot + tangent * along, strips.level + middle, weight);
 }
 
-// The level of which `share` is share_below.
-fn level_of_share(share: f32, slope: vec2<f32>) -> f32 {
-    let most = max(abs(slope.x), abs(slope.y));
-    let least = min(abs(slope.x), abs(slope.y));
-    let rest = min(share, 1.0 - share);
-    let corner = sqrt(2.0 * most * least * rest);
-    let size = select(0.5 * (most + least) - corner, (0.5 - rest) * most, 2.0 * most * rest >= least);
-    return select(size, -size, share < 0.5);
-}
-
-// The direction at right angles to the circle about the shadow's centre that runs through the pixel, in pixels right
-// and down.
-fn across_curve(id: vec2<u32>) -> vec2<f32> {
-    sample_shift = vec2<f32>(0.0);
-    let at = pixel_place(id);
-    let view = camera_view(at.x, at.y);
-    let seen = aberrate(view.look);
-    let centre = vec3<f32>(frame.e_r.w, frame.e_theta.w, frame.e_phi.w);
-    // The components of a look direction's changes along it are no changes of it.
-    let across_sight = centre - seen.n * dot(centre, seen.n);
-    return vec2<f32>(dot(across_sight, aberrate_change(seen, view.dx)),
-        dot(across_sight, aberrate_change(seen, view.dy)));
+// The place of a cell's sample in its pixel, the curve being bent.
+fn corrected_place(strips: Strips, cell: Cell) -> vec2<f32> {
+    let foot = cell.place - strips.normal * cell.distance;
+    let off = clamp(level_at(foot - 0.5) / strips.slope, -0.25, 0.25);
+    return cell.place - strips.normal * select(0.0, off, abs(strips.level) < BENT);
 }
 
 fn mean_light() -> vec4<f32> {
@@ -147,42 +318,106 @@ fn mean_light() -> vec4<f32> {
     for (var k = 0u; k < samples; k += 1u) {
         sum += lane_light[lane + k];
     }
-    return sum / f32(samples);
+    return sum;
+}
+
+// The footprint of this thread's cell about its sky direction, from the directions of those beside it.
+fn cell_footprint(sky: vec3<f32>) -> Footprint {
+    let dx = change_of_sky(sky, beside.xy);
+    let dy = change_of_sky(sky, beside.zw);
+    var footprint = footprint_of(sky, dx.xyz, dy.xyz);
+    footprint.dx = select(vec2<f32>(1e30), footprint.dx, dx.w != 0.0);
+    footprint.dy = select(vec2<f32>(1e30), footprint.dy, dy.w != 0.0);
+    return footprint;
+}
+
+fn has_escaped(other: u32) -> bool {
+    return lane_sky[other].w == f32(FATE_ESCAPED);
+}
+
+// The change of the sky direction from one cell to the next: central where the rays of both others escaped, else
+// one-sided; w is 0 where none did.
+fn change_of_sky(here: vec3<f32>, others: vec2<u32>) -> vec4<f32> {
+    let lanes = min(others, vec2<u32>(LANES - 1u));
+    let escaped = vec2<bool>(has_escaped(lanes.x), has_escaped(lanes.y));
+    let there = escaped & (others < vec2<u32>(NO_LANE));
+    let first = select(here, lane_sky[lanes.x].xyz, there.x);
+    let last = select(here, lane_sky[lanes.y].xyz, there.y);
+    return vec4<f32>((last - first) * select(1.0, 0.5, all(there)), select(0.0, 1.0, any(there)));
+}
+
+// u of the crossing of `order` in a lane; 0 where there is none.
+fn crossing_in(other: u32, order: u32) -> f32 {
+    let known = lane_u[min(other, LANES - 1u) * LANE_ORDERS + min(order, LANE_ORDERS - 1u)];
+    return select(0.0, known, other < NO_LANE && order < LANE_ORDERS);
+}
+
+// The change of a crossing's place from one cell to the next, as change_of_sky.
+fn change_of_place(here: Crossing, order: u32, others: vec2<u32>) -> EmissionPoint {
+    let u = vec2<f32>(crossing_in(others.x, order), crossing_in(others.y, order));
+    let there = u > vec2<f32>(0.0);
+    let lanes = min(others, vec2<u32>(LANES - 1u)) * LANE_ORDERS + min(order, LANE_ORDERS - 1u);
+    let place = vec2<f32>(here.place.azimuth, here.place.delay);
+    let from_u = select(here.u, u.x, there.x);
+    let to_u = select(here.u, u.y, there.y);
+    let change = select(place, lane_place[lanes.y], there.y) - select(place, lane_place[lanes.x], there.x);
+    let share = select(1.0, 0.5, all(there));
+    let known = EmissionPoint(share * log(from_u / to_u), share * wrap_angle(change.x), share * change.y);
+    if any(there) {
+        return known;
+    }
+    return EmissionPoint(1e30, 0.0, 0.0);
+}
+
+// The sample has its sky, with the footprint of its cell.
+fn seen_sky(here: Record) -> Record {
+    return here;
 }
 
 fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
-    crossing.share = disk_covers(crossing.u);
-    if whole_plane {
-        crossing.share = covered_share(crossing.u, min(crossing.order, CROSSINGS_KEPT - 1u));
-        // Where nothing shines g may be no number at all.
-        let shines = crossing.share > 0.0 || (crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y);
-        crossing.g = select(1.0, crossing.g, shines);
-        crossing.u = select(0.0, clamp(crossing.u, frame.plane_u.x, frame.plane_u.y), crossing.u > 0.0);
+    let order = crossing.order;
+    if FOOTPRINTS && crossing.u > 0.0 {
+        crossing.dx = change_of_place(crossing, order, beside.xy);
+        crossing.dy = change_of_place(crossing, order, beside.zw);
     }
+    let here = covered(crossing.u, vec4<f32>(crossing_in(beside.x, order), crossing_in(beside.y, order),
+        crossing_in(beside.z, order), crossing_in(beside.w, order)));
+    crossing.share = here.x;
+    // Where nothing shines, as inside the horizon, g and the delay may be no numbers at all.
+    let shines = crossing.share > 0.0 || (crossing.u >= frame.plane_u.x && crossing.u <= frame.plane_u.y);
+    crossing.g = select(1.0, crossing.g, shines);
+    crossing.place.delay = select(0.0, crossing.place.delay, shines);
+    crossing.u = select(0.0, clamp(here.y, frame.plane_u.x, frame.plane_u.y), crossing.u > 0.0);
     return crossing;
 }
 
-// Share of this sample's cell, of 2 x 2, in which the crossing of `order` lies on the disk, u changing evenly over the
-// cell.
-fn covered_share(u: f32, order: u32) -> f32 {
-    let left = lane_u[(lane & ~1u) * CROSSINGS_KEPT + order];
-    let right = lane_u[(lane | 1u) * CROSSINGS_KEPT + order];
-    let above = lane_u[(lane & ~2u) * CROSSINGS_KEPT + order];
-    let below = lane_u[(lane | 2u) * CROSSINGS_KEPT + order];
-    let slope = vec2<f32>(right - left, below - above);
-    let within = select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
+// Share of this sample's cell in which its crossing at u lies on the disk, and the middle of what u is there, u
+// changing evenly over the cell; `others`: u before and after it in both directions, 0 where there is none.
+fn covered(u: f32, others: vec4<f32>) -> vec2<f32> {
+    let slope = vec2<f32>(change_of_u(u, others.xy), change_of_u(u, others.zw));
     let share = share_below(frame.disk_u.y - u, slope) - share_below(frame.disk_u.x - u, slope);
-    return select(within, clamp(share, 0.0, 1.0), min(min(left, right), min(above, below)) > 0.0);
+    let half = 0.5 * (abs(slope.x) + abs(slope.y));
+    let low = max(u - half, frame.disk_u.x);
+    let high = min(u + half, frame.disk_u.y);
+    // The less of the cell is left out, the less does that move the middle of the rest.
+    let part = clamp(2.0 * (1.0 - share), 0.0, 1.0);
+    return vec2<f32>(clamp(share, 0.0, 1.0), select(u, mix(u, 0.5 * (low + high), part), low < high));
+}
+
+fn change_of_u(u: f32, others: vec2<f32>) -> f32 {
+    let there = others > vec2<f32>(0.0);
+    let difference = select(u, others.y, there.y) - select(u, others.x, there.x);
+    return difference * select(1.0, 0.5, all(there));
 }
 
 // Share of a cell, 1 x 1 about its middle, in which slope . (x, y) <= level: the half-plane cuts a corner off, or two
 // sides.
 fn share_below(level: f32, slope: vec2<f32>) -> f32 {
-    let most = max(max(abs(slope.x), abs(slope.y)), 1e-20);
+    let most = max(max(abs(slope.x), abs(slope.y)), LEAST_SLOPE);
     let least = min(abs(slope.x), abs(slope.y));
     let corner = max(0.5 * (most + least) - abs(level), 0.0);
-    let cut = corner * corner / (2.0 * most * max(least, 1e-20));
+    let cut = corner * corner / (2.0 * most * max(least, LEAST_SLOPE));
     let by_corner = select(cut, 1.0 - cut, level > 0.0);
     return select(by_corner, 0.5 + level / most, abs(level) <= 0.5 * (most - least));
 }
@@ -198,25 +433,25 @@ fn is_ragged() -> bool {
     let near = frame.disk_u.y;
     var hidden = false;
     var ragged = false;
-    for (var k = 0u; k < min(not_inlined(frame.max_crossings), CROSSINGS_KEPT); k += 1u) {
+    for (var k = 0u; k < min(not_inlined(frame.max_crossings), LANE_ORDERS); k += 1u) {
         var low = 1e30;
         var high = 0.0;
         var present = 0u;
         for (var s = 0u; s < 4u; s += 1u) {
-            let u = lane_u[(lane + s) * CROSSINGS_KEPT + k];
+            let u = lane_u[(lane + s) * LANE_ORDERS + k];
             present += select(0u, 1u, u > 0.0);
             low = min(low, select(1e30, u, u > 0.0));
             high = max(high, u);
         }
         let span = high - low;
-        // A crossing that some do not have may be anywhere.
-        let partial = present < 4u && 2.0 * high >= far && 0.7 * low <= near;
+        // A crossing that some do not have goes through infinity, u = 0, on its way to them.
+        let partial = present < 4u && 2.0 * high >= far;
         let steep = present == 4u && span > even_change(k, high) && high + span >= far && low - span <= near;
         ragged = ragged || (!hidden && present > 0u && (partial || steep));
-        hidden = hidden || (frame.disk.z >= 1.0 && present == 4u && low - span >= far && high + span <= near);
+        hidden = hidden || (present == 4u && low - span >= frame.opaque_u.x && high + span <= frame.opaque_u.y);
     }
     for (var s = 1u; s < 4u; s += 1u) {
-        ragged = ragged || (!hidden && lane_fate[lane + s] != lane_fate[lane]);
+        ragged = ragged || (!hidden && lane_sky[lane + s].w != lane_sky[lane].w);
     }
     return ragged;
 }

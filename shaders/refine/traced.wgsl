@@ -1,30 +1,19 @@
-// Ray records of samples of traced pixels: integrated, with the footprints of the pixel's own record where it has them.
+// Ray records of samples of traced pixels: integrated.
 
-#import constants
 #import records/record
 #import refine/integrated
-#import traced/footprints
 
 fn ray_record(id: vec2<u32>) -> Record {
-    set_traced_pixel(id);
-    var record = integrated_record(id);
-    let sky = textureLoad(record_sky, traced_pixel, 0);
-    if record.fate == FATE_ESCAPED && sky.w != 0.0 {
-        record.footprint = sky_footprint(sky.xyz, record.sky);
-    }
+    return integrated_record(id);
+}
+
+// It has its sky.
+fn with_sky(record: Record) -> Record {
     return record;
 }
 
 fn next_crossing() -> Crossing {
-    var crossing = next_integrated();
-    if FOOTPRINTS && crossing.u > 0.0 {
-        let here = crossing_of_order(traced_pixel, crossing.order);
-        if here.x > 0.0 {
-            crossing.dx = derivative_of_place(here, crossing.order, vec2<u32>(1u, 0u));
-            crossing.dy = derivative_of_place(here, crossing.order, vec2<u32>(0u, 1u));
-        }
-    }
-    return crossing;
+    return next_integrated();
 }
 
 fn more_crossings() -> bool {

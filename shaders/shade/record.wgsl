@@ -7,13 +7,14 @@
 #import shade/shade
 #import shared/pass
 #requires fn next_crossing() -> Crossing
-#requires fn edges_of_pixel(through: f32) -> u32
+#requires fn with_sky(record: Record) -> Record
+#requires fn edges_of_pixel(through: f32, turn: f32) -> u32
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
 
 fn take_record(id: vec2<u32>, record: Record) {
     take_light(id, shade_record(id, record));
     if REFINES && has_look_direction(pixel_place(id)) {
-        note_edges(id, edges_of_pixel(seen_through));
+        note_edges(id, edges_of_pixel(seen_through, seen_turn));
     }
 }
 
@@ -21,4 +22,8 @@ fn seen_crossing() -> Crossing {
     var crossing = next_crossing();
     crossing.share = disk_covers(crossing.u);
     return crossing;
+}
+
+fn seen_sky(here: Record) -> Record {
+    return with_sky(here);
 }

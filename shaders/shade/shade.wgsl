@@ -12,11 +12,13 @@
 #import shared/pass
 #import sky/grid
 #import sky/map
+#import sky/shift
 #import sky/stars
 #requires fn next_crossing() -> Crossing
 #requires fn medium_before(k: u32) -> vec4<f32>
 #requires fn more_crossings() -> bool
 #requires fn seen_crossing() -> Crossing
+#requires fn seen_sky(here: Record) -> Record
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
@@ -26,6 +28,8 @@
 // Pyramids of sky/map.wgsl: the embedded one, and the host's.
 @group(0) @binding(4) var milky_way: texture_2d<f32>;
 @group(0) @binding(5) var sky_map: texture_2d<f32>;
+// Linear between texels and levels, around in u, to the border in v.
+@group(0) @binding(6) var map_sampler: sampler;
 
 // Choices that a pipeline is made for; the host compiles one for each combination that it needs: lavapipe runs both
 // sides of every `if`.
@@ -43,6 +47,10 @@ fn light_table(i: u32) -> vec4<f32> {
 
 fn star_cell(i: u32) -> u32 {
     return textureLoad(star_cells, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0).x;
+}
+
+fn sampled(map: texture_2d<f32>, place: vec2<f32>, level: f32) -> vec3<f32> {
+    return textureSampleLevel(map, map_sampler, place, level).xyz;
 }
 
 // Light and alpha of the tile's pixel `id`, or the view's value first; nothing where the projection shows nothing.
@@ -68,10 +76,12 @@ fn least_patch() -> f32 {
     return frame.sky_z.w;
 }
 
-// The share of the light from behind that matter lets pass at the pixel shaded last.
+// At the pixel shaded last: the share of the light from behind that matter lets pass, and the turn of the sky's
+// direction (turn_of); 0 where the sky is hidden.
 var<private> seen_through: f32;
+var<private> seen_turn: f32;
 
-// Light and alpha of a record. seen_crossing gives next_crossing with its share.
+// Light and alpha of a record. seen_crossing gives next_crossing with its share, seen_sky the record with its sky.
 fn pixel_light(here: Record) -> vec4<f32> {
     var light = vec3<f32>(0.0);
     var open = 1.0;
@@ -88,11 +98,13 @@ fn pixel_light(here: Record) -> vec4<f32> {
             open *= medium.w;
             given = k + 1u;
         }
-        let emission = emitted_at_crossing(crossing, crossing_shift(here, crossing), open);
+        let mu = min(here.polar_momentum * crossing.u * crossing.g, 1.0);
+        let emission = emitted_at_crossing(crossing, crossing_shift(here, crossing), mu, open);
         light += emission.xyz;
         open *= 1.0 - emission.w;
-        // If the loop found at its begin that there is none, lavapipe would run all of the body once more.
-        if !more_crossings() {
+        // Behind an opaque crossing no other is looked for. If the loop found at its begin that there is none, lavapipe
+        // would run all of the body once more.
+        if open <= 0.0 || !more_crossings() {
             break;
         }
     }
@@ -102,8 +114,13 @@ fn pixel_light(here: Record) -> vec4<f32> {
         open *= medium.w;
     }
     seen_through = open;
-    if (SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID) && here.fate == FATE_ESCAPED && open > 0.0 {
-        light += open * sky_light(here);
+    seen_turn = 0.0;
+    if here.fate == FATE_ESCAPED && open > 0.0 {
+        let whole = seen_sky(here);
+        seen_turn = turn_of(whole);
+        if SHOWS_STARS || SHOWS_MILKY_WAY || SHOWS_MAP || SHOWS_GRID {
+            light += open * sky_light(whole);
+        }
     }
     return vec4<f32>(light, select(1.0, 1.0 - open, here.fate == FATE_ESCAPED));
 }
@@ -137,13 +154,13 @@ fn sky_light(here: Record) -> vec3<f32> {
 // The light of the Milky Way and of the host's map.
 fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
     let d = to_sky(here.sky);
-    let taps = map_taps(here.footprint);
+    let seen = map_patch(here.footprint);
     var light = vec3<f32>(0.0);
     if SHOWS_MILKY_WAY {
-        light = shifted_map_light(map_light(milky_way, frame.map_sizes.xy, d, taps), shift.colour, shift.beaming);
+        light = shifted_map_light(map_light(milky_way, frame.map_sizes.xy, d, seen), shift.colour, shift.beaming);
     }
     if SHOWS_MAP {
-        light += shifted_map_light(map_light(sky_map, frame.map_sizes.zw, d, taps), shift.colour, shift.beaming);
+        light += shifted_map_light(map_light(sky_map, frame.map_sizes.zw, d, seen), shift.colour, shift.beaming);
     }
     return light;
 }
@@ -166,7 +183,11 @@ fn view_value(here: Record, id: vec2<u32>) -> f32 {
             let place = pixel_place(id);
             let n = look_direction(place.x, place.y);
             let look = frame.e_r.xyz * n.x + frame.e_theta.xyz * n.y + frame.e_phi.xyz * n.z;
-            return select(nothing, arctan2(length(cross(look, here.sky)), dot(look, here.sky)), in_sky);
+            var sky = here.sky;
+            if in_sky {
+                sky = seen_sky(here).sky;
+            }
+            return select(nothing, arctan2(length(cross(look, sky)), dot(look, sky)), in_sky);
         }
         case VIEW_STEPS: {
             return f32(here.steps);

@@ -1,5 +1,6 @@
 // The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms.rs.
 
+#import constants
 #import shared/not_inlined
 #requires var frame: Frame
 
@@ -12,7 +13,7 @@ struct Frame {
     forward: vec4<f32>,
     // Velocity against the local frame, and gamma.
     beta: vec4<f32>,
-    // Unit vectors of the local frame, chart; w: components of the shadow's centre in it (critical.rs).
+    // Unit vectors of the local frame, chart.
     e_r: vec4<f32>,
     e_theta: vec4<f32>,
     e_phi: vec4<f32>,
@@ -27,14 +28,18 @@ struct Frame {
     sky_x: vec4<f32>,
     sky_y: vec4<f32>,
     sky_z: vec4<f32>,
-    // Temperature, its ln Y, opacity, brightness.
+    // Temperature of the hottest ring, ln Y of the stated temperature, opacity, brightness.
     disk: vec4<f32>,
     // The size of the full frame, pixels; then the step in sigma and the tolerance.
     size: vec4<f32>,
-    // Strength, age at the reference time, delay of light of that time (M), 0 of Turbulence in src/emit/turbulence.rs.
+    // Strength, delay of light of the reference time (M), then ln r inside which it fades out (-1e30:
+    // nowhere), of Turbulence in src/emit/turbulence.rs; 0.
     turbulence: vec4<f32>,
     // Radius, brightness, absorption of Haze in src/emit/haze.rs, 0.
     haze: vec4<f32>,
+    // Sine and cosine of the critical angle, whether the capture margin tells the level, of CurveLevel in
+    // src/physics/lens/critical.rs; 0.
+    critical: vec4<f32>,
     // 1/r of the disk's outer and inner edge, (1, 0) without one; the same if nothing behind it matters, else (1, 0).
     disk_u: vec2<f32>,
     opaque_u: vec2<f32>,
@@ -46,7 +51,7 @@ struct Frame {
     // BHR_EFFECT_* bits that colour light, BHR_VIEW_*.
     effects: u32,
     view: u32,
-    // Seed of the turbulence, and its generation at the reference time.
+    // Seed of the turbulence, and the number of its first band (i32).
     pattern: vec2<u32>,
     // Columns and rows of the finest levels of the Milky Way and of the host's map.
     map_sizes: vec4<u32>,
@@ -56,6 +61,17 @@ struct Frame {
     medium_layer: u32,
     // 1/r between which crossings of the plane are kept: all emitters of the plane lie there. (1, 0) without any.
     plane_u: vec2<f32>,
+    // SoftEdges of src/emit/thin_disk.rs: outer, inner.
+    soft_edges: vec4<f32>,
+    // 1 if the disk's light is limb-darkened, 0 if it is isotropic; then ThinDisk::least_profile of
+    // src/emit/thin_disk.rs, (0, 0) without; 0.
+    surface: vec4<f32>,
+    // `least` of DiskEdges in src/scene/refine.rs: outer, inner; 0, 0.
+    shown_edges: vec4<f32>,
+    // Plunge of src/physics/plunge.rs: ISCO, E, a x, x; 0 where no matter plunges.
+    plunge: vec4<f32>,
+    // Bands of the turbulence: age, time from birth to birth (f32), number of the youngest generation; 0.
+    bands: array<vec4<u32>, MOST_BANDS>,
 }
 
 const RAIN_CLOCK: u32 = 2u;

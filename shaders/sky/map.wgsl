@@ -1,62 +1,88 @@
 // The light of sky maps in a pixel. Mirrors src/sky/filter.rs, where the reasons are, on the texels of src/sky/map.rs.
-// They are read one by one, as the weights of samplers have but 8 bits.
 
 #import constants
 #import records/record
-#import shared/blackbody
 #import shared/math
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
+#requires fn sampled(map: texture_2d<f32>, place: vec2<f32>, level: f32) -> vec3<f32>
 
-// A line of taps across a pixel's patch: in levels of texels of 1 rad; from tap to tap, sky axes; length in steps.
-struct Taps {
-    level: f32,
-    step: vec3<f32>,
-    spread: f32,
+// Whether maps have their levels as textures do, and a sampler filters them; else all levels lie in one
+// (src/gpu/frame/sky_maps.rs), and texels are read one by one.
+override MAP_SAMPLER: bool = false;
+
+// The line across a pixel's patch on which taps are to stand: its direction, sky axes; the patch's axes, rad.
+struct Patch {
+    axis: vec3<f32>,
+    major: f32,
+    minor: f32,
 }
 
-fn map_taps(footprint: Footprint) -> Taps {
+fn map_patch(footprint: Footprint) -> Patch {
     let dx = footprint.dx;
     let dy = footprint.dy;
-    let stretch2 = dot(dx, dx) + dot(dy, dy);
-    let cross = dx.x * dx.y + dy.x * dy.y;
-    let half_difference = 0.5 * (dx.x * dx.x + dy.x * dy.x - dx.y * dx.y - dy.y * dy.y);
-    let half_split = sqrt(half_difference * half_difference + cross * cross);
-    let major = max(sqrt(0.5 * stretch2 + half_split), TINY_AXIS);
-    let minor = max(abs(dx.x * dy.y - dx.y * dy.x) / major, major * (1.0 / sqrt(1.0 + MAX_SPREAD * MAX_SPREAD)));
-    let ratio = major / minor;
-    let along = select(vec2<f32>(cross, half_split - half_difference),
-        vec2<f32>(half_split + half_difference, cross), half_difference >= 0.0);
-    let axis = along * (minor / max(length(along), 1e-30));
-    if stretch2 < WHOLE_SKY {
-        return Taps(log2(minor), to_sky(footprint.p) * axis.x + to_sky(footprint.q) * axis.y,
-            sqrt(max(ratio * ratio - 1.0, 0.0)));
+    let xx = dot(dx, dx);
+    let yy = dot(dy, dy);
+    let xy = dot(dx, dy);
+    let half_difference = 0.5 * (xx - yy);
+    let half_split = sqrt(half_difference * half_difference + xy * xy);
+    let stretch = max(sqrt(0.5 * (xx + yy) + half_split), TINY_AXIS);
+    let squeezed = abs(dx.x * dy.y - dx.y * dy.x) / stretch;
+    let along = select(vec2<f32>(xy, half_split - half_difference), vec2<f32>(half_split + half_difference, xy),
+        half_difference >= 0.0);
+    let axis = (dx * along.x + dy * along.y) / max(length(along) * stretch, 1e-36);
+    let major = min(stretch, TAU);
+    let spread = clamp(major * (1.0 / WIDE_TAP), MAX_SPREAD, MOST_SPREAD);
+    let minor = max(squeezed, major / sqrt(1.0 + spread * spread));
+    if xx + yy < WHOLE_SKY {
+        return Patch(to_sky(footprint.p) * axis.x + to_sky(footprint.q) * axis.y, major, minor);
     }
-    return Taps(1e3, vec3<f32>(0.0), 0.0);
+    return Patch(vec3<f32>(0.0), TAU, 1e30);
 }
 
 // Linear Rec. 709 radiance of a map, whose finest level is of `size`, in a pixel at rest. `d`: sky axes.
-fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, taps: Taps) -> vec3<f32> {
-    let texel_angle = min(PI / f32(size.y), TAU / f32(size.x));
+fn map_light(map: texture_2d<f32>, size: vec2<u32>, d: vec3<f32>, patch_: Patch) -> vec3<f32> {
+    let texel = min(PI / f32(size.y), TAU / f32(size.x));
     let last = firstLeadingBit(size.x);
-    let level = clamp(taps.level - log2(texel_angle), 0.0, f32(last));
-    let finer = min(u32(level), last);
+    let width = max(patch_.minor, texel);
+    let line = sqrt(max(patch_.major * patch_.major - width * width, 0.0));
+    let level = min(level_of(width / texel), f32(last));
+    let finer = u32(level);
     let share = level - f32(finer);
     // Each tap reads two levels, or one where the other has no share (of magnified maps): a turn for each, so that
-    // lavapipe, which runs whatever an `if` leaves out, does not read it for nothing.
-    let double = select(0u, 1u, share > 0.0);
-    let reach = 0.5 * taps.spread + 0.5;
+    // lavapipe, which runs whatever an `if` leaves out, does not read it for nothing. A sampler reads both itself; its
+    // weights have 8 bits, which is less than a step of 255 between any two texels.
+    let double = select(0u, 1u, share > 0.0 && !MAP_SAMPLER);
+    let reach = 0.5 * line / width + 0.5;
     let most = ceil(reach) - 1.0;
     let count = (1u + 2u * u32(most)) << double;
+    let rho = length(d.xy);
+    let is_straight = line * line * (abs(d.z) + line) < STRAIGHT * width * rho;
+    let begin = map_place(d);
+    let step = straight_step(d, patch_.axis) * width;
     var sum = vec3<f32>(0.0);
     var total = 0.0;
     for (var k = 0u; k < count; k += 1u) {
         let coarser = k & double;
         let i = f32(k >> double) - most;
         let weight = clamp(reach - abs(i), 0.0, 1.0) * select(1.0 - share, share, coarser == 1u);
-        sum += weight * map_bilinear(map, size, map_place(d + taps.step * i), min(finer + coarser, last));
+        var place = begin + step * i;
+        if !is_straight && most > 0.0 {
+            let turn = sincos(i * width);
+            place = map_place(d * turn.y + patch_.axis * turn.x);
+        }
+        if MAP_SAMPLER {
+            sum += weight * sampled(map, place, level);
+        } else {
+            sum += weight * map_bilinear(map, size, place, min(finer + coarser, last));
+        }
         total += weight;
     }
     return sum / total;
+}
+
+// The level of texels that are `ratio` times as wide as the finest: exponent and mantissa.
+fn level_of(ratio: f32) -> f32 {
+    return f32(bitcast<u32>(max(ratio, 1.0)) - 0x3f800000u) / 8388608.0;
 }
 
 // (u, v) of a map, from a vector of any length but 0.
@@ -67,16 +93,24 @@ fn map_place(towards: vec3<f32>) -> vec2<f32> {
     );
 }
 
+// The change of the place of a direction off the poles, for a step of 1 rad along a unit vector at right angles to it.
+fn straight_step(d: vec3<f32>, axis: vec3<f32>) -> vec2<f32> {
+    let rho2 = max(d.x * d.x + d.y * d.y, 1e-30);
+    return vec2<f32>((axis.x * d.y - axis.y * d.x) / (TAU * rho2), axis.z / (-PI * sqrt(rho2)));
+}
+
 // Where a level begins in the texture (level_place of src/gpu/frame/sky_maps.rs).
 fn level_place(finest: vec2<u32>, level: u32) -> vec2<i32> {
     let below = vec2<u32>(finest.x - (finest.x >> (max(level, 1u) - 1u)), finest.y);
     return vec2<i32>(select(below, vec2<u32>(0u), level == 0u));
 }
 
+// The finest level lies at the texture's begin with a sampler, too.
 fn map_bilinear(map: texture_2d<f32>, finest: vec2<u32>, uv: vec2<f32>, level: u32) -> vec3<f32> {
     let size = vec2<i32>(max(finest >> vec2<u32>(level), vec2<u32>(1u)));
     let begin = level_place(finest, level);
-    let place = uv * vec2<f32>(size) - 0.5;
+    // Straight lines of taps go at most a small part of a turn beyond the seam.
+    let place = vec2<f32>(uv.x - floor(uv.x), uv.y) * vec2<f32>(size) - 0.5;
     let corner = floor(place);
     let share = place - corner;
     let left = select(i32(corner.x), size.x - 1, corner.x < 0.0);
@@ -90,22 +124,4 @@ fn map_bilinear(map: texture_2d<f32>, finest: vec2<u32>, uv: vec2<f32>, level: u
     let above = a + (b - a) * share.x;
     let below = c + (d - c) * share.x;
     return above + (below - above) * share.y;
-}
-
-fn shifted_map_light(rgb: vec3<f32>, g_colour: f32, g_beaming: f32) -> vec3<f32> {
-    // Most of the Milky Way is black.
-    if all(rgb == vec3<f32>(0.0)) {
-        return vec3<f32>(0.0);
-    }
-    let temperature = colour_temperature(log(max(rgb.z, TINY_LIGHT) / max(rgb.x, TINY_LIGHT)));
-    let rest = blackbody_lookup(BLACKBODY_OFFSET, temperature);
-    let log_reference = rest.w + log(temperature);
-    let seen = shifted_blackbody(temperature, log_reference, g_colour, g_beaming);
-    return min(rgb * (seen / into_gamut(rest.xyz)), vec3<f32>(MAX_MAP_LIGHT));
-}
-
-fn colour_temperature(ln_ratio: f32) -> f32 {
-    let x = clamp(ln_ratio, COOLEST_RATIO, HOTTEST_RATIO);
-    return 1000.0 / (0.1529064 + x * (-0.1022545
-        + x * (-0.005097082 + x * (-0.005358591 + x * (-0.003424309 + x * -0.0005964595)))));
 }

@@ -4,6 +4,7 @@
 #import constants
 #import records/record
 #import shared/blackbody
+#import shared/math
 #requires fn light_table(i: u32) -> vec4<f32>
 #requires fn star_cell(i: u32) -> u32
 #requires fn to_sky(d: vec3<f32>) -> vec3<f32>
@@ -51,11 +52,13 @@ fn cell_of(direction: vec3<f32>, level: u32) -> u32 {
     return before + (face * side + star_column(plane.y, side)) * side + star_column(plane.x, side);
 }
 
-// Quadratic B-spline, support [-1.5, 1.5].
-fn star_footprint(t: f32) -> f32 {
-    let a = abs(t);
-    let skirt = max(1.5 - a, 0.0);
-    return select(0.5 * skirt * skirt, 0.75 - a * a, a < 0.5);
+// The share of a star's light that a pixel at `p` from it gets: a round bump over what it sums to.
+fn star_footprint(p: vec2<f32>) -> f32 {
+    let bump = max(1.0 - dot(p, p) / (STAR_RADIUS * STAR_RADIUS), 0.0);
+    // It is to be known to some 1e-4, so that the driver's cos will do.
+    let c = cos(TAU * p);
+    let sum = 1.0 + STAR_RIPPLE.x * (c.x + c.y) + STAR_RIPPLE.y * c.x * c.y + 2.0 * STAR_RIPPLE.z * (dot(c, c) - 1.0);
+    return STAR_PEAK * bump * bump * bump / sum;
 }
 
 // The mean sky's brightness in a direction, relative to its mean over the sky (StarIndex::mean_sky_density).
@@ -71,7 +74,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
     let dx = footprint.dx;
     let dy = footprint.dy;
     let stretch2 = dot(dx, dx) + dot(dy, dy);
-    let radius = 1.5 * sqrt(stretch2 + 2.0 * abs(dot(dx, dy)));
+    let radius = STAR_RADIUS * sqrt(stretch2 + 2.0 * abs(dot(dx, dy)));
     let found = star_level_for(radius);
     let indexed = found < STAR_LEVELS;
     // Beyond the coarsest level nothing is left of its stars.
@@ -107,7 +110,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
             i += 1u;
             let e = star.xyz - d;
             p = vec2<f32>(dot(e, across), dot(e, down));
-            hit = max(abs(p.x), abs(p.y)) < 1.5 * area;
+            hit = max(abs(p.x), abs(p.y)) < STAR_RADIUS * area;
             if hit {
                 break;
             }
@@ -123,7 +126,7 @@ fn star_light(seen: vec3<f32>, footprint: Footprint, g_colour: f32, g_beaming: f
                 table = BLACKBODY_OFFSET;
                 temperature = kind.y;
                 log_reference = kind.z;
-                let spread = star_footprint(p.x / area) * star_footprint(p.y / area) * magnification;
+                let spread = star_footprint(p / area) * magnification;
                 share = select(fade, 1.0, kind.x >= mean.z) * spread * kind.x;
             } else {
                 means &= means - 1u;

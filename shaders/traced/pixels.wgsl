@@ -44,7 +44,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         if AZIMUTH {
             azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
         }
-        let g = frequency_ratio * redshift_of(c, crossing.u);
+        let g = frequency_ratio * redshift_at(c, crossing.u, crossing.du);
         if PARTS {
             keep_medium();
         }
@@ -79,7 +79,8 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     plane_u = 0.0;
     medium = NO_MEDIUM;
     var sky = vec4<f32>(0.0);
-    var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local);
+    var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local,
+        polar_momentum(begin, frequency_ratio) * frame.place.x);
     if begin.has_light {
         let settings = Settings(frame.size.z, frame.size.w, frame.max_steps, frame.max_crossings,
             frame.capture_u, frame.opaque_u);

@@ -2,6 +2,7 @@
 
 #import constants
 #import records/record
+#import shared/frame
 #import traced/footprints
 #import traced/layout
 
@@ -14,15 +15,20 @@ fn ray_record(id: vec2<u32>) -> Record {
     let m = unpack_meta(textureLoad(record_meta, traced_pixel, 0));
     traced_orders = m.orders;
     traced_layer = 0u;
-    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.energy, 0.0, vec3<f32>(0.0),
-        UNKNOWN_FOOTPRINT);
+    var record = Record(m.fate, m.steps, m.energy, m.angular_momentum, m.polar_momentum / frame.place.x, m.energy, 0.0,
+        vec3<f32>(0.0), UNKNOWN_FOOTPRINT);
     if m.fate == FATE_ESCAPED {
         let sky = textureLoad(record_sky, traced_pixel, 0);
         record.sky = sky.xyz;
         record.sky_redshift = sky.w;
-        record.footprint = sky_footprint(sky.xyz, sky.xyz);
     }
     return record;
+}
+
+fn with_sky(record: Record) -> Record {
+    var whole = record;
+    whole.footprint = sky_footprint(record.sky, record.sky);
+    return whole;
 }
 
 fn next_crossing() -> Crossing {
@@ -54,15 +60,15 @@ fn more_crossings() -> bool {
 
 // A pixel whose neighbour's ray meets other things, or the same inside the disk's edge and not outside: one that
 // misses a thin ring on one side of it and one that does on the other differ, too.
-fn edges_of_pixel(through: f32) -> u32 {
+fn edges_of_pixel(through: f32, turn: f32) -> u32 {
     let here = textureLoad(record_meta, traced_pixel, 0).x;
     let across = vec2<u32>(1u, 0u);
     let down = vec2<u32>(0u, 1u);
     let kinds = vec4<u32>(edge_between(here, traced_pixel - across), edge_between(here, traced_pixel + across),
         edge_between(here, traced_pixel - down), edge_between(here, traced_pixel + down));
     let beside = select(vec2<u32>(EDGE_NONE), kinds.xy, traced_joined);
-    return max(max(max(beside.x, beside.y), max(kinds.z, kinds.w)),
-        select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
+    let inside = max(turning_edge(turn), select(EDGE_NONE, EDGE_DISK, is_steep(here >> 16u)));
+    return max(inside, max(max(beside.x, beside.y), max(kinds.z, kinds.w)));
 }
 
 // Whether u of the first of a pixel's crossings, whose orders are the bits, changes steeply to the next pixels.

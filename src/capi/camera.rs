@@ -51,14 +51,14 @@ pub struct BhrCamera {
     pub struct_size: u32,
     /// BHR_PROJECTION_*. Default PERSPECTIVE.
     pub projection: BhrProjection,
-    /// Default (0, -30, 5). Not (0, 0, 0).
+    /// Default (0, 26, 2.5). Not (0, 0, 0).
     pub position: [f64; 3],
     /// Any non-zero length. Default: towards the hole.
     pub forward: [f64; 3],
     /// Any non-zero length, not parallel to forward. Default +z.
     pub up: [f64; 3],
     /// Radians: full vertical angle, (0, pi), for PERSPECTIVE; across the circle, (0, 2 pi], for FISHEYE. Default
-    /// pi / 3.
+    /// pi / 4.
     pub fov_y: f64,
     /// BHR_MOTION_*. Default STATIC.
     pub motion: BhrMotion,

@@ -156,14 +156,15 @@ pub unsafe extern "C" fn bhr_context_options_init(options: *mut BhrContextOption
     anywhere("bhr_context_options_init", || unsafe { versioned::init(options, "options", struct_size) })
 }
 
-/// Makes a context with the default scene: a hole of mass 1 without spin, a disk, stars, and a camera at (0, -30, 5)
-/// that looks at the hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With BHR_BACKEND_AUTO it
-/// succeeds on every machine: an adapter that cannot be opened is passed over, without a GPU or a driver the CPU
-/// tracer serves, and the log says why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks.
-/// Errors: INCOMPATIBLE_ABI; INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another
-/// platform, for any window in a library that was built without the cargo feature window, and for BHR_BACKEND_GL in
-/// one that was built without the feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot
-/// be opened, or cannot present to compatible_window.
+/// Makes a context with the default scene, that of BHR_PRESET_CINEMATIC: a hole of mass 1 without spin, a turbulent
+/// golden disk with soft edges, glare, the stars and the Milky Way, and a camera at (0, 26, 2.5) that looks at the
+/// hole. abi_version is BHR_ABI_VERSION; options NULL means all defaults. With BHR_BACKEND_AUTO it succeeds on every
+/// machine: an adapter that cannot be opened is passed over, without a GPU or a driver the CPU tracer serves, and the
+/// log says why. End *out_context with bhr_context_destroy. Any thread, not inside callbacks. Errors: INCOMPATIBLE_ABI;
+/// INVALID_ARGUMENT for a bad option; UNSUPPORTED for a compatible_window of another platform, for any window in a
+/// library that was built without the cargo feature window, and for BHR_BACKEND_GL in one that was built without the
+/// feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
+/// compatible_window.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_create(
     abi_version: u32,

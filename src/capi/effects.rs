@@ -2,7 +2,7 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
-use super::pointer::check_finite;
+use super::pointer::{Out, check_finite};
 use super::status::BhrStatus;
 use crate::scene::Effects;
 
@@ -35,6 +35,20 @@ pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32)
     unsafe {
         on_context("bhr_set_effects", context, |state| {
             state.renderer.scene.effects = Effects(effects);
+            Ok(())
+        })
+    }
+}
+
+/// The effects as they are set. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects: *mut u32) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        let effects = Out::cleared(out_effects);
+        on_context("bhr_get_effects", context, |state| {
+            effects.required("out_effects")?;
+            effects.set(state.renderer.scene.effects.0);
             Ok(())
         })
     }

@@ -22,7 +22,8 @@ pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 /// 0.2.0.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
-/// A pixel's bytes in memory order. A radiance of 1 is the luminance of the default disk's hottest ring at rest.
+/// A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring
+/// that BhrDisk.reference names, if the disk's brightness is 1.
 pub type BhrFormat = i32;
 /// 4 bytes: red, green, blue with the sRGB curve, alpha.
 pub const BHR_FORMAT_RGBA8_SRGB: BhrFormat = 1;

@@ -34,6 +34,7 @@ pub mod hole;
 pub mod image;
 pub mod job;
 pub mod log;
+pub mod preset;
 pub mod quality;
 pub mod rays;
 pub mod region;

@@ -33,8 +33,8 @@ use crate::scene::{LensTables, Method, Quality};
 /// | max_disk_order, at most      | 15                           | 15; beyond 1e4 M 11                          |
 /// | ... of a turbulent disk      | 15                           | 3; beyond 1e4 M 2                            |
 ///
-/// Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays and
-/// BHR_VIEW_METRIC.
+/// Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays,
+/// BHR_VIEW_METRIC and disks with BHR_DISK_PLUNGES.
 pub type BhrMethod = i32;
 /// Looked up in tables where that pays, else integrated. The fastest.
 pub const BHR_METHOD_AUTO: BhrMethod = 0;
@@ -122,6 +122,7 @@ impl TryFrom<BhrQuality> for Quality {
             anticipates: None,
             refines: true,
             keep_light: None,
+            map_sampler: None,
         };
         quality.check()?;
         Ok(quality)

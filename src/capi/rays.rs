@@ -42,7 +42,8 @@ pub struct BhrCrossing {
     pub radius: f64,
     /// Boyer-Lindquist ph in the chart, (-pi, pi].
     pub azimuth: f64,
-    /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
+    /// g = nu(camera) / nu(emitter on the disk's circular orbit); inside the ISCO that of falling matter with
+    /// BHR_DISK_PLUNGES, else NaN.
     pub redshift: f64,
     /// Coordinate time since the photon left, scene lengths; NaN from inside the horizon.
     pub delay: f64,
@@ -297,8 +298,8 @@ unsafe fn trace_all(renderer: &mut Renderer, rays: Array, hits: Array, count: us
 }
 
 /// Traces count rays on the context's backend. The scene's disk does not matter: crossings are those of the bare
-/// equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter turns as the
-/// disk's flag says, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
+/// equatorial plane, down to r+ (1 + 1e-5), and the first BHR_MAX_CROSSINGS are listed. Their emitter moves as the
+/// disk's flags say, prograde without a disk; a start in the plane is no crossing. One bad ray is BHR_FATE_INVALID, not
 /// an error of the batch. ray_size = sizeof(BhrRay) and hit_size = sizeof(BhrHit) as the caller was compiled, at least
 /// 56 and 184, the sizes of the first version; both arrays are packed. A ray that is longer than this library's must be
 /// 0 beyond it; a longer hit is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or

@@ -73,7 +73,7 @@ pub unsafe extern "C" fn bhr_set_progress(
 /// Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for a
 /// bad image, a format that does not go with the view, or an image that reaches out of the region's frame;
 /// INVALID_STATE where the camera's motion cannot be, for a CUBE whose frame is not 6 times as wide as high, or for
-/// bloom with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
+/// bloom or a beam with a region set; UNSUPPORTED inside a spinning hole's horizon; CANCELLED by the progress callback;
 /// DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the
 /// message says so, and what is not yet rendered is untouched.
 #[unsafe(no_mangle)]

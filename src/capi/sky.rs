@@ -19,8 +19,8 @@ pub const BHR_SKY_STARS: u32 = 1u32;
 /// STARS it adds the stars that are fainter than the catalogue's (V > 8). It is made when it is first drawn, within
 /// about a second, and takes 110 MB of device memory.
 pub const BHR_SKY_PROCEDURAL: u32 = 2u32;
-/// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.3 s). It is true to
-/// about a degree, and next to the stars eight times as bright as the eye sees it.
+/// BhrSky.flags: the glow of the Milky Way, made from embedded outlines at first use (0.1 to 0.5 s). It is true to
+/// about a degree, finer clouds and dust are made up, and next to the stars eight times as bright as the eye sees it.
 pub const BHR_SKY_MILKY_WAY: u32 = 4u32;
 /// BhrSky.flags: the map that bhr_set_sky_map was given; nothing without one.
 pub const BHR_SKY_MAP: u32 = 8u32;

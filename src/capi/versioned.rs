@@ -19,8 +19,14 @@ pub(super) unsafe trait Versioned: Copy {
     /// Its size in the first release that had it, then its size in each later release in which it had grown; the last
     /// one is today's. Numbers, not `size_of`: hosts compiled back then go on saying them. Append only.
     const SIZES: &'static [usize];
-    /// The values that `*_init` fills in, and that fields have which the caller's version lacks.
+    /// The values that `*_init` fills in.
     fn defaults() -> Self;
+    /// The same for a host whose struct has `size` bytes: what the header of its release documented, and, in fields
+    /// that the host lacks, what the library did when it lacked them. A release that gives a field another default, or
+    /// adds one whose default does something new, says here what those before it had.
+    fn defaults_of(_size: usize) -> Self {
+        Self::defaults()
+    }
 }
 
 /// Bytes of a pointer in a struct: the part of [`Versioned::SIZES`] that is not the same on every platform.
@@ -72,15 +78,15 @@ pub(super) unsafe fn caller_size<T: Versioned>(pointer: *const T, name: &str) ->
     check_size::<T>(size as usize, name)
 }
 
-/// Reads the host's struct: fields that a shorter one lacks have their defaults, bytes of a longer one beyond ours
-/// must be zero.
+/// Reads the host's struct: fields that a shorter one lacks have what `defaults_of` says, bytes of a longer one beyond
+/// ours must be zero.
 ///
 /// # Safety
 /// `pointer` is NULL or points to `struct_size` readable bytes.
 pub(super) unsafe fn read<T: Versioned>(pointer: *const T, name: &str) -> Result<T> {
     // SAFETY: this function's contract.
     let size = unsafe { caller_size(pointer, name) }?;
-    let mut value = T::defaults();
+    let mut value = T::defaults_of(size);
     let known = size.min(size_of::<T>());
     // SAFETY: `known` bytes are readable at `pointer` and writable at `value`; any bytes are a `T`.
     unsafe { std::ptr::copy_nonoverlapping(pointer.cast::<u8>(), (&raw mut value).cast::<u8>(), known) };
@@ -134,6 +140,11 @@ impl<T: Versioned> OutStruct<T> {
         unsafe { fill(self.pointer, size, value) };
         Ok(())
     }
+
+    /// As `set`, with the values of `*_init`.
+    pub(super) fn set_defaults(&self) -> Result<()> {
+        self.set(&T::defaults_of(self.size.clone()?))
+    }
 }
 
 /// `*_init`: clears `size` bytes and fills in the defaults.
@@ -146,7 +157,7 @@ pub(super) unsafe fn init<T: Versioned>(pointer: *mut T, name: &str, size: usize
     }
     let size = check_size::<T>(size, name)?;
     // SAFETY: this function's contract.
-    unsafe { fill(pointer, size, &T::defaults()) };
+    unsafe { fill(pointer, size, &T::defaults_of(size)) };
     Ok(())
 }
 
@@ -167,7 +178,7 @@ mod tests {
     use super::*;
     use crate::error::ErrorKind;
 
-    /// A struct that had 12 bytes and has grown to 16.
+    /// A struct that had 12 bytes, with 6 and 8 for defaults, and has grown to 16.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, PartialEq)]
     struct Grown {
@@ -183,6 +194,9 @@ mod tests {
         fn defaults() -> Self {
             Self { struct_size: 0, old: [7, 8], new: 9 }
         }
+        fn defaults_of(size: usize) -> Self {
+            if size < 16 { Self { struct_size: 0, old: [6, 8], new: 5 } } else { Self::defaults() }
+        }
     }
 
     fn read_words(words: &[u32]) -> Result<Grown> {
@@ -191,8 +205,16 @@ mod tests {
     }
 
     #[test]
-    fn an_old_caller_gets_the_default_of_the_new_field() {
-        assert_eq!(read_words(&[12, 1, 2, 77]).unwrap(), Grown { struct_size: 12, old: [1, 2], new: 9 });
+    fn an_old_struct_means_what_it_meant() {
+        assert_eq!(read_words(&[12, 1, 2, 77]).unwrap(), Grown { struct_size: 12, old: [1, 2], new: 5 });
+        let mut words = [12, 9, 9, 9];
+        // SAFETY: 12 bytes are there.
+        unsafe { init(words.as_mut_ptr().cast::<Grown>(), "grown", 12) }.unwrap();
+        assert_eq!(words, [12, 6, 8, 9]);
+        // SAFETY: as above.
+        let out = unsafe { OutStruct::cleared(words.as_mut_ptr().cast::<Grown>(), "grown") };
+        out.set_defaults().unwrap();
+        assert_eq!(words, [12, 6, 8, 9]);
     }
 
     #[test]
@@ -253,6 +275,9 @@ mod tests {
         fn defaults() -> Self {
             Self { known: T::defaults(), added: ADDED }
         }
+        fn defaults_of(size: usize) -> Self {
+            Self { known: T::defaults_of(size), added: ADDED }
+        }
     }
 
     fn bytes_of<T: Versioned>(value: &T) -> &[u8] {
@@ -264,8 +289,8 @@ mod tests {
     fn hosts_of_the_first_release_go_on<T: Versioned>() {
         let (first, full) = (T::SIZES[0], size_of::<Later<T>>());
         assert!(full > first && align_of::<T>() <= align_of::<u64>());
-        let defaults = Later::<T>::defaults();
         for size in first..=full {
+            let defaults = Later::<T>::defaults_of(size);
             // The 8 bytes behind the host's struct belong to somebody else.
             let mut words = vec![u64::from_ne_bytes([0xa5; 8]); (full + 8).div_ceil(8)];
             let pointer = words.as_mut_ptr().cast::<Later<T>>();

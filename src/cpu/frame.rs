@@ -57,7 +57,7 @@ impl CpuTracer {
         self.with_frame(scene, request, |pool, frame| {
             let tiles = tiles(request, frame.expected_steps(scene))?;
             let mut delivery = Delivery::new(pool, frame, sink, progress);
-            match Bloom::new(scene, request.format, [request.width, request.height])? {
+            match Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())? {
                 None => delivery.plain(&tiles)?,
                 Some(bloom) => delivery.with_glare(&tiles, &bloom, scene.quality.keep_light)?,
             }
@@ -138,7 +138,8 @@ impl<'a> Frame<'a> {
         Ok(Self {
             lens,
             source: source(Recorder::new(scene, lens)),
-            refiner: (light && scene.quality.refines)
+            refiner: scene
+                .refines(request.transparent)
                 .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens)))),
             shader: Shader::new(scene, lens, stars, request.transparent)?,
             film: FilmParams::new(&scene.film, scene.view, request.format, request.transparent),
@@ -164,7 +165,7 @@ impl<'a> Frame<'a> {
         let weight = 1.0 / f64::from(self.samples);
         self.with_records(tile, origin, sum, |record, x, y, pixel| {
             let refiner = self.refiner.as_ref().filter(|_| self.lens.mapping.has_look_direction(x, y));
-            let refined = refiner.and_then(|r| r.light(&self.shader, &self.source, record, [x, y]));
+            let refined = refiner.and_then(|r| r.light(&self.shader, record, [x, y]));
             let value = refined.unwrap_or_else(|| self.shader.shade_record(record, x, y));
             (0..4).for_each(|c| pixel[c] += weight * value[c]);
         })

@@ -4,7 +4,7 @@
 
 use super::record::{Neighbours, Recorder};
 use crate::allocate::{filled, with_room};
-use crate::emit::{Crossing, EmissionPoint};
+use crate::emit::{Crossing, EmissionPoint, Needs};
 use crate::error::Result;
 use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
 use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
@@ -12,8 +12,8 @@ use crate::physics::lens::{LENS, OrbitPlane, PlaneImage, SchwarzschildLens};
 use crate::physics::observer::{LocalFrame, Momenta};
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
-use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT};
-use crate::scene::refine::{SAME_CROSSING, looked_up_edge, near_disk_edge, reached_u};
+use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT, polar_momentum};
+use crate::scene::refine::{DiskEdges, SAME_CROSSING, looked_up_edge, near_disk_edge, reached_u, turn_of};
 use crate::scene::{Lensing, Scene};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -136,8 +136,9 @@ pub struct LensLookup<'a> {
     recorder: Recorder<'a>,
     tables: Tables<'a>,
     momenta: Momenta,
-    /// Azimuths and delays are wanted.
-    pattern: bool,
+    /// Without `delays` these are 0, whatever the tables hold.
+    needs: Needs,
+    edges: Option<DiskEdges>,
 }
 
 /// A pixel's look direction in the local frame, its changes to the next pixel right and down, and nu(camera) /
@@ -151,7 +152,8 @@ struct LookDirection {
 impl<'a> LensLookup<'a> {
     pub fn new(recorder: Recorder<'a>, tables: Tables<'a>) -> Self {
         let momenta = recorder.lens.observer.frame.momenta();
-        Self { pattern: recorder.emitters.needs().places, recorder, tables, momenta }
+        let edges = recorder.disk_u.map(|u| DiskEdges::new(u, recorder.emitters.fading_u()));
+        Self { needs: recorder.emitters.needs(), edges, recorder, tables, momenta }
     }
 
     /// Makes `record` that of position (x, y) of the full frame, with footprints.
@@ -175,6 +177,9 @@ impl<'a> LensLookup<'a> {
         }
         record.energy = energy;
         record.angular_momentum = self.momenta.angular_momentum(seen.n);
+        if let (true, Some((c, _))) = (self.needs.angles, self.recorder.lens.observer.frame.start(seen.n)) {
+            record.polar_momentum = polar_momentum(&c, seen.ratio);
+        }
         match self.tables {
             Tables::Schwarzschild(lens) => self.look_up_schwarzschild(lens, &seen, record),
             Tables::Kerr(lens) => match lens.look_up(seen.n) {
@@ -208,15 +213,17 @@ impl<'a> LensLookup<'a> {
         let on_edge = orders
             .filter_map(|order| found.crossing(order))
             .any(|c| self.is_near_disk_edge(c.image.u, steps.each_ref().map(|step| c.change(step).u)));
-        self.note_edge(&mut record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
-        if !self.pattern {
+        self.note_edge(&mut record, on_edge, found.curve_distance(&steps));
+        if !self.needs.places {
             return (record, true);
         }
         let mut complete = true;
         for crossing in &mut record.crossings {
             let near = |other: &kerr::Crossing| (other.image.u / crossing.u - 1.0).abs() < SAME_CROSSING;
             match found.crossing(crossing.order as usize).filter(near) {
-                Some(alike) => crossing.footprint = steps.map(|step| change_of_place(crossing.u, &alike.change(&step))),
+                Some(alike) => {
+                    crossing.footprint = steps.map(|step| self.change_of_place(crossing.u, &alike.change(&step)))
+                }
                 None => complete = false,
             }
         }
@@ -233,29 +240,30 @@ impl<'a> LensLookup<'a> {
             if !self.recorder.plane_u.is_some_and(|[outer, inner]| u >= outer && u <= inner) {
                 continue;
             }
-            let place = self.pattern.then(|| {
-                let changes = steps.map(|step| change_of_place(u, &crossing.change(&step)));
-                (place_of(&crossing.image), changes)
+            let place = self.needs.places.then(|| {
+                let changes = steps.map(|step| self.change_of_place(u, &crossing.change(&step)));
+                (self.place_of(&crossing.image), changes)
             });
             if self.cross(record, seen.ratio, u, crossing.order, place) {
                 break;
             }
         }
-        self.note_edge(record, on_edge, found.place.branch == kerr::Branch::Outer, found.curve_distance(&steps));
         if let (Some(sky), false) = (found.sky(), record.fate == Fate::Hidden) {
             escape(record, seen.ratio, sky.direction, steps.map(|step| sky.change(&step)));
         }
+        self.note_edge(record, on_edge, found.curve_distance(&steps));
     }
 
     /// `change`: of u to the next pixel right and down.
     fn is_near_disk_edge(&self, u: f64, change: [f64; 2]) -> bool {
-        self.recorder.disk_u.is_some_and(|disk_u| near_disk_edge(u, change, disk_u))
+        self.edges.as_ref().is_some_and(|edges| near_disk_edge(u, change, edges))
     }
 
-    /// `curve`: distance to the critical curve, pixels; `outside`: the ray escapes.
-    fn note_edge(&self, record: &mut Record, on_edge: bool, outside: bool, curve: f64) {
+    /// `curve`: distance to the critical curve, pixels. The record's fate and footprint are known.
+    fn note_edge(&self, record: &mut Record, on_edge: bool, curve: f64) {
+        let turn = if record.fate == Fate::Escaped { turn_of(record.footprint) } else { 0.0 };
         let seen = if record.fate == Fate::Hidden { f64::INFINITY } else { curve };
-        record.edge = looked_up_edge(on_edge, outside && self.recorder.plane_u.is_some(), seen);
+        record.edge = looked_up_edge(on_edge, turn, seen);
     }
 
     fn look_direction(&self, x: f64, y: f64) -> LookDirection {
@@ -280,10 +288,10 @@ impl<'a> LensLookup<'a> {
                 if !(crossing.u >= outer && crossing.u <= inner) {
                     continue;
                 }
-                let place = self.pattern.then(|| {
+                let place = self.needs.places.then(|| {
                     let image = plane.image(&lookup, &crossing);
                     let changes = turns.map(|turn| plane.image_change(&lookup, &crossing, &turn));
-                    (place_of(&image), changes.map(|change| change_of_place(crossing.u, &change)))
+                    (self.place_of(&image), changes.map(|change| self.change_of_place(crossing.u, &change)))
                 });
                 if self.cross(record, seen.ratio, crossing.u, order, place) {
                     break;
@@ -291,11 +299,11 @@ impl<'a> LensLookup<'a> {
             }
         }
         let slope = lookup.curve_slope() * turns[0].dpsi.hypot(turns[1].dpsi);
-        self.note_edge(record, on_edge, lookup.escaped, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
         if lookup.escaped && record.fate != Fate::Hidden {
             let sky = plane.sky(&lookup);
             escape(record, seen.ratio, sky.direction, turns.map(|turn| sky.change(&turn)));
         }
+        self.note_edge(record, on_edge, 1.0 / slope.abs().max(f64::MIN_POSITIVE));
     }
 
     /// Adds a crossing where emitters shine, with its place and footprint if known; true if it hides all behind it.
@@ -308,7 +316,8 @@ impl<'a> LensLookup<'a> {
         place: Option<(EmissionPoint, [EmissionPoint; 2])>,
     ) -> bool {
         let spin = self.recorder.lens.observer.frame.a;
-        let g = redshift(spin, u, self.recorder.retrograde, record.energy, record.angular_momentum, 1.0);
+        // Scenes in which matter plunges use no tables.
+        let g = redshift(spin, u, self.recorder.matter.retrograde, record.energy, record.angular_momentum, 1.0);
         let nowhere = EmissionPoint { ln_r: 0.0, azimuth: 0.0, delay: 0.0 };
         let (place, footprint) = place.unwrap_or((nowhere, [UNKNOWN_EMISSION_POINT; 2]));
         // Tables hold no more crossings than a record does.
@@ -320,6 +329,18 @@ impl<'a> LensLookup<'a> {
         }
         hidden
     }
+
+    fn place_of(&self, image: &PlaneImage) -> EmissionPoint {
+        EmissionPoint { ln_r: -image.u.ln(), azimuth: image.azimuth, delay: self.delay(image) }
+    }
+
+    fn change_of_place(&self, u: f64, change: &PlaneImage) -> EmissionPoint {
+        EmissionPoint { ln_r: -change.u / u, azimuth: change.azimuth, delay: self.delay(change) }
+    }
+
+    fn delay(&self, image: &PlaneImage) -> f64 {
+        if self.needs.delays { image.delay } else { 0.0 }
+    }
 }
 
 fn escape(record: &mut Record, ratio: f64, direction: DVec3, changes: [DVec3; 2]) {
@@ -327,14 +348,6 @@ fn escape(record: &mut Record, ratio: f64, direction: DVec3, changes: [DVec3; 2]
     record.sky_redshift = ratio / record.energy;
     record.direction = direction;
     record.footprint = changes;
-}
-
-fn place_of(image: &PlaneImage) -> EmissionPoint {
-    EmissionPoint { ln_r: -image.u.ln(), azimuth: image.azimuth, delay: image.delay }
-}
-
-fn change_of_place(u: f64, change: &PlaneImage) -> EmissionPoint {
-    EmissionPoint { ln_r: -change.u / u, azimuth: change.azimuth, delay: change.delay }
 }
 
 #[cfg(test)]
@@ -362,7 +375,7 @@ mod tests {
         let theta = f64::to_radians(inclination);
         let height = if inclination == 90.0 { 0.0 } else { theta.cos() };
         let position = DVec3::new(theta.sin() * 0.6, theta.sin() * 0.8, height) * r;
-        let mut scene = Scene::default();
+        let mut scene = Scene::plain();
         scene.hole.spin = spin;
         scene.camera = Camera {
             position,
@@ -373,7 +386,7 @@ mod tests {
             fov_y: fov.to_radians(),
             motion,
             velocity: DVec3::new(0.3, -0.4, 0.2),
-            ..Camera::default()
+            ..Camera::plain()
         };
         let disk = scene.disk.as_mut().unwrap();
         (disk.opacity, disk.turbulence) = (0.5, 1.0);

@@ -6,7 +6,7 @@ mod frame;
 mod lens;
 mod rays;
 mod record;
-mod refine;
+pub(crate) mod refine;
 pub(crate) mod shade;
 
 use crate::allocate::{self, THREAD_ROOM};

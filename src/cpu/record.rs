@@ -4,13 +4,13 @@ use crate::emit::along::MediaAlong;
 use crate::emit::medium::{Media, Medium};
 use crate::emit::{Crossing, EmissionPoint, Emitters};
 use crate::physics::geodesic::{Constants, wrap_angle};
-use crate::physics::orbit::redshift;
+use crate::physics::plunge::Matter;
 use crate::physics::trace::{Fate, RayTrace, Settings, trace_look, trace_look_visited};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::projection::Mapping;
-use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT};
-use crate::scene::refine::{Edge, is_steep};
+use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT, polar_momentum};
+use crate::scene::refine::{Edge, is_steep, turn_of, turning_edge};
 use glam::DVec3;
 
 /// Traces the records of a frame.
@@ -21,7 +21,7 @@ pub struct Recorder<'a> {
     /// 1/r between which crossings are kept, and of the disk's edges.
     pub(super) plane_u: Option<[f64; 2]>,
     pub(super) disk_u: Option<[f64; 2]>,
-    pub(super) retrograde: bool,
+    pub(super) matter: Matter,
 }
 
 /// The records one pixel to the left, right, above and below; none across a border between two faces of a cube.
@@ -41,7 +41,7 @@ impl<'a> Recorder<'a> {
             emitters,
             plane_u: emitters.plane_u(),
             disk_u: emitters.disk_u(),
-            retrograde: scene.retrograde(),
+            matter: scene.matter(),
         }
     }
 
@@ -86,6 +86,7 @@ impl<'a> Recorder<'a> {
     fn complete(&self, record: &mut Record, c: &Constants, traced: &RayTrace, frequency_ratio: f64) {
         record.energy = c.energy / c.nu_local;
         record.angular_momentum = c.angular_momentum / c.nu_local;
+        record.polar_momentum = polar_momentum(c, frequency_ratio);
         if record.fate == Fate::Escaped {
             record.sky_redshift = frequency_ratio / record.energy;
         }
@@ -99,7 +100,7 @@ impl<'a> Recorder<'a> {
         record.crossings.extend(traced.crossings.iter().filter(|x| within(x.u)).map(|x| Crossing {
             u: x.u,
             order: x.order,
-            g: frequency_ratio * redshift(c.a, x.u, self.retrograde, c.energy, c.angular_momentum, c.nu_local),
+            g: frequency_ratio * self.matter.redshift(c, x.u, x.du),
             place: EmissionPoint { ln_r: -x.u.ln(), azimuth: x.azimuth, delay: x.delay },
             footprint: [UNKNOWN_EMISSION_POINT; 2],
             share: self.emitters.covered(x.u),
@@ -128,6 +129,7 @@ impl<'a> Neighbours<'a> {
         let pairs = [(self.left, self.right), (self.above, self.below)];
         if here.fate == Fate::Escaped {
             record.footprint = pairs.map(|(before, after)| derivative_of_direction(here, before, after));
+            record.edge = record.edge.max(turning_edge(turn_of(record.footprint)));
         }
         for crossing in &mut record.crossings {
             crossing.footprint = pairs.map(|(before, after)| derivative_of_place(crossing, before, after));
@@ -154,8 +156,8 @@ fn is_steep_between(here: &Record, neighbours: [Option<&Record>; 2]) -> bool {
     is_steep(first.u, neighbours.map(|there| there.map_or(0.0, |there| (u(there) - first.u).abs())).iter().sum())
 }
 
-/// d(sky direction) / d(pixel): central where both neighbours escaped, else one-sided.
-fn derivative_of_direction(here: &Record, before: Option<&Record>, after: Option<&Record>) -> DVec3 {
+/// d(sky direction) from `here` to the next of a row: central where both neighbours escaped, else one-sided.
+pub(super) fn derivative_of_direction(here: &Record, before: Option<&Record>, after: Option<&Record>) -> DVec3 {
     let escaped = |there: Option<&Record>| there.filter(|r| r.fate == Fate::Escaped).map(|r| r.direction);
     match (escaped(before), escaped(after)) {
         (Some(before), Some(after)) => 0.5 * (after - before),
@@ -165,8 +167,8 @@ fn derivative_of_direction(here: &Record, before: Option<&Record>, after: Option
     }
 }
 
-/// d(place) / d(pixel) of a crossing, from the crossings of its order of two neighbours, as `derivative_of_direction`.
-fn derivative_of_place(here: &Crossing, before: Option<&Record>, after: Option<&Record>) -> EmissionPoint {
+/// d(place) of a crossing to the next of a row, from the crossings of its order there, as `derivative_of_direction`.
+pub(super) fn derivative_of_place(here: &Crossing, before: Option<&Record>, after: Option<&Record>) -> EmissionPoint {
     let same = |record: &Record| record.crossings.iter().find(|c| c.order == here.order).map(|c| c.place);
     let (before, after) = (before.and_then(same), after.and_then(same));
     if before.is_none() && after.is_none() {

@@ -1,14 +1,19 @@
-//! The second look at a pixel that edges run through: more rays, on edges of the disk its cover of each one's cell,
-//! and their mean light. Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
+//! The second look at a pixel that edges run through: more rays, each for a cell of its own, and their mean light.
+//! Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
 
 use super::frame::RecordSource;
+use super::record::{derivative_of_direction, derivative_of_place};
 use super::shade::Shader;
-use crate::physics::lens::critical::shadow_centre;
-use crate::physics::trace::CROSSINGS_KEPT;
+use crate::physics::lens::critical::CurveLevel;
+use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::scene::Scene;
 use crate::scene::observer::Lens;
-use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT};
-use crate::scene::refine::{CURVE_SAMPLES, Crossings, Edge, curve_place, quarter_place};
+use crate::scene::record::Record;
+use crate::scene::refine::{
+    CURVE_SAMPLES, Crossings, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH, SEARCH_STEPS, Strips,
+    beside_quarter, covered, quarter_place,
+};
+use arrayvec::ArrayVec;
 use glam::DVec3;
 
 /// Refines the pixels of a frame.
@@ -17,10 +22,16 @@ pub struct Refiner<'a> {
     plane: RecordSource<'a>,
     plane_u: Option<[f64; 2]>,
     disk_u: Option<[f64; 2]>,
-    opaque: bool,
+    /// Where the disk hides what is behind it.
+    opaque_u: Option<[f64; 2]>,
     lens: &'a Lens,
-    /// The shadow's centre.
-    shadow: DVec3,
+    level: CurveLevel,
+}
+
+/// The records of a pixel's samples, and the samples beside each.
+struct Samples<'a> {
+    records: &'a [Record],
+    beside: &'a dyn Fn(u32) -> [[Option<u32>; 2]; 2],
 }
 
 impl<'a> Refiner<'a> {
@@ -28,78 +39,115 @@ impl<'a> Refiner<'a> {
     pub fn new(scene: &Scene, lens: &'a Lens, plane: RecordSource<'a>) -> Self {
         let emitters = scene.emitters();
         let (plane_u, disk_u) = (emitters.plane_u(), emitters.disk_u());
-        let opaque = emitters.opaque_u().is_some();
-        Self { plane, plane_u, disk_u, opaque, lens, shadow: shadow_centre(&lens.observer.frame) }
+        Self {
+            plane,
+            plane_u,
+            disk_u,
+            opaque_u: emitters.opaque_u(),
+            lens,
+            level: CurveLevel::new(&lens.observer.frame),
+        }
     }
 
-    /// Light and alpha of the pixel whose centre `at` has the record `here`; `source`: of the frame's records. `None`:
-    /// nothing runs through it.
-    pub fn light(
-        &self,
-        shader: &Shader<'_>,
-        source: &RecordSource<'_>,
-        here: &Record,
-        at: [f64; 2],
-    ) -> Option<[f64; 4]> {
+    /// Light and alpha of the pixel whose centre `at` has the record `here`. `None`: nothing runs through it.
+    pub fn light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
         let smooth = match here.edge {
             Edge::None => return None,
-            Edge::Disk => self.smooth_light(shader, here, at),
+            Edge::Disk => self.light_of_quarters(shader, at),
             Edge::Curve => None,
         };
-        Some(smooth.unwrap_or_else(|| self.counted_light(shader, source, here, at)))
+        Some(smooth.unwrap_or_else(|| self.light_of_strips(shader, at)))
     }
 
-    /// The light from how much the disk covers the cells of a few samples. `None`: what the samples show cannot change
-    /// evenly from one to the next.
-    fn smooth_light(&self, shader: &Shader<'_>, here: &Record, at: [f64; 2]) -> Option<[f64; 4]> {
+    /// `None`: what the samples show cannot change evenly from one to the next.
+    fn light_of_quarters(&self, shader: &Shader<'_>, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
-        let mut records = places.map(|place| sample(&self.plane, here, place));
-        let orders = self.orders(&records);
-        if self.are_ragged(&records, &orders) {
+        let records = places.map(|place| self.sample(place));
+        if self.are_ragged(&records) {
             return None;
         }
-        for (record, index) in records.iter_mut().zip(0..) {
-            for crossing in &mut record.crossings {
-                let of_order = orders.as_ref().and_then(|orders| orders.get(crossing.order as usize));
-                crossing.share = of_order.map_or(0.0, |crossings| crossings.covered_share(index));
-                if let Some([outer, inner]) = self.plane_u {
-                    // Where nothing shines g may be no number at all.
-                    if crossing.share == 0.0 && !(crossing.u >= outer && crossing.u <= inner) {
-                        crossing.g = 1.0;
-                    }
-                    crossing.u = crossing.u.clamp(outer, inner);
+        let samples = Samples { records: &records, beside: &beside_quarter };
+        Some(self.mean(shader, &samples, |index| (places[index as usize % 4], 0.25)))
+    }
+
+    fn light_of_strips(&self, shader: &Shader<'_>, at: [f64; 2]) -> [f64; 4] {
+        let level = LevelAbout::new(self.lens, &self.level, at);
+        let (strips, slope) = level.strips();
+        let mut records = ArrayVec::<Record, { CURVE_SAMPLES as usize }>::new();
+        let mut places = [([0.0; 2], 0.0); CURVE_SAMPLES as usize];
+        for (place, index) in places.iter_mut().zip(0..) {
+            let cell = strips.cell(index);
+            let distance = level.at(strips.foot(&cell).map(|c| c - 0.5)) / slope;
+            *place = (place_about(at, strips.corrected(&cell, distance)), cell.weight);
+            records.push(self.sample(place.0));
+        }
+        let beside = |index| strips.beside(index);
+        let samples = Samples { records: &records, beside: &beside };
+        self.mean(shader, &samples, |index| places[(index % CURVE_SAMPLES) as usize])
+    }
+
+    /// The record at a place, without footprints.
+    fn sample(&self, [x, y]: [f64; 2]) -> Record {
+        match &self.plane {
+            RecordSource::LensLookup(lookup) => {
+                let mut record = Record::captured();
+                lookup.sample(x, y, &mut record);
+                record
+            }
+            RecordSource::Traced(recorder) => recorder.trace(x, y),
+        }
+    }
+
+    /// The mean light of cells; `place`: of each one's sample, and its weight.
+    fn mean(&self, shader: &Shader<'_>, samples: &Samples<'_>, place: impl Fn(u32) -> ([f64; 2], f64)) -> [f64; 4] {
+        let (mut sum, mut total) = ([0.0; 4], 0.0);
+        for index in 0..samples.records.len() as u32 {
+            let ([x, y], weight) = place(index);
+            let Some(record) = self.completed(samples, index) else { continue };
+            let light = shader.shade_record(&record, x, y);
+            (0..4).for_each(|c| sum[c] += weight * light[c]);
+            total += weight;
+        }
+        sum.map(|v: f64| v / total.max(f64::MIN_POSITIVE))
+    }
+
+    /// The record of a sample with the footprints of its cell, and the share of the cell that the disk covers.
+    fn completed(&self, samples: &Samples<'_>, index: u32) -> Option<Record> {
+        let mut record = samples.records.get(index as usize)?.clone();
+        let beside = (samples.beside)(index)
+            .map(|pair| pair.map(|other| other.and_then(|other| samples.records.get(other as usize))));
+        if record.fate == Fate::Escaped {
+            record.footprint = beside.map(|[before, after]| derivative_of_direction(&record, before, after));
+        }
+        for crossing in &mut record.crossings {
+            crossing.footprint = beside.map(|[before, after]| derivative_of_place(crossing, before, after));
+            let u = |there: Option<&Record>| {
+                there.and_then(|there| there.crossings.iter().find(|c| c.order == crossing.order)).map_or(0.0, |c| c.u)
+            };
+            let covered = self.disk_u.map(|disk_u| covered(crossing.u, beside.map(|pair| pair.map(u)), disk_u));
+            let (share, covered_u) = covered.unwrap_or((0.0, crossing.u));
+            crossing.share = share;
+            if let Some([outer, inner]) = self.plane_u {
+                // Where nothing shines g may be no number at all.
+                if crossing.share == 0.0 && !(crossing.u >= outer && crossing.u <= inner) {
+                    crossing.g = 1.0;
                 }
+                crossing.u = covered_u.clamp(outer, inner);
             }
         }
-        Some(mean(records.iter().zip(places).map(|(record, [x, y])| shader.shade_record(record, x, y))))
+        Some(record)
     }
 
-    /// The light from many samples, each counted as it falls.
-    fn counted_light(&self, shader: &Shader<'_>, source: &RecordSource<'_>, here: &Record, at: [f64; 2]) -> [f64; 4] {
-        let across = self.lens.across(self.shadow, at);
-        mean((0..CURVE_SAMPLES).map(|index| {
-            let [x, y] = place_about(at, curve_place(index, across));
-            shader.shade_record(&sample(source, here, [x, y]), x, y)
-        }))
-    }
-
-    /// The samples' crossings by order. `None`: there is no disk.
-    fn orders(&self, records: &[Record; 4]) -> Option<[Crossings; CROSSINGS_KEPT]> {
-        let disk_u = self.disk_u?;
+    fn are_ragged(&self, records: &[Record; 4]) -> bool {
         let of =
             |record: &Record, order: usize| record.crossings.iter().find(|c| c.order as usize == order).map(|c| c.u);
-        Some(std::array::from_fn(|order| Crossings {
-            u: records.each_ref().map(|record| of(record, order).unwrap_or(0.0)),
-            disk_u,
-        }))
-    }
-
-    fn are_ragged(&self, records: &[Record; 4], orders: &Option<[Crossings; CROSSINGS_KEPT]>) -> bool {
-        for (crossings, order) in orders.iter().flatten().zip(0..) {
+        for order in 0..CROSSINGS_KEPT {
+            let Some(disk_u) = self.disk_u else { break };
+            let crossings = Crossings { u: records.each_ref().map(|record| of(record, order).unwrap_or(0.0)), disk_u };
             if crossings.are_ragged(order == 0) {
                 return true;
             }
-            if self.opaque && crossings.cover() {
+            if self.opaque_u.is_some_and(|opaque_u| crossings.cover(opaque_u)) {
                 return false;
             }
         }
@@ -113,29 +161,114 @@ fn place_about(at: [f64; 2], place: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|i| at[i] + place[i] - 0.5)
 }
 
-/// The record of the sample at a place. A traced one's footprints are those of the pixel's own record `here`, where
-/// that has any.
-fn sample(source: &RecordSource<'_>, here: &Record, [x, y]: [f64; 2]) -> Record {
-    match source {
-        RecordSource::LensLookup(lookup) => {
-            let mut record = Record::captured();
-            lookup.sample(x, y, &mut record);
-            record
+/// The level of the critical curve (`CurveLevel::at`) about a pixel: that of the image plane or its tangent there, so
+/// that it goes on beyond the border of a cube's face.
+pub(crate) struct LevelAbout<'a> {
+    lens: &'a Lens,
+    level: &'a CurveLevel,
+    /// A point in the direction seen at the pixel's centre, and its changes to the next pixel right and down.
+    point: DVec3,
+    changes: [DVec3; 2],
+}
+
+impl<'a> LevelAbout<'a> {
+    pub(crate) fn new(lens: &'a Lens, level: &'a CurveLevel, [x, y]: [f64; 2]) -> Self {
+        let changes = lens.mapping.changes(x, y).map(|change| lens.axes * change);
+        Self { lens, level, point: lens.axes * lens.mapping.point(x, y), changes }
+    }
+
+    /// At so many pixels right of the pixel's centre and below it.
+    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> f64 {
+        let look = (self.point + self.changes[0] * x + self.changes[1] * y).normalize();
+        self.level.at(self.lens.observer.aberrate(look).0)
+    }
+
+    /// The strips of the pixel, and the change of the level in a pixel across the curve.
+    pub(crate) fn strips(&self) -> (Strips, f64) {
+        let change = [[LEVEL_STEP, 0.0], [0.0, LEVEL_STEP]]
+            .map(|[x, y]| (self.at([x, y]) - self.at([-x, -y])) / (2.0 * LEVEL_STEP));
+        let steepness = change[0].hypot(change[1]).max(f64::MIN_POSITIVE);
+        let along = |part: f64| self.at(change.map(|c| c / steepness * part));
+        let here = along(0.0);
+        let step = -here / steepness;
+        if step.abs() >= FARTHEST {
+            return (Strips::new(-step, change), steepness);
         }
-        RecordSource::Traced(recorder) => {
-            let mut record = recorder.trace(x, y);
-            record.footprint = here.footprint;
-            for crossing in &mut record.crossings {
-                let same = here.crossings.iter().find(|c| c.order == crossing.order);
-                crossing.footprint = same.map_or([UNKNOWN_EMISSION_POINT; 2], |c| c.footprint);
+        // Nearly everywhere one step of Newton's method does.
+        let rest = along(step) / steepness;
+        if step.abs() < SEARCH_REACH && rest.abs() <= EVEN_LEVEL {
+            return (Strips::new(rest - step, change), steepness);
+        }
+        let (mut low, mut high) = ([-SEARCH_REACH, along(-SEARCH_REACH)], [SEARCH_REACH, along(SEARCH_REACH)]);
+        if !(low[1] < 0.0 && high[1] > 0.0) {
+            return (Strips::new(here / steepness, change), steepness);
+        }
+        if here > 0.0 {
+            high = [0.0, here]
+        } else {
+            low = [0.0, here]
+        }
+        // Near the axis of a fast hole the level is far from even.
+        let (mut found, mut side) = (0.0, 0.0);
+        for _ in 0..SEARCH_STEPS {
+            found = (low[0] * high[1] - high[0] * low[1]) / (high[1] - low[1]);
+            let value = along(found);
+            if value > 0.0 {
+                high = [found, value];
+                low[1] *= if side > 0.0 { 0.5 } else { 1.0 };
+                side = 1.0;
+            } else {
+                low = [found, value];
+                high[1] *= if side < 0.0 { 0.5 } else { 1.0 };
+                side = -1.0;
             }
-            record
         }
+        let slope = (along(found + LEVEL_STEP) - along(found - LEVEL_STEP)) / (2.0 * LEVEL_STEP);
+        (Strips::new(-found, change), slope.max(f64::MIN_POSITIVE))
     }
 }
 
-fn mean(lights: impl Iterator<Item = [f64; 4]>) -> [f64; 4] {
-    let (sum, count) =
-        lights.fold(([0.0; 4], 0.0), |(sum, count), light| (std::array::from_fn(|c| sum[c] + light[c]), count + 1.0));
-    sum.map(|v: f64| v / count)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cpu::lens::{LensCache, LensLookup};
+    use crate::cpu::record::Recorder;
+    use crate::scene::{KerrThreshold, LensTables, Region};
+
+    /// The shares of a frame's pixels that are refined for an edge of the disk and for the critical curve.
+    fn shares_refined(scene: &Scene) -> [f64; 2] {
+        let region = Region { full_width: 960, full_height: 540, x: 0, y: 0 };
+        let lens = scene.lens(&region).expect("a lens");
+        let observer = lens.observer.frame;
+        let mut cache = LensCache::default();
+        let lensing = scene.lensing(&observer, 1 << 20, KerrThreshold::CPU);
+        let tables = cache.tables(scene, &observer, lensing).expect("tables").expect("a scene that is looked up");
+        let lookup = LensLookup::new(Recorder::new(scene, &lens), tables);
+        let (mut record, mut counts) = (Record::captured(), [0; 2]);
+        for (x, y) in (0..region.full_height).flat_map(|y| (0..region.full_width).map(move |x| (x, y))) {
+            lookup.record(f64::from(x) + 0.5, f64::from(y) + 0.5, &mut record);
+            match record.edge {
+                Edge::None => {}
+                Edge::Disk => counts[0] += 1,
+                Edge::Curve => counts[1] += 1,
+            }
+        }
+        counts.map(|count| f64::from(count) / f64::from(region.full_width * region.full_height))
+    }
+
+    /// An edge that fades over many pixels needs no more rays than the rest of the disk, and what lies behind the
+    /// disk's opaque part needs none.
+    #[test]
+    fn soft_edges_are_refined_in_thin_images_only() {
+        for spin in [0.0, 0.9] {
+            let mut scene = Scene::default();
+            (scene.hole.spin, scene.quality.lens_tables) = (spin, LensTables::Always);
+            let [soft, curve] = shares_refined(&scene);
+            scene.disk.as_mut().expect("a disk").edge_softness = 0.0;
+            let [sharp, sharp_curve] = shares_refined(&scene);
+            println!("spin {spin}: soft {soft:.5} and {curve:.5}, sharp {sharp:.5} and {sharp_curve:.5}");
+            assert!(soft < 0.7 * sharp && soft > 0.0, "spin {spin}: {soft} {sharp}");
+            assert!(curve < 0.01 && curve > 0.0, "spin {spin}: {curve}");
+        }
+    }
 }

@@ -34,7 +34,7 @@ impl<'a> Shader<'a> {
         Ok(Self {
             scene,
             lens,
-            plane: PlaneLight::new(&scene.emitters()),
+            plane: PlaneLight::new(&scene.emitters())?,
             stars: scene.shows_stars().then_some(stars),
             least_patch: least_patch(lens.mapping.pixel_angle),
             maps: [milky_way, scene.shown_map().map(|map| &**map)],
@@ -72,7 +72,8 @@ impl<'a> Shader<'a> {
                 break;
             }
             let gravity = || nu_static_observer(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
-            let emission = self.plane.at_crossing(crossing, self.visible_shift(crossing.g, gravity), open);
+            let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
+            let emission = self.plane.at_crossing(crossing, self.visible_shift(crossing.g, gravity), mu, open);
             (0..3).for_each(|c| light[c] += emission.light[c]);
             open *= 1.0 - emission.opacity;
         }

@@ -3,8 +3,9 @@
 /// The place and time at which the light of a crossing left, or the change of both from pixel to pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EmissionPoint {
+    /// ln(r / M).
     pub ln_r: f64,
-    /// Azimuth in the chart.
+    /// Azimuth in the chart, rad.
     pub azimuth: f64,
     /// M (`Constants::retardation`); 0 where light is not delayed.
     pub delay: f64,
@@ -13,11 +14,11 @@ pub struct EmissionPoint {
 /// A crossing of the equatorial plane where emitters shine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
-    /// 1/r.
+    /// 1/r, 1/M; above 0.
     pub u: f64,
     /// Number of the crossing of the plane, from 0.
     pub order: u32,
-    /// g of matter on the circular geodesic there, the camera's motion included.
+    /// g of the matter there (`physics::plunge::Matter`), the camera's motion included.
     pub g: f64,
     /// The place and time; known where an emitter needs them (`Needs` of `emit`).
     pub place: EmissionPoint,
@@ -27,16 +28,20 @@ pub struct Crossing {
     pub share: f64,
 }
 
-/// How the effects let frequency shifts show: the shift that colours, and the one that beams.
+/// How the effects let frequency shifts show. Both numbers are the redshift factor g with all effects on, and above 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift {
+    /// The factor on the frequency of light, which changes its colour.
     pub colour: f64,
+    /// The factor whose powers make light brighter or darker.
     pub beaming: f64,
 }
 
 /// The light that an emitter in the plane sends along a ray, and the share of the light behind that it hides.
 #[derive(Clone, Copy, Debug)]
 pub struct Emission {
+    /// Linear Rec. 709, 0 and more, weakened already by the matter in front.
     pub light: [f64; 3],
+    /// 0 .. 1.
     pub opacity: f64,
 }

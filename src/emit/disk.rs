@@ -3,25 +3,55 @@
 
 use crate::error::{Error, Result};
 
+/// The ring at whose radius the disk has its stated temperature and brightness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum DiskReference {
+    /// The hottest ring of the Page-Thorne profile, wherever the disk's edges are.
+    Hottest = 0,
+    /// The ring that halves the area, r^2 = (inner^2 + outer^2) / 2, the outermost quarter of a soft outer edge's
+    /// fading left out.
+    Median = 1,
+}
+
+/// How the light of the disk depends on the angle to its normal, as its matter sees it. The flux is the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum EmissionLaw {
+    /// Alike in all directions.
+    Isotropic = 0,
+    /// As an atmosphere that scatters by electrons (`physics::limb_darkening`).
+    LimbDarkened = 1,
+}
+
 /// Radii in units of M.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disk {
     /// Matter orbits towards -phi.
     pub retrograde: bool,
-    /// 0: the ISCO (default). Matter inside the ISCO has no circular orbit and does not shine: what lies there is not
-    /// drawn.
+    /// 0 (default): as far in as matter shines. That is the ISCO, inside which matter has no stable circular orbit, or
+    /// the horizon, if it `plunges`.
     pub inner_radius: f64,
-    /// Default 20.
+    /// Default 17.
     pub outer_radius: f64,
-    /// Temperature at the hottest radius of the Page-Thorne profile, K, 500 .. 1e9. Default 6500.
+    /// Temperature of the ring that `reference` says, K, 500 .. 1e9. Default 3500.
     pub temperature: f64,
     /// 0 .. 1. Default 1.
     pub opacity: f64,
-    /// >= 0. Default 1: the hottest ring at rest has luminance 1.
+    /// >= 0; the luminance of that ring at rest. Default 0.6.
     pub brightness: f64,
-    /// 0 smooth (default) .. 1.
+    /// 0 smooth .. 1. Default 1.
     pub turbulence: f64,
     pub seed: u64,
+    /// Default: the median ring.
+    pub reference: DiskReference,
+    /// 0 sharp .. 1, default 0.4: the share of the way from the outer edge to the inner one over which the disk fades
+    /// out, and the flux, over that of the hottest ring, below which it is translucent at its inner edge.
+    pub edge_softness: f64,
+    /// Default: isotropic.
+    pub emission_law: EmissionLaw,
+    /// Matter shines on its way from the ISCO to the horizon, too. Default: false.
+    pub plunges: bool,
 }
 
 impl Default for Disk {
@@ -29,12 +59,16 @@ impl Default for Disk {
         Self {
             retrograde: false,
             inner_radius: 0.0,
-            outer_radius: 20.0,
-            temperature: 6500.0,
+            outer_radius: 17.0,
+            temperature: 3500.0,
             opacity: 1.0,
-            brightness: 1.0,
-            turbulence: 0.0,
+            brightness: 0.6,
+            turbulence: 1.0,
             seed: 0,
+            reference: DiskReference::Median,
+            edge_softness: 0.4,
+            emission_law: EmissionLaw::Isotropic,
+            plunges: false,
         }
     }
 }
@@ -64,6 +98,7 @@ impl Disk {
         range("temperature", self.temperature, 500.0, 1e9)?;
         range("opacity", self.opacity, 0.0, 1.0)?;
         range("brightness", self.brightness, 0.0, Self::MAX_BRIGHTNESS)?;
-        range("turbulence", self.turbulence, 0.0, 1.0)
+        range("turbulence", self.turbulence, 0.0, 1.0)?;
+        range("edge_softness", self.edge_softness, 0.0, 1.0)
     }
 }

@@ -9,10 +9,11 @@ use crate::physics::trace::Part;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Haze {
-    /// R, M.
+    /// R, in M; above 0.
     pub radius: f64,
-    /// Light and optical depth per M at density 1, as the matter measures them.
+    /// Light per M of its own length that matter of density 1 sends, as it measures it: linear Rec. 709, 0 and more.
     pub brightness: f64,
+    /// Optical depth per M of its own length at density 1; 0 and more.
     pub absorption: f64,
 }
 

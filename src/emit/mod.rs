@@ -13,12 +13,15 @@ pub mod crossing;
 pub mod disk;
 pub mod haze;
 pub mod medium;
+pub mod streaks;
 pub mod thin_disk;
 pub mod turbulence;
 
 pub use crossing::{Crossing, Emission, EmissionPoint, Shift};
 
+use crate::error::Result;
 use crate::physics::trace::Part;
+use disk::EmissionLaw;
 use haze::Haze;
 use medium::Medium;
 use thin_disk::{DiskLight, ThinDisk};
@@ -30,14 +33,19 @@ pub struct Needs {
     pub places: bool,
     /// When the light of a crossing left.
     pub delays: bool,
+    /// The angle at which the ray crosses the plane.
+    pub angles: bool,
     /// Every part of the ray between crossings.
     pub parts: bool,
+    /// Whether the ray moves inwards or outwards at crossings: its frequency is not known without that to matter which
+    /// does so itself.
+    pub headings: bool,
 }
 
 /// The emitters of a scene, in units of M (`Scene::emitters`).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Emitters {
-    /// `None`: the scene has no disk, or all of it lies inside the ISCO, where no matter orbits.
+    /// `None`: the scene has no disk, or all of it lies where no matter shines.
     pub disk: Option<ThinDisk>,
     pub haze: Option<Haze>,
 }
@@ -48,7 +56,9 @@ impl Emitters {
         Needs {
             places: turbulence.is_some(),
             delays: turbulence.is_some_and(|turbulence| turbulence.needs_delay),
+            angles: self.disk.is_some_and(|disk| disk.disk.emission_law != EmissionLaw::Isotropic),
             parts: self.haze.is_some(),
+            headings: self.disk.is_some_and(|disk| disk.least_profile.is_some()),
         }
     }
 
@@ -58,15 +68,20 @@ impl Emitters {
         self.disk.map(|disk| disk.u)
     }
 
-    /// 1/r of the disk's outer and inner edge, the only sharp edges that pixels are refined for. Other emitters of the
+    /// 1/r of the disk's outer and inner edge, the only edges that pixels are refined for. Other emitters of the
     /// plane fade out towards the ends of their range.
     pub fn disk_u(&self) -> Option<[f64; 2]> {
         self.disk.map(|disk| disk.u)
     }
 
+    /// The change of 1/r over which the disk fades out at either of these edges (`ThinDisk::fading_u`).
+    pub fn fading_u(&self) -> [f64; 2] {
+        self.disk.map_or([0.0; 2], |disk| disk.fading_u())
+    }
+
     /// The interval of 1/r in which a crossing of the plane hides all that is behind it.
     pub fn opaque_u(&self) -> Option<[f64; 2]> {
-        self.disk.filter(ThinDisk::is_opaque).map(|disk| disk.u)
+        self.disk.and_then(|disk| disk.opaque_u())
     }
 
     /// Whether each crossing that is kept hides all that is behind it, so that one is enough.
@@ -94,14 +109,16 @@ pub struct PlaneLight {
 }
 
 impl PlaneLight {
-    pub fn new(emitters: &Emitters) -> Self {
-        Self { disk: emitters.disk.map(DiskLight::new) }
+    /// Errors: OUT_OF_MEMORY.
+    pub fn new(emitters: &Emitters) -> Result<Self> {
+        Ok(Self { disk: emitters.disk.map(DiskLight::new).transpose()? })
     }
 
-    /// The light that a crossing adds, and its opacity. `open` is the share of light from here that reaches the camera.
-    pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, open: f64) -> Emission {
+    /// The light that a crossing adds, and its opacity. `mu` is |cosine| of the ray's angle to the normal of the plane,
+    /// as the matter sees it; `open` is the share of light from here that reaches the camera.
+    pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, mu: f64, open: f64) -> Emission {
         match &self.disk {
-            Some(disk) if crossing.share > 0.0 => disk.at_crossing(crossing, shift, open),
+            Some(disk) if crossing.share > 0.0 => disk.at_crossing(crossing, shift, mu, open),
             _ => Emission { light: [0.0; 3], opacity: 0.0 },
         }
     }

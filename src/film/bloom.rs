@@ -2,7 +2,7 @@
 //! goes how far, makes the grids that spread it, and spreads it on the CPU; `shaders/bloom*.wgsl` and
 //! `src/gpu/frame/bloom.rs` do the same with these numbers. Works on exposed light
 //! ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how that light was made, or of
-//! 8-bit pixels.
+//! 8-bit pixels. A telescope's beam (bloom/beam.rs) spreads light by the same grids.
 //!
 //! The result: out = (1 - s) L + s (L * K), s = 0.4 `bloom`, and K, of integral 1, K(r) ~ (r^2 + r0^2)^(-3/2) +
 //! (r^2 + r0^2)^-1 / r1, r0 = H / 180, r1 = H / 28, cut off smoothly about H / 4, H the frame's height. These are the
@@ -20,6 +20,10 @@
 //! The levels, smooth as they are, do not show: wherever the light lies, K is within 10 % of its formula and within 5
 //! % isotropic from five of the finest cells on (10 pixels, in frames of at most 2^21 cells of 2 x 2), and within 20 %
 //! nearer.
+
+mod beam;
+
+pub use beam::{BEAM_SHARES, Beam};
 
 use crate::allocate::{collected, filled, with_room};
 use crate::error::Result;
@@ -60,6 +64,8 @@ pub struct Bloom {
     pub direct: f32,
     /// The levels from the finest on; at least one.
     pub levels: Vec<Level>,
+    /// The beam, on one of the levels; `None`: the film has none.
+    pub beam: Option<Beam>,
 }
 
 /// A grid over the frame.
@@ -172,18 +178,23 @@ fn weights(sigmas: &[f64]) -> (Vec<f64>, f64) {
 }
 
 impl Bloom {
-    /// Whether a frame of this kind has any.
+    /// Whether a frame of this kind has any, or a beam.
     pub fn is_shown(film: &Film, view: View, format: PixelFormat) -> bool {
-        film.bloom > 0.0 && view == View::Light && format.is_developed()
+        (film.bloom > 0.0 || film.beam_fwhm > 0.0) && view == View::Light && format.is_developed()
     }
 
-    /// The bloom of a whole frame; `None`: it has none. Errors: OUT_OF_MEMORY.
-    pub fn new(scene: &Scene, format: PixelFormat, frame: [u32; 2]) -> Result<Option<Self>> {
-        Self::is_shown(&scene.film, scene.view, format).then(|| Self::of(scene.film.bloom, frame)).transpose()
+    /// The bloom of a frame; `None`: it has none. `whole`: it is not a region of a larger one, whose glare nobody
+    /// knows. Errors: OUT_OF_MEMORY.
+    pub fn new(scene: &Scene, format: PixelFormat, frame: [u32; 2], whole: bool) -> Result<Option<Self>> {
+        let film = &scene.film;
+        (whole && Self::is_shown(film, scene.view, format))
+            .then(|| Self::of(film.bloom, film.beam_fwhm, frame))
+            .transpose()
     }
 
-    /// Makes the grids for `bloom` in [0, 1] and a frame of at least one pixel. Errors: OUT_OF_MEMORY.
-    pub fn of(bloom: f64, frame: [u32; 2]) -> Result<Self> {
+    /// Makes the grids for `bloom` and `beam_fwhm` (in frame heights) in [0, 1], and a frame of at least one pixel.
+    /// Errors: OUT_OF_MEMORY.
+    pub fn of(bloom: f64, beam_fwhm: f64, frame: [u32; 2]) -> Result<Self> {
         let cells = |factor: u32| frame.map(|side| u64::from(side.div_ceil(factor)));
         let mut factor = 2;
         while cells(factor).iter().product::<u64>() > MOST_CELLS || cells(factor).iter().any(|&side| side > MOST_SIDE) {
@@ -204,7 +215,27 @@ impl Bloom {
         for (level, weight) in levels.iter_mut().zip(weights) {
             level.weight = (scattered * weight) as f32;
         }
-        Ok(Self { frame, factor, direct: (1.0 - scattered * (1.0 - narrow)) as f32, levels })
+        let direct = 1.0 - scattered * (1.0 - narrow);
+        let beam = (beam_fwhm > 0.0).then(|| Beam::new(beam_fwhm * height, factor, levels.len()));
+        let bloom = Self { frame, factor, direct: direct as f32, levels, beam };
+        Ok(if bloom.beam.is_some() { bloom.through_beam(direct, scattered > 0.0) } else { bloom })
+    }
+
+    /// The same with its shares as the beam needs them: all light that is spread less than the beam's level spreads it
+    /// goes through that level. Coarser ones are dropped where nothing else needs them.
+    fn through_beam(mut self, direct: f64, scatters: bool) -> Self {
+        let Some(beam) = &self.beam else { return self };
+        let through = (direct * beam.through) as f32;
+        self.direct = (direct * (1.0 - beam.through)) as f32;
+        let narrower = self.levels.iter().take(beam.level).map(|level| level.weight).sum::<f32>();
+        self.levels.iter_mut().take(beam.level).for_each(|level| level.weight = 0.0);
+        if let Some(level) = self.levels.get_mut(beam.level) {
+            level.weight += narrower + through;
+        }
+        if !scatters {
+            self.levels.truncate(beam.level + 1);
+        }
+        self
     }
 
     /// The factor on the light of level `index`: its weight if it is the coarsest; else 1, because its light comes
@@ -321,9 +352,9 @@ impl<'a> BloomAccumulator<'a> {
                 grids.push(grid);
             }
         }
-        let mut glare = grids.pop().unwrap_or_default();
+        let mut glare = bloom.after_beam(grids.len().saturating_sub(1), grids.pop().unwrap_or_default())?;
         for (index, grid) in grids.into_iter().enumerate().rev() {
-            glare = bloom.with_coarser(index, grid, &glare);
+            glare = bloom.after_beam(index, bloom.with_coarser(index, grid, &glare))?;
         }
         Ok(Glare { bloom, cells: glare })
     }
@@ -338,6 +369,15 @@ fn within((first, shares): (usize, &[f32]), begin: usize, size: usize) -> (usize
 }
 
 impl Bloom {
+    /// The light of level `index` once the beam has spread it, if that is its level. Errors: OUT_OF_MEMORY.
+    fn after_beam(&self, index: usize, cells: Vec<[f32; 4]>) -> Result<Vec<[f32; 4]>> {
+        let beam = self.beam.as_ref().filter(|beam| beam.level == index);
+        match (beam, self.levels.get(index)) {
+            (Some(beam), Some(level)) => beam.spread(cells, level.size),
+            _ => Ok(cells),
+        }
+    }
+
     /// The light that level `index` and those above it spread, on its grid: its own light times its weight, and theirs.
     fn with_coarser(&self, index: usize, mut own: Vec<[f32; 4]>, above: &[[f32; 4]]) -> Vec<[f32; 4]> {
         let (Some(level), Some(coarser)) = (self.levels.get(index), self.levels.get(index + 1)) else { return own };

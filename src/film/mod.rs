@@ -1,14 +1,15 @@
-//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve and
-//! dithering; float formats get the radiance as it is. Views other than light get false colour, or their value. In f32,
-//! so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits. Knows nothing of how
-//! light was made.
+//! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve or a
+//! colour map, and dithering; float formats get the radiance as it is. Views other than light get false colour, or
+//! their value. In f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits.
+//! Knows nothing of how light was made.
 
 pub mod bloom;
+pub(crate) mod colour_map;
 pub(crate) mod false_colour;
 pub(crate) mod tone_map;
 
 use crate::image::PixelFormat;
-use crate::scene::{Film, ToneMap, View};
+use crate::scene::{ColourMap, Film, ToneMap, View};
 use arrayvec::ArrayVec;
 use tone_map::MAX_SCENE_LIGHT;
 
@@ -30,7 +31,8 @@ pub struct FilmParams {
     pub view_scale: f32,
     /// 1: alpha is kept; 0: it becomes 1.
     pub transparent: u32,
-    pub reserved: u32,
+    /// A `ColourMap`.
+    pub colour_map: u32,
 }
 
 impl FilmParams {
@@ -45,7 +47,7 @@ impl FilmParams {
             view_low: low,
             view_scale: scale,
             transparent: u32::from(transparent),
-            reserved: 0,
+            colour_map: film.colour_map as u32,
         }
     }
 
@@ -117,15 +119,27 @@ pub fn develop_row(params: &FilmParams, radiance: &[[f64; 4]], x: u32, y: u32, o
         (Rgba8Srgb | Bgra8Srgb, true, _) => {
             write_row(radiance, x, out, |v, _| [params.packed_8bit(false_colour_codes(params, v[0]))]);
         }
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::None) => {
-            write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::clip)]);
-        }
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Aces) => {
-            write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::aces)]);
-        }
-        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Agx) => {
-            write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, tone_map::agx)]);
-        }
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::None) => write_light(params, radiance, x, y, out, tone_map::clip),
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Aces) => write_light(params, radiance, x, y, out, tone_map::aces),
+        (Rgba8Srgb | Bgra8Srgb, false, ToneMap::Agx) => write_light(params, radiance, x, y, out, tone_map::agx),
+    }
+}
+
+/// Writes light in 8 bits: its own colours, or those of a map for its luminance.
+fn write_light(
+    params: &FilmParams,
+    radiance: &[[f64; 4]],
+    x: u32,
+    y: u32,
+    out: &mut [u8],
+    tone_map: impl Fn([f32; 3]) -> [f32; 3],
+) {
+    if params.colour_map == ColourMap::Afmhot as u32 {
+        let colour = |scene| colour_map::afmhot(tone_map([colour_map::luminance(scene); 3])[0]);
+        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, colour)]);
+    } else {
+        let colour = |scene| tone_map(scene).map(srgb_encode);
+        write_row(radiance, x, out, |v, x| [develop_8bit(params, v, x, y, colour)]);
     }
 }
 
@@ -143,21 +157,15 @@ fn write_row<const WORDS: usize>(
     }
 }
 
-/// A pixel of light in 8 bits. Premultiplied light is developed as it is: over black, a transparent picture looks like
-/// the opaque one. Codes are what the sum of value and dither, in [0, 1), is rounded down to: right on average, and
-/// black and white stay exact. Alpha is rounded without dither. No branches and all in one piece, so that the compiler
-/// can develop several pixels at once.
+/// A pixel of light in 8 bits. `colour`: of exposed light, sRGB-encoded. Premultiplied light is developed as it is:
+/// over black, a transparent picture looks like the opaque one. Codes are what the sum of value and dither, in [0, 1),
+/// is rounded down to: right on average, and black and white stay exact. Alpha is rounded without dither. No branches
+/// and all in one piece, so that the compiler can develop several pixels at once.
 #[inline(always)]
-fn develop_8bit(
-    params: &FilmParams,
-    radiance: [f32; 4],
-    x: u32,
-    y: u32,
-    tone_map: impl Fn([f32; 3]) -> [f32; 3],
-) -> u32 {
+fn develop_8bit(params: &FilmParams, radiance: [f32; 4], x: u32, y: u32, colour: impl Fn([f32; 3]) -> [f32; 3]) -> u32 {
     let scene = [radiance[0], radiance[1], radiance[2]].map(|v| limited(v * params.exposure, MAX_SCENE_LIGHT));
     let noise = dither(x, y);
-    let [r, g, b] = tone_map(scene).map(|v| code(srgb_encode(v) * 255.0 + noise));
+    let [r, g, b] = colour(scene).map(|v| code(v * 255.0 + noise));
     params.packed_8bit([r, g, b, code(alpha(params, radiance[3]) * 255.0 + 0.5)])
 }
 
@@ -235,7 +243,7 @@ mod tests {
     use super::*;
 
     fn params(tone_map: ToneMap, format: PixelFormat) -> FilmParams {
-        FilmParams::new(&Film { tone_map, exposure_ev: 0.0, bloom: 0.0 }, View::Light, format, false)
+        FilmParams::new(&Film { tone_map, ..Film::plain() }, View::Light, format, false)
     }
 
     /// IEC 61966-2-1, decoding, in f64.
@@ -322,7 +330,7 @@ mod tests {
 
     #[test]
     fn exposure_is_in_stops_and_for_8_bit_only() {
-        let film = Film { tone_map: ToneMap::None, exposure_ev: -1.0, bloom: 0.0 };
+        let film = Film { tone_map: ToneMap::None, exposure_ev: -1.0, ..Film::plain() };
         let darker = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
         let plain = params(ToneMap::None, PixelFormat::Rgba8Srgb);
         assert_eq!(develop(&darker, [0.5, 0.25, 0.125, 1.0], 3, 4), develop(&plain, [0.25, 0.125, 0.0625, 1.0], 3, 4));
@@ -359,8 +367,27 @@ mod tests {
     }
 
     #[test]
+    fn a_colour_map_shows_the_luminance_alone() {
+        for tone_map in [ToneMap::None, ToneMap::Aces, ToneMap::Agx] {
+            let film = Film { tone_map, colour_map: ColourMap::Afmhot, ..Film::plain() };
+            let params = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
+            let at = |rgb: [f32; 3]| develop(&params, [rgb[0], rgb[1], rgb[2], 1.0], 7, 9);
+            assert_eq!(at([0.0; 3]).as_slice(), [0, 0, 0, 255]);
+            assert_eq!(at([1e9; 3]).as_slice(), [255; 4]);
+            let grey = colour_map::luminance([0.3, 0.1, 0.7]);
+            let (mixed, grey) = (at([0.3, 0.1, 0.7]), at([grey; 3]));
+            assert!((0..3).all(|c| mixed[c].abs_diff(grey[c]) <= 1), "{tone_map:?}: {mixed:?} {grey:?}");
+        }
+        // Without a tone map the share is the luminance itself: red by 0.4 is 2 * 0.2126 * 0.4 of red.
+        let film = Film { tone_map: ToneMap::None, colour_map: ColourMap::Afmhot, ..Film::plain() };
+        let params = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
+        let red = develop(&params, [0.4, 0.0, 0.0, 1.0], 0, 0);
+        assert!((i32::from(red[0]) - 43).abs() <= 1 && red[1] == 0 && red[2] == 0, "{red:?}");
+    }
+
+    #[test]
     fn transparent_pictures_keep_alpha_and_look_alike_over_black() {
-        let film = Film::default();
+        let film = Film::plain();
         let opaque = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, false);
         let clear = FilmParams::new(&film, View::Light, PixelFormat::Rgba8Srgb, true);
         let radiance = [0.3, 0.2, 0.1, 0.5];
@@ -371,7 +398,7 @@ mod tests {
 
     #[test]
     fn views_are_false_colour_without_film() {
-        let film = Film { exposure_ev: 5.0, ..Film::default() };
+        let film = Film { exposure_ev: 5.0, ..Film::plain() };
         let redshift = FilmParams::new(&film, View::Redshift, PixelFormat::Rgba8Srgb, true);
         let at = |value: f32| develop(&redshift, [value, 0.0, 0.0, 0.0], 1, 2);
         assert_eq!(at(f32::NAN).as_slice(), [128, 128, 128, 255]);

@@ -28,18 +28,24 @@ fn balanced(m: Balanced, [r, g, b]: [f32; 3]) -> [f32; 3] {
 pub(crate) const ACES_IN: Balanced = [[0.35458, 0.04823], [0.076, 0.01566], [0.0284, 0.13383]];
 pub(crate) const ACES_OUT: Balanced = [[-0.53108, -0.07367], [-0.10208, -0.00605], [-0.00327, -0.07276]];
 
-/// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab, and kept by many
-/// engines): a rational curve between two matrices. Unlike a curve per channel alone it lets bright saturated light go
-/// to white.
+/// The factor on light before the curve, 1 / 0.6, that three.js and others have: the fit alone is that of a dark
+/// cinema, where middle grey is 91 of 255.
+pub(crate) const ACES_EXPOSURE: f32 = 1.0 / 0.6;
+
+/// ACES 1.0 RRT and sRGB ODT as fitted by Stephen Hill (2015; published with M. Pettineo's BakingLab), after a factor
+/// 1 / 0.6, as three.js has it (`ACESFilmicToneMapping`): a rational curve between two matrices. Unlike a curve per
+/// channel alone it lets bright saturated light go to white.
 #[inline(always)]
 pub fn aces(rgb: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.432951) + 0.238081);
-    balanced(ACES_OUT, balanced(ACES_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0))
+    balanced(ACES_OUT, balanced(ACES_IN, rgb.map(|v| v * ACES_EXPOSURE)).map(curve)).map(|v| v.clamp(0.0, 1.0))
 }
 
-/// Troy Sobotka's AgX inset, and its inverse.
-pub(crate) const AGX_IN: Balanced = [[0.0784336, 0.0792237], [0.0423282, 0.0791661], [0.0423757, 0.0784336]];
-pub(crate) const AGX_OUT: Balanced = [[-0.0980332, -0.0990408], [-0.0529035, -0.0989508], [-0.0529776, -0.0980332]];
+/// Linear Rec. 709 -> Rec. 2020 (ITU-R BT.2407, to 4 digits), then the inset of AgX's primaries as Blender 4 has it and
+/// three.js states it; the outset, in Rec. 2020; and Rec. 2020 -> Rec. 709.
+pub(crate) const AGX_IN: Balanced = [[0.3737974, 0.0813810], [0.1404193, 0.1053967], [0.0888171, 0.1788598]];
+pub(crate) const AGX_OUT: Balanced = [[-0.1106066, -0.0164939], [-0.1413298, -0.0164939], [-0.1413298, -0.1106066]];
+pub(crate) const AGX_REC709: Balanced = [[-0.5876, -0.0728], [-0.1246, -0.0083], [-0.0182, -0.1006]];
 /// Stops about middle grey, 0.18, that the curve spans: -10 .. +6.5, in log2 of light.
 pub(crate) const AGX_LOW: f32 = -12.473931;
 pub(crate) const AGX_SPAN: f32 = 16.5;
@@ -50,13 +56,16 @@ pub(crate) const AGX_PIVOT: f32 = 0.606_060_6;
 pub(crate) const AGX_TOE: f32 = 0.5122774;
 pub(crate) const AGX_SHOULDER: f32 = 0.5414642;
 
-/// AgX, base look (T. Sobotka, AgX-S2O3, 2022): inset, log2, a sigmoid, outset; the result is for a display of gamma
-/// 2.2. The sigmoid is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p), with slope 2 at the
-/// pivot, p = 3 below it and 3.25 above; s, negative below, makes it end in 0 and 1: s = ((2 w)^-p ((4 w)^p -
-/// 1))^(-1/p), w = the pivot's distance to that end.
+/// AgX, base look (T. Sobotka, 2022), with the primaries of Blender's, as three.js has it (`AgXToneMapping`): inset,
+/// log2, a sigmoid, outset, all in Rec. 2020, so that saturated light goes to white along a path of even hue; the
+/// result is for a display of gamma 2.2. three.js has a polynomial (B. Wrensch, 2023) for the sigmoid, which is here
+/// itself, because it ends in 0 and 1. It is Jed Smith's: y = 1/2 + s h(2 (x - pivot) / s), h(t) = t / (1 + t^p)^(1/p),
+/// with slope 2 at the pivot, p = 3 below it and 3.25 above; s, negative below, makes it end in 0 and 1: s = ((2 w)^-p
+/// ((4 w)^p - 1))^(-1/p), w = the pivot's distance to that end.
 pub fn agx(rgb: [f32; 3]) -> [f32; 3] {
     let curve = |v: f32| agx_sigmoid(((v.max(1e-10).log2() - AGX_LOW) / AGX_SPAN).clamp(0.0, 1.0));
-    balanced(AGX_OUT, balanced(AGX_IN, rgb).map(curve)).map(|v| v.clamp(0.0, 1.0).powf(2.2))
+    let shown = balanced(AGX_OUT, balanced(AGX_IN, rgb).map(curve)).map(|v| v.max(0.0).powf(2.2));
+    balanced(AGX_REC709, shown).map(|v| v.clamp(0.0, 1.0))
 }
 
 fn agx_sigmoid(x: f32) -> f32 {
@@ -68,6 +77,7 @@ fn agx_sigmoid(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::film::srgb_encode;
     use crate::scene::ToneMap;
 
     fn tone_map(kind: ToneMap, rgb: [f32; 3]) -> [f32; 3] {
@@ -110,12 +120,14 @@ mod tests {
         }
     }
 
-    /// Middle grey: Hill's fit by hand, 0.18 (0.18 + 0.0245786) - 9.0537e-5 over 0.18 (0.18 0.983729 + 0.432951) +
-    /// 0.238081; AgX: one half on a display of gamma 2.2.
+    /// Middle grey: Hill's fit by hand at 0.18 / 0.6 = 0.3, 0.3 (0.3 + 0.0245786) - 9.0537e-5 over 0.3 (0.3 0.983729 +
+    /// 0.432951) + 0.238081; AgX: one half on a display of gamma 2.2. On a display of sRGB these are 127 and 128.
     #[test]
     fn middle_grey_is_where_the_sources_put_it() {
-        assert!((tone_map(ToneMap::Aces, [0.18; 3])[0] - 0.105_591_2).abs() < 1e-5);
-        assert!((tone_map(ToneMap::Agx, [0.18; 3])[0] - 0.5_f32.powf(2.2)).abs() < 1e-5);
+        let (aces, agx) = (tone_map(ToneMap::Aces, [0.18; 3])[0], tone_map(ToneMap::Agx, [0.18; 3])[0]);
+        assert!((aces - 0.213_105_5).abs() < 1e-5, "{aces}");
+        assert!((agx - 0.5_f32.powf(2.2)).abs() < 1e-5, "{agx}");
+        assert_eq!([aces, agx].map(|grey| (srgb_encode(grey) * 255.0) as u32), [127, 128]);
     }
 
     #[test]
@@ -126,22 +138,97 @@ mod tests {
         assert!((f64::from(AGX_LOW) - (0.18_f64.log2() - 10.0)).abs() < 1e-6);
         assert!((scale(pivot, 3.0) - f64::from(AGX_TOE)).abs() < 1e-7);
         assert!((scale(1.0 - pivot, 3.25) - f64::from(AGX_SHOULDER)).abs() < 1e-7);
-        for rgb in [[1.0, 0.2, 0.1], [0.0, 0.7, 0.3]] {
-            let back = balanced(AGX_OUT, balanced(AGX_IN, rgb));
-            assert!((0..3).all(|i| (back[i] - rgb[i]).abs() < 1e-6), "{rgb:?} {back:?}");
+        // Rows of the two published matrices sum to 1 within 1e-4; the product of the rounded ones is ours to that.
+        let product = |row: [f64; 3]| [0, 1, 2].map(|j| (0..3).map(|k| row[k] * TO_REC2020[k][j]).sum::<f64>());
+        let others = [[1, 2], [0, 2], [0, 1]];
+        for (i, row) in INSET.into_iter().map(product).enumerate() {
+            for (k, j) in others[i].into_iter().enumerate() {
+                assert!((f64::from(AGX_IN[i][k]) - row[j]).abs() < 1e-6, "{i} {j}: {row:?}");
+                assert!((f64::from(AGX_OUT[i][k]) - OUTSET[i][j]).abs() < 1e-6, "{i} {j}");
+                assert!((f64::from(AGX_REC709[i][k]) - TO_REC709[i][j]).abs() < 1e-6, "{i} {j}");
+            }
+        }
+    }
+
+    // The matrices of three.js' AgXToneMapping (r184, tonemapping_pars_fragment.glsl.js), by rows.
+    const TO_REC2020: [[f64; 3]; 3] = [[0.6274, 0.3293, 0.0433], [0.0691, 0.9195, 0.0113], [0.0164, 0.0880, 0.8956]];
+    const TO_REC709: [[f64; 3]; 3] =
+        [[1.6605, -0.5876, -0.0728], [-0.1246, 1.1329, -0.0083], [-0.0182, -0.1006, 1.1187]];
+    const INSET: [[f64; 3]; 3] = [
+        [0.856627153315983, 0.0951212405381588, 0.0482516061458583],
+        [0.137318972929847, 0.761241990602591, 0.101439036467562],
+        [0.11189821299995, 0.0767994186031903, 0.811302368396859],
+    ];
+    const OUTSET: [[f64; 3]; 3] = [
+        [1.1271005818144368, -0.11060664309660323, -0.016493938717834573],
+        [-0.1413297634984383, 1.157823702216272, -0.016493938717834257],
+        [-0.14132976349843826, -0.11060664309660294, 1.2519364065950405],
+    ];
+
+    fn product(m: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
+        m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
+    }
+
+    /// Benjamin Wrensch's polynomial for AgX's base curve (Minimal AgX, 2023), which three.js has.
+    fn wrensch(x: f64) -> f64 {
+        [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5].iter().rev().fold(0.0, |sum, c| sum * x + c)
+    }
+
+    /// three.js' AgXToneMapping as it is published, in f64: colours, on a display of sRGB, differ from ours by what its
+    /// polynomial differs from the curve that it is fitted to.
+    #[test]
+    fn agx_is_three_js_agx() {
+        let published = |rgb: [f64; 3]| {
+            let log = product(INSET, product(TO_REC2020, rgb)).map(|v| (v.max(1e-10).log2() + 12.47393) / 16.499999);
+            let shown = product(OUTSET, log.map(|x| wrensch(x.clamp(0.0, 1.0)))).map(|v| v.max(0.0).powf(2.2));
+            product(TO_REC709, shown).map(|v| v.clamp(0.0, 1.0))
+        };
+        let code = |v: f64| f64::from(srgb_encode(v as f32)) * 255.0;
+        let (mut most, mut squares, mut count) = (0.0_f64, 0.0, 0.0);
+        let levels = [1e-4, 1e-3, 0.01, 0.05, 0.18, 0.5, 1.0, 2.0, 5.0, 16.0];
+        for [r, g, b] in levels.iter().flat_map(|r| levels.iter().flat_map(|g| levels.iter().map(|b| [*r, *g, *b]))) {
+            let (ours, theirs) = (agx([r, g, b].map(|v| v as f32)), published([r, g, b]));
+            for c in 0..3 {
+                let off = (code(f64::from(ours[c])) - code(theirs[c])).abs();
+                (most, squares, count) = (most.max(off), squares + off * off, count + 1.0);
+            }
+        }
+        println!("AgX and three.js: {most:.2} of 255 at most, {:.2} r.m.s.", (squares / count).sqrt());
+        assert!(most < 6.0 && (squares / count).sqrt() < 1.2, "{most} {squares}");
+    }
+
+    /// Blender's grey (E. Chow, AgX_LUT_Gen: the curve of slope 2.4 and powers 1.5 through 0.18^(1/2.4) at middle grey,
+    /// for a display of gamma 2.4) is up to 16 of 255 steps darker than ours and three.js', and in deep shadow up to 3
+    /// lighter.
+    #[test]
+    fn blender_s_grey_is_a_little_darker() {
+        let (pivot, middle, slope, power) = (10.0 / 16.5, 0.18_f64.powf(1.0 / 2.4), 2.4, 1.5);
+        let blender = |x: f64| {
+            let (side, w, h) = if x < pivot { (-1.0, pivot, middle) } else { (1.0, 1.0 - pivot, 1.0 - middle) };
+            let scale = side * ((slope * w).powf(-power) * ((slope * w / h).powf(power) - 1.0)).powf(-1.0 / power);
+            let t: f64 = slope * (x - pivot) / scale;
+            (middle + scale * t / (1.0 + t.powf(power)).powf(1.0 / power)).powf(2.4)
+        };
+        assert!(
+            (blender(pivot) - 0.18).abs() < 1e-12 && blender(0.0).abs() < 1e-9 && (blender(1.0) - 1.0).abs() < 1e-9
+        );
+        for i in 0..=330 {
+            let x = f64::from(i) / 330.0;
+            let light = (f64::from(AGX_LOW) + 16.5 * x).exp2() as f32;
+            let [ours, theirs] = [agx([light; 3])[0], blender(x) as f32].map(|v| f64::from(srgb_encode(v)) * 255.0);
+            assert!((-16.0..=3.0).contains(&(theirs - ours)), "at {x}: {theirs} for {ours}");
         }
     }
 
     /// Stephen Hill's own numbers (BakingLab, ACES.hlsl), in f64: whole matrices, whose rows he rounded to a sum
-    /// within 1e-5 of 1.
+    /// within 1e-5 of 1; after the factor of three.js' ACESFilmicToneMapping (r184).
     #[test]
-    fn aces_is_hill_s_fit() {
+    fn aces_is_hill_s_fit_as_three_js_exposes_it() {
         let input = [[0.59719, 0.35458, 0.04823], [0.07600, 0.90834, 0.01566], [0.02840, 0.13383, 0.83777]];
         let output = [[1.60475, -0.53108, -0.07367], [-0.10208, 1.10813, -0.00605], [-0.00327, -0.07276, 1.07602]];
-        let product = |m: [[f64; 3]; 3], v: [f64; 3]| m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2]);
         let fit = |v: f64| (v * (v + 0.0245786) - 0.000090537) / (v * (0.983729 * v + 0.4329510) + 0.238081);
         for rgb in [[0.18, 0.18, 0.18], [1.0, 0.2, 0.05], [0.01, 0.5, 3.0], [12.0, 7.0, 4.0], [0.0, 0.0, 0.3]] {
-            let published = product(output, product(input, rgb).map(fit)).map(|v| v.clamp(0.0, 1.0));
+            let published = product(output, product(input, rgb.map(|v| v / 0.6)).map(fit)).map(|v| v.clamp(0.0, 1.0));
             let ours = aces(rgb.map(|v| v as f32));
             assert!(
                 (0..3).all(|i| (f64::from(ours[i]) - published[i]).abs() < 2e-5),
@@ -150,16 +237,14 @@ mod tests {
         }
     }
 
-    /// AgX's base curve against Benjamin Wrensch's polynomial for it (Minimal AgX, 2023), fitted to Sobotka's table
-    /// with an error of 0.0019 (root mean square): we are within 0.003 of it.
+    /// AgX's base curve against Wrensch's polynomial for it, fitted to Sobotka's table with an error of 0.0019 (root
+    /// mean square): we are within 0.003 of it.
     #[test]
     fn agx_is_sobotka_s_curve() {
-        let polynomial = [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5];
         let mut squares = 0.0;
         for i in 0..=1000 {
             let x = f64::from(i) / 1000.0;
-            let published = polynomial.iter().rev().fold(0.0, |sum, c| sum * x + c);
-            let off = f64::from(agx_sigmoid(x as f32)) - published;
+            let off = f64::from(agx_sigmoid(x as f32)) - wrensch(x);
             assert!(off.abs() < 0.006, "at {x}: {off}");
             squares += off * off / 1001.0;
         }

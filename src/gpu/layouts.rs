@@ -11,10 +11,11 @@ use wgpu::naga::{AddressSpace, Module, TypeInner, front::wgsl};
 /// Every struct that Rust shares with shaders.
 fn shared() -> Vec<Layout> {
     let film = layout!(crate::film::FilmParams as "FilmParams": exposure, tone_map, format, false_colour, view_low,
-        view_scale, transparent, reserved);
+        view_scale, transparent, colour_map);
     let [frame, pass] = uniforms::layouts();
     let [given, start, end] = rays::layouts();
-    vec![film, frame, pass, given, start, end, kerr::layout(), schwarzschild::layout(), bloom::layout()]
+    let [level, beam] = bloom::layouts();
+    vec![film, frame, pass, given, start, end, kerr::layout(), schwarzschild::layout(), level, beam]
 }
 
 type Members<'a> = Vec<(&'a str, usize)>;

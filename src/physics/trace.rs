@@ -6,7 +6,7 @@
 use super::geodesic::{Constants, State};
 use super::integrator::{Method, Quintic, held_inside, step, step_limit};
 use super::observer::LocalFrame;
-use super::orbit::redshift;
+use super::plunge::Matter;
 use crate::allocate::{collected, push};
 use crate::error::Result;
 use arrayvec::ArrayVec;
@@ -73,6 +73,8 @@ pub struct PlaneCrossing {
     pub delay: f64,
     /// Number of this crossing along the ray, from 0.
     pub order: u32,
+    /// u' of `State` there: above 0 on the ray's way in, below 0 on its way out.
+    pub du: f64,
 }
 
 /// The result of tracing a ray.
@@ -300,6 +302,12 @@ pub(crate) fn time_to_horizon(c: &Constants, settings: &Settings, end: &State) -
     land(c, &no_delay, end, (u_plus - end.u) / end.du, ROUNDING, |s| (s.u - u_plus, s.du)).1
 }
 
+/// 1/r of the innermost crossings that are kept, about a hole of the outer horizon `r_plus`: bhr.h promises them down
+/// to r+ (1 + 1e-5).
+pub fn innermost_u(r_plus: f64) -> f64 {
+    1.0 / (r_plus * (1.0 + 1e-5))
+}
+
 /// The crossing of the plane within a step, and its tau from the step's begin.
 pub(crate) fn find_crossing(
     c: &Constants,
@@ -311,13 +319,12 @@ pub(crate) fn find_crossing(
     let (from, to) = (segment.from, segment.to);
     let guess = segment.h * Quintic::of_n_z(c, from, to, segment.h).root();
     let (state, h) = land(c, s, from, guess, ROUNDING, |s| (s.n.z, s.dn.z));
-    // bhr.h promises crossings down to r+ (1 + 1e-5); past infinity, u <= 0, there are none.
-    let outermost = 1.0 / (c.r_plus * (1.0 + 1e-5));
-    if !(state.u > 0.0 && state.u <= outermost) {
+    // Past infinity, u <= 0, there are none.
+    if !(state.u > 0.0 && state.u <= innermost_u(c.r_plus)) {
         return None;
     }
     let delay = if s.delay { c.retardation(observer, &state) } else { 0.0 };
-    Some((PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order }, h))
+    Some((PlaneCrossing { u: state.u, azimuth: state.azimuth(), delay, order, du: state.du }, h))
 }
 
 /// Traces along the look direction `n` (unit, components in `frame`). Where no light can come from that direction it
@@ -352,13 +359,10 @@ pub fn trace_look_visited(
 }
 
 impl PlaneCrossing {
-    /// g = nu(observer of the local frame) / nu(matter on its circular orbit); NaN inside that orbit's ISCO
-    /// (`isco_radius`).
-    pub fn redshift(&self, c: &Constants, retrograde: bool, isco_radius: f64) -> f64 {
-        if self.u * isco_radius > 1.0 {
-            return f64::NAN;
-        }
-        redshift(c.a, self.u, retrograde, c.energy, c.angular_momentum, c.nu_local)
+    /// g = nu(observer of the local frame) / nu(matter); NaN where there is no matter: inside the ISCO, unless it
+    /// plunges.
+    pub fn redshift(&self, c: &Constants, matter: &Matter) -> f64 {
+        if matter.is_at(self.u) { matter.redshift(c, self.u, self.du) } else { f64::NAN }
     }
 }
 

@@ -43,14 +43,14 @@ impl Motion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     pub projection: Projection,
-    /// Default (0, -30, 5).
+    /// Default (0, 26, 2.5).
     pub position: DVec3,
     /// Default: towards the hole.
     pub forward: DVec3,
     /// Default +z.
     pub up: DVec3,
     /// Radians. `Perspective`: full vertical angle, in (0, pi); `Fisheye`: angle across the circle, in (0, 2 pi].
-    /// Default pi / 3.
+    /// Default pi / 4.
     pub fov_y: f64,
     pub motion: Motion,
     /// v / c against the local static observer, |v| < 1; components as for a direction given at `position` (bhr.h).
@@ -59,13 +59,13 @@ pub struct Camera {
 
 impl Default for Camera {
     fn default() -> Self {
-        let position = DVec3::new(0.0, -30.0, 5.0);
+        let position = DVec3::new(0.0, 26.0, 2.5);
         Self {
             projection: Projection::Perspective,
             position,
             forward: -position,
             up: DVec3::Z,
-            fov_y: std::f64::consts::FRAC_PI_3,
+            fov_y: std::f64::consts::FRAC_PI_4,
             motion: Motion::Static,
             velocity: DVec3::ZERO,
         }

@@ -112,7 +112,7 @@ impl Scene {
     pub fn emitters(&self) -> Emitters {
         let light = self.view == View::Light;
         let disk = self.disk.and_then(|disk| ThinDisk::new(&disk, self.hole.spin)).map(|disk| ThinDisk {
-            turbulence: Turbulence::new(&disk.disk, disk.matter_spin, &self.when()).filter(|_| light),
+            turbulence: Turbulence::new(&disk.disk, disk.u, disk.matter_spin, &self.when()).filter(|_| light),
             ..disk
         });
         Emitters { disk, haze: self.haze.filter(|_| light) }

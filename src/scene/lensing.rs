@@ -45,8 +45,8 @@ impl Scene {
     /// observer at `frame`.
     pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_threshold: KerrThreshold) -> Lensing {
         let needs = self.emitters().needs();
-        // METRIC shows places where no disk is; tables end before. They hold no steps.
-        if self.quality.method != Method::Auto || self.view == View::Metric || needs.parts {
+        // METRIC shows places where no disk is; tables end before. They hold no steps, and no headings.
+        if self.quality.method != Method::Auto || self.view == View::Metric || needs.parts || needs.headings {
             return Lensing::Traced;
         }
         let work = pixels.saturating_mul(self.quality.samples_per_pixel.into());
@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn tables_are_for_frames_that_pay_for_them() {
-        let mut scene = Scene::default();
+        let mut scene = Scene::plain();
         let lensing = |scene: &Scene, pixels| {
             let [cpu, gpu] = [KerrThreshold::CPU, KerrThreshold::GPU]
                 .map(|worth| scene.lensing(&scene.observer().unwrap().frame, pixels, worth));

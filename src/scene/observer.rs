@@ -126,14 +126,6 @@ impl Lens {
         let steps = self.mapping.changes(x, y).map(|step| self.axes * step);
         (look, steps.map(|step| (step - look * look.dot(step)) * inverse))
     }
-
-    /// The direction on the frame, in pixels right and down and of any length, at right angles to the circle about
-    /// `centre`, a look direction in the frame, that runs through position (x, y).
-    pub fn across(&self, centre: DVec3, [x, y]: [f64; 2]) -> [f64; 2] {
-        let (look, changes) = self.look_direction_and_changes(x, y);
-        let seen = self.observer.aberrate(look);
-        changes.map(|change| centre.dot(self.observer.aberrate_change(seen, change)))
-    }
 }
 
 /// The components of a host's direction in `frame`, unit; `None` when it is zero or not finite.

@@ -61,6 +61,9 @@ pub struct Quality {
     /// cannot choose this.
     #[doc(hidden)]
     pub keep_light: Option<bool>,
+    /// Whether a GPU's sampler filters sky maps; `None`: on hardware. The host cannot choose this.
+    #[doc(hidden)]
+    pub map_sampler: Option<bool>,
 }
 
 impl Default for Quality {
@@ -79,6 +82,7 @@ impl Default for Quality {
             anticipates: None,
             refines: true,
             keep_light: None,
+            map_sampler: None,
         }
     }
 }

@@ -35,7 +35,8 @@ pub struct Crossing {
     pub radius: f64,
     /// Azimuth in the chart, (-pi, pi].
     pub azimuth: f64,
-    /// g = nu(camera) / nu(emitter on the disk's circular orbit); NaN inside the ISCO.
+    /// g = nu(camera) / nu(the disk's matter), on its circular orbit or, inside the ISCO, plunging; NaN there if it
+    /// does not plunge.
     pub redshift: f64,
     /// Coordinate time since the photon left, scene lengths; NaN for an observer inside the horizon.
     pub delay: f64,

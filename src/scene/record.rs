@@ -4,6 +4,7 @@
 use super::refine::Edge;
 use crate::emit::medium::Media;
 use crate::emit::{Crossing, EmissionPoint};
+use crate::physics::geodesic::Constants;
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use arrayvec::ArrayVec;
 use glam::DVec3;
@@ -21,6 +22,10 @@ pub struct Record {
     /// E and L, scaled so that the local frame's observer measures 1.
     pub energy: f64,
     pub angular_momentum: f64,
+    /// |p_theta| where the ray crosses the plane, which is sqrt(Q), M, of light that has frequency 1 at the camera. At
+    /// a crossing `polar_momentum` u g is |cosine| of its angle to the plane's normal, as the matter there sees it:
+    /// |p_theta| / r over the frequency that it measures. 0 where no emitter asks for it.
+    pub polar_momentum: f64,
     /// Integration steps of the pixel's own ray; 0 where it was looked up.
     pub steps: u32,
     /// 1/r of the first crossing of the plane wherever it is, 0 without one; in the METRIC view only.
@@ -44,6 +49,7 @@ impl Record {
             sky_redshift: f64::NAN,
             energy: 1.0,
             angular_momentum: 0.0,
+            polar_momentum: 0.0,
             steps: 0,
             plane_u: 0.0,
             beside_disk: 0,
@@ -63,11 +69,18 @@ impl Record {
         self.sky_redshift = f64::NAN;
         self.energy = 1.0;
         self.angular_momentum = 0.0;
+        self.polar_momentum = 0.0;
         self.steps = 0;
         self.plane_u = 0.0;
         self.beside_disk = 0;
         self.edge = Edge::None;
     }
+}
+
+/// `Record::polar_momentum` of a ray. `frequency_ratio`: nu(camera) / nu(local frame). (Rays of which Carter's constant
+/// is below 0 cross no plane.)
+pub fn polar_momentum(c: &Constants, frequency_ratio: f64) -> f64 {
+    c.carter.max(0.0).sqrt() / (c.nu_local * frequency_ratio)
 }
 
 /// A footprint that nothing is known of: only the mean sky can stand for it.

@@ -2,17 +2,22 @@
 //! covers. Shared by both tracers (shaders/records/record.wgsl and shaders/refine/refine.wgsl mirror it); knows no rays
 //! and no light.
 //!
-//! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, and misses rings
-//! thinner than the pixel. Two kinds of pixels get more rays:
+//! One ray through a pixel's centre cannot tell how much of the pixel an edge leaves to either side, misses rings
+//! thinner than the pixel, and has no footprint that holds all over a pixel beside the shadow, where the sky and every
+//! image of the disk wind up as the logarithm of the distance from the critical curve (Ohanian 1987, Am. J. Phys. 55,
+//! 428). Two kinds of pixels get more rays:
 //!
-//! - An edge of the disk ([`Edge::Disk`]): u of a crossing changes evenly there, so a few rays tell it all over the
-//!   pixel, and with it the share of each ray's cell in which it lies between the disk's radii. That share of the
-//!   disk's opacity is composed as usual.
-//! - The critical curve ([`Edge::Curve`]), which images of higher orders approach by e^-pi each (Ohanian 1987, Am. J.
-//!   Phys. 55, 428), so that those of order 2 and more share a pixel with it: many rays, which count as they fall where
-//!   u does not change evenly.
+//! - An edge of the disk, or the neighbourhood of the critical curve ([`Edge::Disk`]): a ray for each quarter of the
+//!   pixel.
+//! - The critical curve itself, or an image of the disk that does not change evenly over the pixel ([`Edge::Curve`]):
+//!   rays in strips along the curve, the narrower the nearer they are to it ([`Strips`]), so that images of high order
+//!   are found however narrow.
+//!
+//! In both each ray stands for a cell of its own, with neighbours. Differences between neighbours tell how the sky and
+//! the crossings of the disk's plane change over the cell, however the rays were found: with that the sky is filtered
+//! over the cell, and the share of it found in which a crossing lies between the disk's radii.
 
-use super::frame::lattice;
+use glam::DVec3;
 
 /// The kind of edge that runs through a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
@@ -26,24 +31,49 @@ pub enum Edge {
     Curve,
 }
 
-/// The number of samples of a pixel of either kind. The many also serve pixels on the disk where u does not change
-/// evenly.
+/// The number of samples of a pixel of either kind: its quarters, and two in each of the strips along the curve.
 pub const EDGE_SAMPLES: u32 = 4;
 pub const CURVE_SAMPLES: u32 = 32;
+pub(crate) const STRIPS: u32 = CURVE_SAMPLES / 2;
+/// Strips get narrower towards the curve down to about this width, pixels: images that are narrower add less than a
+/// hundredth to a pixel's light.
+pub(crate) const NARROWEST: f64 = 0.01;
+/// How densely the captured side of the curve is sampled, the other side being 1; it shows little.
+pub(crate) const CAPTURED_DENSITY: f64 = 0.5;
+/// The fewest strips on a side of the curve that the pixel has any of.
+pub(crate) const FEWEST_STRIPS: u32 = 3;
+/// The distance from the curve, pixels, from which on strips are even; that below which they bend with the curve.
+pub(crate) const FARTHEST: f64 = 16.0;
+pub(crate) const BENT: f64 = 2.0;
+/// The curve is searched for so far, pixels, on both sides of a pixel's centre, by so many steps of the Illinois method
+/// (Dowell & Jarratt 1971).
+pub(crate) const SEARCH_REACH: f64 = 2.0;
+pub(crate) const SEARCH_STEPS: u32 = 5;
+/// Where the level is even, one step of Newton's method ends so near to the curve, pixels, that no search is needed.
+pub(crate) const EVEN_LEVEL: f64 = 0.02;
+/// Half of the distance, pixels, over which the level of the critical curve is differenced.
+pub(crate) const LEVEL_STEP: f64 = 0.25;
 /// Relative difference of u of crossings up to which the footprint of one serves for the other.
 pub const SAME_CROSSING: f64 = 1e-2;
 
-/// Half a pixel, and half as much again: how far an edge may be from the pixel's centre.
-pub(crate) const EDGE_REACH: f64 = 0.75;
+/// Half a pixel, and a little more because u is not quite linear: how far an edge may be from the pixel's centre.
+pub(crate) const EDGE_REACH: f64 = 0.6;
 /// The relative change of u from pixel to pixel above which the disk's mean light in the pixel is not that at its
 /// centre.
 pub(crate) const STEEP_CHANGE: f64 = 0.1;
-/// Distances to the critical curve, pixels, below which a looked-up pixel is `Curve` or `Disk`.
+/// The distance to the critical curve, pixels, below which a looked-up pixel is `Curve`.
 pub(crate) const CURVE_REACH: f64 = 0.85;
-pub(crate) const RINGS_REACH: f64 = 3.0;
+/// Turns of the sky direction from pixel to pixel, rad, above which a pixel is `Curve` or `Disk`. Near the curve the
+/// direction goes as -ln of the distance from it (of a hole without spin), so that it turns by one radian a pixel at a
+/// distance of one pixel; the thin images of higher orders lie where it turns fast.
+pub(crate) const FAST_TURN: f64 = 0.75;
+pub(crate) const TURN: f64 = 0.25;
+/// The change of u from pixel to pixel, in widths of the fading of a disk's edge, above which the edge shows: below it
+/// little of the disk's light comes into a pixel from beyond the edge.
+pub(crate) const FADING_CHANGE: f64 = 0.1;
 /// The change of u between the samples of a pixel of `EDGE_SAMPLES` that still counts as even: as a share of the disk's
 /// own range of u, and for the direct image relative to u, because there the light itself may not change evenly.
-pub(crate) const EVEN_CHANGE: f64 = 0.5;
+pub(crate) const EVEN_CHANGE: f64 = 0.25;
 pub(crate) const DIRECT_CHANGE: f64 = 0.25;
 
 /// 1/r between which crossings matter to pixels beside the disk's edges `disk_u`.
@@ -51,13 +81,31 @@ pub fn reached_u([outer, inner]: [f64; 2]) -> [f64; 2] {
     [outer / 1.5, inner * 1.15]
 }
 
-/// Whether an edge of the disk runs through the pixel whose crossing lies at `u`, or u changes steeply there;
-/// `change`: of u to the next pixel right and down.
-pub fn near_disk_edge(u: f64, change: [f64; 2], disk_u: [f64; 2]) -> bool {
+/// The disk's edges, as pixels beside them see them.
+#[derive(Clone, Copy, Debug)]
+pub struct DiskEdges {
+    /// 1/r of the outer and the inner one.
+    pub u: [f64; 2],
+    /// The change of u to the next pixels below which each does not show, because the disk fades out there: a pixel's
+    /// centre tells as much as its quarters.
+    pub least: [f64; 2],
+}
+
+impl DiskEdges {
+    /// `fading`: over how much of 1/r the disk fades out at each, 0 where it ends sharply.
+    pub fn new(u: [f64; 2], fading: [f64; 2]) -> Self {
+        Self { u, least: fading.map(|width| FADING_CHANGE * width) }
+    }
+}
+
+/// Whether an edge of the disk that shows runs through the pixel whose crossing lies at `u`, or u changes steeply
+/// there; `change`: of u to the next pixel right and down.
+pub fn near_disk_edge(u: f64, change: [f64; 2], edges: &DiskEdges) -> bool {
     let sum = change[0].abs() + change[1].abs();
-    let [far, near] = disk_u;
+    let [far, near] = edges.u;
     let steep = u >= far && u <= near && is_steep(u, sum);
-    steep || disk_u.iter().any(|edge| (u - edge).abs() < EDGE_REACH * sum)
+    let shows = |(edge, least): (&f64, &f64)| (u - edge).abs() < EDGE_REACH * sum && sum >= *least;
+    steep || edges.u.iter().zip(&edges.least).any(shows)
 }
 
 /// Whether the light of a crossing at `u` that changes by so much to the next pixels is not that at the pixel's centre.
@@ -65,14 +113,25 @@ pub fn is_steep(u: f64, change: f64) -> bool {
     change > STEEP_CHANGE * u
 }
 
-/// The edge of a looked-up pixel that lies `curve` pixels from the critical curve and that nothing hides; `rings`:
-/// there is a disk, whose rings lie outside the curve as the pixel does.
-pub fn looked_up_edge(on_edge: bool, rings: bool, curve: f64) -> Edge {
+/// The edge of a looked-up pixel that lies `curve` pixels from the critical curve and that nothing hides; `turn`: of
+/// its sky direction to the next pixels, 0 where its ray is captured.
+pub fn looked_up_edge(on_edge: bool, turn: f64, curve: f64) -> Edge {
+    let on_edge = if on_edge { Edge::Disk } else { Edge::None };
+    if curve < CURVE_REACH { Edge::Curve } else { turning_edge(turn).max(on_edge) }
+}
+
+/// The edge of a pixel whose sky direction turns by so much, rad, to the next pixels.
+pub fn turning_edge(turn: f64) -> Edge {
     match () {
-        () if curve < CURVE_REACH => Edge::Curve,
-        () if on_edge || (rings && curve < RINGS_REACH) => Edge::Disk,
+        () if turn > FAST_TURN => Edge::Curve,
+        () if turn > TURN => Edge::Disk,
         () => Edge::None,
     }
+}
+
+/// The turn of the sky direction to the next pixels, rad.
+pub fn turn_of(footprint: [DVec3; 2]) -> f64 {
+    footprint[0].length().hypot(footprint[1].length())
 }
 
 /// The place in its pixel, 0 .. 1, of the middle of quarter `index`.
@@ -80,88 +139,173 @@ pub fn quarter_place(index: u32) -> [f64; 2] {
     [index & 1, index >> 1 & 1].map(|side| 0.25 + 0.5 * f64::from(side))
 }
 
-/// The place in its pixel, 0 .. 1, of sample `index` of `CURVE_SAMPLES`: the strips between samples at right angles to
-/// `across` are of equal area, so that each pixel gets the same share of its samples of a thin ring at right angles to
-/// it; along the strips samples follow steps of the golden ratio.
-pub fn curve_place(index: u32, across: [f64; 2]) -> [f64; 2] {
-    let [share, along] = lattice(index, CURVE_SAMPLES);
-    let length = across[0].hypot(across[1]);
-    // A smaller length is rounding, at the very centre of the shadow.
-    let normal = if length > 1e-15 { across.map(|c| c / length) } else { [1.0, 0.0] };
-    let tangent = [-normal[1], normal[0]];
-    let foot = normal.map(|c| c * level_of_share(share, normal));
-    // Where the line leaves the pixel.
-    let (mut begin, mut end) = (-1.0_f64, 1.0_f64);
-    for c in 0..2 {
-        if tangent[c].abs() > 1e-6 {
-            let [one, other] = [-0.5, 0.5].map(|side| (side - foot[c]) / tangent[c]);
-            begin = begin.max(one.min(other));
-            end = end.min(one.max(other));
-        }
-    }
-    let at = begin + (end - begin) * along;
-    [0, 1].map(|c| 0.5 + foot[c] + tangent[c] * at)
+/// The strips of a pixel along the critical curve. Distances are in pixels, positive where rays escape.
+#[derive(Clone, Copy, Debug)]
+pub struct Strips {
+    /// Unit vector from the curve outwards, in pixels right and down.
+    pub(crate) normal: [f64; 2],
+    /// The distance of the pixel's centre.
+    pub(crate) level: f64,
+    /// `spread` of the least and the greatest distance in the pixel.
+    range: [f64; 2],
+    /// The number of strips where rays are captured: those before the others.
+    captured: u32,
 }
 
-/// The level of which `share` is `share_below`; `slope` is not 0.
-pub(crate) fn level_of_share(share: f64, slope: [f64; 2]) -> f64 {
-    let [x, y] = slope.map(f64::abs);
-    let (most, least) = (x.max(y), x.min(y));
-    let rest = share.min(1.0 - share);
-    let corner = (2.0 * most * least * rest).sqrt();
-    let size = if 2.0 * most * rest >= least { (0.5 - rest) * most } else { 0.5 * (most + least) - corner };
-    size.copysign(share - 0.5)
+/// A sample's part of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell {
+    /// Place in the pixel, 0 .. 1, were the curve straight.
+    pub place: [f64; 2],
+    /// The distance from the curve, pixels, that it is meant to have.
+    pub distance: f64,
+    /// The cell's share of the pixel.
+    pub weight: f64,
 }
+
+/// The scale on which strips are of equal width: even near the curve, logarithmic farther away.
+pub(crate) fn spread(distance: f64) -> f64 {
+    (distance / NARROWEST).asinh()
+}
+
+impl Strips {
+    /// `level`: the distance of the pixel's centre from the curve; `gradient`, of any length, points away from it.
+    pub fn new(level: f64, gradient: [f64; 2]) -> Self {
+        let length = gradient[0].hypot(gradient[1]);
+        let normal = if length > 0.0 { gradient.map(|c| c / length) } else { [1.0, 0.0] };
+        let level = level.clamp(-FARTHEST, FARTHEST);
+        let reach = 0.5 * (normal[0].abs() + normal[1].abs());
+        let range = [spread(level - reach), spread(level + reach)];
+        let (inside, outside) = ((-range[0]).max(0.0) * CAPTURED_DENSITY, range[1].max(0.0));
+        let captured = match () {
+            () if range[0] >= 0.0 => 0,
+            () if range[1] <= 0.0 => STRIPS,
+            () => {
+                let share = f64::from(STRIPS) * inside / (inside + outside);
+                (share.round() as u32).clamp(FEWEST_STRIPS, STRIPS - FEWEST_STRIPS)
+            }
+        };
+        Self { normal, level, range, captured }
+    }
+
+    /// The distance at `strip`, a whole number at the begin of one of those on the side `outside` of the curve.
+    fn distance(&self, outside: bool, strip: f64) -> f64 {
+        let [low, high] = self.range;
+        let captured = f64::from(self.captured);
+        let (first, last, share) = if outside {
+            (low.max(0.0), high, (strip - captured) / (f64::from(STRIPS) - captured))
+        } else {
+            (low, high.min(0.0), strip / captured)
+        };
+        NARROWEST * (first + (last - first) * share).sinh()
+    }
+
+    pub fn cell(&self, index: u32) -> Cell {
+        let strip = f64::from(index / 2 % STRIPS);
+        let outside = index / 2 % STRIPS >= self.captured;
+        let [begin, middle, end] = [0.0, 0.5, 1.0].map(|part| self.distance(outside, strip + part) - self.level);
+        let tangent = [-self.normal[1], self.normal[0]];
+        let foot = self.normal.map(|c| c * middle);
+        // Where the line leaves the pixel.
+        let (mut first, mut last) = (-1.0_f64, 1.0_f64);
+        for c in 0..2 {
+            if tangent[c].abs() > 1e-6 {
+                let [one, other] = [-0.5, 0.5].map(|side| (side - foot[c]) / tangent[c]);
+                first = first.max(one.min(other));
+                last = last.min(one.max(other));
+            }
+        }
+        let at = first + (last - first) * (0.25 + 0.5 * f64::from(index & 1));
+        Cell {
+            place: [0, 1].map(|c| 0.5 + foot[c] + tangent[c] * at),
+            distance: self.level + middle,
+            weight: 0.5 * (share_below(end, self.normal) - share_below(begin, self.normal)),
+        }
+    }
+
+    /// The place beside a cell's sample where the curve would be, were it straight; in the pixel or not.
+    pub fn foot(&self, cell: &Cell) -> [f64; 2] {
+        [0, 1].map(|c| cell.place[c] - self.normal[c] * cell.distance)
+    }
+
+    /// The place of a cell's sample where that foot is `distance` away from the curve.
+    pub fn corrected(&self, cell: &Cell, distance: f64) -> [f64; 2] {
+        // Far from the curve it does not matter how it bends.
+        let off = if self.level.abs() < BENT { distance.clamp(-0.25, 0.25) } else { 0.0 };
+        [0, 1].map(|c| cell.place[c] - self.normal[c] * off)
+    }
+
+    /// The samples beside a sample of a strip, before and after it along and across the curve, on the same side of it.
+    pub fn beside(&self, index: u32) -> [[Option<u32>; 2]; 2] {
+        let strip = index / 2 % STRIPS;
+        let same_side = |other: u32| (other >= self.captured) == (strip >= self.captured);
+        let before = strip.checked_sub(1).filter(|other| same_side(*other)).map(|_| index - 2);
+        let after = Some(strip + 1).filter(|other| *other < STRIPS && same_side(*other)).map(|_| index + 2);
+        [[(index & 1 == 1).then(|| index - 1), (index & 1 == 0).then(|| index + 1)], [before, after]]
+    }
+}
+
+/// The quarters beside a quarter, before and after it in its row and its column.
+pub fn beside_quarter(index: u32) -> [[Option<u32>; 2]; 2] {
+    [1, 2].map(|side| [(index & side != 0).then(|| index - side), (index & side == 0).then(|| index + side)])
+}
+
+/// The least slope that counts: its square is a normal number in f32, which GPUs do not take for 0.
+pub(crate) const LEAST_SLOPE: f64 = 1e-15;
 
 /// Share of a cell, 1 x 1 about its middle, in which `slope` . (x, y) <= `level`: the half-plane cuts a corner off, or
 /// two sides.
 pub(crate) fn share_below(level: f64, slope: [f64; 2]) -> f64 {
     let [x, y] = slope.map(f64::abs);
-    let (most, least) = (x.max(y).max(1e-20), x.min(y));
+    let (most, least) = (x.max(y).max(LEAST_SLOPE), x.min(y));
     if level.abs() <= 0.5 * (most - least) {
         return 0.5 + level / most;
     }
     let corner = (0.5 * (most + least) - level.abs()).max(0.0);
-    let cut = corner * corner / (2.0 * most * least.max(1e-20));
+    let cut = corner * corner / (2.0 * most * least.max(LEAST_SLOPE));
     if level > 0.0 { 1.0 - cut } else { cut }
 }
 
-/// u of the crossing of one order at each sample of a pixel of `EDGE_SAMPLES`, row by row; 0 where there is none.
+/// Share of a sample's cell in which its crossing at `u` lies on the disk, and the middle of what u is there: light
+/// that vanishes at the disk's edge does not all over the cell. u changes evenly over the cell; `beside`: u of the
+/// crossing of this order before and after it in both directions, 0 where there is none.
+pub fn covered(u: f64, beside: [[f64; 2]; 2], [outer, inner]: [f64; 2]) -> (f64, f64) {
+    let slope = beside.map(|pair| match pair.map(|other| other > 0.0) {
+        [true, true] => 0.5 * (pair[1] - pair[0]),
+        [true, false] => u - pair[0],
+        [false, true] => pair[1] - u,
+        [false, false] => 0.0,
+    });
+    let share = (share_below(inner - u, slope) - share_below(outer - u, slope)).clamp(0.0, 1.0);
+    let half = 0.5 * (slope[0].abs() + slope[1].abs());
+    let [low, high] = [(u - half).max(outer), (u + half).min(inner)];
+    // The less of the cell is left out, the less does that move the middle of the rest.
+    let part = (2.0 * (1.0 - share)).min(1.0);
+    (share, if low < high { u + part * (0.5 * (low + high) - u) } else { u })
+}
+
+/// u of the crossing of one order in each quarter of a pixel, row by row; 0 where there is none.
 pub struct Crossings {
     pub u: [f64; 4],
     pub disk_u: [f64; 2],
 }
 
 impl Crossings {
-    /// Share of the cell of a sample in which the crossing lies on the disk, u changing evenly over the cell.
-    pub fn covered_share(&self, index: usize) -> f64 {
-        let [outer, inner] = self.disk_u;
-        let at = |i: usize| self.u.get(i).copied().unwrap_or(0.0);
-        let u = at(index);
-        let [left, right, above, below] = [at(index & !1), at(index | 1), at(index & !2), at(index | 2)];
-        if left.min(right).min(above).min(below) <= 0.0 {
-            return f64::from(u8::from(u >= outer && u <= inner));
-        }
-        let slope = [right - left, below - above];
-        (share_below(inner - u, slope) - share_below(outer - u, slope)).clamp(0.0, 1.0)
-    }
-
     /// Whether u may be on the disk and does not change evenly from sample to sample. `direct`: they are of order 0.
     pub fn are_ragged(&self, direct: bool) -> bool {
         let [far, near] = self.disk_u;
         let Some((low, high, all)) = self.range() else { return false };
         let span = high - low;
         if !all {
-            // A crossing that some do not have may be anywhere.
-            return 2.0 * high >= far && 0.7 * low <= near;
+            // A crossing that some do not have goes through infinity, u = 0, on its way to them.
+            return 2.0 * high >= far;
         }
         let even = (EVEN_CHANGE * (near - far)).min(if direct { DIRECT_CHANGE * high } else { f64::INFINITY });
         span > even && high + span >= far && low - span <= near
     }
 
-    /// Whether the disk covers all of the pixel.
-    pub fn cover(&self) -> bool {
-        let [far, near] = self.disk_u;
+    /// Whether all of the pixel lies where the disk hides what is behind it: 1/r within `opaque_u`.
+    pub fn cover(&self, [far, near]: [f64; 2]) -> bool {
         self.range().is_some_and(|(low, high, all)| {
             let span = high - low;
             all && low - span >= far && high + span <= near
@@ -202,48 +346,83 @@ mod tests {
         }
     }
 
+    /// Curves in all directions and at all distances: cells fill the pixel, samples lie in it, none across the curve
+    /// from others of its side, and mirrored pixels have mirrored samples.
     #[test]
-    fn levels_are_those_of_shares() {
-        for slope in [[1.0, 0.0], [0.3, -1.0], [-0.7, -0.7], [0.0, 1e-3], [2.0, 0.01]] {
-            for share in [1e-6, 0.002, 0.1, 0.3, 0.5, 0.7, 0.999] {
-                let found = share_below(level_of_share(share, slope), slope);
-                assert!((found - share).abs() < 1e-12, "{slope:?} {share}: {found}");
-            }
-        }
-    }
-
-    /// Half-planes in all directions: the samples tell the area, and best across the curve.
-    #[test]
-    fn samples_across_the_curve_are_even_in_all_directions() {
+    fn strips_fill_the_pixel_on_both_sides_of_the_curve() {
         for turn in 0..36 {
-            let across = DVec2::from_angle(TAU * f64::from(turn) / 36.0 + 0.01);
-            let places = (0..CURVE_SAMPLES).map(|i| curve_place(i, across.into()));
-            let places: Vec<_> = places.map(|place| DVec2::from(place) - 0.5).collect();
-            assert!(places.iter().all(|place| place.abs().max_element() < 0.5));
-            for other in 0..36 {
-                let normal = DVec2::from_angle(TAU * f64::from(other) / 36.0 + 0.01);
-                for level in [-0.4, -0.2, 0.0, 0.1, 0.3] {
-                    let counted = places.iter().filter(|place| place.dot(normal) <= level).count() as f64;
-                    let error = counted / places.len() as f64 - share_below(level, normal.into());
-                    let limit = if other == turn { 0.5 } else { 3.0 } / places.len() as f64;
-                    assert!(error.abs() <= limit + 1e-9, "across {across} along {normal} {level}: {error}");
+            let normal = DVec2::from_angle(TAU * f64::from(turn) / 36.0 + 0.01);
+            for level in [-1e9, -2.0, -0.7, -0.4, -1e-3, 0.0, 1e-6, 0.3, 0.69, 0.8, 3.0, 1e9] {
+                let strips = Strips::new(level, (normal * 7.0).into());
+                let mirrored = Strips::new(level, [-7.0 * normal.x, 7.0 * normal.y]);
+                let cells: Vec<_> = (0..CURVE_SAMPLES).map(|i| strips.cell(i)).collect();
+                let total = cells.iter().map(|cell| cell.weight).sum::<f64>();
+                assert!((total - 1.0).abs() < 1e-9 && cells.iter().all(|cell| cell.weight >= 0.0), "{level}: {total}");
+                for (cell, index) in cells.iter().zip(0..) {
+                    let place = DVec2::from(cell.place) - 0.5;
+                    assert!(place.abs().max_element() < 0.5 + 1e-9, "{level} {normal}: {place}");
+                    if level.abs() < FARTHEST {
+                        assert!((place.dot(normal) + level - cell.distance).abs() < 1e-9);
+                    }
+                    assert!((cell.distance > 0.0) == (index / 2 >= strips.captured));
+                    let twin = mirrored.cell(index ^ 1).place;
+                    assert!((twin[0] - 1.0 + cell.place[0]).abs() < 1e-12 && (twin[1] - cell.place[1]).abs() < 1e-12);
+                    for other in strips.beside(index).into_iter().flatten().flatten() {
+                        assert!(strips.beside(other).into_iter().flatten().flatten().any(|back| back == index));
+                        assert!((cells[other as usize].distance > 0.0) == (cell.distance > 0.0));
+                    }
                 }
+                // The mean of the samples' places is the pixel's centre, but for what strips are curved by.
+                let mean: DVec2 = cells.iter().map(|cell| cell.weight * (DVec2::from(cell.place) - 0.5)).sum();
+                assert!(mean.length() < 0.05, "{level} {normal}: {mean}");
             }
         }
     }
 
+    /// A ring that is narrow in ln(distance): its light is found wherever it lies.
     #[test]
-    fn the_cover_of_an_even_edge_is_exact_and_of_one_that_jumps_is_counted() {
+    fn narrow_rings_are_integrated() {
+        let disk_u = [0.05, 0.15];
+        for (step, width) in (0..64).flat_map(|step| [0.003, 0.03, 0.3].map(|width| (step, width))) {
+            let level = -0.4 + f64::from(step) / 80.0;
+            let strips = Strips::new(level, [0.9, 0.5]);
+            // u falls with the logarithm of the distance, through the disk's range over one e-fold.
+            let u_at = |distance: f64| 0.15 - 0.1 * (distance / width).ln();
+            let u: Vec<f64> = (0..CURVE_SAMPLES)
+                .map(|i| strips.cell(i).distance)
+                .map(|d| if d > 0.0 { u_at(d).clamp(0.0, 0.33) } else { 0.0 })
+                .collect();
+            let found: f64 = (0..CURVE_SAMPLES)
+                .filter(|i| u[*i as usize] > 0.0)
+                .map(|i| {
+                    let beside = strips.beside(i).map(|pair| pair.map(|o| o.map_or(0.0, |o| u[o as usize])));
+                    strips.cell(i).weight * covered(u[i as usize], beside, disk_u).0
+                })
+                .sum();
+            let at = |distance: f64| share_below(distance - level, strips.normal);
+            let truth = at(width * 1.0_f64.exp()) - at(width);
+            assert!((found - truth).abs() < 0.1 * truth + 4e-3, "{level} {width}: {found} of {truth}");
+        }
+    }
+
+    #[test]
+    fn the_cover_of_an_even_edge_is_exact_and_missing_crossings_are_at_infinity() {
         let disk_u = [0.05, 0.15];
         // u = 0.05 where x + 0.4 y = 0.7.
         let plane = |[x, y]: [f64; 2]| 0.05 + 0.02 * (x + 0.4 * y - 0.7);
         let u = [0, 1, 2, 3].map(|index| plane(quarter_place(index)));
-        let crossings = Crossings { u, disk_u };
-        let mean = (0..4).map(|index| crossings.covered_share(index)).sum::<f64>() / 4.0;
+        let share = |u: [f64; 4], index: u32| {
+            let beside = beside_quarter(index).map(|pair| pair.map(|other| other.map_or(0.0, |i| u[i as usize])));
+            covered(u[index as usize], beside, disk_u).0
+        };
+        let mean = (0..4).map(|index| share(u, index)).sum::<f64>() / 4.0;
         assert!((mean - 0.5).abs() < 1e-12, "{mean}");
-        assert!(!crossings.are_ragged(false) && !crossings.cover());
-        let crossings = Crossings { u: [0.1, 0.1, 0.0, 0.1], disk_u };
-        assert!(crossings.are_ragged(false) && crossings.covered_share(2) == 0.0 && crossings.covered_share(0) == 1.0);
-        assert!(Crossings { u: [0.1, 0.101, 0.1, 0.101], disk_u }.cover());
+        let crossings = Crossings { u, disk_u };
+        assert!(!crossings.are_ragged(false) && !crossings.cover(disk_u));
+        assert!(Crossings { u: [0.1, 0.1, 0.0, 0.1], disk_u }.are_ragged(false));
+        assert!(share([0.1, 0.1, 0.0, 0.1], 0) == 1.0);
+        // The disk lies between the lower quarters, inside its inner edge, and the upper ones, beyond infinity.
+        assert!(Crossings { u: [0.0, 0.0, 0.294, 0.268], disk_u }.are_ragged(false));
+        assert!(Crossings { u: [0.1, 0.101, 0.1, 0.101], disk_u }.cover(disk_u));
     }
 }

@@ -8,6 +8,7 @@ use crate::physics::geodesic::{Constants, State};
 use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_outer, isco, photon_orbit};
+use crate::physics::plunge::Matter;
 use crate::physics::trace::{self, RayTrace, Settings};
 use crate::sky::SkyMap;
 use std::sync::Arc;
@@ -50,7 +51,7 @@ impl Scene {
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
         let emitters = self.emitters();
         settings.delay = emitters.needs().delays;
-        settings.capture_u = self.pixel_capture_u();
+        settings.capture_u = self.pixel_capture_u(emitters.plane_u());
         settings.opaque_u = emitters.opaque_u().filter(|_| self.view == super::View::Light);
         settings
     }
@@ -73,6 +74,20 @@ impl Scene {
         self.sky.flags & super::Sky::GRID != 0
     }
 
+    /// Whether anything is to be seen in the sky.
+    pub fn shows_sky(&self) -> bool {
+        self.shows_stars() || self.shows_milky_way() || self.shown_map().is_some() || self.shows_grid()
+    }
+
+    /// Whether pixels that edges run through are refined: there is an edge to see only where something shines, or where
+    /// a `transparent` picture tells the hole from the sky.
+    pub fn refines(&self, transparent: bool) -> bool {
+        let emitters = self.emitters();
+        let shines = emitters.plane_u().is_some() || emitters.needs().parts;
+        let shows = shines || transparent || self.shows_sky();
+        self.view == super::View::Light && self.quality.refines && shows
+    }
+
     /// Steps a ray of a pixel takes on average, for planning: sigma runs to about 6.
     pub fn expected_steps(&self) -> u64 {
         let settings = self.pixel_settings();
@@ -85,14 +100,15 @@ impl Scene {
     }
 
     /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde
-    /// photon orbit, and no disk is drawn there, the ISCO being outside it; only METRIC looks deeper.
-    pub fn pixel_capture_u(&self) -> f64 {
+    /// photon orbit; only METRIC and plunging matter, which shines down to `plane_u`, look deeper.
+    fn pixel_capture_u(&self, plane_u: Option<[f64; 2]>) -> f64 {
         let spin = self.hole.spin;
         if self.view == super::View::Metric {
             return 1.0 / horizon_outer(spin);
         }
         // The margin is 1 %: an observer on the photon orbit itself still sees its rays leave.
-        1.0 / (0.99 * photon_orbit(spin.abs())).max(horizon_outer(spin))
+        let turning = 1.0 / (0.99 * photon_orbit(spin.abs())).max(horizon_outer(spin));
+        plane_u.map_or(turning, |[_, inner]| inner.max(turning))
     }
 
     /// The start of a host's ray; `None` when it is not valid. The inner `None`: captured at once
@@ -114,6 +130,11 @@ impl Scene {
     /// Spin as the disk's matter meets it: its own sense of motion is +ph.
     pub fn matter_spin(&self) -> f64 {
         if self.retrograde() { -self.hole.spin } else { self.hole.spin }
+    }
+
+    /// The motion of the disk's matter, or without a disk of matter on prograde orbits.
+    pub fn matter(&self) -> Matter {
+        Matter::new(self.hole.spin, self.retrograde(), self.disk.is_some_and(|d| d.plunges))
     }
 
     /// ISCO of the disk's matter, M.
@@ -140,12 +161,12 @@ impl Scene {
         if hit.fate == Fate::Escaped {
             hit.sky_redshift = ray.frequency_ratio * c.nu_local / c.energy;
         }
-        let (retrograde, isco, mass) = (self.retrograde(), self.disk_isco(), self.hole.mass);
+        let (matter, mass) = (self.matter(), self.hole.mass);
         for (out, crossing) in hit.crossings.iter_mut().zip(&traced.crossings) {
             *out = Crossing {
                 radius: mass / crossing.u,
                 azimuth: crossing.azimuth,
-                redshift: ray.frequency_ratio * crossing.redshift(c, retrograde, isco),
+                redshift: ray.frequency_ratio * crossing.redshift(c, &matter),
                 delay: if frame.rain { f64::NAN } else { mass * crossing.delay },
             };
         }

@@ -1,6 +1,7 @@
 //! The glow of the Milky Way as a sky map, made at first use from an embedded picture of nested outlines
-//! (`data/README.md`): smooth brightness from the picture, colour from the galactic longitude, and dust finer than the
-//! picture by noise that is always the same. Plausible, not measured; where things are is true to about a degree.
+//! (`data/README.md`): smooth brightness from the picture, colour from the galactic longitude, and dust and star clouds
+//! finer than the picture by noise that is always the same. Plausible, not measured; where things are is true to about
+//! a degree.
 
 use super::galaxy::{GALACTIC_CENTRE, GALACTIC_EAST, GALACTIC_POLE};
 use super::index::{REFERENCE_SOLID_ANGLE, STAR_REFERENCE_RADIANCE};
@@ -22,18 +23,23 @@ const HIGHEST: f64 = 6.0;
 const MAP_SIZE: [u32; 2] = [2048, 1024];
 /// Surface brightness at height 5, V magnitudes per square arc second: that of the bright star clouds (Leinert et al.
 /// 1998, A&AS 127, 1, section 10: 20.5 to 21 with the faint stars). Towards 0 each height is this much fainter than the
-/// next, and in the end nothing.
+/// next, and in the end nothing: 23.1 on the outermost outline, where an eye in the dark still tells the Milky Way from
+/// the sky beside it.
 const BRIGHTEST: f64 = 20.6;
-const MAGNITUDES_A_HEIGHT: f64 = 0.3;
+const MAGNITUDES_A_HEIGHT: f64 = 0.42;
 /// Display convention: the glow is this much brighter next to the stars than it is to the eye. A screen shows fewer
 /// steps between its white and its black than a dark-adapted eye sees in the sky.
 const MILKY_WAY_GAIN: f64 = 8.0;
 /// Solid angle, sr.
 const SQUARE_ARC_SECOND: f64 = (PI / 648_000.0) * (PI / 648_000.0);
 
-/// Temperatures, K, of the light of the bulge and of the light far from it.
-const BULGE_TEMPERATURE: f64 = 4700.0;
-const ARM_TEMPERATURE: f64 = 6800.0;
+/// Temperatures, K, of the light of the bulge, whose stars are K giants seen through some dust, and of the light far
+/// from it.
+const BULGE_TEMPERATURE: f64 = 3900.0;
+const ARM_TEMPERATURE: f64 = 6300.0;
+/// How much hotter or cooler the light of star clouds is where their noise is 1 or -1: young, hot stars make the bright
+/// ones.
+const CLOUD_HEAT: f64 = 0.28;
 /// The reach of the bulge, rad.
 const BULGE_RADIUS: f64 = 0.45;
 
@@ -42,15 +48,22 @@ const BULGE_RADIUS: f64 = 0.45;
 const DUST_OCTAVES: u32 = 6;
 const DUST_CELLS: f64 = 7.0;
 const DUST_FINER: f64 = 2.03;
-const DUST_FAINTER: f64 = 0.7;
+const DUST_FAINTER: f64 = 0.76;
 /// Magnitudes of extinction in the plane where the noise is 1, none where it is negative; rad: the layer's height.
 /// (The true layer is half as high in the distance; what is near us reaches to 10 degrees.)
-const DUST_DEPTH: f64 = 1.3;
+const DUST_DEPTH: f64 = 2.0;
 const DUST_HEIGHT: f64 = 0.11;
 /// Extinction at the primaries of Rec. 709, about 610, 550 and 465 nm, over that in V (Cardelli, Clayton & Mathis
 /// 1989, R_V = 3.1).
 const EXTINCTION: [f64; 3] = [0.88, 1.0, 1.24];
 const DUST_SEED: u32 = 0x4d57;
+/// Star clouds: octaves of noise, from cells of 4 degrees down to a quarter of one, and magnitudes by which the light
+/// is brighter where the noise is 1 and fainter where it is -1.
+const CLOUD_OCTAVES: u32 = 5;
+const CLOUD_CELLS: f64 = 14.0;
+const CLOUD_FAINTER: f64 = 0.8;
+const CLOUD_DEPTH: f64 = 0.5;
+const CLOUD_SEED: u32 = 0x534b;
 
 impl SkyMap {
     /// The Milky Way of this process, made at first use (0.1 to 0.3 s). Errors: OUT_OF_MEMORY.
@@ -147,9 +160,12 @@ impl MilkyWay {
 
     /// Linear Rec. 709 radiance towards a galactic direction.
     fn light(&self, height: f64, galactic: DVec3) -> [f64; 3] {
-        let radiance = self.brightest * steps(height);
+        let clouds = clouds(galactic);
+        let radiance = self.brightest * steps(height) * (0.4 * LN_10 * CLOUD_DEPTH * clouds).exp();
         let from_centre = galactic.x.clamp(-1.0, 1.0).acos() / BULGE_RADIUS;
-        let temperature = ARM_TEMPERATURE + (BULGE_TEMPERATURE - ARM_TEMPERATURE) * (-from_centre * from_centre).exp();
+        let bulge = (-from_centre * from_centre).exp();
+        let arms = ARM_TEMPERATURE * (CLOUD_HEAT * clouds.clamp(-2.0, 2.0)).exp();
+        let temperature = arms + (BULGE_TEMPERATURE - arms) * bulge;
         let rgb = self.colours.shade(temperature, temperature);
         let magnitudes = extinction(galactic);
         if magnitudes == 0.0 {
@@ -178,16 +194,26 @@ fn extinction(galactic: DVec3) -> f64 {
     if layer == 0.0 {
         return 0.0;
     }
+    // Clouds are drawn out along the plane.
+    let place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
+    DUST_DEPTH * layer * octaves(place, DUST_OCTAVES, DUST_FAINTER, DUST_SEED).max(0.0)
+}
+
+/// The noise of the star clouds that the picture does not have.
+fn clouds(galactic: DVec3) -> f64 {
+    octaves(galactic * CLOUD_CELLS, CLOUD_OCTAVES, CLOUD_FAINTER, CLOUD_SEED)
+}
+
+/// Noise of several sizes, the cells of the first 1 wide.
+fn octaves(mut place: DVec3, octaves: u32, fainter: f64, seed: u32) -> f64 {
     let mut noise = 0.0;
     let mut amplitude = 1.0;
-    // Clouds are drawn out along the plane.
-    let mut place = DVec3::new(galactic.x, galactic.y, 1.8 * galactic.z) * DUST_CELLS;
-    for octave in 0..DUST_OCTAVES {
-        noise += amplitude * value_noise(place + DVec3::splat(1024.0), mix(DUST_SEED + octave));
-        amplitude *= DUST_FAINTER;
+    for octave in 0..octaves {
+        noise += amplitude * value_noise(place + DVec3::splat(1024.0), mix(seed + octave));
+        amplitude *= fainter;
         place *= DUST_FINER;
     }
-    DUST_DEPTH * layer * noise.max(0.0)
+    noise
 }
 
 /// Smooth noise in [-1, 1]: random numbers at whole coordinates, cubic between them. Coordinates are positive.

@@ -12,11 +12,12 @@ pub mod index;
 mod map;
 mod milky_way;
 pub mod procedural;
+pub(crate) mod shift;
 pub(crate) mod stars;
 
 pub use field::StarField;
-pub use filter::shifted_map_light;
 pub use grid::under_grid;
 pub use index::StarIndex;
 pub use map::{Level, MAX_MAP_SIZE, SkyMap};
+pub use shift::shifted_map_light;
 pub use stars::least_patch;

@@ -24,6 +24,14 @@ pub struct FrameRequest {
     pub transparent: bool,
 }
 
+impl FrameRequest {
+    /// Whether the image is the full frame.
+    pub fn is_whole(&self) -> bool {
+        let Region { full_width, full_height, x, y } = self.region;
+        [full_width, full_height, x, y] == [self.width, self.height, 0, 0]
+    }
+}
+
 /// Takes a finished tile: packed pixels, rows `bytes_per_row` apart. Runs on a thread of the tracer's, if that has one.
 pub type TileSink<'a> = dyn FnMut(Tile, &[u8], usize) -> Result<()> + Send + 'a;
 

@@ -33,6 +33,10 @@ static void disk(Watch *watch, BhrContext *context) {
         {offsetof(BhrDisk, turbulence), 1.01, "turbulence"},
         {offsetof(BhrDisk, turbulence), NAN, "turbulence"},
         {offsetof(BhrDisk, turbulence), INFINITY, "turbulence"},
+        {offsetof(BhrDisk, edge_softness), -0.01, "edge_softness"},
+        {offsetof(BhrDisk, edge_softness), 1.01, "edge_softness"},
+        {offsetof(BhrDisk, edge_softness), NAN, "edge_softness"},
+        {offsetof(BhrDisk, edge_softness), -INFINITY, "edge_softness"},
     };
     BhrDisk value;
     int32_t present = 7;
@@ -40,6 +44,21 @@ static void disk(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_disk_init(&value, sizeof value));
     value.flags = 0x40;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_disk(context, &value));
+    value.flags = BHR_DISK_PLUNGES << 1 | BHR_DISK_PLUNGES;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "flags", bhr_set_disk(context, &value));
+    /* Plunging matter lets the disk begin anywhere, but not end where it begins. */
+    value.flags = BHR_DISK_PLUNGES, value.inner_radius = value.outer_radius = 3.0;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "outer_radius", bhr_set_disk(context, &value));
+    CHECK_OK(bhr_disk_init(&value, sizeof value));
+    value.reference = 2;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "disk reference", bhr_set_disk(context, &value));
+    value.reference = -1;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "disk reference", bhr_set_disk(context, &value));
+    CHECK_OK(bhr_disk_init(&value, sizeof value));
+    value.emission_law = 2;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "emission_law", bhr_set_disk(context, &value));
+    value.emission_law = -1;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "emission_law", bhr_set_disk(context, &value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "disk", bhr_disk_init(NULL, sizeof value));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_disk_init(&value, FIRST_DISK - 1));
     CHECK_OK(bhr_disk_init(&value, sizeof value));
@@ -164,6 +183,12 @@ static void film(Watch *watch, BhrContext *context) {
         {offsetof(BhrFilm, bloom), INFINITY, "bloom"},
         {offsetof(BhrFilm, bloom), -INFINITY, "bloom"},
         {offsetof(BhrFilm, bloom), -5e-324, "bloom"},
+        {offsetof(BhrFilm, beam_fwhm), -0.01, "beam_fwhm"},
+        {offsetof(BhrFilm, beam_fwhm), 1.01, "beam_fwhm"},
+        {offsetof(BhrFilm, beam_fwhm), NAN, "beam_fwhm"},
+        {offsetof(BhrFilm, beam_fwhm), INFINITY, "beam_fwhm"},
+        {offsetof(BhrFilm, beam_fwhm), -INFINITY, "beam_fwhm"},
+        {offsetof(BhrFilm, beam_fwhm), -5e-324, "beam_fwhm"},
     };
     BhrFilm value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_film_init(&value, sizeof value), bhr_set_film(context, &value));
@@ -172,6 +197,12 @@ static void film(Watch *watch, BhrContext *context) {
         CHECK_OK(bhr_film_init(&value, sizeof value));
         value.tone_map = unknown[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "tone_map", bhr_set_film(context, &value));
+        CHECK_OK(bhr_film_init(&value, sizeof value));
+        value.colour_map = unknown[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "colour_map", bhr_set_film(context, &value));
+        CHECK_OK(bhr_film_init(&value, sizeof value));
+        value.reserved = (uint32_t)unknown[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_film(context, &value));
     }
     /* At the limits: from black to white, under every tone map. */
     for (int32_t tone_map = BHR_TONE_MAP_NONE; tone_map <= BHR_TONE_MAP_AGX; tone_map++) {
@@ -194,6 +225,7 @@ static void film(Watch *watch, BhrContext *context) {
               (int)tone_map, sums[0], sums[1]);
     }
     CHECK_OK(bhr_film_init(&value, sizeof value));
+    value.bloom = 0.0; /* as the contexts of these tests have it */
     CHECK_OK(bhr_set_film(context, &value));
     check_unchanged(watch, __FILE__, __LINE__, "the film set back");
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "film", bhr_film_init(NULL, sizeof value));

@@ -218,6 +218,10 @@ static void time_effects_view(Watch *watch, BhrContext *context) {
     }
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_time(NULL, 0.0));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_effects(NULL, BHR_EFFECT_ALL));
+    uint32_t effects = 7;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_get_effects(NULL, &effects));
+    CHECK(effects == 0, "a failed bhr_get_effects left %#x", (unsigned)effects);
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_effects", bhr_get_effects(context, NULL));
     /* Unknown bits are ignored: the watched scene is lit with all of them set, all but BEAMING. */
     CHECK_OK(bhr_set_effects(context, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT | BHR_EFFECT_LIGHT_DELAY));
     check_unchanged(watch, __FILE__, __LINE__, "unknown effects");

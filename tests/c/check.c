@@ -60,12 +60,32 @@ BhrContextOptions check_options(BhrBackend backend) {
     return options;
 }
 
+/* Sets the plain scene of Rust's tests: a smooth disk before the stars, whatever the library's default becomes. */
+static void set_plain(BhrContext *context) {
+    BhrCamera camera;
+    BhrFilm   film;
+    CHECK_OK(bhr_camera_init(&camera, sizeof camera));
+    camera.projection = BHR_PROJECTION_PERSPECTIVE, camera.motion = BHR_MOTION_STATIC;
+    camera.position[0] = 0.0, camera.position[1] = -30.0, camera.position[2] = 5.0;
+    camera.forward[0] = -0.0, camera.forward[1] = 30.0, camera.forward[2] = -5.0;
+    camera.up[0] = camera.up[1] = 0.0, camera.up[2] = 1.0;
+    camera.fov_y = 1.0471975511965976; /* pi / 3 */
+    CHECK_OK(bhr_set_camera(context, &camera));
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
+    CHECK_OK(bhr_film_init(&film, sizeof film));
+    film.tone_map = BHR_TONE_MAP_ACES;
+    film.exposure_ev = film.bloom = film.beam_fwhm = 0.0;
+    film.colour_map = BHR_COLOUR_MAP_NONE;
+    CHECK_OK(bhr_set_film(context, &film));
+}
+
 BhrContext *check_context_with(const BhrContextOptions *options) {
     BhrContext *context = NULL;
     if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, options, &context)) ||
         !CHECK(context != NULL, "success without a context")) {
         exit(check_end());
     }
+    set_plain(context);
     check_set_sky(context);
     return context;
 }

@@ -18,7 +18,7 @@
 /* ---- a program's frame ---- */
 BhrBackend  check_begin(int argc, char **argv); /* exits with 2 when there is no backend among the arguments */
 int         check_end(void);                    /* prints the count; the exit status of main */
-BhrContext *check_context(BhrBackend backend);  /* a new one, silent; ends the program when there is none */
+BhrContext *check_context(BhrBackend backend);  /* a new one, silent, with a plain scene; ends the program else */
 
 BhrContextOptions check_options(BhrBackend backend); /* the defaults, with this backend */
 BhrContext       *check_context_with(const BhrContextOptions *options); /* as check_context */

@@ -1,6 +1,6 @@
 #include <stdlib.h>
 /* film.c -- the film: 8-bit images are exposed, bloom, and are mapped; float images are left alone; bloom needs the
- * whole frame. Numbers out of range are in bad_scene.c. */
+ * whole frame, as a beam does; colour maps. Numbers out of range are in bad_scene.c. */
 #include "check.h"
 
 #include <string.h>
@@ -67,6 +67,73 @@ static void eight_bits_bloom(BhrContext *context) {
     CHECK(memcmp(before, after, bytes) == 0, "a job's frame with bloom differs");
 }
 
+static void set_beam(BhrContext *context, double fwhm, BhrColourMap map) {
+    BhrFilm film;
+    CHECK_OK(bhr_film_init(&film, sizeof film));
+    film.tone_map = BHR_TONE_MAP_NONE;
+    film.bloom = 0.0;
+    film.beam_fwhm = fwhm;
+    film.colour_map = map;
+    CHECK_OK(bhr_set_film(context, &film));
+    BhrFilm got;
+    CHECK_OK(bhr_film_init(&got, sizeof got));
+    CHECK_OK(bhr_get_film(context, &got));
+    CHECK(got.beam_fwhm == fwhm && got.colour_map == map, "another beam than was set");
+}
+
+/* The largest step between neighbours of a row. */
+static int sharpest(const unsigned char *pixels) {
+    int most = 0;
+    for (size_t i = 4; i < WIDTH * HEIGHT * 4; i++) {
+        const int step = i / 4 % WIDTH == 0 ? 0 : abs(pixels[i] - pixels[i - 4]);
+        most = step > most ? step : most;
+    }
+    return most;
+}
+
+/* A beam blurs; a colour map has its own colours only; a struct of the first release has neither. */
+static void beams_and_colour_maps(BhrContext *context) {
+    set_beam(context, 0.0, BHR_COLOUR_MAP_NONE);
+    const size_t bytes = render(context, BHR_FORMAT_RGBA8_SRGB, 0, before);
+    set_beam(context, 0.3, BHR_COLOUR_MAP_NONE);
+    render(context, BHR_FORMAT_RGBA8_SRGB, 0, after);
+    CHECK(sharpest(after) * 3 < sharpest(before), "with a beam %d, without %d", sharpest(after), sharpest(before));
+    set_beam(context, 0.3, BHR_COLOUR_MAP_AFMHOT);
+    render(context, BHR_FORMAT_RGBA8_SRGB, 0, after);
+    size_t hot = 0;
+    for (size_t i = 0; i < bytes; i += 4) {
+        const int red = after[i], green = after[i + 1], blue = after[i + 2];
+        /* Green begins where red is half, blue where green is half. */
+        const int on_map = red < 126 ? green <= 1 && blue == 0 : abs(green - (red < 255 ? red - 127 : green)) <= 2;
+        CHECK(on_map, "pixel %u is %d %d %d", (unsigned)(i / 4), red, green, blue);
+        hot += red > 100;
+    }
+    CHECK(hot > 50, "%u pixels are bright", (unsigned)hot);
+    render(context, BHR_FORMAT_RGBA32F, 0, before);
+    set_beam(context, 0.0, BHR_COLOUR_MAP_NONE);
+    render(context, BHR_FORMAT_RGBA32F, 0, after);
+    CHECK(memcmp(before, after, MOST_BYTES) == 0, "a beam changes linear radiance");
+
+    const BhrRegion region = {.struct_size = sizeof region, .full_width = 2 * WIDTH, .full_height = HEIGHT, .x = 5};
+    const BhrImage  image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, after, bytes);
+    set_beam(context, 0.25, BHR_COLOUR_MAP_NONE);
+    CHECK_OK(bhr_set_region(context, &region));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "beam_fwhm is 0.25", bhr_render_image(context, &image));
+    CHECK_OK(bhr_set_region(context, NULL));
+
+    set_film(context, BHR_TONE_MAP_NONE, 0.0, 0.0);
+    render(context, BHR_FORMAT_RGBA8_SRGB, 0, before);
+    BhrFilm old;
+    memset(&old, UNTOUCHED, sizeof old);
+    old.struct_size = FIRST_FILM, old.tone_map = BHR_TONE_MAP_NONE, old.exposure_ev = old.bloom = 0.0;
+    set_beam(context, 0.3, BHR_COLOUR_MAP_AFMHOT);
+    CHECK_OK(bhr_set_film(context, &old));
+    render(context, BHR_FORMAT_RGBA8_SRGB, 0, after);
+    CHECK(memcmp(before, after, bytes) == 0, "a film of the first release has another picture");
+    CHECK_OK(bhr_film_init(&old, FIRST_FILM));
+    CHECK(old.bloom == 0.0, "a film of the first release begins with a bloom of %g", old.bloom);
+}
+
 /* Glare adds light; alpha is still what the hole and the disk cover. */
 static void transparent_images(BhrContext *context) {
     set_film(context, BHR_TONE_MAP_ACES, 2.0, 0.0);
@@ -111,6 +178,7 @@ int main(int argc, char **argv) {
     BhrContext *context = check_context(check_begin(argc, argv));
     floats_are_left_alone(context);
     eight_bits_bloom(context);
+    beams_and_colour_maps(context);
     transparent_images(context);
     regions(context);
     bhr_context_destroy(context);

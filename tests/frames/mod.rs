@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 /// Renderers on the GPU that no test has now.
 static POOL: Mutex<Vec<Renderer>> = Mutex::new(Vec::new());
 
-/// A renderer that a test has to itself, with the default scene. One on the GPU is the next test's after that, and
+/// A renderer that a test has to itself, with the plain scene. One on the GPU is the next test's after that, and
 /// keeps its kernels and tables; unless the test fails, or asked for a new one.
 pub struct Lent {
     renderer: Option<Renderer>,
@@ -35,15 +35,22 @@ impl Drop for Lent {
     fn drop(&mut self) {
         let Some(mut renderer) = self.renderer.take() else { return };
         if self.again && !std::thread::panicking() {
-            renderer.scene = Scene::default();
+            renderer.scene = Scene::plain();
             POOL.lock().unwrap_or_else(PoisonError::into_inner).push(renderer);
         }
     }
 }
 
+/// A renderer with the plain scene, whatever the default one is.
+pub fn plain(options: RendererOptions) -> Renderer {
+    let mut renderer = Renderer::new(options).unwrap();
+    renderer.scene = Scene::plain();
+    renderer
+}
+
 pub fn cpu() -> Lent {
     let options = RendererOptions { backend: Some(Backend::Cpu), ..Default::default() };
-    Lent { renderer: Some(Renderer::new(options).unwrap()), again: false }
+    Lent { renderer: Some(plain(options)), again: false }
 }
 
 /// On whatever adapter comes first; without one tests fail.
@@ -56,7 +63,7 @@ pub fn gpu() -> Lent {
 
 /// The same, never used before nor after: for what a renderer holds, or for how several compare.
 pub fn new_gpu() -> Lent {
-    let renderer = Renderer::new(RendererOptions::default()).unwrap();
+    let renderer = plain(RendererOptions::default());
     assert_ne!(renderer.adapter().backend, Backend::Cpu, "no GPU adapter (lavapipe counts)");
     Lent { renderer: Some(renderer), again: false }
 }

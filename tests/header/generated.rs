@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 21] = [
+const SECTIONS: [(&str, &str); 22] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -20,6 +20,7 @@ const SECTIONS: [(&str, &str); 21] = [
     ("sky", "sky"),
     ("film", "film"),
     ("effects", "relativistic effects, time"),
+    ("preset", "presets: named looks"),
     ("quality", "quality"),
     ("view", "what a pixel shows"),
     ("region", "parts of a larger frame"),

@@ -1,11 +1,11 @@
 //! Bloom in pictures, on both tracers: no light lost, no tile seen, nothing changed where none was asked for. Its
 //! shape is tested in src/film/bloom.rs. The GPU is whatever adapter comes first; without one the tests fail.
 
-use crate::frames::{both, new_gpu};
+use crate::frames::{both, new_gpu, plain};
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Region, Scene, ToneMap, View};
+use bhr::scene::{Camera, ColourMap, Region, Scene, ToneMap, View};
 
 type Change = fn(&mut Scene);
 
@@ -29,13 +29,17 @@ fn floats(bytes: &[u8]) -> impl Iterator<Item = f32> + '_ {
     bytes.chunks_exact(4).map(|b| f32::from_le_bytes(b.try_into().unwrap()))
 }
 
-const SCENES: [(&str, Change); 4] = [
+const SCENES: [(&str, Change); 6] = [
     ("default", |_| ()),
     ("three stops more, spin 0.9, AgX", |s| {
         (s.hole.spin, s.film.exposure_ev, s.film.tone_map) = (0.9, 3.0, ToneMap::Agx);
     }),
     ("stars alone, bright", |s| {
         (s.disk, s.film.exposure_ev) = (None, 8.0);
+    }),
+    ("a beam", |s| s.film.beam_fwhm = 0.1),
+    ("a beam of a few pixels, in one colour map", |s| {
+        (s.film.beam_fwhm, s.film.tone_map, s.film.colour_map) = (0.025, ToneMap::None, ColourMap::Afmhot);
     }),
     ("several samples, turbulent, translucent", |s| {
         s.quality.samples_per_pixel = 3;
@@ -67,7 +71,7 @@ fn bytes_do_not_depend_on_how_they_are_made() {
         for (name, set) in SCENES {
             for size in [[181, 97], [1, 1], [3, 50]] {
                 let mut show = |keep: Option<bool>, mapped: Option<bool>, size| {
-                    renderer.scene = Scene::default();
+                    renderer.scene = Scene::plain();
                     renderer.scene.quality.mapped_pixels = mapped;
                     set(&mut renderer.scene);
                     (renderer.scene.film.bloom, renderer.scene.quality.keep_light) = (0.8, keep);
@@ -91,7 +95,7 @@ fn bytes_do_not_depend_on_how_they_are_made() {
 fn gl_and_cpu_pictures_agree() {
     for (name, set) in SCENES {
         let [cpu, gl] = [Backend::Cpu, Backend::Gl].map(|backend| {
-            let mut renderer = Renderer::new(RendererOptions { backend: Some(backend), ..Default::default() }).unwrap();
+            let mut renderer = plain(RendererOptions { backend: Some(backend), ..Default::default() });
             set(&mut renderer.scene);
             renderer.scene.film.bloom = 1.0;
             picture(&mut renderer, PixelFormat::Rgba8Srgb, [96, 54])
@@ -222,7 +226,7 @@ fn the_brightest_light_stays_in_bounds() {
             assert!(expected.contains(&bright), "{tracer}, {exposure} stops: {bright} bright pixels");
             assert!(pixels.chunks_exact(4).all(|p| p[3] == 255));
         }
-        renderer.scene.camera = Camera::default();
+        renderer.scene.camera = Camera::plain();
     }
 }
 

@@ -26,7 +26,7 @@ fn camera(projection: Projection) -> Camera {
         forward: DVec3::new(-0.6, 0.9, -0.4),
         up: DVec3::new(0.2, -0.3, 0.9),
         fov_y: 1.25 * PI,
-        ..Camera::default()
+        ..Camera::plain()
     }
 }
 
@@ -39,7 +39,7 @@ const PROJECTIONS: [(Projection, [u32; 2]); 4] = [
 ];
 
 fn set(renderer: &mut Renderer, projection: Projection, (spin, tables): (f64, LensTables)) {
-    renderer.scene = Scene::default();
+    renderer.scene = Scene::plain();
     renderer.scene.camera = camera(projection);
     // Stars are the part of the sky with the smallest detail.
     renderer.scene.sky.flags = Sky::STARS;
@@ -264,7 +264,7 @@ fn outside_the_circle_there_is_nothing() {
             set(&mut renderer, Projection::Fisheye, way);
             // The picture has a translucent disk, the sky and the hole in all directions.
             renderer.scene.camera.fov_y = TAU;
-            renderer.scene.sky = Sky::default();
+            renderer.scene.sky = Sky::plain();
             for transparent in [false, true] {
                 let pixels = picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, transparent);
                 let mut covered = 0;
@@ -353,7 +353,7 @@ fn stars_keep_their_light_across_the_borders_of_faces() {
                 for (x, y, z) in places {
                     let sum = look_at(DVec3::new(x, y, z));
                     let error = sum / alone - 1.0;
-                    assert!(error.abs() < 0.02, "{tracer}, {way:?}: ({x}, {y}, {z}): {error}");
+                    assert!(error.abs() < 0.03, "{tracer}, {way:?}: ({x}, {y}, {z}): {error}");
                 }
             }
             let corner = look_at(DVec3::new(1.0, 1.0, -1.0)) / alone - 1.0;

@@ -1,6 +1,7 @@
 //! Frames in the background: they equal frames that were waited for, end in their order, and end however they are
 //! left. On whatever adapter comes first (lavapipe counts), and on the CPU tracer.
 
+use crate::frames::plain;
 use bhr::error::ErrorKind;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::job::Job;
@@ -11,7 +12,7 @@ const SIZE: [u32; 2] = [96, 54];
 
 fn renderers() -> [Renderer; 2] {
     let cpu = RendererOptions { backend: Some(Backend::Cpu), ..Default::default() };
-    [RendererOptions::default(), cpu].map(|options| Renderer::new(options).unwrap())
+    [RendererOptions::default(), cpu].map(plain)
 }
 
 /// Memory that a job may write to whatever becomes of the test.

@@ -1,6 +1,7 @@
 //! Pipelines are there before a frame needs them: frames list all that they run, `prepare` leaves nothing to wait for,
 //! and what is a host's likely next change is made in the background.
 
+use crate::frames::plain;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
 use bhr::scene::{LensTables, Method, Motion, Projection, Scene, ToneMap, View};
@@ -8,8 +9,7 @@ use bhr::scene::{LensTables, Method, Motion, Projection, Scene, ToneMap, View};
 const SIZE: [u32; 2] = [96, 64];
 
 fn renderer() -> Renderer {
-    let mut renderer = Renderer::new(RendererOptions { backend: Some(Backend::Vulkan), ..Default::default() })
-        .expect("a Vulkan driver");
+    let mut renderer = plain(RendererOptions { backend: Some(Backend::Vulkan), ..Default::default() });
     renderer.scene.quality.lens_tables = LensTables::Always;
     renderer
 }

@@ -13,6 +13,7 @@ mod lens;
 mod light;
 mod observers;
 mod pictures;
+mod pixels;
 #[path = "../random/mod.rs"]
 mod random;
 mod rings;

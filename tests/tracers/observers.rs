@@ -18,13 +18,13 @@ const RADII: [f64; 6] = [2.5, 1.5, 0.5, 0.1, 0.01, 1e-6];
 fn falling(r: f64) -> Camera {
     let position = DVec3::new(0.48, -0.6, 0.64) * r;
     let projection = Projection::Equirect;
-    Camera { projection, position, forward: DVec3::new(-0.3, 0.8, 0.1), motion: Motion::FreeFall, ..Camera::default() }
+    Camera { projection, position, forward: DVec3::new(-0.3, 0.8, 0.1), motion: Motion::FreeFall, ..Camera::plain() }
 }
 
 /// Look directions of a frame in the camera's own axes: those of the same camera at rest, outside.
 fn looks(camera: &Camera, [width, height]: [u32; 2]) -> Vec<DVec3> {
     let at_rest = Camera { motion: Motion::Static, position: camera.position.normalize() * 30.0, ..*camera };
-    rays(&Scene { camera: at_rest, ..Scene::default() }, [width, height]).into_iter().map(|ray| ray.direction).collect()
+    rays(&Scene { camera: at_rest, ..Scene::plain() }, [width, height]).into_iter().map(|ray| ray.direction).collect()
 }
 
 fn rays(scene: &Scene, [width, height]: [u32; 2]) -> Vec<Ray> {
@@ -108,7 +108,7 @@ fn seen(position: DVec3, n: DVec3) -> Option<Seen> {
 fn the_sky_of_a_fall_is_an_independent_integrals() {
     for (tracer, mut renderer) in both() {
         for r in RADII {
-            renderer.scene = Scene { camera: falling(r), ..Scene::default() };
+            renderer.scene = Scene { camera: falling(r), ..Scene::plain() };
             let size = [24, 12];
             let looks = looks(&renderer.scene.camera, size);
             let given = rays(&renderer.scene, size);
@@ -149,7 +149,7 @@ fn pictures_of_a_fall_show_that_sky() {
     for (tracer, mut renderer) in both() {
         for r in RADII {
             for tables in [LensTables::Always, LensTables::Never] {
-                renderer.scene = Scene { camera: falling(r), disk: None, ..Scene::default() };
+                renderer.scene = Scene { camera: falling(r), disk: None, ..Scene::plain() };
                 renderer.scene.quality.lens_tables = tables;
                 let looks = looks(&renderer.scene.camera, size);
                 let records = renderer.ray_records(size[0], size[1]).unwrap();
@@ -205,7 +205,7 @@ fn the_shadow_of_a_fall_has_the_closed_forms_size() {
     for (tracer, mut renderer) in both() {
         for r in RADII {
             let theory = shadow_radius(r);
-            renderer.scene = Scene { camera: falling(r), disk: None, sky: Sky::black(), ..Scene::default() };
+            renderer.scene = Scene { camera: falling(r), disk: None, sky: Sky::black(), ..Scene::plain() };
             let told = renderer.scene.hole_info().unwrap().shadow_angular_radius;
             assert!((told - theory).abs() < 1e-9, "r {r}: {told}, {theory}");
             // The edge by single rays: the last that is captured.
@@ -264,9 +264,9 @@ fn a_fast_camera_sees_what_one_at_rest_does_aberrated() {
                     forward: DVec3::new(0.4, 1.0, 0.3),
                     motion: Motion::Velocity,
                     velocity: towards * speed,
-                    ..Camera::default()
+                    ..Camera::plain()
                 };
-                renderer.scene = Scene { camera, disk: None, ..Scene::default() };
+                renderer.scene = Scene { camera, disk: None, ..Scene::plain() };
                 renderer.scene.hole.spin = spin;
                 renderer.scene.quality.lens_tables = tables;
                 let moving = rays(&renderer.scene, size);

@@ -1,12 +1,12 @@
 //! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against
 //! theory. The GPU is whatever adapter comes first; without one the tests fail.
 
-use crate::frames::{both, cpu, differing, floats, gpu, new_gpu, picture, tiled};
+use crate::frames::{both, cpu, differing, floats, gpu, new_gpu, picture, plain, tiled};
 use bhr::gpu::{Device, Search, adapters};
 use bhr::image::PixelFormat;
 use bhr::physics::shadow::shadow;
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{Camera, Effects, KerrThreshold, LensTables, Lensing, Motion, Region, Sky, View};
+use bhr::scene::{Camera, Effects, EmissionLaw, KerrThreshold, LensTables, Lensing, Motion, Region, Sky, View};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -16,7 +16,7 @@ fn camera(r: f64, inclination_degrees: f64, fov_degrees: f64, motion: Motion) ->
     let plane = inclination_degrees == 90.0;
     let position = DVec3::new(theta.sin(), 0.0, if plane { 0.0 } else { theta.cos() }) * r;
     let up = if inclination_degrees == 0.0 { DVec3::X } else { DVec3::Z };
-    Camera { position, forward: -position, up, fov_y: fov_degrees.to_radians(), motion, ..Camera::default() }
+    Camera { position, forward: -position, up, fov_y: fov_degrees.to_radians(), motion, ..Camera::plain() }
 }
 
 type NamedScene = (&'static str, Box<dyn Fn(&mut Renderer)>);
@@ -27,7 +27,7 @@ fn scenes() -> Vec<NamedScene> {
         (name, Box::new(move |r| (r.scene.hole.spin, r.scene.camera) = (spin, c)))
     };
     let mut list = vec![
-        scene("default", 0.0, Camera::default()),
+        scene("default", 0.0, Camera::plain()),
         scene("edge-on", 0.0, camera(25.0, 90.0, 60.0, Motion::Static)),
         scene("polar", 0.7, camera(30.0, 0.0, 60.0, Motion::Static)),
         // The shadow fills half the sky there: along its edge.
@@ -58,6 +58,30 @@ fn scenes() -> Vec<NamedScene> {
         }),
     ));
     list.push((
+        "limb-darkened, fast camera",
+        Box::new(|r| {
+            (r.scene.hole.spin, r.scene.camera) = (0.9, camera(20.0, 80.0, 60.0, Motion::Velocity));
+            r.scene.camera.velocity = DVec3::new(-0.3, 0.4, 0.1);
+            let disk = r.scene.disk.as_mut().unwrap();
+            (disk.emission_law, disk.opacity) = (EmissionLaw::LimbDarkened, 0.6);
+        }),
+    ));
+    for (name, spin, place) in [
+        ("plunging", 0.0, camera(20.0, 60.0, 40.0, Motion::Static)),
+        ("plunging with spin", 0.9, camera(15.0, 20.0, 60.0, Motion::FreeFall)),
+        ("plunging, from inside the horizon", 0.0, camera(1.5, 60.0, 120.0, Motion::FreeFall)),
+    ] {
+        list.push((
+            name,
+            Box::new(move |r| {
+                (r.scene.hole.spin, r.scene.camera) = (spin, place);
+                let disk = r.scene.disk.as_mut().unwrap();
+                (disk.plunges, disk.retrograde, disk.opacity) = (true, spin > 0.0, 0.8);
+                disk.emission_law = EmissionLaw::LimbDarkened;
+            }),
+        ));
+    }
+    list.push((
         "turbulent",
         Box::new(|r| {
             (r.scene.hole.spin, r.scene.camera) = (0.7, camera(25.0, 70.0, 60.0, Motion::Static));
@@ -75,6 +99,29 @@ fn scenes() -> Vec<NamedScene> {
             r.scene.effects = Effects(Effects::ALL & !Effects::LIGHT_DELAY);
             let disk = r.scene.disk.as_mut().unwrap();
             (disk.retrograde, disk.opacity, disk.turbulence, disk.seed) = (true, 0.6, 0.8, 7 << 32);
+        }),
+    ));
+    for (name, spin, effects) in [
+        ("the default scene, looked up", 0.0, Effects::ALL),
+        ("the default scene, looked up, with spin", 0.9, Effects::ALL),
+        ("the default scene, looked up, with spin, without delay", 0.9, Effects::ALL & !Effects::LIGHT_DELAY),
+    ] {
+        list.push((
+            name,
+            Box::new(move |r| {
+                r.scene = Default::default();
+                r.scene.hole.spin = spin;
+                r.scene.effects = Effects(effects);
+                r.scene.quality.lens_tables = LensTables::Always;
+            }),
+        ));
+    }
+    list.push((
+        "turbulent, plunging",
+        Box::new(|r| {
+            (r.scene.hole.spin, r.scene.camera) = (0.5, camera(25.0, 50.0, 30.0, Motion::Static));
+            let disk = r.scene.disk.as_mut().unwrap();
+            (disk.turbulence, disk.plunges, disk.edge_softness) = (1.0, true, 0.4);
         }),
     ));
     list.push((
@@ -138,8 +185,12 @@ fn gpu_and_cpu_pictures_agree() {
         let [cpu, gpu] = &mut pictures;
         let differ = differing(cpu, gpu);
         let share = differ as f64 / f64::from(size[0] * size[1]);
-        println!("{name}: {differ} of {} pixels differ by more than one step", size[0] * size[1]);
-        assert!(share <= 1e-3, "{name}: {differ} pixels differ by more than one step");
+        let worst = cpu.iter().zip(&**gpu).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+        println!("{name}: {differ} of {} pixels differ by more than one step, up to {worst}", size[0] * size[1]);
+        // Levels of the streaks' pyramid are whole, and tables of f32 and f64 give patches that differ a little: where
+        // a table about a spinning hole shows the disk from near by, some patches take another level.
+        let most = if name.contains("looked up, with spin") { 4e-3 } else { 1e-3 };
+        assert!(share <= most && worst < 40, "{name}: {differ} pixels differ by more than one step, up to {worst}");
         let lit = cpu.chunks_exact(4).filter(|p| p[0] > 8).count();
         assert!(lit > 20, "{name}: only {lit} pixels have light");
     }
@@ -153,7 +204,7 @@ fn gl_and_cpu_pictures_agree() {
     for opacity in [1.0, 0.6] {
         let [cpu, gl] = [Backend::Cpu, Backend::Gl].map(|backend| {
             let options = RendererOptions { backend: Some(backend), ..Default::default() };
-            let mut renderer = Renderer::new(options).unwrap();
+            let mut renderer = plain(options);
             renderer.scene.hole.spin = 0.6;
             renderer.scene.disk.as_mut().unwrap().opacity = opacity;
             picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false)

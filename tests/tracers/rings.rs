@@ -18,9 +18,9 @@ const FINER: u32 = 8;
 fn scene(spin: f64, distance: f64, inclination: f64, opacity: f64) -> Scene {
     let theta = inclination.to_radians();
     let position = DVec3::new(0.0, -theta.sin(), theta.cos()) * distance;
-    let mut scene = Scene::default();
+    let mut scene = Scene::plain();
     scene.hole.spin = spin;
-    scene.camera = Camera { position, forward: -position, fov_y: FOV_Y, ..Camera::default() };
+    scene.camera = Camera { position, forward: -position, fov_y: FOV_Y, ..Camera::plain() };
     scene.sky.stars_brightness = 0.0;
     scene.effects = Effects(0);
     scene.disk.as_mut().unwrap().opacity = opacity;

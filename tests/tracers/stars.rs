@@ -203,7 +203,7 @@ const OBSERVER: f64 = 30.0;
 
 fn looking_at_the_hole(fov_y: f64) -> Camera {
     let position = DVec3::X * OBSERVER;
-    Camera { position, forward: -position, fov_y, ..Camera::default() }
+    Camera { position, forward: -position, fov_y, ..Camera::plain() }
 }
 
 /// The direction at the angle `psi` from the hole, turned by `turn` about it.
@@ -445,7 +445,7 @@ fn orientation_puts_sirius_where_it_says() {
             let forward =
                 (seen + side * random.range(-0.15, 0.15) + seen.cross(side) * random.range(-0.15, 0.15)).normalize();
             let up = random.direction();
-            renderer.scene.camera = Camera { position: seen * 1e5, forward, up, fov_y: 0.6, ..Camera::default() };
+            renderer.scene.camera = Camera { position: seen * 1e5, forward, up, fov_y: 0.6, ..Camera::plain() };
             renderer.scene.sky.orientation = orientation;
             let light = Light::new(&mut renderer, size);
             let place = light.screen.place(seen).unwrap();
@@ -534,7 +534,7 @@ fn procedural_light_is_that_of_all_its_stars() {
         .sum::<f64>();
     // A sixth of the sky, the hole behind the camera and, 1e6 M away, far smaller than a pixel.
     let mut side = |forward: DVec3, up: DVec3, size: u32| {
-        renderer.scene.camera = Camera { position: forward * 1e6, forward, up, fov_y: FRAC_PI_2, ..Camera::default() };
+        renderer.scene.camera = Camera { position: forward * 1e6, forward, up, fov_y: FRAC_PI_2, ..Camera::plain() };
         Light::new(&mut renderer, [size, size]).pixels.iter().sum::<f64>()
     };
     let plane = GALACTIC_POLE.any_orthonormal_vector();

@@ -16,7 +16,7 @@ fn show_disk(renderer: &mut Renderer) {
     scene.effects = Effects(0);
     let position = DVec3::new(20.0, 0.0, 60.0);
     let up = DVec3::new(0.3, 1.0, 0.1);
-    scene.camera = Camera { position, forward: -position, up, fov_y: 0.9, ..Camera::default() };
+    scene.camera = Camera { position, forward: -position, up, fov_y: 0.9, ..Camera::plain() };
 }
 
 /// Luminance, row by row.

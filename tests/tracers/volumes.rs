@@ -12,7 +12,7 @@ const HAZE: Haze = Haze { radius: 6.0, brightness: 0.05, absorption: 0.08 };
 fn outside(distance: f64, elevation: f64) -> Camera {
     let elevation = elevation.to_radians();
     let position = DVec3::new(distance * elevation.cos(), 0.0, distance * elevation.sin());
-    Camera { position, forward: -position, up: DVec3::Z, fov_y: 50_f64.to_radians(), ..Camera::default() }
+    Camera { position, forward: -position, up: DVec3::Z, fov_y: 50_f64.to_radians(), ..Camera::plain() }
 }
 
 /// Along a radial ray outwards from a static observer at r0 about a hole without spin, light has frequency 1 / sqrt(1 -
@@ -39,9 +39,9 @@ fn radial_light_and_depth_are_integrals_over_proper_length() {
             let haze = Haze { absorption, ..HAZE };
             let r0 = 8.0;
             let position = DVec3::new(0.0, r0, 0.0);
-            renderer.scene = Scene { disk: None, sky: Sky::black(), haze: Some(haze), ..Scene::default() };
+            renderer.scene = Scene { disk: None, sky: Sky::black(), haze: Some(haze), ..Scene::plain() };
             renderer.scene.camera =
-                Camera { position, forward: position, fov_y: 1e-3, up: DVec3::Z, ..Camera::default() };
+                Camera { position, forward: position, fov_y: 1e-3, up: DVec3::Z, ..Camera::plain() };
             let pixel = floats(&picture(&mut renderer, PixelFormat::Rgba32F, [1, 1], None, true));
             let (light, depth) = radial(&haze, r0);
             let light = light * renderer.scene.film.exposure_ev.exp2();
@@ -58,7 +58,7 @@ fn radial_light_and_depth_are_integrals_over_proper_length() {
 fn far_from_the_hole_rays_are_chords() {
     let haze = Haze { radius: 2e4, brightness: 1e-5, absorption: 0.0 };
     for (name, mut renderer) in both() {
-        renderer.scene = Scene { disk: None, sky: Sky::black(), haze: Some(haze), ..Scene::default() };
+        renderer.scene = Scene { disk: None, sky: Sky::black(), haze: Some(haze), ..Scene::plain() };
         renderer.scene.camera = Camera { fov_y: 0.2, ..outside(4e5, 20.0) };
         let pixels = floats(&picture(&mut renderer, PixelFormat::Rgba32F, [8, 8], None, false));
         for row in 0..8 {
@@ -83,9 +83,9 @@ fn far_from_the_hole_rays_are_chords() {
 fn the_tracers_agree_on_a_disk_in_haze() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     for (spin, opacity, distance, elevation) in [(0.0, 1.0, 20.0, 12.0), (0.9, 0.6, 9.0, 25.0)] {
-        let mut scene = Scene { haze: Some(HAZE), camera: outside(distance, elevation), ..Scene::default() };
+        let mut scene = Scene { haze: Some(HAZE), camera: outside(distance, elevation), ..Scene::plain() };
         scene.hole.spin = spin;
-        scene.disk = Some(Disk { opacity, turbulence: 0.5, ..Disk::default() });
+        scene.disk = Some(Disk { opacity, turbulence: 0.5, ..Disk::plain() });
         let [a, b] = [&mut cpu, &mut gpu].map(|renderer| {
             renderer.scene = scene.clone();
             picture(renderer, PixelFormat::Rgba8Srgb, [128, 72], None, false)
@@ -106,7 +106,7 @@ fn haze_is_finite_everywhere() {
     for (name, mut renderer) in both() {
         for (spin, distance) in [(0.998, 1.6), (0.0, 2.5), (0.5, 4.0), (-0.9, 1e5)] {
             for absorption in [0.0, 1e3] {
-                renderer.scene = Scene { disk: None, ..Scene::default() };
+                renderer.scene = Scene { disk: None, ..Scene::plain() };
                 renderer.scene.haze = Some(Haze { absorption, ..HAZE });
                 renderer.scene.hole.spin = spin;
                 renderer.scene.camera = outside(distance, 40.0);

@@ -102,18 +102,18 @@ viewer_needs_display() {
 viewer_takes_keys() {
     viewer_open --size 320x180 || return 1
     local key
-    for key in Right x x 3 v v v v v v n n n m p space period slash t g bracketleft Up k i l l h; do
+    for key in Right x x 3 v v v v v v n n n m p space period slash shift+t g bracketleft Up k i l l h; do
         xdotool key "$key" && sleep 0.1
     done
     viewer_until 60 viewer_says '^  Esc *quit' || return 1
     local words
-    for words in 'spin 0.800' 'disk off' 'disk on' 'beaming off' 'view: metric' 'camera: freefall' 'camera: orbit' \
+    for words in 'spin 0.100' 'disk off' 'disk on' 'beaming off' 'view: metric' 'camera: freefall' 'camera: orbit' \
         'camera: static' 'mass 1.1' 'time stands still' '6 M of the' '-6 M of the' 'turbulence of the disk 0.90' \
-        'tone map: agx' 'field of view 38.2' 'exposure +0.75' 'stars off' 'method: rk4' 'quality as it is set'; do
+        'tone map: agx' 'field of view 40.9' 'exposure +0.25' 'stars off' 'method: rk4' 'quality as it is set'; do
         viewer_says "$words" || { echo "it did not say: $words"; cat -- "$viewer_log"; return 1; }
     done
     xdotool key BackSpace && viewer_until 60 viewer_says 'back to the beginning' &&
-        viewer_until 60 viewer_title_says 'a +0.700' && viewer_close
+        viewer_until 60 viewer_title_says 'a +0.000' && viewer_close
 }
 
 # Dragging turns the picture, the wheel brings the hole nearer, W flies on to it.
@@ -126,10 +126,10 @@ viewer_takes_mouse() {
         xdotool mousemove_relative -- 8 6 && sleep 0.1
     done
     xdotool mouseup 1 && viewer_until 60 viewer_has_turned || return 1
-    viewer_until 60 viewer_title_says 'r 34 M' || return 1
-    xdotool click 4 click 4 click 4 && viewer_until 60 viewer_title_says 'r 20.* M' || { viewer_title; return 1; }
+    viewer_until 60 viewer_title_says 'r 26.* M' || return 1
+    xdotool click 4 click 4 click 4 && viewer_until 60 viewer_title_says 'r 16.* M' || { viewer_title; return 1; }
     xdotool key f keydown w && sleep 2 && xdotool keyup w &&
-        viewer_until 60 viewer_title_says 'r 1[0-9]\.\|r [2-9]\.' || { viewer_title; return 1; }
+        viewer_until 60 viewer_title_says 'r 1[0-4]\.\|r [2-9]\.' || { viewer_title; return 1; }
     viewer_close
 }
 

@@ -36,7 +36,7 @@ impl Device {
         layers: u32,
     ) -> Result<Texture> {
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        self.any_texture(label, format, dimension, size, layers, usage)
+        self.any_texture(label, format, dimension, size, [layers, 1], usage)
     }
 
     /// The texture that a window is filled from: `host_fills` it ([`Device::write_rows`]), or kernels do. Errors: as
@@ -51,8 +51,20 @@ impl Device {
 
     /// A texture that the host fills ([`Device::write_rows`]) and kernels read. Errors: as [`Device::scoped`].
     pub fn table(&self, label: &str, format: wgpu::TextureFormat, size: [u32; 2]) -> Result<Texture> {
+        self.table_of_levels(label, format, size, 1)
+    }
+
+    /// The same with `levels`, of which each has half the columns and rows of the one before, rounded down, but one at
+    /// least ([`Device::write_part`]). Errors: as [`Device::scoped`].
+    pub fn table_of_levels(
+        &self,
+        label: &str,
+        format: wgpu::TextureFormat,
+        size: [u32; 2],
+        levels: u32,
+    ) -> Result<Texture> {
         let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
-        self.any_texture(label, format, wgpu::TextureViewDimension::D2, size, 1, usage)
+        self.any_texture(label, format, wgpu::TextureViewDimension::D2, size, [1, levels], usage)
     }
 
     fn any_texture(
@@ -61,7 +73,7 @@ impl Device {
         format: wgpu::TextureFormat,
         dimension: wgpu::TextureViewDimension,
         [width, height]: [u32; 2],
-        layers: u32,
+        [layers, levels]: [u32; 2],
         usage: wgpu::TextureUsages,
     ) -> Result<Texture> {
         // Kept bind groups hold textures that this one may replace, and both together need not fit in memory.
@@ -71,7 +83,7 @@ impl Device {
             let raw = device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
                 size,
-                mip_level_count: 1,
+                mip_level_count: levels,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format,
@@ -81,7 +93,8 @@ impl Device {
             let view = wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() };
             (raw.clone(), raw.create_view(&view))
         })?;
-        let bytes = texel_bytes(format) * u64::from(width) * u64::from(height) * u64::from(layers);
+        let texels = |level: u32| u64::from((width >> level).max(1)) * u64::from((height >> level).max(1));
+        let bytes = texel_bytes(format) * (0..levels).map(texels).sum::<u64>() * u64::from(layers);
         let total = self.byte_count();
         total.fetch_add(bytes, Ordering::Relaxed);
         Ok(Texture { view, raw, bytes, total })
@@ -90,18 +103,18 @@ impl Device {
     /// Writes whole rows from `first_row` on, before the next submission runs. Errors: INTERNAL when `data` is not a
     /// whole number of rows; as [`Device::scoped`].
     pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
-        self.write_part(texture, [0, first_row], texture.raw.width(), data)
+        self.write_part(texture, 0, [0, first_row], texture.raw.width(), data)
     }
 
-    /// Writes a rectangle of `width` columns whose first texel is `first` (column, row); the length of `data` decides
-    /// its rows. Errors: as [`Self::write_rows`].
-    pub fn write_part(&self, texture: &Texture, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
+    /// Writes a rectangle of `width` columns of a level, whose first texel is `first` (column, row); the length of
+    /// `data` decides its rows. Errors: as [`Self::write_rows`].
+    pub fn write_part(&self, texture: &Texture, level: u32, first: [u32; 2], width: u32, data: &[u8]) -> Result<()> {
         let row_bytes = width * texel_bytes(texture.raw.format()) as u32;
         if row_bytes == 0 || !data.len().is_multiple_of(row_bytes as usize) {
             let size = data.len();
             return Err(Error::internal(format!("{size} bytes are not a whole number of rows of {row_bytes} bytes")));
         }
-        self.write_texels(&texture.raw, first, width, row_bytes as usize, data)
+        self.write_texels((&texture.raw, level), first, width, row_bytes as usize, data)
     }
 }
 

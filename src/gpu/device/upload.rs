@@ -23,11 +23,11 @@ impl Device {
         })
     }
 
-    /// Writes rows of `row_bytes`, one at least, into a part of `texture` of so many rows and `width` columns, which
-    /// begins at `first`, before the next submission runs. Errors: as [`Device::scoped`].
+    /// Writes rows of `row_bytes`, one at least, into a part of a level of `texture` of so many rows and `width`
+    /// columns, which begins at `first`, before the next submission runs. Errors: as [`Device::scoped`].
     pub(in crate::gpu) fn write_texels(
         &self,
-        texture: &wgpu::Texture,
+        (texture, mip_level): (&wgpu::Texture, u32),
         first: [u32; 2],
         width: u32,
         row_bytes: usize,
@@ -42,7 +42,7 @@ impl Device {
             let from = wgpu::TexelCopyBufferInfo { buffer: &filled, layout };
             let to = wgpu::TexelCopyTextureInfo {
                 texture,
-                mip_level: 0,
+                mip_level,
                 origin: wgpu::Origin3d { x: first[0], y, z: 0 },
                 aspect: wgpu::TextureAspect::All,
             };

@@ -3,7 +3,7 @@
 
 use super::buffers::CachedUniform;
 use crate::error::{Error, Result};
-use crate::film::bloom::{Bloom, Level, MOST_LEVELS, TAIL};
+use crate::film::bloom::{BEAM_SHARES, Beam, Bloom, Level, MOST_LEVELS, TAIL};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
@@ -30,10 +30,21 @@ struct LevelUniform {
     tails: [[f32; TAIL]; 2],
 }
 
+/// `BeamPass` of bloom/beam.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct BeamUniform {
+    cells: [u32; 2],
+    next: [i32; 2],
+    shares: [f32; BEAM_SHARES],
+}
+
 #[cfg(test)]
-pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
-    crate::gpu::kernel::layout::layout!(LevelUniform as "BloomLevel": fine, cells, origin, first, count, own, above,
-        tail_x = tails + 0, tail_y = tails + 16)
+pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
+    use crate::gpu::kernel::layout::layout;
+    let level = layout!(LevelUniform as "BloomLevel": fine, cells, origin, first, count, own, above,
+        tail_x = tails + 0, tail_y = tails + 16);
+    [level, layout!(BeamUniform as "BeamPass": cells, next, shares)]
 }
 
 /// Textures that frames with bloom share; they grow and stay.
@@ -53,6 +64,14 @@ struct BloomResources {
     smooth: wgpu::Sampler,
     /// A `LevelUniform` for each grid, `uniform_stride` apart.
     levels: CachedUniform,
+    beam: Option<BeamResources>,
+}
+
+struct BeamResources {
+    /// The light of the beam's grid once it is spread along rows.
+    rows: Texture,
+    /// A `BeamUniform` for rows and one for columns, `uniform_stride` apart.
+    passes: CachedUniform,
 }
 
 /// The passes of a frame's bloom.
@@ -62,6 +81,15 @@ pub struct BloomStages {
     /// To each grid but the last from the one above it.
     upsample: Vec<Stage>,
     sizes: Vec<[u32; 2]>,
+    stride: u32,
+    beam: Option<BeamStages>,
+}
+
+/// The passes that spread a grid's light by the beam.
+struct BeamStages {
+    level: usize,
+    /// Along rows, and along columns.
+    passes: [Stage; 2],
     stride: u32,
 }
 
@@ -78,6 +106,11 @@ impl BloomResources {
             levels.iter().map(|level| texture(label, level.size)).collect::<Result<Vec<_>>>()
         };
         let but_last = &bloom.levels[..bloom.levels.len().saturating_sub(1)];
+        let beam = bloom.beam.as_ref().zip(beam_size(bloom)).map(|(beam, size)| {
+            let mut passes = CachedUniform::new(device, "beam", 2 * uniform_stride::<BeamUniform>(device))?;
+            passes.write(device, &beam_uniforms(device, beam, size))?;
+            Ok::<_, Error>(BeamResources { rows: texture("light of a beam", size)?, passes })
+        });
         let bytes = MOST_LEVELS as u64 * uniform_stride::<LevelUniform>(device);
         let filter = wgpu::FilterMode::Linear;
         let sampler = wgpu::SamplerDescriptor { mag_filter: filter, min_filter: filter, ..Default::default() };
@@ -87,6 +120,7 @@ impl BloomResources {
             gathered: grids("gathered light", &bloom.levels)?,
             spread: grids("spread light", but_last)?,
             levels: CachedUniform::new(device, "bloom levels", bytes)?,
+            beam: beam.transpose()?,
         })
     }
 
@@ -94,7 +128,9 @@ impl BloomResources {
     /// frames.
     fn serves(&self, bloom: &Bloom, light: [u32; 2]) -> bool {
         let sizes = self.gathered.iter().map(Texture::size);
-        self.light.size() == light && sizes.eq(bloom.levels.iter().map(|level| level.size))
+        self.light.size() == light
+            && sizes.eq(bloom.levels.iter().map(|level| level.size))
+            && self.beam.as_ref().map(|beam| beam.rows.size()) == beam_size(bloom)
     }
 
     fn smooth(&self) -> wgpu::BindingResource<'_> {
@@ -151,6 +187,9 @@ impl BloomBuffers {
             slot[..size_of::<LevelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         let resources = self.resources.as_mut().ok_or_else(|| Error::internal("bloom without textures"))?;
+        if let Some(((beam, size), made)) = bloom.beam.as_ref().zip(beam_size(bloom)).zip(resources.beam.as_mut()) {
+            made.passes.write(device, &beam_uniforms(device, beam, size))?;
+        }
         resources.levels.write(device, &bytes)
     }
 
@@ -158,6 +197,7 @@ impl BloomBuffers {
     pub fn forget(&mut self) {
         if let Some(resources) = &mut self.resources {
             resources.levels.forget();
+            resources.beam.iter_mut().for_each(|beam| beam.passes.forget());
         }
     }
 
@@ -179,14 +219,8 @@ impl BloomBuffers {
         let count = bloom.levels.len();
         let below = std::iter::once(&resources.light).chain(&resources.gathered);
         let gather = below.zip(&resources.gathered).take(count).enumerate().map(|(index, (finer, cells))| {
-            let key = gather_key(bloom, index);
-            let kernel = kernels.get(key)?;
-            match key {
-                KernelKey::GatherBase => {
-                    kernel.stage(device, &[&[resources.level(), view(finer), resources.smooth(), view(cells)]])
-                }
-                _ => kernel.stage(device, &[&[resources.level(), view(finer), view(cells)]]),
-            }
+            let kernel = kernels.get(gather_key(bloom, index))?;
+            kernel.stage(device, &[&[resources.level(), view(finer), resources.smooth(), view(cells)]])
         });
         let gather = gather.collect::<Result<Vec<_>>>()?;
         let mut upsample = Vec::new();
@@ -200,15 +234,57 @@ impl BloomBuffers {
             upsample.push(kernels.get(KernelKey::Upsample)?.stage(device, &[&group])?);
         }
         let sizes = bloom.levels.iter().map(|level| level.size).collect();
-        Ok(BloomStages { gather, upsample, sizes, stride: uniform_stride::<LevelUniform>(device) as u32 })
+        let beam = bloom.beam.as_ref().zip(resources.beam.as_ref());
+        let beam = beam.map(|(beam, made)| resources.beam_stages(device, kernels, beam.level, made)).transpose()?;
+        Ok(BloomStages { gather, upsample, sizes, stride: uniform_stride::<LevelUniform>(device) as u32, beam })
     }
+}
+
+impl BloomResources {
+    fn beam_stages(
+        &self,
+        device: &Device,
+        kernels: &Kernels,
+        level: usize,
+        made: &BeamResources,
+    ) -> Result<BeamStages> {
+        let spread = if level < self.spread.len() { self.spread.get(level) } else { self.gathered.get(level) };
+        let cells = spread.ok_or_else(|| Error::internal("a beam without its grid"))?;
+        let kernel = kernels.get(KernelKey::Beam)?;
+        let uniform = || {
+            wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: made.passes.buffer(),
+                offset: 0,
+                size: std::num::NonZeroU64::new(size_of::<BeamUniform>() as u64),
+            })
+        };
+        let stage = |from: &Texture, to: &Texture| kernel.stage(device, &[&[uniform(), view(from), view(to)]]);
+        let passes = [stage(cells, &made.rows)?, stage(&made.rows, cells)?];
+        Ok(BeamStages { level, passes, stride: uniform_stride::<BeamUniform>(device) as u32 })
+    }
+}
+
+/// The size of the grid that the beam spreads.
+fn beam_size(bloom: &Bloom) -> Option<[u32; 2]> {
+    bloom.levels.get(bloom.beam.as_ref()?.level).map(|level| level.size)
+}
+
+fn beam_uniforms(device: &Device, beam: &Beam, cells: [u32; 2]) -> Vec<u8> {
+    let stride = uniform_stride::<BeamUniform>(device) as usize;
+    let mut bytes = vec![0; 2 * stride];
+    for (slot, next) in bytes.chunks_exact_mut(stride).zip([[1, 0], [0, 1]]) {
+        let uniform = BeamUniform { cells, next, shares: beam.shares };
+        slot[..size_of::<BeamUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
+    }
+    bytes
 }
 
 /// The kernels that spread light.
 pub fn kernels(bloom: &Bloom) -> impl Iterator<Item = KernelKey> {
     let count = bloom.levels.len();
     let gather = (0..count).map(|index| gather_key(bloom, index));
-    gather.chain((1 < count).then_some(KernelKey::Upsample))
+    let beam = bloom.beam.as_ref().map(|_| KernelKey::Beam);
+    gather.chain((1 < count).then_some(KernelKey::Upsample)).chain(beam)
 }
 
 /// The kernel that gathers light into the grid of a level.
@@ -233,8 +309,20 @@ impl BloomStages {
         for ((stage, size), index) in self.gather.iter().zip(&self.sizes).zip(0..).skip(1) {
             stage.dispatch(pass, index * self.stride, *size);
         }
+        self.spread_beam(pass, self.upsample.len());
         for (index, (stage, size)) in self.upsample.iter().zip(&self.sizes).enumerate().rev() {
             stage.dispatch(pass, (index as u32 + 1) * self.stride, *size);
+            self.spread_beam(pass, index);
+        }
+    }
+
+    /// Spreads the light of a grid, which has all of it, if it is the beam's.
+    fn spread_beam(&self, pass: &mut wgpu::ComputePass<'_>, index: usize) {
+        let beam = self.beam.as_ref().filter(|beam| beam.level == index);
+        if let Some((beam, size)) = beam.zip(self.sizes.get(index)) {
+            for (stage, place) in beam.passes.iter().zip(0..) {
+                stage.dispatch(pass, place * beam.stride, *size);
+            }
         }
     }
 }

@@ -31,13 +31,18 @@ impl GpuTracer {
         self.device.maps_storage() && scene.quality.mapped_pixels.unwrap_or(pays)
     }
 
+    /// Whether a sampler filters sky maps. On software drivers it costs more than to read the texels.
+    pub(in crate::gpu) fn samples_maps(&self, scene: &Scene) -> bool {
+        scene.quality.map_sampler.unwrap_or(!self.adapter.info.software)
+    }
+
     pub(in crate::gpu) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let emitters = scene.emitters();
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
-        let bloom = Bloom::new(scene, request.format, [request.width, request.height])?;
+        let bloom = Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())?;
         // On hardware, whose branches cost little, all but the usual projection and film share kernels, so that a host
         // that goes through them does not wait for the driver's compiler each time. Their frames pay up to 4 % for it
         // (H200). Software drivers run both sides of every branch.
@@ -57,13 +62,14 @@ impl GpuTracer {
                 milky_way: scene.shows_milky_way() && !request.transparent,
                 map: scene.shown_map().is_some() && !request.transparent,
                 grid: scene.shows_grid() && !request.transparent,
+                map_sampler: self.samples_maps(scene),
                 all_effects: scene.effects.all_light(),
                 plane: emitters.plane_u().is_some(),
                 opaque: emitters.hides_all(),
                 footprints: emitters.needs().places,
                 volumes: emitters.needs().parts,
                 projection,
-                refines: scene.view == View::Light && scene.quality.refines,
+                refines: scene.refines(request.transparent),
             },
             film: if bloom.is_some() { FilmVariant::of_light() } else { developed },
             developed: bloom.is_some().then_some(developed),

@@ -53,6 +53,8 @@ pub fn imported(bytes: &[u8]) -> Record {
         sky_redshift: if fate == Fate::Escaped { redshift } else { f64::NAN },
         energy,
         angular_momentum: momentum,
+        // It does not leave the GPU.
+        polar_momentum: 0.0,
         steps: steps as u32,
         plane_u,
         beside_disk: 0,

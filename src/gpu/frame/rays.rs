@@ -212,6 +212,7 @@ fn finish(scene: &Scene, ray: &Ray, started: &StartedRay, ends: &[RayEnd]) -> Hi
             azimuth: wrap_angle(at.n.y.atan2(at.n.x) + at.drag),
             delay: f64::from(f32::from_bits(x.rest[1])),
             order: x.rest[2],
+            du: f64::from(f32::from_bits(x.rest[3])),
         });
     }
     scene.hit(ray, &started.frame, Some(&started.constants), &traced)

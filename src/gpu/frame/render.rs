@@ -133,7 +133,7 @@ impl GpuTracer {
         let bytes = setup.record_setup.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
         let steps = self.steps(scene, request, &setup, bytes, ray_steps);
 
-        let tables = Tables::prepare(&mut self.tables, &self.device, scene)?;
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         setup.uniform.map_sizes = tables.map_sizes();
         let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
         let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };

@@ -25,13 +25,31 @@ pub struct SkyMaps {
     map: Option<(Weak<SkyMap>, MapTexture)>,
     /// A dark texel, bound in the place of what is not shown.
     nothing: MapTexture,
+    sampler: wgpu::Sampler,
+    /// The maps have their levels as textures do, for the sampler.
+    for_sampler: bool,
 }
 
 impl SkyMaps {
     pub fn new(device: &Device) -> Result<Self> {
         let texture = device.table("no sky map", SKY_MAP.format, [1, 1])?;
         device.write_rows(&texture, 0, &[0; 4])?;
-        Ok(Self { milky_way: None, map: None, nothing: MapTexture { texture, finest: [1, 1] } })
+        let filter = wgpu::FilterMode::Linear;
+        let sampler = wgpu::SamplerDescriptor {
+            label: Some("sky maps"),
+            address_mode_u: wgpu::AddressMode::Repeat,
+            mag_filter: filter,
+            min_filter: filter,
+            mipmap_filter: wgpu::MipmapFilterMode::Linear,
+            ..Default::default()
+        };
+        Ok(Self {
+            milky_way: None,
+            map: None,
+            nothing: MapTexture { texture, finest: [1, 1] },
+            sampler: device.scoped("sky maps", |device| device.create_sampler(&sampler))?,
+            for_sampler: false,
+        })
     }
 
     /// The Milky Way's and the host's.
@@ -45,17 +63,27 @@ impl SkyMaps {
         self.bound().map(|map| &map.texture)
     }
 
+    pub fn sampler(&self) -> &wgpu::Sampler {
+        &self.sampler
+    }
+
     /// Columns and rows of their finest levels.
     pub fn sizes(&self) -> [u32; 4] {
         let [milky_way, map] = self.bound().map(|map| map.finest);
         [milky_way[0], milky_way[1], map[0], map[1]]
     }
 
-    /// Brings them up to the scene: a map that is not shown keeps its texture as long as the scene has it. Errors: as
-    /// [`Device::scoped`]; the texture is then made when it is needed next.
-    pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
+    /// Brings them up to the scene: a map that is not shown keeps its texture as long as the scene has it.
+    /// `for_sampler`: a sampler is to filter them. Errors: as [`Device::scoped`]; the texture is then made when it is
+    /// needed next.
+    pub fn update(&mut self, device: &Device, scene: &Scene, for_sampler: bool) -> Result<()> {
+        if for_sampler != self.for_sampler {
+            (self.milky_way, self.map) = (None, None);
+            self.for_sampler = for_sampler;
+            device.bindings.clear();
+        }
         if scene.shows_milky_way() && self.milky_way.is_none() {
-            self.milky_way = Some(upload(device, SkyMap::milky_way()?)?);
+            self.milky_way = Some(upload(device, SkyMap::milky_way()?, for_sampler)?);
         }
         let made_from = self.map.as_ref().map(|(map, _)| map.as_ptr());
         if made_from.is_some() && made_from != scene.sky_map.as_ref().map(Arc::as_ptr) {
@@ -64,30 +92,35 @@ impl SkyMaps {
             device.bindings.clear();
         }
         if let (Some(map), None) = (scene.shown_map(), &self.map) {
-            self.map = Some((Arc::downgrade(map), upload(device, map)?));
+            self.map = Some((Arc::downgrade(map), upload(device, map, for_sampler)?));
         }
         Ok(())
     }
 }
 
-/// All levels in one texture: the finest on top, below it the others side by side (`level_place` of sky/map.wgsl). A
-/// texture's own levels would do, but lavapipe (Mesa 22.3) takes the size of one for the size of another where pixels
-/// of a workgroup read different ones. Levels that do not fit into a texture are left out.
-fn upload(device: &Device, map: &SkyMap) -> Result<MapTexture> {
+/// All levels in one texture: as its own, or, without a sampler, the finest on top, below it the others side by side
+/// (`level_place` of sky/map.wgsl), because lavapipe (Mesa 22.3) takes the size of a texture's level for the size of
+/// another where pixels of a workgroup read texels of different ones. Levels that do not fit into a texture are left
+/// out.
+fn upload(device: &Device, map: &SkyMap, for_sampler: bool) -> Result<MapTexture> {
     let limit = device.limits().max_texture_dimension_2d;
-    let fitting = |level: &&Level| level.size[0] <= limit && texture_height(level.size) <= limit;
+    let height = |level: &Level| if for_sampler { level.size[1] } else { texture_height(level.size) };
+    let fitting = |level: &&Level| level.size[0] <= limit && height(level) <= limit;
     let levels = map.levels();
     let first = levels.iter().position(|level| fitting(&level)).unwrap_or(levels.len());
     let levels = levels.get(first..).unwrap_or(&[]);
     let finest = levels.first().ok_or_else(|| Error::internal("a sky map without levels"))?.size;
-    let texture = device.table("sky map", SKY_MAP.format, [finest[0], texture_height(finest)])?;
+    let texture = match for_sampler {
+        true => device.table_of_levels("sky map", SKY_MAP.format, finest, levels.len() as u32)?,
+        false => device.table("sky map", SKY_MAP.format, [finest[0], texture_height(finest)])?,
+    };
     let mut written = 0;
     for (level, number) in levels.iter().zip(0..) {
-        let [left, top] = level_place(finest, number);
+        let (own, [left, top]) = if for_sampler { (number, [0, 0]) } else { (0, level_place(finest, number)) };
         let width = level.size[0] as usize;
         let band_rows = (BAND_BYTES / size_of::<u32>() / width).max(1);
         for (band, row) in level.texels.chunks(band_rows * width).zip((top..).step_by(band_rows)) {
-            device.write_part(&texture, [left, row], level.size[0], bytemuck::cast_slice(band))?;
+            device.write_part(&texture, own, [left, row], level.size[0], bytemuck::cast_slice(band))?;
             written += size_of_val(band);
             if written >= BAND_BYTES {
                 written = 0;

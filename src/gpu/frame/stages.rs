@@ -115,9 +115,10 @@ impl FrameBuffers {
         let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum };
         let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
         let records = self.record_store.group(setup.record_setup.source)?;
-        let [light, cells, milky_way, map] = tables.textures().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let shared = [frame, pass.clone(), light, cells, milky_way, map];
+        let [streaks, repeating] = tables.streaks().resources();
+        let mut shared = vec![frame, pass.clone()];
+        shared.extend(tables.resources().into_iter().chain([streaks, repeating]));
         let shades = |kernels: &Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &Kernels, source| {
                 let compiled = match variants.several_samples {

@@ -1,9 +1,12 @@
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
 //! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
-//! entries a row (shade/shade.wgsl says why).
+//! entries a row (shade/shade.wgsl says why). Beside them lie the pictures that shading reads: sky maps, and the
+//! streaks of the disk.
 
 use super::sky_maps::SkyMaps;
-use crate::allocate::with_room;
+use super::streaks::StreakTexture;
+use crate::allocate::{collected, with_room};
+use crate::emit::thin_disk::profile_row;
 use crate::error::{Error, Result};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
@@ -28,6 +31,7 @@ pub struct Tables {
     light: Texture,
     star_cells: Texture,
     sky_maps: SkyMaps,
+    streaks: StreakTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
 }
@@ -58,41 +62,53 @@ fn table<T: bytemuck::Pod>(
 }
 
 impl Tables {
-    fn new(device: &Device, stars: Arc<StarIndex>, sky_maps: SkyMaps) -> Result<Self> {
+    fn new(device: &Device, stars: Arc<StarIndex>, (sky_maps, streaks): (SkyMaps, StreakTexture)) -> Result<Self> {
         let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
-        Ok(Self { stars, light, star_cells, sky_maps, profile_spin: None })
+        Ok(Self { stars, light, star_cells, sky_maps, streaks, profile_spin: None })
     }
 
-    /// Brings the tables up to the scene's stars, maps and disk. Errors: UNSUPPORTED where the device's textures are
-    /// too small; OUT_OF_MEMORY.
-    pub fn prepare<'a>(tables: &'a mut Option<Self>, device: &Device, scene: &Scene) -> Result<&'a mut Self> {
+    /// Brings the tables up to the scene's stars, maps and disk. `map_sampler`: a sampler is to filter maps. Errors:
+    /// UNSUPPORTED where the device's textures are too small; OUT_OF_MEMORY.
+    pub fn prepare<'a>(
+        tables: &'a mut Option<Self>,
+        device: &Device,
+        scene: &Scene,
+        map_sampler: bool,
+    ) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
         let made = match tables.take() {
             Some(held) if Arc::ptr_eq(&held.stars, &stars) => held,
             // The old stars go first: both together need not fit.
             Some(held) => {
-                let maps = held.into_maps();
-                Self::new(device, stars, maps)?
+                let pictures = held.into_pictures();
+                Self::new(device, stars, pictures)?
             }
-            None => Self::new(device, stars, SkyMaps::new(device)?)?,
+            None => Self::new(device, stars, (SkyMaps::new(device)?, StreakTexture::new(device)?))?,
         };
         let tables = tables.insert(made);
-        tables.update(device, scene)?;
+        tables.update(device, scene, map_sampler)?;
         Ok(tables)
     }
 
-    /// The maps; all else is let go.
-    fn into_maps(self) -> SkyMaps {
-        self.sky_maps
+    /// The maps and the streaks; all else is let go.
+    fn into_pictures(self) -> (SkyMaps, StreakTexture) {
+        (self.sky_maps, self.streaks)
+    }
+
+    /// Group 0 of emit/streaks.wgsl.
+    pub fn streaks(&self) -> &StreakTexture {
+        &self.streaks
     }
 
     /// In the order of group 0 of shade/shade.wgsl.
-    pub fn textures(&self) -> [&Texture; 4] {
+    pub fn resources(&self) -> [wgpu::BindingResource<'_>; 5] {
         let [milky_way, map] = self.sky_maps.textures();
-        [&self.light, &self.star_cells, milky_way, map]
+        let [light, cells, milky_way, map] =
+            [&self.light, &self.star_cells, milky_way, map].map(|t| wgpu::BindingResource::TextureView(&t.view));
+        [light, cells, milky_way, map, wgpu::BindingResource::Sampler(self.sky_maps.sampler())]
     }
 
     /// `Frame::map_sizes` of shared/frame.wgsl.
@@ -101,17 +117,15 @@ impl Tables {
     }
 
     /// Brings the profile up to the scene's disk, and the maps up to its sky.
-    fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
-        self.sky_maps.update(device, scene)?;
+    fn update(&mut self, device: &Device, scene: &Scene, map_sampler: bool) -> Result<()> {
+        self.sky_maps.update(device, scene, map_sampler)?;
+        self.streaks.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());
         }
         let profile = TemperatureProfile::new(spin);
-        let mut row = vec![[0.0_f32; 4]; TABLE_WIDTH];
-        for (out, pair) in row.iter_mut().zip(profile.entries().windows(2)) {
-            *out = [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0];
-        }
+        let row = collected(profile_row(&profile), "the disk's profile")?;
         device.write_rows(&self.light, PROFILE_ROW, bytemuck::cast_slice(&row))?;
         self.profile_spin = Some(spin);
         Ok(())

@@ -1,15 +1,18 @@
 //! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field
 //! by field. The only place where f64 becomes f32 on its way to the GPU.
 
+use crate::emit::thin_disk::SoftEdges;
+use crate::emit::turbulence::{MOST_BANDS, Turbulence};
 use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::geodesic::Clock;
-use crate::physics::lens::critical::shadow_centre;
+use crate::physics::lens::critical::CurveLevel;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
-use crate::scene::Scene;
 use crate::scene::observer::Lens;
+use crate::scene::refine::DiskEdges;
+use crate::scene::{EmissionLaw, Scene};
 use crate::sky::least_patch;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
@@ -34,6 +37,7 @@ pub struct FrameUniform {
     size: Vec4,
     turbulence: Vec4,
     haze: Vec4,
+    critical: Vec4,
     disk_u: [f32; 2],
     opaque_u: [f32; 2],
     capture_u: f32,
@@ -48,6 +52,11 @@ pub struct FrameUniform {
     projection: u32,
     medium_layer: u32,
     plane_u: [f32; 2],
+    soft_edges: Vec4,
+    surface: Vec4,
+    shown_edges: Vec4,
+    plunge: Vec4,
+    bands: [[u32; 4]; MOST_BANDS],
 }
 
 #[repr(C)]
@@ -68,9 +77,9 @@ pub struct PassUniform {
 pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     use crate::gpu::kernel::layout::layout;
     let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
-        sky_x, sky_y, sky_z, disk, size, turbulence, haze, disk_u, opaque_u, capture_u, max_steps, max_crossings, rain,
-        effects, view, pattern, map_sizes, projection,
-        medium_layer, plane_u);
+        sky_x, sky_y, sky_z, disk, size, turbulence, haze, critical, disk_u, opaque_u, capture_u, max_steps,
+        max_crossings, rain, effects, view, pattern, map_sizes, projection,
+        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
     [frame, pass]
 }
@@ -101,6 +110,14 @@ fn range(u: Option<[f64; 2]>) -> [f32; 2] {
     u.map_or([1.0, 0.0], |u| u.map(|u| u as f32))
 }
 
+/// The bands of the disk's turbulence; beyond the last one it goes on.
+fn bands(turbulence: &Turbulence) -> [[u32; 4]; MOST_BANDS] {
+    std::array::from_fn(|i| {
+        let band = turbulence.bands[i.min(turbulence.band_count.max(1) - 1)];
+        [(band.age as f32).to_bits(), (band.spacing as f32).to_bits(), band.generation, 0]
+    })
+}
+
 impl FrameUniform {
     /// `settings`: those of f32 pixels; `crossings`: most that a traced record holds. Errors: as `Scene::lens`.
     pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
@@ -111,16 +128,18 @@ impl FrameUniform {
         let isco = scene.disk_isco();
         let emitters = scene.emitters();
         let turbulence = emitters.disk.and_then(|disk| disk.turbulence);
+        let [hottest, least] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
+        let edges = DiskEdges::new(emitters.disk_u().unwrap_or_default(), emitters.fading_u());
         let u = 1.0 / frame.r;
-        let shadow = shadow_centre(frame);
+        let CurveLevel { critical: [sin, cos], by_margin, .. } = CurveLevel::new(frame);
         Ok(Self {
             right: with(lens.axes.x_axis, lens.mapping.pixel_angle),
             up: with(lens.axes.y_axis, 0.0),
             forward: with(lens.axes.z_axis, 0.0),
             beta: with(lens.observer.beta, lens.observer.gamma),
-            e_r: with(frame.e_r, shadow.x),
-            e_theta: with(frame.e_theta, shadow.y),
-            e_phi: with(frame.e_phi, shadow.z),
+            e_r: with(frame.e_r, 0.0),
+            e_theta: with(frame.e_theta, 0.0),
+            e_phi: with(frame.e_phi, 0.0),
             place: four(u, frame.sin, frame.cos, if frame.rain { (2.0 * u).sqrt() } else { frame.lapse }),
             zamo: zamo(frame),
             hole: four(a, horizon_outer(a), horizon_inner(a), if disk.retrograde { -isco } else { isco }),
@@ -128,14 +147,16 @@ impl FrameUniform {
             sky_y: with(sky.y_axis, scene.sky.map_brightness),
             sky_z: with(sky.z_axis, least_patch(lens.mapping.pixel_angle)),
             disk: four(
-                disk.temperature,
+                emitters.disk.map_or(disk.temperature, |thin| thin.hottest),
                 BlackbodyTable::shared().ln_luminance(disk.temperature),
                 disk.opacity,
                 disk.brightness,
             ),
             size: four(lens.mapping.width, lens.mapping.height, settings.step, settings.tolerance),
-            turbulence: turbulence.map_or(Vec4::ZERO, |t| four(t.strength, t.age, t.reference_delay, 0.0)),
+            turbulence: turbulence
+                .map_or(Vec4::ZERO, |t| four(t.strength, t.reference_delay, t.fades_inside.unwrap_or(-1e30), 0.0)),
             haze: emitters.haze.map_or(Vec4::ZERO, |h| four(h.radius, h.brightness, h.absorption, 0.0)),
+            critical: four(sin, cos, f64::from(u8::from(by_margin)), 0.0),
             disk_u: range(emitters.disk_u()),
             opaque_u: range(settings.opaque_u),
             capture_u: settings.capture_u as f32,
@@ -144,11 +165,19 @@ impl FrameUniform {
             rain: u32::from(frame.rain) + u32::from(frame.clock() == Clock::Rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
-            pattern: turbulence.map_or([0; 2], |t| [t.seed, t.generation]),
+            pattern: turbulence.map_or([0; 2], |t| [t.seed, t.first_band as u32]),
             map_sizes: [1; 4],
             projection: scene.camera.projection as u32,
             medium_layer: crossings,
             plane_u: range(emitters.plane_u()),
+            soft_edges: emitters.disk.map_or(Vec4::ZERO, |thin| {
+                let SoftEdges { outer, inner } = thin.edges;
+                four(outer[0], outer[1], inner[0], inner[1])
+            }),
+            surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
+            shown_edges: four(edges.least[0], edges.least[1], 0.0, 0.0),
+            plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
+            bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t)),
         })
     }
 }

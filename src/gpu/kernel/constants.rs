@@ -3,16 +3,17 @@
 
 use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
-use crate::emit::{medium, turbulence};
-use crate::film::{self, tone_map};
+use crate::emit::{medium, streaks, turbulence};
+use crate::film::bloom::BEAM_SHARES;
+use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, geodesic};
 use crate::scene::refine::{self, Edge};
-use crate::scene::{Effects, MAX_CROSSINGS, Projection, ToneMap, View};
-use crate::sky::{filter, galaxy, grid, index, stars};
+use crate::scene::{ColourMap, Effects, MAX_CROSSINGS, Projection, ToneMap, View};
+use crate::sky::{filter, galaxy, grid, index, shift, stars};
 use std::fmt::Debug;
 
 /// A value of a kind: its type and itself, as WGSL.
@@ -83,11 +84,11 @@ fn all() -> Vec<(&'static str, String)> {
         KERR_ROWS_ABOVE: u32 = kerr::ROWS_ABOVE;
         KERR_CURVE: u32 = critical::CRITICAL_NODES;
         KERR_NO_CROSSING: f32 = kerr::NO_CROSSING;
+        KERR_NARROW_REACH: f32 = kerr::NARROW_REACH;
         KERR_DIRECT: u32 = kerr::DIRECT;
         KERR_TOLERANCE: f32 = kerr::TOLERANCE;
         KERR_BEYOND: f32 = kerr::BEYOND_INFINITY;
         KERR_INWARD: f32 = kerr::INWARD;
-        SAME_CROSSING: f32 = refine::SAME_CROSSING;
 
         VIEW_REDSHIFT: u32 = View::Redshift;
         VIEW_ORDER: u32 = View::Order;
@@ -107,10 +108,22 @@ fn all() -> Vec<(&'static str, String)> {
         EDGE_CURVE: u32 = Edge::Curve;
         EDGE_SAMPLES: u32 = refine::EDGE_SAMPLES;
         CURVE_REACH: f32 = refine::CURVE_REACH;
-        RINGS_REACH: f32 = refine::RINGS_REACH;
+        FAST_TURN: f32 = refine::FAST_TURN;
+        TURN: f32 = refine::TURN;
+        STRIPS: u32 = refine::STRIPS;
+        NARROWEST: f32 = refine::NARROWEST;
+        CAPTURED_DENSITY: f32 = refine::CAPTURED_DENSITY;
+        FEWEST_STRIPS: u32 = refine::FEWEST_STRIPS;
+        FARTHEST: f32 = refine::FARTHEST;
+        BENT: f32 = refine::BENT;
+        SEARCH_REACH: f32 = refine::SEARCH_REACH;
+        SEARCH_STEPS: u32 = refine::SEARCH_STEPS;
+        LEVEL_STEP: f32 = refine::LEVEL_STEP;
+        EVEN_LEVEL: f32 = refine::EVEN_LEVEL;
         EDGE_REACH: f32 = refine::EDGE_REACH;
         STEEP_CHANGE: f32 = refine::STEEP_CHANGE;
         EVEN_CHANGE: f32 = refine::EVEN_CHANGE;
+        LEAST_SLOPE: f32 = refine::LEAST_SLOPE;
         DIRECT_CHANGE: f32 = refine::DIRECT_CHANGE;
 
         BLACKBODY_SIZE: u32 = blackbody::BLACKBODY_SIZE;
@@ -121,11 +134,19 @@ fn all() -> Vec<(&'static str, String)> {
         MAX_RATIO: f32 = blackbody::MAX_RATIO;
         MAX_LN_RATIO: f32 = blackbody::MAX_LN_RATIO;
         MAX_BEAMING: f32 = blackbody::MAX_BEAMING;
-        LIFETIME: f32 = turbulence::LIFETIME;
-        CELLS_AROUND: u32 = turbulence::CELLS_AROUND;
-        CELLS_PER_E_FOLD: f32 = turbulence::CELLS_PER_E_FOLD;
-        AMPLITUDES: vec4 = turbulence::AMPLITUDES;
-        GAIN: f32 = turbulence::GAIN;
+        STREAK_COLUMNS: u32 = streaks::STREAK_COLUMNS;
+        STREAK_ROWS: u32 = streaks::STREAK_ROWS;
+        STREAK_PERIOD: f32 = streaks::STREAK_PERIOD;
+        STREAK_LAST: u32 = streaks::STREAK_LAST;
+        STREAK_CUMULANTS: vec3 = streaks::STREAK_CUMULANTS;
+        STREAK_TAPS: f32 = streaks::STREAK_TAPS;
+        STREAK_TEXEL: f32 = streaks::STREAK_TEXEL;
+        STREAK_WHOLE: f32 = streaks::STREAK_WHOLE;
+        BAND: f32 = turbulence::BAND;
+        BAND_FADE: f32 = turbulence::BAND_FADE;
+        PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
+        GENERATION_FADE: f32 = turbulence::GENERATION_FADE;
+        MOST_BANDS: u32 = turbulence::MOST_BANDS;
         MOST_PIECES: u32 = medium::MOST_PIECES;
         PIECE: f32 = medium::PIECE;
 
@@ -141,14 +162,23 @@ fn all() -> Vec<(&'static str, String)> {
         STAR_MARGIN: f32 = index::STAR_MARGIN;
         GALACTIC_POLE: vec3 = galaxy::GALACTIC_POLE.to_array();
         STAR_TINY_AREA: f32 = stars::TINY_AREA;
+        STAR_RADIUS: f32 = stars::STAR_RADIUS;
+        STAR_PEAK: f32 = stars::STAR_PEAK;
+        STAR_RIPPLE: vec3 = stars::STAR_RIPPLE;
         MAX_STAR_LIGHT: f32 = stars::MAX_STAR_LIGHT;
         MAX_SPREAD: f32 = filter::MAX_SPREAD;
+        MOST_SPREAD: f32 = filter::MOST_SPREAD;
+        WIDE_TAP: f32 = filter::WIDE_TAP;
+        STRAIGHT: f32 = filter::STRAIGHT;
         WHOLE_SKY: f32 = filter::WHOLE_SKY;
         TINY_AXIS: f32 = filter::TINY_AXIS;
-        MAX_MAP_LIGHT: f32 = filter::MAX_MAP_LIGHT;
-        COOLEST_RATIO: f32 = filter::COOLEST_RATIO;
-        HOTTEST_RATIO: f32 = filter::HOTTEST_RATIO;
-        TINY_LIGHT: f32 = filter::TINY_LIGHT;
+        MAX_MAP_LIGHT: f32 = shift::MAX_MAP_LIGHT;
+        COOLEST_COLOUR: f32 = shift::COOLEST_COLOUR;
+        HOTTEST_COLOUR: f32 = shift::HOTTEST_COLOUR;
+        TINY_LIGHT: f32 = shift::TINY_LIGHT;
+        SHIFT_TABLE: u32 = index::SHIFT_TABLE;
+        SHIFT_COLOURS: u32 = shift::SHIFT_COLOURS;
+        SHIFT_SCALE: f32 = shift::SHIFT_SCALE;
         GRID_SPACING: f32 = grid::GRID_SPACING;
         GRID_CAP_SPACING: f32 = grid::GRID_CAP_SPACING;
         GRID_CAP: f32 = grid::GRID_CAP;
@@ -165,6 +195,9 @@ fn all() -> Vec<(&'static str, String)> {
         PIXELS_R32F: u32 = PixelKind::R32F;
         TONE_MAP_ACES: u32 = ToneMap::Aces;
         TONE_MAP_AGX: u32 = ToneMap::Agx;
+        COLOUR_MAP_NONE: u32 = ColourMap::None;
+        LUMINANCE: vec3 = colour_map::LUMINANCE;
+        BEAM_QUARTERS: i32 = BEAM_SHARES / 4;
         FORMAT_BGRA8: u32 = PixelFormat::Bgra8Srgb;
         FORMAT_RGBA16F: u32 = PixelFormat::Rgba16F;
         FORMAT_RGBA32F: u32 = PixelFormat::Rgba32F;
@@ -172,10 +205,12 @@ fn all() -> Vec<(&'static str, String)> {
         MAX_SCENE_LIGHT: f32 = tone_map::MAX_SCENE_LIGHT;
         MAX_F16: f32 = film::MAX_F16;
         MAX_F32: f32 = f32::MAX;
+        ACES_EXPOSURE: f32 = tone_map::ACES_EXPOSURE;
         ACES_IN: mat3x2 = tone_map::ACES_IN;
         ACES_OUT: mat3x2 = tone_map::ACES_OUT;
         AGX_IN: mat3x2 = tone_map::AGX_IN;
         AGX_OUT: mat3x2 = tone_map::AGX_OUT;
+        AGX_REC709: mat3x2 = tone_map::AGX_REC709;
         AGX_LOW: f32 = tone_map::AGX_LOW;
         AGX_SPAN: f32 = tone_map::AGX_SPAN;
         AGX_PIVOT: f32 = tone_map::AGX_PIVOT;

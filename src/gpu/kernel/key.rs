@@ -23,6 +23,7 @@ pub enum KernelKey {
     Gather(u32, bool),
     GatherBase,
     Upsample,
+    Beam,
     Export(RecordSource, bool, Option<Projection>),
     SchwarzschildEnds,
     SchwarzschildColumns {
@@ -69,6 +70,7 @@ impl KernelKey {
             Self::Develop(..) => "develop_tile",
             Self::Gather(..) | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
+            Self::Beam => "spread_beam",
             Self::SchwarzschildEnds => "find_ends",
             Self::SchwarzschildColumns { .. } => "fill_columns",
             Self::KerrNodes { .. } => "trace_nodes",
@@ -89,6 +91,7 @@ impl KernelKey {
             Self::Gather(..) => wgsl::kernel("bloom/gather"),
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
+            Self::Beam => wgsl::kernel("bloom/beam"),
             Self::Export(source, ..) => wgsl::export(source),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
             Self::SchwarzschildColumns { .. } => wgsl::kernel("lens/schwarzschild_columns"),
@@ -118,8 +121,8 @@ impl KernelKey {
                 };
                 vec![vec![Slot::UniformPart], light, film.slots()]
             }
-            Self::Gather(..) => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
-            Self::GatherBase => {
+            Self::Beam => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
+            Self::Gather(..) | Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }
             Self::Upsample => {
@@ -174,7 +177,7 @@ impl KernelKey {
             Self::Develop(film, None) => film_constants(film),
             Self::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
             Self::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
-            Self::GatherBase | Self::Upsample => Vec::new(),
+            Self::GatherBase | Self::Upsample | Self::Beam => Vec::new(),
             Self::Export(source, footprints, projection) => {
                 let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
                 [source.constants(), export].concat()
@@ -233,6 +236,7 @@ fn shade_constants(shade: ShadeVariant) -> Vec<(&'static str, f64)> {
         ("SHOWS_MILKY_WAY", flag(shade.milky_way)),
         ("SHOWS_MAP", flag(shade.map)),
         ("SHOWS_GRID", flag(shade.grid)),
+        ("MAP_SAMPLER", flag(shade.map_sampler)),
         ("ALL_EFFECTS", flag(shade.all_effects)),
         ("PLANE", flag(shade.plane)),
         ("OPAQUE", flag(shade.opaque)),
@@ -248,5 +252,6 @@ fn film_constants(film: FilmVariant) -> Vec<(&'static str, f64)> {
         ("PIXELS", film.pixels.map_or(FROM_UNIFORM, |pixels| pixels as u32).into()),
         ("FALSE_COLOUR", flag(film.false_colour)),
         ("TONE_MAP", film.tone_map.map_or(FROM_UNIFORM, |tone_map| tone_map as u32).into()),
+        ("COLOUR_MAP", film.colour_map.map_or(FROM_UNIFORM, |colour_map| colour_map as u32).into()),
     ]
 }

@@ -42,15 +42,17 @@ pub const LENS_COLUMNS: TextureKind =
 /// Flags of a lens's cells.
 pub const LENS_FLAGS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 };
-/// `light_tables`, `star_cells`, `milky_way` and `sky_map` of shade/shade.wgsl.
-const TABLES: [TextureKind; 4] = [
+/// `light_tables` and `star_cells` of shade/shade.wgsl.
+const TABLES: [TextureKind; 2] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
-    SKY_MAP,
-    SKY_MAP,
 ];
 
-/// Pyramids of sky/map.wgsl.
+/// `streaks` of emit/streaks.wgsl.
+pub const STREAKS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::Rg16Float, dimension: wgpu::TextureViewDimension::D2 };
+
+/// `milky_way` and `sky_map` of shade/shade.wgsl.
 pub const SKY_MAP: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
 
@@ -116,10 +118,10 @@ impl RecordSource {
     }
 }
 
-/// Group 0 of shade/shade.wgsl.
+/// Group 0 of shade/shade.wgsl and emit/streaks.wgsl.
 pub fn shade_slots() -> Vec<Slot> {
-    let [light, cells, milky_way, map] = TABLES.map(Slot::Texture);
-    vec![Slot::Uniform, Slot::UniformPart, light, cells, milky_way, map]
+    let ([light, cells], map, streaks) = (TABLES.map(Slot::Texture), Slot::Filtered(SKY_MAP), Slot::Filtered(STREAKS));
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, map, map, Slot::Sampler, streaks, Slot::Sampler]
 }
 
 /// Group 2 of shade/sample.wgsl.

@@ -2,7 +2,7 @@
 
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
-use crate::scene::{Film, Projection, ToneMap, View};
+use crate::scene::{ColourMap, Film, Projection, ToneMap, View};
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
@@ -35,6 +35,8 @@ pub struct ShadeVariant {
     pub milky_way: bool,
     pub map: bool,
     pub grid: bool,
+    /// A sampler filters maps.
+    pub map_sampler: bool,
     /// No effect on light is switched off.
     pub all_effects: bool,
     /// Something shines in the equatorial plane.
@@ -60,6 +62,8 @@ pub struct FilmVariant {
     pub(in crate::gpu) false_colour: bool,
     /// `None`: any, which the kernel asks while it runs. `ToneMap::None` where it does not matter.
     pub(in crate::gpu) tone_map: Option<ToneMap>,
+    /// As `tone_map`.
+    pub(in crate::gpu) colour_map: Option<ColourMap>,
     pub(in crate::gpu) target: PixelTarget,
 }
 
@@ -98,27 +102,33 @@ impl FilmVariant {
             PixelFormat::R32F => PixelKind::R32F,
         };
         let shows_light = view == View::Light;
-        let tone_map = if shows_light && format.is_developed() { film.tone_map } else { ToneMap::None };
-        Self { pixels: Some(pixels), false_colour: !shows_light, tone_map: Some(tone_map), target }
+        let (tone_map, colour_map) = match shows_light && format.is_developed() {
+            true => (film.tone_map, film.colour_map),
+            false => (ToneMap::None, ColourMap::None),
+        };
+        let (tone_map, colour_map) = (Some(tone_map), Some(colour_map));
+        Self { pixels: Some(pixels), false_colour: !shows_light, tone_map, colour_map, target }
     }
 
-    /// The same for every tone map, and, but in windows, which have one kind of pixels, for every format. Views other
-    /// than light have no tone map.
+    /// The same for every tone map and colour map, and, but in windows, which have one kind of pixels, for every
+    /// format. Views other than light have no tone map.
     pub fn of_any(self) -> Self {
         let pixels = self.pixels.filter(|_| self.target == PixelTarget::Screen);
-        Self { pixels, tone_map: self.false_colour.then_some(ToneMap::None), ..self }
+        let tone_map = self.false_colour.then_some(ToneMap::None);
+        Self { pixels, tone_map, colour_map: self.false_colour.then_some(ColourMap::None), ..self }
     }
 
     /// Whether hosts begin with such pixels, which have kernels of their own (`GpuTracer::set_up`): light in 8 bits by
     /// ACES, the default.
     pub fn is_usual(self) -> bool {
-        self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces)
+        let plain = self.colour_map == Some(ColourMap::None);
+        self.pixels == Some(PixelKind::EightBit) && self.tone_map == Some(ToneMap::Aces) && plain
     }
 
     /// For light that bloom is to spread.
     pub fn of_light() -> Self {
-        let (tone_map, target) = (Some(ToneMap::None), PixelTarget::Light);
-        Self { pixels: Some(PixelKind::Float), false_colour: false, tone_map, target }
+        let (tone_map, colour_map) = (Some(ToneMap::None), Some(ColourMap::None));
+        Self { pixels: Some(PixelKind::Float), false_colour: false, tone_map, colour_map, target: PixelTarget::Light }
     }
 
     /// For kernels that go over what `source` makes: deferred pixels lie scattered.

@@ -7,6 +7,7 @@ use crate::physics::geodesic::{Constants, State};
 use crate::physics::orbit::redshift;
 use crate::scene::Projection;
 use crate::scene::observer::Lens;
+use crate::scene::record::polar_momentum;
 
 /// The uniform is rounded, and what f64 has at hand is computed anew from it.
 pub const UNIFORM: f64 = 2e-6;
@@ -43,6 +44,14 @@ fn moving_look(i: &mut Inputs) {
     i.vector(d * 0.01);
 }
 
+/// |u'| of light in the plane at 1/r = `u`; `None` where it does not come: u'^2 = W^2 - D B u^2 of
+/// `physics::plunge`.
+fn radial(c: &Constants, u: f64) -> Option<f64> {
+    let w = c.energy - c.a * (c.angular_momentum - c.a * c.energy) * u * u;
+    let square = w * w - c.horizon_function(u) * c.b * u * u;
+    (square > 0.0).then(|| square.sqrt())
+}
+
 fn look(kind: Kind) -> fn(&mut Inputs) {
     match kind {
         Kind::Spinning => |i| {
@@ -74,6 +83,8 @@ fn put_begun(c: &Constants, s: &State, o: &mut Outputs) {
     [c.k, c.b, c.a2e2, c.a * c.a * c.carter].into_iter().for_each(|v| o.near(v / square, momentum * momentum));
     o.near(momentum, 0.0);
     o.all([c.r_plus, c.r_minus, c.a], 0.0);
+    // The root of a difference: its square is as exact as what it is the difference of.
+    o.near(polar_momentum(c, 2.0).powi(2), 0.25 * momentum * momentum);
     o.near(s.u, 0.0);
     o.near(s.du / nu, 1.0);
     o.all(s.n.to_array(), 1.0);
@@ -195,11 +206,12 @@ pub fn group() -> Group {
         out2(vec2<f32>(b.c.energy, b.c.angular_momentum) / nu);
         out4(vec4<f32>(b.c.k, b.c.b, b.c.a2e2, b.c.a2q) / (nu * nu));
         out1(b.c.scale / nu); out3(vec3<f32>(b.c.r_plus, b.c.r_minus, b.c.a));
+        let p = polar_momentum(b, 2.0); out1(p * p);
         out1(b.state.u); out1(b.state.du / nu); out3(b.state.n); out3(b.state.dn / nu); out_word(b.c.clock);";
     let begins = [
-        ("begin_local begin_zamo constants", Kind::Spinning, spinning),
-        ("begin_local begin_zamo constants", Kind::Static, plain),
-        ("begin_local begin_rain constants", Kind::Rain, any),
+        ("begin_local begin_zamo constants polar_momentum", Kind::Spinning, spinning),
+        ("begin_local begin_zamo constants polar_momentum", Kind::Static, plain),
+        ("begin_local begin_rain constants polar_momentum", Kind::Rain, any),
     ];
     for (functions, kind, constants) in begins {
         twins.push(twin(observer, functions, BEGIN, look(kind), begun, UNIFORM).with(&constants));
@@ -213,7 +225,7 @@ pub fn group() -> Group {
                 let view = Kind::Spinning.push(i);
                 push_look(i, view);
                 let [far, near] = view.scene.emitters().disk_u().expect("a disk");
-                i.even(far, near);
+                i.even(far, near.min(1.0 / view.scene.disk_isco()));
             },
             |i, o| {
                 let View { scene, lens, .. } = view(i);
@@ -221,6 +233,49 @@ pub fn group() -> Group {
                 let g = redshift(c.a, i.x(4), scene.retrograde(), c.energy, c.angular_momentum, c.nu_local);
                 // E - Omega L cancels: g is as uncertain as it is large.
                 o.near(g, g * g * (c.energy.abs() + i.x(4).powf(1.5) * c.angular_momentum.abs()) / c.nu_local);
+            },
+            UNIFORM,
+        )
+        .with(&spinning),
+    );
+    twins.push(
+        twin(
+            observer,
+            "redshift_at plunging_frequency",
+            "enter_scene(); let c = begin_local(normalize(in3(1u))).c;
+             out1(redshift_at(c, in1(4u), in1(5u) * c.nu_local));",
+            |i| {
+                let view = Kind::Spinning.push(i);
+                let Some(plunge) = view.scene.matter().plunge else {
+                    push_look(i, view);
+                    let [far, near] = view.scene.emitters().disk_u().expect("a disk");
+                    i.even(far, near);
+                    i.even(-1.0, 1.0);
+                    return;
+                };
+                // Light that comes so far in, on its way in or out.
+                loop {
+                    i.truncate(1);
+                    let n = push_look(i, view);
+                    let (c, _) = view.lens.observer.frame.start(n).expect("a ray");
+                    let [far, near] = view.scene.emitters().disk_u().expect("a disk");
+                    let u = if i.random.below(4) == 0 { i.even(far, near) } else { i.even(1.0 / plunge.isco, near) };
+                    if let Some(du) = radial(&c, u) {
+                        let side = if i.random.below(2) == 0 { -1.0 } else { 1.0 };
+                        i.push(side * du / c.nu_local);
+                        return;
+                    }
+                }
+            },
+            |i, o| {
+                let View { scene, lens, .. } = view(i);
+                let (c, _) = lens.observer.frame.start(i.v3(1).normalize()).expect("a ray");
+                let (u, matter) = (i.x(4), scene.matter());
+                let g = matter.redshift(&c, u, i.x(5) * c.nu_local);
+                // The terms of the frequency may cancel.
+                let d = c.horizon_function(u);
+                let size = (c.energy.abs() + u.powf(1.5) * c.angular_momentum.abs()) / c.nu_local + i.x(5).abs();
+                o.near(g, g * g * size / d);
             },
             UNIFORM,
         )

@@ -2,21 +2,22 @@
 
 use super::inputs::{Inputs, Outputs};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
-use crate::film::{FilmParams, develop, dither, false_colour, limited, srgb_encode, tone_map};
+use crate::film::{FilmParams, colour_map, develop, dither, false_colour, limited, srgb_encode, tone_map};
 use crate::gpu::kernel::variant::FROM_UNIFORM;
 use crate::image::PixelFormat;
 use crate::image::file::srgb_to_linear;
-use crate::scene::{Film, ToneMap, View};
+use crate::scene::{ColourMap, Film, ToneMap, View};
 
 const HEAD: &str = "
 #import film/film
+#import film/colour_map
 #import film/encode
 #import film/false_colour
 #import film/params
 #import window/present
 var<private> film: FilmParams;
 fn enter_film() {
-    film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), 0u);
+    film = FilmParams(in1(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u), word(6u), word(7u));
 }
 fn out_bytes(words: vec4<u32>, count: u32) {
     for (var k = 0u; k < count; k += 1u) {
@@ -25,11 +26,12 @@ fn out_bytes(words: vec4<u32>, count: u32) {
 }
 ";
 
-const LIGHT: usize = 7;
+const LIGHT: usize = 8;
 
 fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
     let tone_map = [ToneMap::None, ToneMap::Aces, ToneMap::Agx][i.random.below(3) as usize];
-    let film = Film { tone_map, exposure_ev: i.random.even(-2.0, 2.0), bloom: 0.0 };
+    let colour_map = [ColourMap::None, ColourMap::Afmhot][i.random.below(2) as usize];
+    let film = Film { tone_map, colour_map, exposure_ev: i.random.even(-2.0, 2.0), ..Film::plain() };
     let params = FilmParams::new(&film, view, format, i.random.below(2) == 0);
     i.push(params.exposure.into());
     [params.tone_map, params.format, params.false_colour].into_iter().for_each(|word| {
@@ -38,6 +40,7 @@ fn push_film(i: &mut Inputs, view: View, format: PixelFormat) {
     i.push(params.view_low.into());
     i.push(params.view_scale.into());
     i.push_word(params.transparent);
+    i.push_word(params.colour_map);
 }
 
 fn params(i: &Inputs) -> FilmParams {
@@ -49,7 +52,7 @@ fn params(i: &Inputs) -> FilmParams {
         view_low: i.f(4),
         view_scale: i.f(5),
         transparent: i.word(6),
-        reserved: 0,
+        colour_map: i.word(7),
     }
 }
 
@@ -107,14 +110,14 @@ fn push_value(i: &mut Inputs) {
 
 pub fn group() -> Group {
     let any = f64::from(FROM_UNIFORM);
-    let all = [("PIXELS", any), ("TONE_MAP", any)];
+    let all = [("PIXELS", any), ("TONE_MAP", any), ("COLOUR_MAP", any)];
     let (film, encode, colours) = ("film/film", "film/encode", "film/false_colour");
-    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(7u), word(11u), word(12u)), pixel_words());";
+    const DEVELOP: &str = "enter_film(); out_bytes(develop(in4(8u), word(12u), word(13u)), pixel_words());";
     let twins = vec![
         twin(
             film,
-            "develop develop_8bit tone_map dither alpha_of is_float is_r32f is_aces is_agx pixel_words \
-             has_several_words",
+            "develop develop_8bit shown_colour has_colour_map tone_map dither alpha_of is_float is_r32f is_aces is_agx \
+             pixel_words has_several_words",
             DEVELOP,
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
@@ -168,12 +171,12 @@ pub fn group() -> Group {
         twin(
             encode,
             "limited is_nan",
-            "out3(limited(in3(7u), 100.0));",
+            "out3(limited(in3(8u), 100.0));",
             |i| {
                 push_film(i, View::Light, PixelFormat::Rgba8Srgb);
                 push_light(i);
             },
-            |i, o| o.all([7, 8, 9].map(|k| f64::from(limited(i.f(k), 100.0))), 0.0),
+            |i, o| o.all([8, 9, 10].map(|k| f64::from(limited(i.f(k), 100.0))), 0.0),
             SAME,
         )
         .exactly(),
@@ -192,6 +195,18 @@ pub fn group() -> Group {
         twin(film, "aces balanced", "out3(aces(in3(0u)));", rgb, |i, o| put3(o, tone_map::aces(f3(i))), ROUNDING),
         twin(film, "agx agx_sigmoid", "out3(agx(in3(0u)));", rgb, |i, o| put3(o, tone_map::agx(f3(i))), TRANSCENDENTAL),
         twin(
+            "film/colour_map",
+            "afmhot luminance",
+            "out3(afmhot(luminance(in3(0u))));",
+            |i| {
+                (0..3).for_each(|_| {
+                    i.log(1e-5, 1.0);
+                })
+            },
+            |i, o| put3(o, colour_map::afmhot(colour_map::luminance(f3(i)))),
+            ROUNDING,
+        ),
+        twin(
             film,
             "dither",
             "out1(dither(word(0u), word(1u)));",
@@ -205,7 +220,7 @@ pub fn group() -> Group {
         twin(
             colours,
             "false_colour scaled sequential diverging lab_encoded",
-            "enter_film(); out3(false_colour(in1(7u)));",
+            "enter_film(); out3(false_colour(in1(8u)));",
             push_value,
             |i, o| {
                 let film = params(i);

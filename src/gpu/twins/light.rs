@@ -1,12 +1,15 @@
 //! Twins of shared/blackbody and emit: thermal light, the disk's profile, its turbulence.
 
 use super::inputs::{Inputs, Outputs};
-use super::run::Table;
+use super::run::{Image, Table};
 use super::scenes::{self, FRAME, FRAMES, Kind, view};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 pub use crate::emit::EmissionPoint;
 use crate::emit::medium::{Medium, pieces};
+use crate::emit::streaks::{STREAK_COLUMNS, STREAK_LAST, STREAK_ROWS, Streaks};
+use crate::emit::thin_disk::{emission_law, profile_row};
 use crate::emit::turbulence::Turbulence;
+use crate::gpu::kernel::slots::STREAKS;
 use crate::physics::blackbody::{BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE, into_gamut};
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::geodesic::{Constants, State};
@@ -40,11 +43,7 @@ fn profiles() -> &'static [TemperatureProfile] {
 
 fn tables() -> Vec<Table> {
     let light = StarIndex::shared().expect("an index").light_tables().collect::<Vec<_>>();
-    let row = |profile: &TemperatureProfile| {
-        let steps = profile.entries().windows(2).map(|pair| [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0]);
-        steps.chain([[0.0_f32; 4]]).collect::<Vec<_>>()
-    };
-    let rows = profiles().iter().flat_map(row).collect::<Vec<_>>();
+    let rows = profiles().iter().flat_map(profile_row).collect::<Vec<_>>();
     let mut tables = scenes::tables();
     tables.push(Table { name: "light_tables", bytes: bytemuck::cast_slice(&light).to_vec() });
     tables.push(Table { name: "profiles", bytes: bytemuck::cast_slice(&rows).to_vec() });
@@ -86,6 +85,19 @@ fn push_place(i: &mut Inputs) {
 
 fn turbulence(view: &scenes::View) -> Turbulence {
     view.scene.emitters().disk.and_then(|disk| disk.turbulence).expect("turbulence")
+}
+
+/// The texture that emit/streaks.wgsl reads.
+pub fn streaks_image() -> Image {
+    let levels = Streaks::shared().expect("streaks").levels().map(|level| level.expect("a level").1);
+    let texels = levels.flatten().flat_map(|pair| pair.map(half::f16::to_bits)).collect::<Vec<_>>();
+    Image {
+        name: "streaks",
+        format: STREAKS.format,
+        size: [STREAK_COLUMNS as u32, STREAK_ROWS as u32, 0],
+        levels: STREAK_LAST as u32 + 1,
+        bytes: bytemuck::cast_slice(&texels).to_vec(),
+    }
 }
 
 fn place(i: &Inputs, k: usize) -> EmissionPoint {
@@ -252,16 +264,57 @@ pub fn group() -> Group {
         ),
         twin(
             disk,
+            "disk_profile",
+            "enter_scene(); out1(disk_profile(in1(1u)));",
+            disk_place,
+            |i, o| {
+                let thin = view(i).scene.emitters().disk.expect("a disk");
+                o.near(thin.profile(&profiles()[i.word(0) as usize], i.x(1)), 1.0);
+            },
+            // As temperature_profile.
+            1e-4,
+        ),
+        twin(
+            disk,
+            "emission_law",
+            "enter_scene(); out1(emission_law(in1(1u)));",
+            |i| {
+                disk_place(i);
+                i.truncate(1);
+                i.even(-0.1, 1.1);
+            },
+            // The finer table cuts the corners of the coarse one off.
+            |i, o| o.near(emission_law(view(i).scene.disk.expect("a disk").emission_law, i.x(1)), 1.0),
+            1e-5,
+        ),
+        twin(
+            disk,
+            "left_by_edges",
+            "enter_scene(); out1(left_by_edges(in1(1u), in1(2u)));",
+            |i| {
+                disk_place(i);
+                i.even(0.0, 1.0);
+            },
+            |i, o| {
+                let thin = view(i).scene.emitters().disk.expect("a disk");
+                // Where it fades out 1/r is subtracted from something as large.
+                o.near(thin.edges.left(i.x(1), i.x(2)), 1.0 + thin.edges.outer[0] * thin.edges.outer[1]);
+            },
+            ROUNDING,
+        ),
+        twin(
+            disk,
             "disk_light",
             "enter_scene(); out3(disk_light(in1(1u), Shift(in1(2u), in1(3u))));",
             |i| {
-                disk_place(i);
+                [Kind::Spinning, Kind::Static, Kind::Rain][i.random.below(3) as usize].push(i);
+                i.even(0.05, 1.0);
                 i.log(0.3, 2.0);
                 i.log(0.3, 2.0);
             },
             |i, o| {
                 let disk = view(i).scene.disk.expect("a disk");
-                let temperature = disk.temperature * profiles()[i.word(0) as usize].at(1.0 / i.x(1));
+                let temperature = view(i).scene.emitters().disk.expect("a disk").hottest * i.x(1);
                 let table = BlackbodyTable::shared();
                 let reference = table.ln_luminance(disk.temperature);
                 let light =
@@ -274,12 +327,40 @@ pub fn group() -> Group {
         ),
         twin(
             turbulent,
-            "turbulent_brightness turbulent_octaves cells_across gradient_noise slope",
+            "turbulent_brightness",
             "enter_scene(); out1(turbulent_brightness(in_place(1u), in_place(4u), in_place(7u)));",
             push_place,
-            |i, o| o.near(turbulence(view(i)).brightness(place(i, 1), [place(i, 4), place(i, 7)]), 1.0),
-            // Delays are rounded at their own size, and the pattern is as steep as 40 cells around.
-            3e-4,
+            |i, o| {
+                let streaks = Streaks::shared().expect("streaks");
+                let seen = turbulence(view(i)).brightness(streaks, place(i, 1), [place(i, 4), place(i, 7)]);
+                o.near(seen, seen.max(1.0));
+            },
+            // Samplers weigh texels in steps of 1/256; a step of an 8-bit pixel is as large.
+            4e-3,
+        ),
+        twin(
+            "emit/streaks",
+            "streak_exponent",
+            "out1(streak_exponent(in1(0u), in2(1u), in2(3u), in2(5u)));",
+            |i| {
+                i.even(0.0, 1.0);
+                i.evens(2, -3.0, 3.0);
+                // One in eight is unknown, as UNKNOWN_EMISSION_POINT makes it.
+                let unknown = i.random.below(8) == 0;
+                for _ in 0..4 {
+                    if unknown {
+                        i.push(1e33);
+                    } else {
+                        i.signed(1e-3, 300.0);
+                    }
+                }
+            },
+            |i, o| {
+                let two = |k: usize| [i.x(k), i.x(k + 1)];
+                let patch = Streaks::shared().expect("streaks").patch(two(1), two(3), two(5));
+                o.near(patch.exponent(i.x(0)), 1.0);
+            },
+            4e-3,
         ),
         twin(
             turbulent,
@@ -295,5 +376,11 @@ pub fn group() -> Group {
     let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\
                    fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {}\n\
                    fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n";
-    Group { name: "light", head: [imports, FRAME, FRAMES, HOOKS].concat(), twins, images: Vec::new, tables }
+    Group {
+        name: "light",
+        head: [imports, FRAME, FRAMES, HOOKS].concat(),
+        twins,
+        images: || vec![streaks_image()],
+        tables,
+    }
 }

@@ -5,7 +5,7 @@ use super::inputs::{Inputs, Outputs};
 use super::scenes::{self, FRAMES, Kind, View, push_look, view};
 use super::{Group, ROUNDING, SAME, twin};
 use crate::physics::lens::OrbitPlane;
-use crate::scene::refine::{Edge, looked_up_edge, near_disk_edge};
+use crate::scene::refine::{DiskEdges, Edge, looked_up_edge, near_disk_edge, turn_of, turning_edge};
 use glam::DVec3;
 
 const HEAD: &str = "
@@ -65,8 +65,10 @@ pub fn group() -> Group {
             "enter_scene(); out_flag(near_disk_edge(in1(1u), in2(2u)));",
             push_crossing,
             |i, o| {
-                let disk_u = view(i).scene.emitters().disk_u().expect("a disk").map(|u| f64::from(u as f32));
-                o.flag(near_disk_edge(i.x(1), [i.x(2), i.x(3)], disk_u));
+                let emitters = view(i).scene.emitters();
+                let disk_u = emitters.disk_u().expect("a disk").map(|u| f64::from(u as f32));
+                let edges = DiskEdges::new(disk_u, emitters.fading_u());
+                o.flag(near_disk_edge(i.x(1), [i.x(2), i.x(3)], &edges));
             },
             SAME,
         ),
@@ -99,32 +101,57 @@ pub fn group() -> Group {
         twin(
             record,
             "looked_up_edge",
-            "out_word(looked_up_edge(word(0u) == 1u, in1(1u), word(2u) == 1u, in1(3u)));",
+            "out_word(looked_up_edge(word(0u) == 1u, in1(2u), in1(1u), in1(3u)));",
             |i| {
                 i.pick(2);
                 i.log(0.1, 20.0);
-                i.pick(2);
+                i.log(0.01, 10.0);
                 let through = [0.0, 0.5, 1.0][i.random.below(3) as usize];
                 i.push(through);
             },
             |i, o| {
                 // f64 says by an infinite distance that the disk lets nothing through.
-                let curve = if i.x(3) > 0.0 { i.x(1) } else { f64::INFINITY };
-                put_edge(o, looked_up_edge(i.word(0) == 1, i.word(2) == 1, curve));
+                let [turn, curve] = if i.x(3) > 0.0 { [i.x(2), i.x(1)] } else { [0.0, f64::INFINITY] };
+                put_edge(o, looked_up_edge(i.word(0) == 1, turn, curve));
             },
             SAME,
         ),
         twin(
+            record,
+            "turning_edge",
+            "out_word(turning_edge(in1(0u)));",
+            |i| {
+                i.log(0.01, 10.0);
+            },
+            |i, o| put_edge(o, turning_edge(i.x(0))),
+            SAME,
+        ),
+        twin(
+            record,
+            "turn_of",
+            "var record: Record;
+             record.fate = select(FATE_CAPTURED, FATE_ESCAPED, word(9u) > 0u);
+             record.footprint = footprint_of(in3(0u), in3(3u), in3(6u));
+             out1(turn_of(record));",
+            |i| {
+                push_changes(i);
+                i.pick(4);
+            },
+            |i, o| o.put(if i.word(9) > 0 { turn_of([i.v3(3), i.v3(6)]) } else { 0.0 }),
+            2e-5,
+        ),
+        twin(
             layout,
             "pack_meta unpack_meta",
-            "let m = unpack_meta(pack_meta(TracedMeta(word(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u))));
+            "let m = unpack_meta(pack_meta(TracedMeta(word(0u), word(1u), word(2u), word(3u), in1(4u), in1(5u),
+             0.5)));
              out_word(m.fate); out_word(m.beside_disk); out_word(m.orders); out_word(m.steps); out1(m.energy);
              out1(m.angular_momentum);",
             |i| {
                 i.pick(4);
                 i.pick(1 << 14);
                 i.pick(1 << 16);
-                i.bits();
+                i.pick(1 << 17);
                 i.even(-1.0, 2.0);
                 i.even(-9.0, 9.0);
             },
@@ -136,6 +163,21 @@ pub fn group() -> Group {
             SAME,
         )
         .exactly(),
+        twin(
+            layout,
+            "pack_momentum unpack_momentum",
+            "let m = TracedMeta(1u, 2u, 3u, 100000u, 0.5, 0.5, in1(0u));
+             let found = unpack_meta(pack_meta(m)); out1(found.polar_momentum); out_word(found.steps);",
+            |i| {
+                i.log(1e-9, 1e4);
+            },
+            // From 2^-22 to the last number below 2^10.
+            |i, o| {
+                o.put(i.x(0).clamp(2.0_f64.powi(-22), 2.0_f64.powi(10)));
+                o.word(100_000);
+            },
+            6e-4,
+        ),
         twin(
             "traced/footprints",
             "place_of",

@@ -1,10 +1,13 @@
 //! Twins of refine/refine: where samples lie, and how much the disk covers of their cells.
 
-use super::inputs::{Inputs, Outputs};
-use super::scenes::{self, FRAMES, Kind, push_place, view};
+use super::inputs::Inputs;
+use super::scenes::{self, FRAMES, Kind, View, push_look, view};
 use super::{Group, ROUNDING, SAME, twin};
-use crate::physics::lens::critical::shadow_centre;
-use crate::scene::refine::{CURVE_SAMPLES, Crossings, curve_place, level_of_share, quarter_place, share_below};
+use crate::cpu::refine::LevelAbout;
+use crate::physics::lens::critical::{CurveLevel, potential_minimum};
+use crate::scene::refine::{
+    CURVE_SAMPLES, Crossings, NARROWEST, Strips, beside_quarter, covered, quarter_place, share_below, spread,
+};
 use glam::DVec2;
 
 /// Each thread has the four samples of a pixel in arrays of its own, which are a workgroup's in the kernel.
@@ -15,6 +18,7 @@ fn ray_record(id: vec2<u32>) -> Record { var record: Record; return record; }
 fn medium_before(k: u32) -> vec4<f32> { return vec4<f32>(0.0, 0.0, 0.0, 1.0); }
 fn next_crossing() -> Crossing { var crossing: Crossing; return crossing; }
 fn more_crossings() -> bool { return false; }
+fn with_sky(record: Record) -> Record { return record; }
 fn rewind_crossings() {}
 fn take_light(id: vec2<u32>, light: vec4<f32>) {}
 fn enter_samples() {
@@ -23,8 +27,8 @@ fn enter_samples() {
     frame.disk_u = in2(1u);
     frame.disk.z = 0.5;
     for (var k = 0u; k < 4u; k += 1u) {
-        lane_u[k * CROSSINGS_KEPT] = in1(3u + k);
-        lane_fate[k] = FATE_ESCAPED;
+        lane_u[k * LANE_ORDERS] = in1(3u + k);
+        lane_sky[k].w = f32(FATE_ESCAPED);
     }
 }
 ";
@@ -52,15 +56,35 @@ fn slope(i: &mut Inputs) {
     i.signed(1e-3, 1.0);
 }
 
-fn across(i: &Inputs, o: &mut Outputs) {
+/// A place of a frame near the critical curve: on the way from one at random to where the level is 0. `false`: there is
+/// no curve in sight.
+fn push_near_curve(i: &mut Inputs, view: &View) -> bool {
+    let (mapping, level) = (&view.lens.mapping, CurveLevel::new(&view.lens.observer.frame));
+    let end = [i.random.even(0.0, mapping.width), i.random.even(0.0, mapping.height)];
+    let begin = [i.random.even(0.0, mapping.width), i.random.even(0.0, mapping.height)];
+    let at = |part: f64| [0, 1].map(|c| begin[c] + part * (end[c] - begin[c]));
+    let outside = |part: f64| LevelAbout::new(&view.lens, &level, at(part)).at([0.0; 2]) > 0.0;
+    let (mut low, mut high) = (0.0, 1.0);
+    let seen = outside(low) != outside(high);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if outside(middle) == outside(low) { low = middle } else { high = middle }
+    }
+    let off = [i.random.even(-2.0, 2.0), i.random.even(-2.0, 2.0)];
+    let place = at(high);
+    i.push(place[0] + off[0]);
+    i.push(place[1] + off[1]);
+    seen
+}
+
+fn strips_of(i: &Inputs) -> (Strips, f64) {
     let lens = &view(i).lens;
-    let across = lens.across(shadow_centre(&lens.observer.frame), [i.x(1), i.x(2)]);
-    o.all(across, lens.mapping.pixel_angle * 0.1);
+    LevelAbout::new(lens, &CurveLevel::new(&lens.observer.frame), [i.x(1), i.x(2)]).strips()
 }
 
 pub fn group() -> Group {
     let file = "refine/refine";
-    let any = Kind::Static.constants();
+    let any = Kind::Spinning.constants();
     let twins = vec![
         twin(
             file,
@@ -74,26 +98,43 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "curve_place sample_index",
-            "samples = 32u; lane = word(0u); out2(curve_place(in2(1u)));",
+            "spread",
+            "out1(spread(in1(0u)));",
             |i| {
-                i.pick(64);
-                slope(i);
+                i.signed(1e-4, 16.0);
             },
-            |i, o| o.all(curve_place(i.word(0) % CURVE_SAMPLES, [i.x(1), i.x(2)]), 1.0),
-            // A ray's lattice is a fraction of a number up to 20.
-            3e-6,
+            |i, o| o.near(spread(i.x(0)), 1.0),
+            ROUNDING,
         ),
         twin(
             file,
-            "level_of_share",
-            "out1(level_of_share(in1(0u), normalize(in2(1u))));",
+            "gathered",
+            "out1(gathered(in1(0u)));",
             |i| {
-                i.even(0.01, 0.99);
-                slope(i);
+                i.even(-8.0, 8.0);
             },
-            |i, o| o.near(level_of_share(i.x(0), i.v2(1).normalize().to_array()), 1.0),
+            |i, o| o.near(NARROWEST * i.x(0).sinh(), NARROWEST),
             ROUNDING,
+        ),
+        twin(
+            file,
+            "strips_at strip_distance strip_cell sample_index",
+            "samples = 32u; lane = word(0u);
+             let cell = strip_cell(strips_at(in1(3u), normalize(in2(1u)), 1.0));
+             out2(cell.place); out1(cell.distance); out1(cell.weight);",
+            |i| {
+                i.pick(64);
+                slope(i);
+                i.even(-3.0, 3.0);
+            },
+            |i, o| {
+                let cell = Strips::new(i.x(3), [i.x(1), i.x(2)]).cell(i.word(0) % CURVE_SAMPLES);
+                o.all(cell.place, 1.0);
+                o.near(cell.distance, 1.0);
+                o.near(cell.weight, 1.0);
+            },
+            // Chords in a corner of the pixel are differences of numbers of a pixel's size.
+            2e-4,
         ),
         twin(
             file,
@@ -108,10 +149,18 @@ pub fn group() -> Group {
         ),
         twin(
             file,
-            "covered_share",
-            "enter_samples(); lane = word(7u); out1(covered_share(lane_u[lane * CROSSINGS_KEPT], 0u));",
+            "covered change_of_u",
+            "enter_samples(); lane = word(7u); samples = 4u; beside = beside_cell(true, true, 2u);
+             out2(covered(lane_u[lane * LANE_ORDERS], vec4<f32>(crossing_in(beside.x, 0u),
+                 crossing_in(beside.y, 0u), crossing_in(beside.z, 0u), crossing_in(beside.w, 0u))));",
             push_samples,
-            |i, o| o.near(samples(i).covered_share(i.word(7) as usize), 1.0),
+            |i, o| {
+                let u = |index: u32| i.x(3 + index as usize);
+                let beside = beside_quarter(i.word(7)).map(|pair| pair.map(|other| other.map_or(0.0, u)));
+                let (share, middle) = covered(u(i.word(7)), beside, [i.x(1), i.x(2)]);
+                o.near(share, 1.0);
+                o.near(middle, 1.0);
+            },
             ROUNDING,
         ),
         twin(
@@ -131,23 +180,61 @@ pub fn group() -> Group {
             |i| i.evens(16, 0.0, 10.0),
             |i, o| {
                 let sum = i.v4(0) + i.v4(4) + i.v4(8) + i.v4(12);
-                o.all((sum / 4.0).to_array(), 0.0);
+                o.all(sum.to_array(), 0.0);
             },
             ROUNDING,
         ),
         twin(
             file,
-            "across_curve",
-            "enter_scene(); pass_.origin = vec2<i32>(-1); pass_.offset = in2(1u);
-             out2(across_curve(vec2<u32>(0u)));",
+            "strips_of level_at go_to_pixel",
+            "enter_scene(); go_to_pixel(in2(1u)); let strips = strips_of();
+             out1(strips.level); out1(strips.slope); out2(strips.normal);",
             |i| {
-                let view = [Kind::Spinning, Kind::Static][i.random.below(2) as usize].push(i);
-                push_place(i, view);
+                loop {
+                    i.clear();
+                    let view = [Kind::Spinning, Kind::Static][i.random.below(2) as usize].push(i);
+                    if push_near_curve(i, view) {
+                        break;
+                    }
+                }
             },
-            across,
-            1e-4,
+            |i, o| {
+                let (strips, slope) = strips_of(i);
+                o.near(strips.level, 1.0);
+                o.near(slope, 1e-6);
+                o.all(strips.normal, 1.0);
+            },
+            5e-3,
         )
         .with(&any),
+        twin(
+            "camera/critical",
+            "curve_level",
+            "enter_scene(); out1(curve_level(in3(1u)));",
+            |i| {
+                let kind = [Kind::Spinning, Kind::Static, Kind::Rain][i.random.below(3) as usize];
+                let view = kind.push(i);
+                push_look(i, view);
+            },
+            |i, o| o.near(CurveLevel::new(&view(i).lens.observer.frame).at(i.v3(1).normalize()), 1.0),
+            4e-6,
+        )
+        .with(&any),
+        twin(
+            "camera/critical",
+            "potential_minimum",
+            "enter_scene(); out1(potential_minimum(begin_local(in3(1u)).c));",
+            |i| {
+                let view = Kind::Spinning.push(i);
+                push_look(i, view);
+            },
+            |i, o| {
+                let (c, _) = view(i).lens.observer.frame.start(i.v3(1).normalize()).expect("light");
+                o.near(potential_minimum(&c), 0.1);
+            },
+            4e-6,
+        )
+        .with(&Kind::Spinning.constants()),
     ];
     Group { name: "refine", head: [HEAD, FRAMES].concat(), twins, images: Vec::new, tables: scenes::tables }
 }

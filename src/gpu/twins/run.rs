@@ -15,6 +15,8 @@ pub struct Image {
     pub format: wgpu::TextureFormat,
     /// Width, height, layers.
     pub size: [u32; 3],
+    /// Each half as wide and high as the one before.
+    pub levels: u32,
     pub bytes: Vec<u8>,
 }
 
@@ -82,11 +84,16 @@ impl Gpu {
         let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source: text });
         let views = images.iter().map(|image| (image.name, self.view(image))).collect::<BTreeMap<_, _>>();
         let tables = tables.iter().map(|table| (table.name, self.buffer(&table.bytes))).collect::<BTreeMap<_, _>>();
-        let sampler = self.device.create_sampler(&wgpu::SamplerDescriptor {
-            mag_filter: wgpu::FilterMode::Linear,
-            min_filter: wgpu::FilterMode::Linear,
-            ..Default::default()
-        });
+        let sampler = |beyond| {
+            self.device.create_sampler(&wgpu::SamplerDescriptor {
+                address_mode_u: beyond,
+                address_mode_v: beyond,
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                ..Default::default()
+            })
+        };
+        let (smooth, repeating) = (sampler(wgpu::AddressMode::ClampToEdge), sampler(wgpu::AddressMode::Repeat));
         let mut encoder = self.device.create_command_encoder(&Default::default());
         let mut readbacks = Vec::new();
         for job in jobs {
@@ -109,13 +116,15 @@ impl Gpu {
                 "outputs" => outputs.as_entire_binding(),
                 _ if views.contains_key(name) => wgpu::BindingResource::TextureView(&views[name]),
                 _ if tables.contains_key(name) => tables[name].as_entire_binding(),
-                "smooth_" => wgpu::BindingResource::Sampler(&sampler),
+                "smooth_" | "map_sampler" => wgpu::BindingResource::Sampler(&smooth),
+                "repeating" => wgpu::BindingResource::Sampler(&repeating),
                 _ => panic!("{} uses {name}, which its group does not give", job.entry),
             };
             // f32 textures are read texel by texel.
             let filterable = |v: &GlobalVariable| {
                 let image = images.iter().find(|image| Some(image.name) == v.name.as_deref());
-                image.is_some_and(|image| image.format == wgpu::TextureFormat::Rgba16Float)
+                use wgpu::TextureFormat::{Rg16Float, Rgb9e5Ufloat, Rgba16Float};
+                image.is_some_and(|image| [Rg16Float, Rgb9e5Ufloat, Rgba16Float].contains(&image.format))
             };
             let groups = bound.iter().map(|v| v.binding.expect("a binding").group + 1).max().unwrap_or(0);
             let (mut layouts, mut sets) = (Vec::new(), Vec::new());
@@ -187,7 +196,7 @@ impl Gpu {
             &wgpu::TextureDescriptor {
                 label: None,
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: layers.max(1) },
-                mip_level_count: 1,
+                mip_level_count: image.levels,
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format: image.format,

@@ -7,8 +7,10 @@ use crate::emit::haze::Haze;
 use crate::gpu::frame::settings::for_f32;
 use crate::gpu::frame::uniforms::FrameUniform;
 use crate::physics::metric::chart;
+use crate::physics::orbit::horizon_outer;
 use crate::scene::observer::Lens;
 use crate::scene::{Camera, Effects, Motion, Projection, Region, Scene, Sky};
+use crate::scene::{DiskReference, EmissionLaw};
 use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -71,7 +73,7 @@ pub fn views() -> &'static [View] {
 
 fn made(kind: Kind, number: u32) -> View {
     let mut random = Random(1000 * kind as u64 + u64::from(number));
-    let mut scene = Scene::default();
+    let mut scene = Scene::plain();
     let (mut r, mut theta) = (random.log(4.5, 200.0), random.even(0.1, PI - 0.1));
     scene.camera.motion = [Motion::Static, Motion::Velocity, Motion::FreeFall][number as usize % 3];
     match kind {
@@ -106,6 +108,12 @@ fn made(kind: Kind, number: u32) -> View {
     disk.brightness = random.log(0.1, 10.0);
     disk.temperature = random.log(1000.0, 50_000.0);
     disk.turbulence = random.even(0.2, 1.0);
+    disk.reference = [DiskReference::Hottest, DiskReference::Median][number as usize / 2 % 2];
+    disk.edge_softness = if number % 4 == 1 { random.even(0.05, 0.9) } else { 0.0 };
+    disk.emission_law = [EmissionLaw::Isotropic, EmissionLaw::LimbDarkened][number as usize / 3 % 2];
+    // As far in as f32 knows the distance from the horizon well.
+    disk.plunges = number % 6 == 4;
+    disk.inner_radius = if disk.plunges { 1.3 * horizon_outer(scene.hole.spin) } else { 0.0 };
     disk.seed = random.bits();
     scene.haze =
         Some(Haze { radius: random.log(2.0, 50.0), brightness: random.log(0.1, 10.0), absorption: random.share() });

@@ -5,10 +5,11 @@ use super::inputs::{Inputs, Outputs};
 use super::light::EmissionPoint;
 use super::run::Image;
 use super::scenes::{self, FRAMES, Kind, push_place, views};
-use super::{Group, sky, twin};
+use super::{Group, light, sky, twin};
 use crate::cpu::shade::Shader;
 use crate::emit::Crossing;
 use crate::emit::medium::Medium;
+use crate::emit::thin_disk::profile_row;
 use crate::gpu::kernel::sizes::TABLE_WIDTH;
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::trace::Fate;
@@ -24,7 +25,8 @@ const HEAD: &str = "
 #import shade/record
 #import shade/only
 fn write_pixel(id: vec2<u32>, radiance: vec4<f32>) {}
-fn edges_of_pixel(through: f32) -> u32 { return EDGE_NONE; }
+fn with_sky(record: Record) -> Record { return record; }
+fn edges_of_pixel(through: f32, turn: f32) -> u32 { return EDGE_NONE; }
 var<private> given: bool;
 fn next_crossing() -> Crossing {
     var crossing: Crossing;
@@ -56,13 +58,16 @@ fn enter_record() -> Record {
     record.footprint = footprint_of(in3(7u), in3(10u), in3(13u));
     record.steps = word(18u);
     record.plane_u = in1(16u);
+    record.polar_momentum = in1(36u);
     return record;
 }
 ";
 
 const VIEWS: [View; 6] = [View::Light, View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric];
 /// Where the view's number is.
-const VIEW: usize = 36;
+const VIEW: usize = 37;
+/// Where `polar_momentum` is.
+const POLAR: usize = 36;
 
 /// A shader for each view of each scene.
 fn shader(i: &Inputs, view: u32) -> &'static Shader<'static> {
@@ -115,6 +120,7 @@ fn push_record(i: &mut Inputs) {
         i.evens(3, 0.0, 0.3);
         i.even(0.3, 1.0);
     }
+    i.log(0.1, 100.0);
 }
 
 fn place(i: &Inputs, k: usize) -> EmissionPoint {
@@ -131,6 +137,7 @@ fn record(i: &Inputs) -> Record {
         sky_redshift: i.x(6),
         energy: i.x(4),
         angular_momentum: i.x(5),
+        polar_momentum: i.x(POLAR),
         steps: i.word(18),
         plane_u: i.x(16),
         ..Record::captured()
@@ -153,7 +160,7 @@ fn record(i: &Inputs) -> Record {
     record
 }
 
-fn light(i: &Inputs, o: &mut Outputs) {
+fn light_of_record(i: &Inputs, o: &mut Outputs) {
     let [r, g, b, alpha] = shader(i, 0).shade_record(&record(i), i.x(1), i.x(2));
     o.all([r, g, b], 1e-3);
     o.near(alpha, 1.0);
@@ -168,9 +175,7 @@ fn images() -> Vec<Image> {
     let index = StarIndex::shared().expect("an index");
     let mut light = index.light_tables().collect::<Vec<_>>();
     let profile = TemperatureProfile::new(0.0);
-    for (out, pair) in light[PROFILE_OFFSET..].iter_mut().zip(profile.entries().windows(2)) {
-        *out = [pair[0] as f32, (pair[1] - pair[0]) as f32, 0.0, 0.0];
-    }
+    light[PROFILE_OFFSET..].iter_mut().zip(profile_row(&profile)).for_each(|(out, entry)| *out = entry);
     light.resize(light.len().next_multiple_of(TABLE_WIDTH), [0.0; 4]);
     let mut cells = index.cell_tables().collect::<Vec<_>>();
     cells.resize(cells.len().next_multiple_of(TABLE_WIDTH), 0);
@@ -178,6 +183,7 @@ fn images() -> Vec<Image> {
         name,
         format,
         size: [TABLE_WIDTH as u32, rows as u32, 0],
+        levels: 1,
         bytes: bytes.to_vec(),
     };
     let (float, word) = (wgpu::TextureFormat::Rgba32Float, wgpu::TextureFormat::R32Uint);
@@ -186,6 +192,7 @@ fn images() -> Vec<Image> {
         image("star_cells", word, cells.len() / TABLE_WIDTH, bytemuck::cast_slice(&cells)),
         sky::map_image("sky_map", sky::map()),
         sky::map_image("milky_way", sky::map()),
+        light::streaks_image(),
     ]
 }
 
@@ -199,7 +206,7 @@ pub fn group() -> Group {
             "shade_record pixel_light crossing_shift sky_light extended_light to_sky least_patch light_table star_cell",
             "let record = enter_record(); out4(shade_record(vec2<u32>(0u), record));",
             push_record,
-            light,
+            light_of_record,
             // As star_light and under_grid.
             3e-3,
         )
@@ -214,16 +221,16 @@ pub fn group() -> Group {
                 // A crossing, and nothing of the sky.
                 i.words[3] = Fate::Captured as u32;
             },
-            light,
-            // As turbulent_brightness and disk_light.
-            3e-4,
+            light_of_record,
+            // As turbulent_brightness.
+            4e-3,
         )
         .with(&any)
         .with(&effects),
         twin(
             file,
             "view_value no_value",
-            "let record = enter_record(); frame.view = word(36u); out1(shade_record(vec2<u32>(0u), record).x);",
+            "let record = enter_record(); frame.view = word(37u); out1(shade_record(vec2<u32>(0u), record).x);",
             |i| {
                 push_record(i);
                 let view = 1 + i.random.below(VIEWS.len() as u32 - 1);

@@ -6,7 +6,7 @@ use super::{Group, ROUNDING, SAME, twin};
 use crate::gpu::frame::sky_maps::{level_place, texture_height};
 use crate::gpu::kernel::slots::SKY_MAP;
 use crate::random::mix;
-use crate::sky::filter::colour_temperature;
+use crate::sky::filter;
 use crate::sky::index::{STAR_LEVELS, cell_of, level_for, margin, side};
 use crate::sky::{SkyMap, StarIndex, shifted_map_light, stars, under_grid};
 use glam::DVec3;
@@ -17,6 +17,7 @@ const HEAD: &str = "
 #import shared/frame
 #import sky/stars
 #import sky/map
+#import sky/shift
 #import sky/grid
 @group(1) @binding(0) var<storage, read> light_tables: array<vec4<f32>>;
 @group(1) @binding(1) var<storage, read> star_cells: array<u32>;
@@ -25,6 +26,7 @@ var<private> frame: Frame;
 fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
 fn star_cell(i: u32) -> u32 { return star_cells[i]; }
 fn to_sky(d: vec3<f32>) -> vec3<f32> { return d; }
+fn sampled(map: texture_2d<f32>, place: vec2<f32>, level: f32) -> vec3<f32> { return vec3<f32>(0.0); }
 fn least_patch() -> f32 { return 0.001; }
 const MAP_SIZE = vec2<u32>(128u, 64u);
 fn in_footprint() -> Footprint { return footprint_of(in3(0u), in3(3u), in3(6u)); }
@@ -56,7 +58,13 @@ pub fn map_image(name: &'static str, map: &SkyMap) -> Image {
             texels[first..first + row.len()].copy_from_slice(row);
         }
     }
-    Image { name, format: SKY_MAP.format, size: [width, height, 0], bytes: bytemuck::cast_slice(&texels).to_vec() }
+    Image {
+        name,
+        format: SKY_MAP.format,
+        size: [width, height, 0],
+        levels: 1,
+        bytes: bytemuck::cast_slice(&texels).to_vec(),
+    }
 }
 
 fn tables() -> Vec<Table> {
@@ -88,7 +96,7 @@ fn pixel(i: &Inputs) -> (DVec3, DVec3, DVec3) {
 
 fn any_pixel(i: &mut Inputs) {
     let d = i.random.direction();
-    push_pixel(i, d, [1e-4, 3.0]);
+    push_pixel(i, d, [1e-4, 8.0]);
 }
 
 /// A pixel beside a star.
@@ -158,12 +166,13 @@ pub fn group() -> Group {
         twin(
             star,
             "star_footprint",
-            "out1(star_footprint(in1(0u)));",
+            "out1(star_footprint(in2(0u)));",
             |i| {
-                i.even(-2.0, 2.0);
+                i.evens(2, -2.0, 2.0);
             },
-            |i, o| o.near(stars::footprint(i.x(0)), 1.0),
-            ROUNDING,
+            |i, o| o.near(stars::footprint(i.x(0), i.x(1)), 1.0),
+            // The driver's cosine.
+            3e-5,
         ),
         twin(
             star,
@@ -190,8 +199,8 @@ pub fn group() -> Group {
         ),
         twin(
             map_file,
-            "map_light map_taps map_place level_place map_bilinear",
-            "out3(map_light(map, MAP_SIZE, in3(0u), map_taps(in_footprint())));",
+            "map_light map_patch map_place straight_step level_place map_bilinear",
+            "out3(map_light(map, MAP_SIZE, in3(0u), map_patch(in_footprint())));",
             any_pixel,
             |i, o| {
                 let (d, dx, dy) = pixel(i);
@@ -201,8 +210,8 @@ pub fn group() -> Group {
             1e-4,
         ),
         twin(
-            map_file,
-            "shifted_map_light",
+            "sky/shift",
+            "shifted_map_light shift_root",
             "out3(shifted_map_light(in3(0u), in1(3u), in1(4u)));",
             |i| {
                 (0..3).for_each(|_| {
@@ -216,12 +225,12 @@ pub fn group() -> Group {
         ),
         twin(
             map_file,
-            "colour_temperature",
-            "out1(colour_temperature(in1(0u)));",
+            "level_of",
+            "out1(level_of(in1(0u)));",
             |i| {
-                i.even(-3.5, 1.5);
+                i.log(0.3, 1e5);
             },
-            |i, o| o.put(colour_temperature(i.x(0))),
+            |i, o| o.near(filter::level_of(i.x(0)), 1.0),
             ROUNDING,
         ),
         twin(

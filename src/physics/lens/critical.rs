@@ -14,8 +14,8 @@
 use crate::physics::geodesic::Constants;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::photon_orbit;
-use crate::physics::shadow::CRITICAL_IMPACT_PARAMETER;
-use glam::DVec3;
+use crate::physics::shadow::{CRITICAL_IMPACT_PARAMETER, critical_direction};
+use glam::{DVec3, Vec3Swizzles};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Nodes of the table over chi in [0, 2 pi).
@@ -36,12 +36,6 @@ const MAX_EVALUATIONS: usize = 40;
 pub fn reaches(frame: &LocalFrame) -> bool {
     let nearest = NEAREST_OBSERVER * photon_orbit(-frame.a.abs());
     !frame.rain && frame.r > nearest && frame.r <= FARTHEST_OBSERVER
-}
-
-/// The middle of the shadow on the sky of `frame`'s observer, and of circles much like its edge: a unit look
-/// direction. Outside the reach of curves the hole's own, which without spin it is everywhere.
-pub fn shadow_centre(frame: &LocalFrame) -> DVec3 {
-    if reaches(frame) { CriticalCurve::centred(frame).k } else { DVec3::NEG_X }
 }
 
 /// P(u) = u'^2.
@@ -66,6 +60,37 @@ pub fn potential_minimum(c: &Constants) -> f64 {
 /// critical one.
 pub fn capture_margin(c: &Constants) -> f64 {
     radial_potential(c, potential_minimum(c))
+}
+
+/// Tells how far look directions are from the critical curve by their rays' constants alone, for every observer, as
+/// far as a curve is known there.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveLevel {
+    pub frame: LocalFrame,
+    /// Sine and cosine of psi_c, the angle of the curve from the inward radius; of 0 where no curve is known or it is
+    /// no circle about that.
+    pub critical: [f64; 2],
+    /// The level of inward rays is that of their capture margin.
+    pub by_margin: bool,
+}
+
+impl CurveLevel {
+    pub fn new(frame: &LocalFrame) -> Self {
+        let (sin, cos) = if frame.a == 0.0 { critical_direction(frame.r, frame.rain) } else { (0.0, 1.0) };
+        Self { frame: *frame, critical: [sin, cos], by_margin: frame.a != 0.0 && reaches(frame) }
+    }
+
+    /// 0 on the curve, positive where rays escape, and nearly even across it: psi - psi_c, or, about a spinning hole,
+    /// sqrt(1 - P / E^2) - 1, which is sin psi / sin psi_c - 1 without spin. `n`: look direction (components, unit).
+    pub fn at(&self, n: DVec3) -> f64 {
+        if self.by_margin && n.x < 0.0 {
+            let margin = self.frame.start(n).map_or(1.0, |(c, _)| capture_margin(&c) / (c.energy * c.energy));
+            return (1.0 - margin).max(0.0).sqrt() - 1.0;
+        }
+        let (sin, cos) = (n.yz().length(), -n.x);
+        let [sin_c, cos_c] = self.critical;
+        (sin * cos_c - cos * sin_c).atan2(cos * cos_c + sin * sin_c)
+    }
 }
 
 /// The critical curve of one observer, about its centre k: n = k cos psi + (e1 sin chi + e2 cos chi) sin psi. The curve
@@ -287,6 +312,40 @@ mod tests {
                     assert_eq!(traced.fate, fate, "a {a} r {r} theta {theta} chi {chi} factor {factor}");
                 }
             }
+        }
+    }
+
+    /// The level is 0 on the curve and grows outwards; but for the fastest holes it tells small distances from the
+    /// curve in proportion.
+    #[test]
+    fn levels_are_distances_from_the_curve() {
+        for (a, r, theta) in OBSERVERS.into_iter().chain([(0.0, 7.0, 1.2)]) {
+            let frame = frame(a, r, theta);
+            let (curve, level) = (CriticalCurve::new(&frame).unwrap(), CurveLevel::new(&frame));
+            for i in 0..12 {
+                let chi = TAU * (f64::from(i) + 0.5) / 12.0;
+                let psi = 2.0 * curve.at(chi).0.atan();
+                let at = |part: f64| level.at(curve.direction(psi * (1.0 + part), chi));
+                let slope = 0.5 * (at(1e-3) - at(-1e-3)) / 1e-3;
+                assert!(slope > 0.0 && at(0.0).abs() < 1e-6 * slope, "a {a} r {r} chi {chi}: {} {slope}", at(0.0));
+                for part in [-0.05, 0.02, 0.05] {
+                    let even = (at(part) / (slope * part) - 1.0).abs() < 0.25;
+                    assert!(even || (a.abs() > 0.99 && at(part) * part > 0.0), "a {a} r {r} chi {chi} {part}");
+                }
+            }
+        }
+    }
+
+    /// Without spin also inside the photon sphere and the horizon.
+    #[test]
+    fn levels_without_spin_are_angles() {
+        for (r, rain) in [(2.5, false), (3.0, false), (1.2, true), (8.0, true)] {
+            let frame = LocalFrame::new(0.0, chart(r, 1.0, 0.4)).unwrap();
+            let frame = if rain { frame.to_rain() } else { frame };
+            let (sin, cos) = critical_direction(r, rain);
+            let psi = sin.atan2(cos) + 0.1;
+            let level = CurveLevel::new(&frame).at(DVec3::new(-psi.cos(), 0.6 * psi.sin(), 0.8 * psi.sin()));
+            assert!((level - 0.1).abs() < 1e-12, "r {r}: {level}");
         }
     }
 

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// A random observer: r to 1000 M, one in three falling (to the horizon, and inside it without spin), one in three
 /// without spin.
 pub fn random_observer(random: &mut Random, index: usize) -> Scene {
-    let mut scene = Scene::default();
+    let mut scene = Scene::plain();
     let any_spin = random.range(-0.998, 0.998);
     let end = random.pick(&[-0.998, 0.998]);
     scene.hole.spin = if index.is_multiple_of(3) { 0.0 } else { random.pick(&[any_spin, any_spin, any_spin, end]) };
@@ -56,7 +56,7 @@ pub fn random_observer(random: &mut Random, index: usize) -> Scene {
 pub fn looking(forward: DVec3, random: &mut Random, fov_y: f64) -> Camera {
     let (right, up) = around(forward);
     let (s, c) = random.range(-PI, PI).sin_cos();
-    Camera { forward, up: right * s + up * c, fov_y, ..Camera::default() }
+    Camera { forward, up: right * s + up * c, fov_y, ..Camera::plain() }
 }
 
 /// Turns the scene's camera to `forward` (chart).

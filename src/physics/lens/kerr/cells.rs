@@ -68,10 +68,11 @@ impl Patch<'_> {
         escaped && error <= TOLERANCE * self.vector_stretch(0..SKY).max(1.0)
     }
 
-    fn crossing(&self, channel: usize, wanted: &Crossings) -> Hit {
+    fn crossing(&self, channel: usize, order: usize, wanted: &Crossings) -> Hit {
         let [low, high] = self.range(channel);
         let [near, far] = [wanted.plane_u[1], wanted.plane_u[0]];
-        if low > near || high < far {
+        let [reach, _] = wanted.reach(order);
+        if low > near || high < reach {
             return Hit::No;
         }
         let inside = |i: usize, j: usize| self.value(channel, i, j).abs() < NO_CROSSING;
@@ -138,7 +139,7 @@ impl Grid {
         }
         for order in 0..self.wanted.orders {
             let channel = SKY + order * self.per_crossing();
-            match patch.crossing(channel, &self.wanted) {
+            match patch.crossing(channel, order, &self.wanted) {
                 Hit::No => {}
                 Hit::Possible => flags |= 1 << order,
                 Hit::Poor => flags |= 1 << order | POOR_CROSSINGS,

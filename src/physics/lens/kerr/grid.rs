@@ -92,6 +92,18 @@ pub struct Crossings {
     pub pattern: bool,
 }
 
+/// Crossings of order 1 and more reach beyond `Crossings::plane_u` by so much: their images are so narrow that 1 / r
+/// goes through all of it within a pixel, and pixels whose own ray crosses farther out show a part of them.
+pub const NARROW_REACH: f64 = 0.3;
+
+impl Crossings {
+    /// The range of 1 / r in which crossings of an order matter.
+    pub fn reach(&self, order: usize) -> [f64; 2] {
+        let [far, near] = self.plane_u;
+        [if order > 0 { NARROW_REACH * far } else { far }, near]
+    }
+}
+
 /// The coordinate along the critical curve: w = (chi + v) / 2 with tan v = tan chi / epsilon, epsilon = |cot th| of
 /// the observer.
 ///

@@ -187,7 +187,8 @@ impl KerrLookup<'_> {
         let lane = if wanted.pattern { 0 } else { order % PER_QUAD };
         let inverse_side = 1.0 / self.place.side;
         let u = f64::from(at.value[lane]) * inverse_side;
-        if !(u >= wanted.plane_u[0] && u <= wanted.plane_u[1]) {
+        let [far, near] = wanted.reach(order);
+        if !(u >= far && u <= near) {
             return None;
         }
         let order = order as u32;

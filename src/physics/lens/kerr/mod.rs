@@ -23,8 +23,8 @@ mod table;
 
 pub(crate) use grid::{BEYOND_INFINITY, INWARD, ROWS_ABOVE, ROWS_BELOW};
 pub use grid::{
-    Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, GridPosition, NO_CROSSING, Node, PATTERN_TOLERANCE,
-    POOR_CROSSINGS, PackedNode, Resolution, TOLERANCE, divergent_delay,
+    Branch, CHANNELS_MOST, CORE_OCTAVES, Crossings, DIRECT, Grid, GridPosition, NARROW_REACH, NO_CROSSING, Node,
+    PATTERN_TOLERANCE, POOR_CROSSINGS, PackedNode, Resolution, TOLERANCE, divergent_delay,
 };
 pub use lookup::{Crossing, GridStep, KerrLookup, Sky};
 #[cfg(test)]

@@ -1,0 +1,50 @@
+/* options.h -- command lines as tables: a program lists what it takes, one line each, and the table reads the arguments
+ * and prints --help. Knows no scene; scene_options.h has the table of those. */
+#ifndef EXAMPLES_OPTIONS_H
+#define EXAMPLES_OPTIONS_H
+
+#include "common.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum OptionKind {  /* what Option.target points to */
+    OPTION_FLAG,           /* int: becomes 1; takes no value */
+    OPTION_UNFLAG,         /* int: becomes 0; takes no value */
+    OPTION_BIT,            /* uint32_t: gets the bit of the first of `choices`; takes no value */
+    OPTION_DOUBLE,         /* double */
+    OPTION_DEGREES,        /* double: radians, written in degrees */
+    OPTION_VECTOR,         /* double[3], written X,Y,Z */
+    OPTION_QUATERNION,     /* double[4], written X,Y,Z,W */
+    OPTION_UINT,           /* uint32_t */
+    OPTION_UINT64,         /* uint64_t */
+    OPTION_SIZE,           /* uint32_t[2], written WxH */
+    OPTION_CHOICE,         /* int32_t: the value of one of `choices` */
+    OPTION_BITS,           /* uint32_t: the bits of some of `choices`, written with commas, or "none" */
+    OPTION_TEXT            /* const char *: the argument itself */
+} OptionKind;
+
+typedef struct Option {
+    const char   *name;    /* with its dashes */
+    OptionKind    kind;
+    void         *target;  /* holds the default; written only when the option is given */
+    const char   *value;   /* what --help calls the value; NULL for flags and choices */
+    const char   *help;
+    const Choice *choices; /* of CHOICE, BIT and BITS: ends with a NULL name; else NULL */
+    const char   *range;   /* of numbers, for --help; NULL: said in `help`, or none */
+} Option;
+
+/* Reads `--name value` and `--name=value`. 0, or EXIT_USAGE after a message on stderr. Ranges are left to the
+ * library, whose messages name them. */
+int options_parse(const Option *options, size_t count, int argc, char **argv);
+
+/* Each with its value, its help, its range and what its target holds, the default. UINT32_MAX, NaN, NULL and numbers
+ * of no choice are no defaults. */
+void options_print(FILE *out, const Option *options, size_t count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

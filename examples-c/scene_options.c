@@ -1,0 +1,210 @@
+/* scene_options.c -- see scene_options.h. */
+#include "scene_options.h"
+
+#include <math.h>
+#include <string.h>
+
+static const Choice RETROGRADE[] = {{"retrograde", BHR_DISK_RETROGRADE}, {NULL, 0}};
+static const Choice PLUNGES[] = {{"plunges", BHR_DISK_PLUNGES}, {NULL, 0}};
+static const Choice EMISSION_LAWS[] = {
+    {"isotropic", BHR_DISK_ISOTROPIC}, {"limb-darkened", BHR_DISK_LIMB_DARKENED}, {NULL, 0}};
+static const Choice DISK_REFERENCES[] = {{"hottest", BHR_DISK_AT_HOTTEST}, {"median", BHR_DISK_AT_MEDIAN}, {NULL, 0}};
+static const Choice SKY_PARTS[] = {{"stars", BHR_SKY_STARS}, {"procedural", BHR_SKY_PROCEDURAL},
+                                   {"milky-way", BHR_SKY_MILKY_WAY}, {"map", BHR_SKY_MAP}, {"grid", BHR_SKY_GRID},
+                                   {NULL, 0}};
+static const Choice EFFECTS[] = {{"doppler", BHR_EFFECT_DOPPLER_SHIFT}, {"gravity", BHR_EFFECT_GRAVITY_SHIFT},
+                                 {"beaming", BHR_EFFECT_BEAMING}, {"delay", BHR_EFFECT_LIGHT_DELAY}, {NULL, 0}};
+
+/* ---- the table ---- */
+
+typedef struct SceneOption {
+    const char   *name;
+    unsigned      group;
+    OptionKind    kind;
+    size_t        offset; /* of what it sets, in SceneInput */
+    const char   *value, *range;
+    const char   *help;
+    const Choice *choices;
+} SceneOption;
+
+#define AT(member) offsetof(SceneInput, member)
+
+/* A new field of a struct of the library is one line here. */
+static const SceneOption TABLE[] = {
+    {"--preset", SCENE_PRESET, OPTION_CHOICE, AT(preset), NULL, NULL, "a look; other options change it", PRESETS},
+
+    {"--mass", SCENE_HOLE, OPTION_DOUBLE, AT(scene.mass), "M", "above 0", "in scene lengths: the scale", NULL},
+    {"--spin", SCENE_HOLE, OPTION_DOUBLE, AT(scene.spin), "A", "-0.999 to 0.999", "a / M", NULL},
+    {"--axis", SCENE_HOLE, OPTION_VECTOR, AT(scene.axis), "X,Y,Z", NULL, "the spin's direction", NULL},
+
+    {"--distance", SCENE_PLACE, OPTION_DOUBLE, AT(distance), "R", "above 0", "the camera's radius in M", NULL},
+    {"--azimuth", SCENE_PLACE, OPTION_DOUBLE, AT(azimuth), "DEG", NULL, "the camera's, about +z", NULL},
+    {"--elevation", SCENE_PLACE, OPTION_DOUBLE, AT(elevation), "DEG", "-90 to 90", "of the camera above z = 0", NULL},
+    {"--position", SCENE_PLACE, OPTION_VECTOR, AT(position), "X,Y,Z", NULL, "of the camera in M, instead of these",
+     NULL},
+    {"--forward", SCENE_PLACE, OPTION_VECTOR, AT(forward), "X,Y,Z", NULL, "where it looks, instead of at the hole",
+     NULL},
+    {"--up", SCENE_PLACE, OPTION_VECTOR, AT(scene.camera.up), "X,Y,Z", NULL, "what is up in the picture", NULL},
+    {"--velocity", SCENE_PLACE, OPTION_VECTOR, AT(scene.camera.velocity), "X,Y,Z", "length below 1",
+     "v / c, for --motion velocity", NULL},
+    {"--motion", SCENE_CAMERA, OPTION_CHOICE, AT(scene.camera.motion), NULL, NULL, "of the camera", MOTIONS},
+    {"--fov", SCENE_CAMERA, OPTION_DEGREES, AT(scene.camera.fov_y), "DEG", "below 180; fisheye: to 360",
+     "vertical field of view; fisheye: across", NULL},
+    {"--projection", SCENE_CAMERA, OPTION_CHOICE, AT(scene.camera.projection), NULL, NULL,
+     "equirect: W = 2 H; cube: W = 6 H", PROJECTIONS},
+
+    {"--no-disk", SCENE_DISK, OPTION_UNFLAG, AT(scene.has_disk), NULL, NULL, "leaves the disk out", NULL},
+    {"--retrograde", SCENE_DISK, OPTION_BIT, AT(scene.disk.flags), NULL, NULL, "the disk turns towards -azimuth",
+     RETROGRADE},
+    {"--plunges", SCENE_DISK, OPTION_BIT, AT(scene.disk.flags), NULL, NULL, "the disk shines to the horizon", PLUNGES},
+    {"--disk-inner", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.inner_radius), "R", "0 to 1e6",
+     "in M; 0: the innermost stable orbit or the horizon", NULL},
+    {"--disk-outer", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.outer_radius), "R", "to 1e6", "in M", NULL},
+    {"--disk-temperature", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.temperature), "K", "500 to 1e9",
+     "of the ring that --disk-reference names", NULL},
+    {"--disk-brightness", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.brightness), "X", "0 to 1e6",
+     "luminance of that ring", NULL},
+    {"--opacity", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.opacity), "X", "0 to 1", "of the disk", NULL},
+    {"--turbulence", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.turbulence), "X", "0 to 1", "structure of the disk",
+     NULL},
+    {"--edge-softness", SCENE_DISK, OPTION_DOUBLE, AT(scene.disk.edge_softness), "X", "0 to 1",
+     "of the disk's edges", NULL},
+    {"--disk-reference", SCENE_DISK, OPTION_CHOICE, AT(scene.disk.reference), NULL, NULL,
+     "the ring that has temperature and brightness", DISK_REFERENCES},
+    {"--emission-law", SCENE_DISK, OPTION_CHOICE, AT(scene.disk.emission_law), NULL, NULL,
+     "the disk's light by the angle to its normal", EMISSION_LAWS},
+    {"--seed", SCENE_DISK, OPTION_UINT64, AT(scene.disk.seed), "N", NULL, "of the turbulence", NULL},
+    {"--time", SCENE_DISK, OPTION_DOUBLE, AT(time), "T", NULL, "in M; turns the disk's structure", NULL},
+
+    {"--no-stars", SCENE_SKY, OPTION_UNFLAG, AT(scene.has_sky), NULL, NULL, "makes the sky black", NULL},
+    {"--sky", SCENE_SKY, OPTION_BITS, AT(scene.sky.flags), NULL, NULL, "what is at infinity", SKY_PARTS},
+    {"--sky-map", SCENE_SKY, OPTION_TEXT, AT(sky_map), "FILE", NULL, "a picture of the whole sky, .png .ppm .exr",
+     NULL},
+    {"--stars-brightness", SCENE_SKY, OPTION_DOUBLE, AT(scene.sky.stars_brightness), "X", "0 to 1e6", "a factor", NULL},
+    {"--map-brightness", SCENE_SKY, OPTION_DOUBLE, AT(scene.sky.map_brightness), "X", "0 to 1e6",
+     "a factor on map and Milky Way", NULL},
+    {"--sky-orientation", SCENE_SKY, OPTION_QUATERNION, AT(scene.sky.orientation), "X,Y,Z,W", "length 1",
+     "a turn from the sky's axes to the scene's", NULL},
+    {"--sky-seed", SCENE_SKY, OPTION_UINT64, AT(scene.sky.seed), "N", NULL, "of the procedural stars", NULL},
+
+    {"--exposure", SCENE_FILM, OPTION_DOUBLE, AT(scene.film.exposure_ev), "EV", "-20 to 20", "stops; 8-bit files only",
+     NULL},
+    {"--bloom", SCENE_FILM, OPTION_DOUBLE, AT(scene.film.bloom), "X", "0 to 1", "glare; 8-bit files only", NULL},
+    {"--beam", SCENE_FILM, OPTION_DOUBLE, AT(scene.film.beam_fwhm), "X", "0 to 1",
+     "width of a telescope's beam, in frame heights; 8-bit files only", NULL},
+    {"--tone-map", SCENE_FILM, OPTION_CHOICE, AT(scene.film.tone_map), NULL, NULL, "8-bit files only", TONE_MAPS},
+    {"--colour-map", SCENE_FILM, OPTION_CHOICE, AT(scene.film.colour_map), NULL, NULL,
+     "colours for the luminance; 8-bit files only", COLOUR_MAPS},
+
+    {"--effects", SCENE_EFFECTS, OPTION_BITS, AT(scene.effects), NULL, NULL, "effects of relativity on light",
+     EFFECTS},
+    {"--view", SCENE_VIEW, OPTION_CHOICE, AT(scene.view), NULL, NULL, "what a pixel shows", VIEWS},
+
+    {"--method", SCENE_QUALITY, OPTION_CHOICE, AT(scene.quality.method), NULL, NULL, "of integration", METHODS},
+    {"--samples", SCENE_QUALITY, OPTION_UINT, AT(scene.quality.samples_per_pixel), "N", "1 to 256", "per pixel", NULL},
+    {"--max-order", SCENE_QUALITY, OPTION_UINT, AT(scene.quality.max_disk_order), "N", "0 (direct) to 15",
+     "last image of the disk", NULL},
+    {"--max-steps", SCENE_QUALITY, OPTION_UINT, AT(scene.quality.max_steps), "N", "16 to 100000",
+     "integration steps of a ray", NULL},
+    {"--step", SCENE_QUALITY, OPTION_DOUBLE, AT(scene.quality.step), "X", "1e-3 to 0.5; 0: the library's",
+     "the step of --method rk4", NULL},
+    {"--tolerance", SCENE_QUALITY, OPTION_DOUBLE, AT(scene.quality.tolerance), "X", "1e-14 to 1e-3; 0: the library's",
+     "of --method adaptive", NULL},
+};
+
+void options_add(Options *options, const Option *list, size_t count) {
+    for (size_t i = 0; i < count && options->count < MOST_OPTIONS; i++) {
+        options->list[options->count++] = list[i];
+    }
+}
+
+void options_add_scene(Options *options, SceneInput *input, unsigned groups) {
+    for (size_t i = 0; i < COUNT_OF(TABLE); i++) {
+        const SceneOption *row = &TABLE[i];
+        if (row->group & groups) {
+            const Option option = {row->name, row->kind, (char *)input + row->offset, row->value, row->help,
+                                   row->choices, row->range};
+            options_add(options, &option, 1);
+        }
+    }
+}
+
+/* ---- from options to a scene ---- */
+
+BhrStatus scene_input_init(SceneInput *input) {
+    memset(input, 0, sizeof *input);
+    input->preset = NO_PRESET;
+    input->distance = SCENE_DEFAULTS.distance;
+    input->azimuth = SCENE_DEFAULTS.azimuth;
+    input->elevation = SCENE_DEFAULTS.elevation;
+    for (int i = 0; i < 3; i++) {
+        input->position[i] = input->forward[i] = NAN;
+    }
+    return scene_defaults(&input->scene);
+}
+
+void scene_input_begin(SceneInput *input, const SceneOptions *begin) {
+    input->distance = begin->distance;
+    input->azimuth = begin->azimuth;
+    input->elevation = begin->elevation;
+    scene_begin(&input->scene, begin);
+}
+
+static BhrStatus set_map(Scene *scene, BhrContext *context, const char *path) {
+    BhrImage  map;
+    BhrStatus status = bhr_image_init(&map, sizeof map);
+    if (status >= 0) {
+        status = bhr_image_load(path, &map);
+    }
+    if (status >= 0) {
+        status = bhr_set_sky_map(context, &map);
+        bhr_image_release(&map);
+        scene->sky.flags |= BHR_SKY_MAP;
+    }
+    return status;
+}
+
+static BhrStatus place_camera(SceneInput *input) {
+    BhrCamera *camera = &input->scene.camera;
+    double     up[3];
+    memcpy(up, camera->up, sizeof up);
+    BhrStatus status = bhr_camera_orbit(camera, input->distance * input->scene.mass, input->azimuth * PI / 180.0,
+                                        input->elevation * PI / 180.0);
+    const int placed = !isnan(input->position[0]), turned = !isnan(input->forward[0]);
+    for (int i = 0; i < 3; i++) {
+        if (placed) {
+            camera->position[i] = input->position[i] * input->scene.mass;
+            camera->forward[i] = -camera->position[i];
+        }
+        if (turned) {
+            camera->forward[i] = input->forward[i];
+        }
+        if (placed || turned || up[0] != 0.0 || up[1] != 0.0) {
+            camera->up[i] = up[i];
+        }
+    }
+    return status;
+}
+
+int scene_input_finish(SceneInput *input, BhrContext *context, const Options *options, int argc, char **argv) {
+    BhrStatus status = BHR_OK;
+    if (input->preset != NO_PRESET) {
+        status = scene_set_preset(&input->scene, context, input->preset);
+        if (status < 0) {
+            return report_failure("set the preset", status);
+        }
+        /* The options once more, over the preset. */
+        const int result = options_parse(options->list, options->count, argc, argv);
+        if (result != 0) {
+            return result;
+        }
+    }
+    if (input->sky_map != NULL) {
+        status = set_map(&input->scene, context, input->sky_map);
+    }
+    if (status >= 0) {
+        input->scene.time = input->time * input->scene.mass;
+        status = place_camera(input);
+    }
+    return status < 0 ? report_failure("set the scene", status) : 0;
+}

@@ -1,0 +1,55 @@
+/* scene_options.h -- the options for everything that a scene has, in one table that render_frame, film and viewer
+ * share: each says which of its groups it takes. Knows no window and makes no frame. */
+#ifndef EXAMPLES_SCENE_OPTIONS_H
+#define EXAMPLES_SCENE_OPTIONS_H
+
+#include "options.h"
+#include "scene.h"
+
+/* Groups of options. */
+#define SCENE_PRESET 1u
+#define SCENE_HOLE 2u
+#define SCENE_PLACE 4u    /* where the camera is */
+#define SCENE_CAMERA 8u   /* how it looks and moves */
+#define SCENE_DISK 16u
+#define SCENE_SKY 32u
+#define SCENE_FILM 64u
+#define SCENE_EFFECTS 128u
+#define SCENE_VIEW 256u
+#define SCENE_QUALITY 512u
+#define ALL_OF_SCENE 1023u
+
+#define MOST_OPTIONS 96u
+
+/* A scene as the command line describes it. */
+typedef struct SceneInput {
+    Scene       scene;
+    int32_t     preset;                        /* BHR_PRESET_* or NO_PRESET */
+    double      distance, azimuth, elevation;  /* about the hole: in M, degrees */
+    double      position[3], forward[3];       /* in M; NaN: by those above, and towards the hole */
+    double      time;                          /* in M */
+    const char *sky_map;                       /* a file; NULL: none */
+} SceneInput;
+
+/* The options of a program: its own and a scene's. */
+typedef struct Options {
+    Option list[MOST_OPTIONS];
+    size_t count;
+} Options;
+
+/* The library's defaults, with a camera 26.12 M from the hole and 5.49 degrees above the disk's plane. Errors: as the
+ * library's. */
+BhrStatus scene_input_init(SceneInput *input);
+
+/* The camera about the hole, and the look where they differ from the library's, as a program begins. */
+void scene_input_begin(SceneInput *input, const SceneOptions *begin);
+
+void options_add(Options *options, const Option *list, size_t count);
+void options_add_scene(Options *options, SceneInput *input, unsigned groups);
+
+/* After the options were parsed: gives the context the preset that was asked for and the sky's map, lays the options
+ * over the preset, and completes `input->scene`, which scene_apply can then set. 0, or an exit status after a
+ * message. */
+int scene_input_finish(SceneInput *input, BhrContext *context, const Options *options, int argc, char **argv);
+
+#endif

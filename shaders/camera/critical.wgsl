@@ -1,0 +1,30 @@
+// How far look directions are from the critical curve, by their rays' constants alone. Mirrors `CurveLevel` of
+// src/physics/lens/critical.rs, where the formulas are; knows no tables and integrates nothing.
+
+#import camera/observer
+#import geodesic/geodesic
+#import shared/frame
+#import shared/math
+#import shared/not_inlined
+
+// u of the least radial potential between infinity and the horizon.
+fn potential_minimum(c: Constants) -> f32 {
+    let rise = max(c.k - c.a2e2, 0.0);
+    let b3 = 3.0 * c.b;
+    let root = sqrt(max(b3 * b3 - 8.0 * c.a2q * rise, 0.0));
+    return min(2.0 * rise / max(b3 + root, 1e-30), 1.0 / c.r_plus);
+}
+
+// 0 on the curve, positive where rays escape. `n`: look direction in the local frame.
+fn curve_level(n: vec3<f32>) -> f32 {
+    if SPINNING && n.x < 0.0 && not_inlined(bitcast<u32>(frame.critical.z)) != 0u {
+        let c = begin_local(n).c;
+        let u = potential_minimum(c);
+        // 1 - P / E^2.
+        let ratio = u * u * (c.k - c.a2e2 - u * (2.0 * c.b - u * c.a2q)) / (c.energy * c.energy);
+        return sqrt(max(ratio, 0.0)) - 1.0;
+    }
+    let sine = length(n.yz);
+    let critical = frame.critical;
+    return arctan2(sine * critical.y + n.x * critical.x, sine * critical.x - n.x * critical.y);
+}

@@ -1,0 +1,212 @@
+//! Presets: named looks, each a set of values for disk, sky, film and effects that hosts may then change; and the plain
+//! scene, which tests begin with whatever the defaults are. Plain data; the values are documented for hosts in
+//! `capi::preset`.
+
+use super::{
+    Camera, ColourMap, Disk, DiskReference, Effects, EmissionLaw, Film, Hole, Motion, Projection, Quality, Scene, Sky,
+    ToneMap, View,
+};
+use glam::{DQuat, DVec3};
+
+/// A look (`BHR_PRESET_*`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Preset {
+    /// As a film would show it: a turbulent golden disk, glare.
+    Cinematic = 0,
+    /// As a physicist expects it: a smooth disk, no glare, no curve.
+    Physical = 1,
+    /// As the Event Horizon Telescope shows it: a ring, blurred, in one colour map.
+    Observatory = 2,
+    /// For lessons: a grid on the sky, colours by frequency shift alone.
+    Teaching = 3,
+}
+
+impl Preset {
+    /// Gives the scene this look: its disk, its film, its effects, and of its sky flags and brightness. Hole, camera,
+    /// time, quality, view and the sky's map, orientation and seed stay.
+    pub fn apply(self, scene: &mut Scene) {
+        let (disk, film, effects, flags) = match self {
+            Self::Cinematic => (Disk::default(), Film::default(), Effects::ALL, Sky::STARS | Sky::MILKY_WAY),
+            Self::Physical => (
+                Disk { reference: DiskReference::Median, ..Disk::plain() },
+                Film { tone_map: ToneMap::None, exposure_ev: -2.0, ..Film::plain() },
+                Effects::ALL,
+                Sky::STARS | Sky::MILKY_WAY,
+            ),
+            Self::Observatory => (
+                Disk { outer_radius: 12.0, temperature: 15_000.0, reference: DiskReference::Median, ..Disk::plain() },
+                Film {
+                    tone_map: ToneMap::None,
+                    exposure_ev: -0.5,
+                    beam_fwhm: 0.15,
+                    colour_map: ColourMap::Afmhot,
+                    ..Film::plain()
+                },
+                Effects::ALL,
+                0,
+            ),
+            Self::Teaching => (
+                Disk {
+                    outer_radius: 12.0,
+                    temperature: 5000.0,
+                    brightness: 0.6,
+                    reference: DiskReference::Median,
+                    ..Disk::plain()
+                },
+                Film { tone_map: ToneMap::None, ..Film::plain() },
+                Effects::DOPPLER_SHIFT | Effects::GRAVITY_SHIFT,
+                Sky::GRID,
+            ),
+        };
+        scene.disk = Some(disk);
+        scene.film = film;
+        scene.effects = Effects(effects);
+        scene.sky = Sky { flags, stars_brightness: 1.0, map_brightness: 1.0, ..scene.sky };
+    }
+}
+
+// Every value is stated here, so that none changes when a default does. Fields that are added later keep their defaults
+// until they are stated here.
+#[allow(clippy::needless_update, reason = "a field that is added to one of these need not be added here at once")]
+mod plain {
+    use super::*;
+
+    impl Disk {
+        /// Smooth, with a hard edge at 20 M, 6500 K, opaque.
+        pub fn plain() -> Self {
+            Self {
+                retrograde: false,
+                inner_radius: 0.0,
+                outer_radius: 20.0,
+                temperature: 6500.0,
+                opacity: 1.0,
+                brightness: 1.0,
+                turbulence: 0.0,
+                seed: 0,
+                reference: DiskReference::Hottest,
+                edge_softness: 0.0,
+                emission_law: EmissionLaw::Isotropic,
+                ..Self::default()
+            }
+        }
+    }
+
+    impl Film {
+        /// ACES, nothing else.
+        pub fn plain() -> Self {
+            Self {
+                tone_map: ToneMap::Aces,
+                exposure_ev: 0.0,
+                bloom: 0.0,
+                beam_fwhm: 0.0,
+                colour_map: ColourMap::None,
+                glare_is_optional: false,
+                ..Self::default()
+            }
+        }
+    }
+
+    impl Sky {
+        /// The real stars and the Milky Way.
+        pub fn plain() -> Self {
+            Self {
+                flags: Self::STARS | Self::MILKY_WAY,
+                stars_brightness: 1.0,
+                map_brightness: 1.0,
+                orientation: DQuat::IDENTITY,
+                seed: 0,
+                ..Self::default()
+            }
+        }
+    }
+
+    impl Camera {
+        /// At rest at (0, -30, 5), 60 degrees of view.
+        pub fn plain() -> Self {
+            let position = DVec3::new(0.0, -30.0, 5.0);
+            Self {
+                projection: Projection::Perspective,
+                position,
+                forward: -position,
+                up: DVec3::Z,
+                fov_y: std::f64::consts::FRAC_PI_3,
+                motion: Motion::Static,
+                velocity: DVec3::ZERO,
+                ..Self::default()
+            }
+        }
+    }
+
+    impl Scene {
+        /// A hole without spin, a smooth disk before the stars, and nothing that is only for the eye: for tests, whose
+        /// numbers depend on it, and which must not change with the default scene.
+        pub fn plain() -> Self {
+            Self {
+                hole: Hole::default(),
+                camera: Camera::plain(),
+                disk: Some(Disk::plain()),
+                sky: Sky::plain(),
+                sky_map: None,
+                film: Film::plain(),
+                effects: Effects(Effects::ALL),
+                time: 0.0,
+                quality: Quality::default(),
+                view: View::Light,
+                ..Self::default()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Preset; 4] = [Preset::Cinematic, Preset::Physical, Preset::Observatory, Preset::Teaching];
+
+    /// A scene of which everything differs from the defaults.
+    fn odd() -> Scene {
+        let mut scene = Scene { time: 17.0, view: View::Order, effects: Effects(0), disk: None, ..Scene::default() };
+        scene.hole.spin = 0.4;
+        scene.camera.fov_y = 0.3;
+        scene.quality.samples_per_pixel = 7;
+        scene.sky = Sky { flags: Sky::MAP, stars_brightness: 9.0, map_brightness: 8.0, seed: 3, ..scene.sky };
+        scene.sky.orientation = DQuat::from_rotation_x(0.3);
+        scene.film = Film { bloom: 0.9, beam_fwhm: 0.9, exposure_ev: 9.0, ..scene.film };
+        scene
+    }
+
+    #[test]
+    fn presets_are_valid_and_set_their_part_only() {
+        for preset in ALL {
+            let (mut scene, before) = (odd(), odd());
+            preset.apply(&mut scene);
+            scene.disk.expect("a disk").check().expect("a valid disk");
+            scene.film.check().expect("a valid film");
+            scene.sky.check().expect("a valid sky");
+            assert_eq!((scene.hole, scene.camera), (before.hole, before.camera), "{preset:?}");
+            assert_eq!((scene.time, scene.view), (17.0, View::Order), "{preset:?}");
+            assert_eq!(scene.quality, before.quality, "{preset:?}");
+            assert_eq!((scene.sky.orientation, scene.sky.seed), (before.sky.orientation, 3), "{preset:?}");
+        }
+    }
+
+    /// Whatever was set before, the same preset gives the same look, and each another one.
+    #[test]
+    fn a_preset_does_not_depend_on_the_one_before() {
+        let look = |preset: Preset, mut scene: Scene| {
+            preset.apply(&mut scene);
+            (scene.disk, scene.film, scene.effects, scene.sky.flags)
+        };
+        for (i, preset) in ALL.into_iter().enumerate() {
+            let fresh = look(preset, odd());
+            for (k, other) in ALL.into_iter().enumerate() {
+                let mut scene = odd();
+                other.apply(&mut scene);
+                assert_eq!(look(preset, scene), fresh, "{preset:?} after {other:?}");
+                assert_eq!(i == k, look(other, odd()) == fresh, "{preset:?} and {other:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+/* presets.c -- bhr_set_preset: the values that bhr.h states, and nothing else; setters change them; unknown ones are
+ * refused. */
+#include "check.h"
+#include "refusals.h"
+
+typedef struct Look {
+    BhrPreset    preset;
+    double       outer_radius, temperature, brightness, turbulence, edge_softness;
+    int32_t      reference;
+    uint32_t     sky_flags;
+    BhrToneMap   tone_map;
+    double       exposure_ev, bloom, beam_fwhm;
+    BhrColourMap colour_map;
+    uint32_t     effects;
+} Look;
+
+/* The table of bhr.h. */
+static const Look LOOKS[] = {
+    {BHR_PRESET_CINEMATIC, 17.0, 3500.0, 0.6, 1.0, 0.4, BHR_DISK_AT_MEDIAN, BHR_SKY_STARS |
+     BHR_SKY_MILKY_WAY,
+     BHR_TONE_MAP_ACES, 0.0, 0.25, 0.0, BHR_COLOUR_MAP_NONE, BHR_EFFECT_ALL},
+    {BHR_PRESET_PHYSICAL, 20.0, 6500.0, 1.0, 0.0, 0.0, BHR_DISK_AT_MEDIAN, BHR_SKY_STARS | BHR_SKY_MILKY_WAY,
+     BHR_TONE_MAP_NONE, -2.0, 0.0, 0.0, BHR_COLOUR_MAP_NONE, BHR_EFFECT_ALL},
+    {BHR_PRESET_OBSERVATORY, 12.0, 15000.0, 1.0, 0.0, 0.0, BHR_DISK_AT_MEDIAN, 0, BHR_TONE_MAP_NONE, -0.5, 0.0, 0.15,
+     BHR_COLOUR_MAP_AFMHOT, BHR_EFFECT_ALL},
+    {BHR_PRESET_TEACHING, 12.0, 5000.0, 0.6, 0.0, 0.0, BHR_DISK_AT_MEDIAN, BHR_SKY_GRID, BHR_TONE_MAP_NONE, 0.0, 0.0,
+     0.0, BHR_COLOUR_MAP_NONE, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT},
+};
+
+/* A scene of which nothing has a default: presets must leave part of it alone. */
+static void set_odd_scene(BhrContext *context) {
+    BhrDisk disk;
+    BhrSky  sky;
+    BhrFilm film;
+    CHECK_OK(bhr_set_mass(context, 2.0));
+    CHECK_OK(bhr_set_spin(context, 0.5));
+    CHECK_OK(bhr_disk_init(&disk, sizeof disk));
+    disk.flags = BHR_DISK_RETROGRADE, disk.inner_radius = 7.0, disk.opacity = 0.3, disk.seed = 9;
+    CHECK_OK(bhr_set_disk(context, &disk));
+    CHECK_OK(bhr_sky_init(&sky, sizeof sky));
+    sky.flags = BHR_SKY_MAP, sky.stars_brightness = 3.0, sky.map_brightness = 4.0, sky.seed = 5;
+    sky.orientation[0] = 0.6, sky.orientation[3] = 0.8;
+    CHECK_OK(bhr_set_sky(context, &sky));
+    CHECK_OK(bhr_film_init(&film, sizeof film));
+    film.bloom = 0.7, film.exposure_ev = 3.0, film.beam_fwhm = 0.4;
+    CHECK_OK(bhr_set_film(context, &film));
+    CHECK_OK(bhr_set_effects(context, 0));
+}
+
+static void states_what_the_header_states(BhrContext *context) {
+    for (size_t i = 0; i < COUNT_OF(LOOKS); i++) {
+        const Look *look = &LOOKS[i];
+        Watch       odd, now;
+        uint32_t    effects = 0;
+        set_odd_scene(context);
+        watch_begin(&odd, context);
+        CHECK_OK(bhr_set_preset(context, look->preset));
+        watch_begin(&now, context);
+        CHECK_OK(bhr_get_effects(context, &effects));
+        const BhrDisk *disk = &now.disk;
+        CHECK(now.disk_present == 1 && disk->flags == 0 && disk->inner_radius == 0.0 && disk->opacity == 1.0 &&
+                  disk->seed == 0,
+              "preset %d: the disk", (int)look->preset);
+        CHECK(disk->outer_radius == look->outer_radius && disk->temperature == look->temperature &&
+                  disk->brightness == look->brightness && disk->turbulence == look->turbulence &&
+                  disk->edge_softness == look->edge_softness && disk->reference == look->reference,
+              "preset %d: the disk's numbers", (int)look->preset);
+        CHECK(now.film.tone_map == look->tone_map && now.film.exposure_ev == look->exposure_ev &&
+                  now.film.bloom == look->bloom && now.film.beam_fwhm == look->beam_fwhm &&
+                  now.film.colour_map == look->colour_map,
+              "preset %d: the film", (int)look->preset);
+        CHECK(effects == look->effects, "preset %d: the effects are %#x", (int)look->preset, (unsigned)effects);
+        CHECK(now.sky.flags == look->sky_flags && now.sky.stars_brightness == 1.0 && now.sky.map_brightness == 1.0,
+              "preset %d: the sky", (int)look->preset);
+        CHECK(now.sky.seed == 5 && memcmp(now.sky.orientation, odd.sky.orientation, sizeof odd.sky.orientation) == 0,
+              "preset %d: the sky's orientation and seed", (int)look->preset);
+        CHECK(now.mass == odd.mass && now.spin == odd.spin &&
+                  memcmp(&now.camera, &odd.camera, sizeof now.camera) == 0 &&
+                  memcmp(&now.quality, &odd.quality, sizeof now.quality) == 0,
+              "preset %d changes the hole, the camera or the quality", (int)look->preset);
+        CHECK(now.frame_status == BHR_OK, "preset %d: no frame: %s", (int)look->preset, bhr_error_message());
+    }
+}
+
+/* Each has a picture of its own, with something in it; and the same one again, whatever was set between. */
+static void pictures(BhrContext *context) {
+    static Watch shown[COUNT_OF(LOOKS)], again;
+    for (size_t i = 0; i < COUNT_OF(LOOKS); i++) {
+        CHECK_OK(bhr_set_preset(context, LOOKS[i].preset));
+        watch_begin(&shown[i], context);
+        int most = 0;
+        for (size_t k = 0; k < sizeof shown[i].frame; k++) {
+            most = k % 4 < 3 && shown[i].frame[k] > most ? shown[i].frame[k] : most;
+        }
+        CHECK(most > 100, "preset %d: the brightest byte is %d", (int)LOOKS[i].preset, most);
+        for (size_t k = 0; k < i; k++) {
+            CHECK(memcmp(shown[i].frame, shown[k].frame, sizeof shown[i].frame) != 0, "presets %d and %d are alike",
+                  (int)LOOKS[i].preset, (int)LOOKS[k].preset);
+        }
+    }
+    BhrFilm film = {.struct_size = sizeof film};
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
+    CHECK_OK(bhr_get_film(context, &film));
+    film.exposure_ev = 2.0; /* setters change what a preset has set */
+    CHECK_OK(bhr_set_film(context, &film));
+    watch_begin(&again, context);
+    CHECK(memcmp(again.frame, shown[1].frame, sizeof again.frame) != 0, "exposure changes nothing after a preset");
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
+    watch_begin(&again, context);
+    CHECK(memcmp(again.frame, shown[1].frame, sizeof again.frame) == 0, "a preset has two pictures");
+}
+
+static void refusals(BhrContext *context) {
+    static const int32_t unknown[] = {-1, 4, 99, INT32_MIN, INT32_MAX};
+    Watch                watch;
+    watch_begin(&watch, context);
+    for (size_t i = 0; i < COUNT_OF(unknown); i++) {
+        CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "preset", bhr_set_preset(context, unknown[i]));
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_preset(NULL, BHR_PRESET_PHYSICAL));
+}
+
+/* A new context has the cinematic look. Frames of a region cannot have its glare, and do without it, until the host
+ * states a film of its own. */
+static void new_contexts(BhrBackend backend) {
+    enum { WIDTH = 40, HEIGHT = 24 };
+    static unsigned char    pixels[WIDTH * HEIGHT * 4];
+    const BhrContextOptions options = check_options(backend);
+    const BhrImage          image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, sizeof pixels);
+    const BhrRegion         region = {.struct_size = sizeof region, .full_width = 2 * WIDTH, .full_height = HEIGHT};
+    static Watch            fresh, set;
+    BhrFilm                 film = {.struct_size = sizeof film};
+    BhrContext             *context = NULL;
+    CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context));
+    watch_begin(&fresh, context);
+    CHECK(fresh.disk.temperature == LOOKS[0].temperature && fresh.film.bloom == LOOKS[0].bloom, "another look");
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_CINEMATIC));
+    watch_begin(&set, context);
+    CHECK(memcmp(fresh.frame, set.frame, sizeof set.frame) == 0, "a new context has not the cinematic picture");
+    CHECK_OK(bhr_set_region(context, &region));
+    CHECK_OK(bhr_render_image(context, &image));
+    CHECK_OK(bhr_get_film(context, &film));
+    CHECK_OK(bhr_set_film(context, &film));
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "bloom is 0.25", bhr_render_image(context, &image));
+    bhr_context_destroy(context);
+}
+
+int main(int argc, char **argv) {
+    const BhrBackend backend = check_begin(argc, argv);
+    new_contexts(backend);
+    BhrContext *context = check_context(backend);
+    pictures(context);
+    refusals(context);
+    states_what_the_header_states(context);
+    bhr_context_destroy(context);
+    return check_end();
+}
