@@ -291,8 +291,8 @@ typedef struct BhrContextOptions {
     uint32_t flags;       /**< BHR_CONTEXT_* bits. Default 0. */
     BhrBackend backend;   /**< Default BHR_BACKEND_AUTO. */
     /**
-     * Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the
-     * library chooses.
+     * Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the library
+     * chooses. 0 is the first adapter, so that a struct which was zeroed instead of initialised asks for that one.
      */
     int32_t adapter_index;
     /** Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use. */
@@ -339,6 +339,18 @@ BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
  * be tried again.
  */
 BhrStatus bhr_context_recover(BhrContext *context);
+
+/**
+ * Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was on,
+ * into buffer: for hosts whose calls move between threads (goroutines, worker threads of Node's or of asyncio's), where
+ * bhr_error_message may tell of another call. At most size - 1 bytes, cut between characters, and a NUL are written,
+ * nothing when buffer is NULL or size is 0. Returns the length of the whole message in bytes without its NUL, less
+ * than 10,000; 0 when no call has failed, and for a NULL context. While other threads make calls that fail on the
+ * context, the message may be that of one of theirs. Jobs have messages of their own: bhr_job_error_message. A call
+ * that returns no context leaves its message with its thread alone. Any thread, inside callbacks too; it waits for no
+ * other call. Since 0.2.0.
+ */
+size_t bhr_context_error_message(const BhrContext *context, char *buffer, size_t size);
 
 /**
  * Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a
@@ -1200,6 +1212,13 @@ BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, Bh
  * bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
  */
 BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
+
+/**
+ * Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
+ * bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its length,
+ * 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
+ */
+size_t bhr_job_error_message(const BhrJob *job, char *buffer, size_t size);
 
 /**
  * Asks a job to stop, and does not wait: bhr_job_wait then returns CANCELLED, or OK when the job was done before.

@@ -5,7 +5,7 @@ mod worker;
 
 pub use worker::{MAX_UNFINISHED, Worker};
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
 use crate::image::ImageMut;
 use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, Progress, StatsBoard};
@@ -134,7 +134,7 @@ impl JobRequest {
         let touched = self.target.is_touched();
         let outcome = outcome.map(|stats| self.stats.publish(stats, self.requested.elapsed())).map_err(|mut error| {
             if touched {
-                error.message += "; part of the target has been written";
+                error.message += PARTLY_WRITTEN;
             }
             error
         });

@@ -2,7 +2,7 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
@@ -139,8 +139,8 @@ impl Renderer {
             Some(backend) => Err(Error::new(
                 ErrorKind::NoAdapter,
                 format!(
-                    "no usable adapter of backend {backend} ({}); BHR_BACKEND_AUTO falls back to the CPU tracer",
-                    if reasons.is_empty() { "none found".into() } else { reasons.join("; ") }
+                    "no adapter of backend {backend} can be used: {}. BHR_BACKEND_AUTO falls back to the CPU tracer",
+                    if reasons.is_empty() { gpu::absence(backend).into() } else { reasons.join("; ") }
                 ),
             )),
         }
@@ -269,8 +269,9 @@ impl Renderer {
             let spread = [("bloom", "glare", film.bloom), ("beam_fwhm", "its light", film.beam_fwhm)];
             let (name, light, value) = if film.bloom > 0.0 { spread[0] } else { spread[1] };
             return Err(Error::state(format!(
-                "film {name} is {value}: {light} comes from the whole frame, and a region is set; set no region, or \
-                 {name} 0"
+                "film {name} is {}: {light} comes from the whole frame, and a region is set; set no region, or \
+                 {name} 0",
+                Number(value)
             )));
         }
         match (self.scene.view, format) {
@@ -311,16 +312,13 @@ impl Renderer {
         let start = Instant::now();
         let request = self.request(target.format(), [target.width(), target.height()], transparent, region)?;
         self.help_to_write(target);
-        let mut written = 0_u64;
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
-            written += u64::from(tile.width) * u64::from(tile.height);
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
         };
         let rendered = self.tracer.lock().render(&self.scene, &request, &mut sink, progress);
         let stats = rendered.map_err(|mut error| {
-            if written > 0 {
-                let all = u64::from(request.width) * u64::from(request.height);
-                error.message += &format!("; {written} of {all} pixels of the target had been written");
+            if target.is_touched() {
+                error.message += PARTLY_WRITTEN;
             }
             error
         })?;

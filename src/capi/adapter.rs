@@ -1,6 +1,7 @@
 //! BhrAdapterInfo and BhrBackend: what bhr can run on.
 
 use super::entry::outside_callbacks;
+use super::message::copy_text;
 use super::pointer::{Out, unknown};
 use super::status::BhrStatus;
 use super::versioned::{OutStruct, Versioned};
@@ -102,12 +103,10 @@ impl From<&AdapterInfo> for BhrAdapterInfo {
 
 /// `text` up to its first NUL, cut at a character so that a terminator fits.
 fn fixed_text(text: &str) -> [c_char; TEXT] {
-    let text = text.split('\0').next().unwrap_or_default();
-    let end = text.floor_char_boundary(TEXT - 1);
     let mut fixed = [0; TEXT];
-    for (to, from) in fixed.iter_mut().zip(text.bytes().take(end)) {
-        *to = from as c_char;
-    }
+    let text = text.split('\0').next().unwrap_or_default();
+    // SAFETY: it has TEXT bytes.
+    unsafe { copy_text(text.as_bytes(), fixed.as_mut_ptr(), TEXT) };
     fixed
 }
 

@@ -3,9 +3,10 @@
 use super::context::{BhrContext, State};
 use super::entry::{Success, finish, refuse_in_callback};
 use super::log;
+use super::message::LastMessage;
 use super::panic::guarded;
 use super::pointer::is_null;
-use super::status::BhrStatus;
+use super::status::{BHR_OK, BhrStatus};
 use crate::error::{Error, ErrorKind, Result};
 use parking_lot::MutexGuard;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,11 +22,12 @@ pub(super) unsafe fn on_context<T: Success>(
     context: *const BhrContext,
     body: impl FnOnce(&mut State) -> Result<T>,
 ) -> BhrStatus {
-    if let Err(error) = refuse_in_callback() {
-        return finish::<()>(function, Err(error));
-    }
     // SAFETY: NULL or alive, by this function's contract.
-    let Some(context) = (unsafe { context.as_ref() }) else {
+    let context = unsafe { context.as_ref() };
+    if let Err(error) = refuse_in_callback() {
+        return keep(finish::<()>(function, Err(error)), context.map(|context| &*context.message));
+    }
+    let Some(context) = context else {
         return finish::<()>(function, Err(is_null("context")));
     };
     let _scope = log::Scope::enter(context.sink());
@@ -38,7 +40,15 @@ pub(super) unsafe fn on_context<T: Success>(
     break_if_internal(&result, &context.broken);
     // Threads that wait for the lock go first: one that calls again and again would otherwise keep them out.
     MutexGuard::unlock_fair(state);
-    finish(function, result)
+    keep(finish(function, result), Some(&context.message))
+}
+
+/// Keeps the message of a call that has just failed with the object it was on, too. Passes `status` on.
+pub(super) fn keep(status: BhrStatus, message: Option<&LastMessage>) -> BhrStatus {
+    if let Some(message) = message.filter(|_| status < BHR_OK) {
+        message.keep_of_thread();
+    }
+    status
 }
 
 /// After a failure of kind `Internal` its context is not to be trusted.

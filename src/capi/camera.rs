@@ -6,7 +6,7 @@ use super::entry::anywhere;
 use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_null, read_vector, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::scene::{Camera, Motion, Projection};
 use glam::DVec3;
 
@@ -185,6 +185,7 @@ const POLE: f64 = 1e-6;
 /// Position on a sphere about the hole, looking at its centre; `elevation` and `azimuth` as for `bhr_camera_orbit`.
 fn orbit(distance: f64, azimuth: f64, elevation: f64) -> Result<(DVec3, DVec3)> {
     if !(distance.is_finite() && distance > 0.0) {
+        let distance = Number(distance);
         return Err(Error::argument(format!("distance is {distance}; it must be finite and greater than 0")));
     }
     let (sin_az, cos_az) = check_finite(azimuth, "azimuth")?.sin_cos();

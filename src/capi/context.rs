@@ -7,6 +7,7 @@ use super::callback::in_callback;
 use super::entry::{anywhere, finish, outside_callbacks};
 use super::gate::Gate;
 use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
+use super::message::{LastMessage, copy_text};
 use super::panic::guarded;
 use super::pointer::{Out, check_flags};
 use super::render::Callback;
@@ -19,7 +20,7 @@ use crate::renderer::{Renderer, RendererOptions};
 use crate::scene::Region;
 use ::log::LevelFilter;
 use parking_lot::Mutex;
-use std::ffi::c_void;
+use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -32,6 +33,8 @@ pub struct BhrContext {
     pub(super) broken: Arc<AtomicBool>,
     /// The gate that progress callbacks of jobs pass through; jobs may outlive the context.
     pub(super) progress_gate: Arc<Gate>,
+    /// Of the last call that failed on this context or on a surface of its; surfaces may outlive it.
+    pub(super) message: Arc<LastMessage>,
     /// Dropped after `state`, so that a renderer's last messages are still heard.
     log: Option<Registered>,
 }
@@ -70,8 +73,8 @@ pub struct BhrContextOptions {
     pub flags: u32,
     /// Default BHR_BACKEND_AUTO.
     pub backend: BhrBackend,
-    /// Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the
-    /// library chooses.
+    /// Index for bhr_adapter_info; its backend must be the one above, unless that is AUTO. -1 (default): the library
+    /// chooses. 0 is the first adapter, so that a struct which was zeroed instead of initialised asks for that one.
     pub adapter_index: i32,
     /// Threads of the CPU tracer, 0 .. 1024. 0 (default): one per core that this process may use.
     pub cpu_threads: u32,
@@ -201,10 +204,11 @@ fn create(options: RendererOptions, log: Option<Registered>) -> Result<Box<BhrCo
     // Outside this scope the new callback would not hear why there is no context.
     let renderer = Renderer::new(options).inspect_err(|error| ::log::error!(target: "bhr", "no context: {error}"))?;
     let adapter = renderer.adapter();
-    ::log::info!(target: "bhr", "context on {} ({:?})", adapter.name, adapter.backend);
+    ::log::info!(target: "bhr", "context on {} ({})", adapter.name, adapter.backend);
     drop(scope);
     let state = Mutex::new(State { renderer, region: None, progress: None });
-    Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), log }))
+    let message = Arc::new(LastMessage::new());
+    Ok(Box::new(BhrContext { state, broken: Arc::default(), progress_gate: Arc::default(), message, log }))
 }
 
 /// Fills in info for the adapter that the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
@@ -233,6 +237,32 @@ pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrSta
 pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
     // SAFETY: NULL or valid, as for the API.
     unsafe { on_context("lose_device", context, |state| state.renderer.lose_device()) }
+}
+
+/// Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was on,
+/// into buffer: for hosts whose calls move between threads (goroutines, worker threads of Node's or of asyncio's), where
+/// bhr_error_message may tell of another call. At most size - 1 bytes, cut between characters, and a NUL are written,
+/// nothing when buffer is NULL or size is 0. Returns the length of the whole message in bytes without its NUL, less
+/// than 10,000; 0 when no call has failed, and for a NULL context. While other threads make calls that fail on the
+/// context, the message may be that of one of theirs. Jobs have messages of their own: bhr_job_error_message. A call
+/// that returns no context leaves its message with its thread alone. Any thread, inside callbacks too; it waits for no
+/// other call. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_context_error_message(
+    context: *const BhrContext,
+    buffer: *mut c_char,
+    size: usize,
+) -> usize {
+    // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
+    unsafe {
+        match context.as_ref() {
+            Some(context) => context.message.copy_to(buffer, size),
+            None => {
+                copy_text(b"", buffer, size);
+                0
+            }
+        }
+    }
 }
 
 /// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a

@@ -1,18 +1,20 @@
 //! BhrJob: frames in the background. One `Job` with what its waits need of the context, which may be gone by then.
 
-use super::call::{break_if_internal, on_context};
+use super::call::{break_if_internal, keep, on_context};
 use super::callback::in_callback;
 use super::context::BhrContext;
 use super::entry::{self, SuccessStatus, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
+use super::message::{LastMessage, copy_text};
 use super::panic::guarded;
 use super::pointer::{Out, is_null};
 use super::render::{Callback, Report};
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
 use crate::job::Job;
+use std::ffi::c_char;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -24,8 +26,11 @@ pub struct BhrJob {
     progress: Option<Callback>,
     /// Closed when the context ends.
     progress_gate: Arc<Gate>,
-    sink: Option<Arc<Sink>>,
     /// The log callback of the context.
+    sink: Option<Arc<Sink>>,
+    /// Of the last call that failed on this job.
+    message: LastMessage,
+    /// The context's.
     broken: Arc<AtomicBool>,
 }
 
@@ -68,11 +73,12 @@ pub(super) unsafe fn on_job<T: entry::Success>(
         return outside_callbacks::<()>(function, || Err(is_null("job")));
     };
     let _scope = log::Scope::enter(job.sink.clone());
-    outside_callbacks(function, || {
+    let status = outside_callbacks(function, || {
         let result = body(job);
         break_if_internal(&result, &job.broken);
         result
-    })
+    });
+    keep(status, Some(&job.message))
 }
 
 /// Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
@@ -98,7 +104,8 @@ pub unsafe extern "C" fn bhr_render_image_async(
             let target = image::read(target, "target")?;
             let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
             let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region)?;
-            let job = BhrJob { job, progress: state.progress, progress_gate, sink, broken };
+            let message = LastMessage::new();
+            let job = BhrJob { job, progress: state.progress, progress_gate, sink, message, broken };
             out.set(Box::into_raw(Box::new(job)));
             Ok(())
         })
@@ -117,6 +124,23 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
     unsafe {
         let out = Out::cleared(out_fraction);
         on_job("bhr_job_wait", job, |job| job.wait(timeout_ns, &out))
+    }
+}
+
+/// Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
+/// bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its length,
+/// 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_job_error_message(job: *const BhrJob, buffer: *mut c_char, size: usize) -> usize {
+    // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
+    unsafe {
+        match job.as_ref() {
+            Some(job) => job.message.copy_to(buffer, size),
+            None => {
+                copy_text(b"", buffer, size);
+                0
+            }
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Plain pointers of the host: NULL checks, fixed arrays in, out-parameters out. Copies only, never a reference, so
 //! that alignment does not matter. Structs that carry a size are in `versioned`.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use bytemuck::Zeroable;
 use glam::DVec3;
 
@@ -27,7 +27,7 @@ pub(super) fn check_finite(value: f64, name: &str) -> Result<f64> {
     if value.is_finite() {
         return Ok(value);
     }
-    Err(Error::argument(format!("{name} is {value}; it must be finite")))
+    Err(Error::argument(format!("{name} is {}; it must be finite", Number(value))))
 }
 
 /// The error for a vector with a component that is NaN or infinite.
@@ -35,7 +35,7 @@ pub(super) fn check_finite_vector(v: DVec3, name: &str) -> Result<DVec3> {
     if v.is_finite() {
         return Ok(v);
     }
-    Err(Error::argument(format!("{name} is ({}, {}, {}); it must be finite", v.x, v.y, v.z)))
+    Err(Error::argument(format!("{name} is ({}, {}, {}); it must be finite", Number(v.x), Number(v.y), Number(v.z))))
 }
 
 /// The error for a `reserved` field that is not 0.

@@ -86,16 +86,11 @@ pub unsafe extern "C" fn bhr_render_image(context: *mut BhrContext, target: *con
             if !report.tell(0.0) {
                 return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame at its begin"));
             }
-            let mut frame =
-                state.renderer.render(&mut target.pixels, target.transparent, state.region, &mut |fraction| {
-                    report.tell(fraction)
-                });
-            match frame {
-                Ok(()) => report.finish(),
-                Err(ref mut error) if target.pixels.is_touched() => {
-                    error.message.push_str("; part of the target has been written");
-                }
-                Err(_) => {}
+            let frame = state
+                .renderer
+                .render(&mut target.pixels, target.transparent, state.region, &mut |fraction| report.tell(fraction));
+            if frame.is_ok() {
+                report.finish();
             }
             frame
         })

@@ -1,10 +1,11 @@
 //! BhrSurface: rendering into a window of the host's. One `Surface`, shared with its context, which may go first.
 
-use super::call::on_context;
+use super::call::{keep, on_context};
 use super::callback::in_callback;
 use super::context::BhrContext;
 use super::entry::{SuccessStatus, finish, outside_callbacks};
 use super::log::{self, Sink};
+use super::message::LastMessage;
 use super::panic::guarded;
 use super::pointer::{Out, is_null, unknown};
 use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
@@ -20,6 +21,8 @@ use std::sync::Arc;
 pub struct BhrSurface {
     surface: Arc<Surface>,
     sink: Option<Arc<Sink>>,
+    /// The context's.
+    message: Arc<LastMessage>,
 }
 
 /// How frames reach the screen.
@@ -62,7 +65,7 @@ unsafe fn on_surface(
         return outside_callbacks::<()>(function, || Err(is_null("surface")));
     };
     let _scope = log::Scope::enter(surface.sink.clone());
-    outside_callbacks(function, || body(&surface.surface))
+    keep(outside_callbacks(function, || body(&surface.surface)), Some(&surface.message))
 }
 
 /// Makes a surface of a window, width x height pixels (0 x 0: minimised; X11: else the window's own size counts), for
@@ -90,13 +93,14 @@ pub unsafe extern "C" fn bhr_surface_create(
     unsafe {
         let out = Out::cleared(out_surface);
         // Not NULL in the closure: `on_context` has refused that.
-        let sink = || context.as_ref().and_then(BhrContext::sink);
+        let shared = || context.as_ref().map(|context| (context.sink(), context.message.clone()));
         on_context("bhr_surface_create", context, |state| {
             out.required("out_surface")?;
             let window = window::read(window, "window")?;
             let size = check_size(width, height)?;
             let surface = state.renderer.create_surface(window, size, present_mode(mode)?)?;
-            out.set(Box::into_raw(Box::new(BhrSurface { surface, sink: sink() })));
+            let (sink, message) = shared().ok_or_else(|| is_null("context"))?;
+            out.set(Box::into_raw(Box::new(BhrSurface { surface, sink, message })));
             Ok(())
         })
     }
@@ -162,7 +166,7 @@ pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
         return;
     }
     // SAFETY: bhr_surface_create made it with Box::into_raw, and the host destroys it once.
-    let BhrSurface { surface, sink } = *unsafe { Box::from_raw(surface) };
+    let BhrSurface { surface, sink, .. } = *unsafe { Box::from_raw(surface) };
     let _scope = log::Scope::enter(sink);
     let ended = guarded(|| {
         surface.end("it was destroyed");

@@ -28,6 +28,21 @@ pub const BHR_WINDOW_METAL_LAYER: BhrWindowKind = 7;
 /// Android: handle = ANativeWindow *.
 pub const BHR_WINDOW_ANDROID: BhrWindowKind = 8;
 
+/// The constant of a kind that is listed above.
+fn kind_name(kind: BhrWindowKind) -> &'static str {
+    match kind {
+        BHR_WINDOW_XLIB => "BHR_WINDOW_XLIB",
+        BHR_WINDOW_XCB => "BHR_WINDOW_XCB",
+        BHR_WINDOW_WAYLAND => "BHR_WINDOW_WAYLAND",
+        BHR_WINDOW_WIN32 => "BHR_WINDOW_WIN32",
+        BHR_WINDOW_APPKIT => "BHR_WINDOW_APPKIT",
+        BHR_WINDOW_UIKIT => "BHR_WINDOW_UIKIT",
+        BHR_WINDOW_METAL_LAYER => "BHR_WINDOW_METAL_LAYER",
+        BHR_WINDOW_ANDROID => "BHR_WINDOW_ANDROID",
+        _ => "no BHR_WINDOW constant",
+    }
+}
+
 /// A window of the host's. It stays the host's, and it and its display must outlive every surface made from it.
 /// Begin with all bytes 0, then set struct_size, kind, and what the kind names. Handles are those of the
 /// raw-window-handle crate.
@@ -82,27 +97,30 @@ pub(super) unsafe fn read(window: *const BhrWindow, name: &str) -> Result<Native
     // SAFETY: this function's contract.
     let given = unsafe { versioned::read(window, name) }?;
     check_reserved(given.reserved, name)?;
-    let needed = |field: &str| Error::argument(format!("{name} {field} is 0; windows of kind {} need it", given.kind));
-    let display = || NonNull::new(given.display).ok_or_else(|| needed("display"));
-    let handle = || NonNull::new(given.handle).ok_or_else(|| needed("handle"));
+    let needed = |field: &str, value: &str| {
+        let kind = kind_name(given.kind);
+        Error::argument(format!("{name} {field} is {value}; windows of kind {kind} need it"))
+    };
+    let display = || NonNull::new(given.display).ok_or_else(|| needed("display", "NULL"));
+    let handle = || NonNull::new(given.handle).ok_or_else(|| needed("handle", "NULL"));
     let xcb_id = |field: &str, value: u64| {
         u32::try_from(value).map_err(|_| Error::argument(format!("{name} {field} is {value:#x}; XCB's have 32 bits")))
     };
     Ok(match given.kind {
         BHR_WINDOW_XLIB => {
             let display = display()?;
-            let window = Some(given.id).filter(|id| *id != 0).ok_or_else(|| needed("id"))?;
+            let window = Some(given.id).filter(|id| *id != 0).ok_or_else(|| needed("id", "0"))?;
             NativeWindow::Xlib { display, window, visual: given.visual_id, screen: given.screen }
         }
         BHR_WINDOW_XCB => {
             let connection = display()?;
-            let window = NonZeroU32::new(xcb_id("id", given.id)?).ok_or_else(|| needed("id"))?;
+            let window = NonZeroU32::new(xcb_id("id", given.id)?).ok_or_else(|| needed("id", "0"))?;
             let visual = NonZeroU32::new(xcb_id("visual_id", given.visual_id)?);
             NativeWindow::Xcb { connection, window, visual, screen: given.screen }
         }
         BHR_WINDOW_WAYLAND => NativeWindow::Wayland { display: display()?, surface: handle()? },
         BHR_WINDOW_WIN32 => NativeWindow::Win32 {
-            hwnd: NonZeroIsize::new(given.handle.addr() as isize).ok_or_else(|| needed("handle"))?,
+            hwnd: NonZeroIsize::new(given.handle.addr() as isize).ok_or_else(|| needed("handle", "NULL"))?,
             hinstance: NonZeroIsize::new(given.aux.addr() as isize),
         },
         BHR_WINDOW_APPKIT => NativeWindow::AppKit { view: handle()? },

@@ -1,7 +1,7 @@
 //! The accretion disk as the host states it: geometrically thin, in the equatorial plane, on circular geodesics. Plain
 //! data.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result, out_of_range};
 
 /// The ring at whose radius the disk has its stated temperature and brightness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,14 +85,15 @@ impl Disk {
             if value >= low && value <= high {
                 return Ok(());
             }
-            Err(Error::argument(format!("disk {name} is {value}; it must lie in [{low}, {high}]")))
+            Err(out_of_range(&format!("disk {name}"), value, low, high))
         };
         range("inner_radius", self.inner_radius, 0.0, Self::MAX_RADIUS)?;
         range("outer_radius", self.outer_radius, 0.0, Self::MAX_RADIUS)?;
         if self.outer_radius <= self.inner_radius {
             return Err(Error::argument(format!(
                 "disk outer_radius is {}; it must be greater than inner_radius, {}",
-                self.outer_radius, self.inner_radius
+                Number(self.outer_radius),
+                Number(self.inner_radius)
             )));
         }
         range("temperature", self.temperature, 500.0, 1e9)?;

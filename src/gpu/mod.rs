@@ -13,7 +13,7 @@ mod lens;
 mod twins;
 mod window;
 
-pub use device::adapter::{Adapter, Search, adapters, check_built, forget_drivers};
+pub use device::adapter::{Adapter, Search, absence, adapters, check_built, forget_drivers};
 pub use device::buffer::Buffer;
 #[doc(hidden)]
 pub use device::driver_lock;

@@ -2,7 +2,7 @@
 //! frame is asked for (`scene::observer`).
 
 use super::hole::unit;
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use glam::{DMat3, DVec3};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -81,7 +81,9 @@ impl Camera {
             if !v.is_finite() {
                 return Err(Error::argument(format!(
                     "camera {name} is ({}, {}, {}); it must be finite",
-                    v.x, v.y, v.z
+                    Number(v.x),
+                    Number(v.y),
+                    Number(v.z)
                 )));
             }
         }
@@ -96,16 +98,16 @@ impl Camera {
         let ignored = matches!(self.projection, Projection::Equirect | Projection::Cube);
         let inside = self.fov_y > 0.0 && (self.fov_y < limit || (closed && self.fov_y == limit));
         if !ignored && !inside {
-            let bracket = if closed { ']' } else { ')' };
+            let range = if closed { "(0, 2 pi]" } else { "(0, pi)" };
             return Err(Error::argument(format!(
-                "camera fov_y is {}; it must lie in (0, {limit}{bracket}",
-                self.fov_y
+                "camera fov_y is {}; it must lie in {range}, in radians",
+                Number(self.fov_y)
             )));
         }
         if self.velocity.length() >= 1.0 {
             return Err(Error::argument(format!(
                 "camera velocity has length {} c; it must be less than 1",
-                self.velocity.length()
+                Number(self.velocity.length())
             )));
         }
         Ok(())

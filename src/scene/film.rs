@@ -1,6 +1,6 @@
 //! How linear radiance becomes 8-bit pixels, as the host states it. The curves are in `crate::film`.
 
-use crate::error::{Error, Result};
+use crate::error::{Result, out_of_range};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -54,11 +54,11 @@ impl Film {
     /// Errors: a number out of range.
     pub fn check(&self) -> Result<()> {
         if !(-20.0..=20.0).contains(&self.exposure_ev) {
-            return Err(Error::argument(format!("film exposure_ev is {}; it must lie in [-20, 20]", self.exposure_ev)));
+            return Err(out_of_range("film exposure_ev", self.exposure_ev, -20.0, 20.0));
         }
         for (name, value) in [("bloom", self.bloom), ("beam_fwhm", self.beam_fwhm)] {
             if !(0.0..=1.0).contains(&value) {
-                return Err(Error::argument(format!("film {name} is {value}; it must lie in [0, 1]")));
+                return Err(out_of_range(&format!("film {name}"), value, 0.0, 1.0));
             }
         }
         Ok(())

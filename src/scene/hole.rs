@@ -1,6 +1,6 @@
 //! The black hole as the host states it: mass, spin, axis, and the rotation between scene axes and the hole's chart.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result, out_of_range};
 use glam::{DMat3, DQuat, DVec3};
 
 /// Largest |a / M| the tracers accept.
@@ -28,7 +28,7 @@ impl Hole {
         if mass.is_finite() && mass > 0.0 {
             return Ok(mass);
         }
-        Err(Error::argument(format!("mass is {mass}; it must be finite and greater than 0 (scene lengths)")))
+        Err(Error::argument(format!("mass is {}; it must be finite and greater than 0 (scene lengths)", Number(mass))))
     }
 
     /// Errors: `spin` not finite or |spin| > 0.999.
@@ -36,7 +36,7 @@ impl Hole {
         if spin.abs() <= MAX_SPIN {
             return Ok(spin);
         }
-        Err(Error::argument(format!("spin is {spin}; a / M must lie in [-{MAX_SPIN}, {MAX_SPIN}]")))
+        Err(out_of_range("spin", spin, -MAX_SPIN, MAX_SPIN))
     }
 
     /// The unit vector along `axis`. Errors: a component not finite, or zero length.
@@ -44,7 +44,9 @@ impl Hole {
         unit(axis).ok_or_else(|| {
             Error::argument(format!(
                 "axis is ({}, {}, {}); it must be finite and of non-zero length",
-                axis.x, axis.y, axis.z
+                Number(axis.x),
+                Number(axis.y),
+                Number(axis.z)
             ))
         })
     }

@@ -4,7 +4,7 @@
 use super::hole::unit;
 use super::projection::Mapping;
 use super::{Camera, Motion, Region, Scene};
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
 use glam::{DMat3, DVec3};
@@ -22,20 +22,23 @@ impl Scene {
         // NaN and r = 0 are refused by the frame itself.
         if position.is_finite() && (r > MAX_RADIUS || (r > 0.0 && r < MIN_RADIUS)) {
             return Err(Error::state(format!(
-                "position lies at r = {r:e} M (mass is {:e}); it must lie in [{MIN_RADIUS:e}, {MAX_RADIUS:e}] M",
-                self.hole.mass
+                "position lies at r = {} M (mass is {}); it must lie in [{MIN_RADIUS:e}, {MAX_RADIUS:e}] M",
+                Number(r),
+                Number(self.hole.mass)
             )));
         }
         LocalFrame::new(self.hole.spin, chart).map_err(|why| match why {
             NoFrame::NotAPlace => Error::argument(format!(
                 "position ({}, {}, {}) is no place for an observer: it must be finite, and not the hole's centre",
-                position.x, position.y, position.z
+                Number(position.x),
+                Number(position.y),
+                Number(position.z)
             )),
             NoFrame::InsideSpinningHorizon => Error::unsupported(format!(
                 "r = {} M lies at or inside the horizon, {} M, of a hole of spin {}; inside, only spin 0 is traced",
-                chart.length(),
-                horizon_outer(self.hole.spin),
-                self.hole.spin
+                Number(chart.length()),
+                Number(horizon_outer(self.hole.spin)),
+                Number(self.hole.spin)
             )),
         })
     }

@@ -1,6 +1,6 @@
 //! The settings that decide how exactly rays are traced, as the host states them.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 
 /// The frames in which tables are used; anything but `Auto` is for tests.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -95,7 +95,7 @@ impl Quality {
     /// Errors: a value outside its range.
     pub fn check(&self) -> Result<()> {
         let bad = |name: &str, value: f64, range: &str| {
-            Err(Error::argument(format!("quality {name} is {value}; it must lie in {range}")))
+            Err(Error::argument(format!("quality {name} is {}; it must lie in {range}", Number(value))))
         };
         if !(1..=256).contains(&self.samples_per_pixel) {
             return bad("samples_per_pixel", self.samples_per_pixel.into(), "[1, 256]");

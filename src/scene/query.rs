@@ -3,7 +3,7 @@
 use super::frame::Region;
 use super::observer::Lens;
 use super::{Camera, Motion, Ray, Scene};
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result};
 use crate::physics::geodesic::rain_offset;
 use crate::physics::metric::{Kerr, boyer_lindquist};
 use crate::physics::observer::Observer;
@@ -60,13 +60,16 @@ impl Scene {
         if !(r > 0.0 && r.is_finite()) {
             return Err(Error::argument(format!(
                 "position ({}, {}, {}) must be finite and not the hole's centre",
-                position.x, position.y, position.z
+                Number(position.x),
+                Number(position.y),
+                Number(position.z)
             )));
         }
         for (name, horizon) in [("outer", horizon_outer(a)), ("inner", horizon_inner(a))] {
             if (r - horizon).abs() <= 4.0 * f64::EPSILON * r {
                 return Err(Error::argument(format!(
-                    "position is on the {name} horizon, r = {r} M, where Boyer-Lindquist components are infinite"
+                    "position is on the {name} horizon, r = {} M, where Boyer-Lindquist components are infinite",
+                    Number(r)
                 )));
             }
         }
@@ -103,7 +106,8 @@ impl Scene {
     /// cannot be.
     pub fn camera_ray(&self, width: u32, height: u32, region: Option<Region>, x: f64, y: f64) -> Result<Ray> {
         if !(x.abs() <= MAX_PIXEL && y.abs() <= MAX_PIXEL) {
-            return Err(Error::argument(format!("pixel position ({x:e}, {y:e}) must lie within +-{MAX_PIXEL:e}")));
+            let (x, y) = (Number(x), Number(y));
+            return Err(Error::argument(format!("pixel position ({x}, {y}) must lie within +-{MAX_PIXEL:e}")));
         }
         let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
         Ok(pixel_rays.ray(self, x + f64::from(region.x), y + f64::from(region.y)))
@@ -154,7 +158,7 @@ impl Scene {
     /// ends in the singularity or, with spin, at the horizon; INVALID_ARGUMENT for a `proper_time` not finite.
     pub fn advance_camera(&self, camera: &Camera, proper_time: f64) -> Result<(Camera, f64)> {
         if !proper_time.is_finite() {
-            return Err(Error::argument(format!("proper_time is {proper_time}; it must be finite")));
+            return Err(Error::argument(format!("proper_time is {}; it must be finite", Number(proper_time))));
         }
         camera.check()?;
         let observer = self.observer_of(camera)?;

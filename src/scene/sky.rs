@@ -1,7 +1,7 @@
 //! The sky at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
 use super::{Scene, View};
-use crate::error::{Error, Result};
+use crate::error::{Error, Number, Result, out_of_range};
 use crate::sky::{StarField, StarIndex};
 use glam::DQuat;
 use std::sync::Arc;
@@ -59,14 +59,12 @@ impl Sky {
         }
         for (name, value) in [("stars_brightness", self.stars_brightness), ("map_brightness", self.map_brightness)] {
             if !(0.0..=Self::MAX_BRIGHTNESS).contains(&value) {
-                return Err(Error::argument(format!(
-                    "sky {name} is {value}; it must lie in [0, {}]",
-                    Self::MAX_BRIGHTNESS
-                )));
+                return Err(out_of_range(&format!("sky {name}"), value, 0.0, Self::MAX_BRIGHTNESS));
             }
         }
         let length = self.orientation.length();
         if !length.is_finite() || (length - 1.0).abs() > 1e-3 {
+            let length = Number(length);
             return Err(Error::argument(format!("sky orientation has length {length}; it must be a unit quaternion")));
         }
         Ok(())

@@ -120,6 +120,22 @@ pub fn check_built(backend: Option<Backend>) -> Result<()> {
     Ok(())
 }
 
+/// Why a search for this backend alone has found nothing, and what is to be installed where that can be named.
+pub fn absence(backend: Backend) -> &'static str {
+    const LINUX: bool = cfg!(all(unix, not(target_vendor = "apple"), not(target_os = "android")));
+    match backend {
+        Backend::Vulkan => loader::absence(),
+        Backend::Gl if LINUX => {
+            "no OpenGL ES 3.1 with compute shaders through EGL; Debian and Ubuntu: libegl1 and libgl1-mesa-dri, or the \
+             GPU's own driver"
+        }
+        Backend::Gl => "no OpenGL ES 3.1 with compute shaders",
+        Backend::Metal if !cfg!(target_vendor = "apple") => "Metal is there on macOS and iOS only",
+        Backend::D3d12 if !cfg!(windows) => "Direct3D 12 is there on Windows only",
+        Backend::Metal | Backend::D3d12 | Backend::Cpu => "the system lists no device",
+    }
+}
+
 /// Makes the next search ask the drivers anew. For recovery after a device was lost, since an upgraded driver is not
 /// seen through the old one's adapters; devices in use keep theirs. That GL had no hardware stays known: each search
 /// costs Mesa half a megabyte that it never frees.
@@ -180,6 +196,10 @@ fn gl() -> Option<Vec<RankedAdapter>> {
             let _driver = driver_lock::lock();
             let (instance, list) = ask_drivers(wgpu::Backends::GL, false);
             keep_display(instance);
+            // All adapters of an instance share its context.
+            if let Some(first) = list.first() {
+                thread.guard_context(first);
+            }
             list.into_iter().filter_map(|raw| usable(raw, None, Some((thread.clone(), age)))).collect()
         })
     };
@@ -249,7 +269,7 @@ fn usable(
 ) -> Option<RankedAdapter> {
     let found = raw.get_info();
     let pass_over = |reason: String| {
-        log::info!("adapter {} ({:?}) passed over: {reason}", found.name, found.backend);
+        log::info!("adapter {} ({}) passed over: {reason}", found.name, found.backend);
         None
     };
     let Some(backend) = backend(found.backend) else {

@@ -8,6 +8,7 @@
 //! own (the C API's), it calls [`park`]: nothing unwinds, and the thread stands still for good.
 
 use super::driver_lock;
+use super::gl_guard::ContextGuard;
 use crate::error::{Error, ErrorKind, Result, panic_text};
 use crate::thread_scope;
 use crate::tracer::Progress;
@@ -88,6 +89,8 @@ pub struct GlThread {
     channel: Mutex<Option<mpsc::Sender<Work<'static>>>>,
     /// `None` only while it is being dropped.
     handle: Option<JoinHandle<()>>,
+    /// Ends after the thread, when nothing uses the context's objects any more.
+    guard: Mutex<Option<ContextGuard>>,
 }
 
 impl GlThread {
@@ -98,7 +101,12 @@ impl GlThread {
         let handle = thread::Builder::new().name("bhr-gl".into()).spawn(run);
         let handle =
             handle.map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("no thread for GL: {error}")))?;
-        Ok(Arc::new(Self { channel: Mutex::new(Some(channel)), handle: Some(handle) }))
+        Ok(Arc::new(Self { channel: Mutex::new(Some(channel)), handle: Some(handle), guard: Mutex::new(None) }))
+    }
+
+    /// Guards the objects of the adapter's context, which this thread is for, for as long as there is the thread.
+    pub(super) fn guard_context(&self, adapter: &wgpu::Adapter) {
+        *self.guard.lock() = ContextGuard::of(adapter);
     }
 
     /// Runs `work` on the thread and waits for it. Errors: INTERNAL when it panics; once the thread is parked,

@@ -1,6 +1,27 @@
 //! Whether the Vulkan loader of this system may be handed to ash, whose stand-ins for functions that are missing panic
 //! in a foreign frame: nothing can catch that, and the process ends. Asks the loader for nothing else.
 
+/// Why a search has found no adapter of Vulkan.
+#[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]
+pub(in crate::gpu) fn absence() -> &'static str {
+    // SAFETY: as below.
+    let library = unsafe { libc::dlopen(c"libvulkan.so.1".as_ptr(), libc::RTLD_NOW | libc::RTLD_LOCAL) };
+    if library.is_null() {
+        return "the Vulkan loader, libvulkan.so.1, is not installed or does not load; Debian and Ubuntu: libvulkan1";
+    }
+    if !is_usable() {
+        return "the library libvulkan.so.1 is no Vulkan loader; Debian and Ubuntu: libvulkan1";
+    }
+    "the Vulkan loader knows no driver that has a device with compute shaders; Debian and Ubuntu: mesa-vulkan-drivers, \
+     or the GPU's own driver"
+}
+
+/// Elsewhere the system brings the loader.
+#[cfg(not(all(unix, not(target_vendor = "apple"), not(target_os = "android"))))]
+pub(in crate::gpu) fn absence() -> &'static str {
+    "no Vulkan loader, or no driver behind it"
+}
+
 /// False for a library that has not even the functions which every loader has had from the first: a stub of a
 /// development kit, or a left-over. True without a loader, which ash takes well.
 #[cfg(all(unix, not(target_vendor = "apple"), not(target_os = "android")))]

@@ -6,6 +6,7 @@ pub(in crate::gpu) mod bindings;
 pub(in crate::gpu) mod buffer;
 #[doc(hidden)]
 pub mod driver_lock;
+pub(in crate::gpu) mod gl_guard;
 pub(in crate::gpu) mod gl_thread;
 pub(in crate::gpu) mod loader;
 pub(in crate::gpu) mod pipeline;
