@@ -232,10 +232,14 @@ impl Observer {
         Self { frame, beta: DVec3::new(-speed, 0.0, 0.0), gamma: 1.0 / frame.lapse }
     }
 
+    /// The largest |cos(theta)| that counts as in the equatorial plane: places that were computed, as r cos(pi / 2),
+    /// miss it by some roundings.
+    pub const IN_PLANE: f64 = 1e-12;
+
     /// On a circular geodesic towards +ph: spin 0 at any latitude (the great circle along e_ph), with spin in the
     /// plane. `None`: no such orbit there.
     pub fn orbiting(frame: LocalFrame) -> Option<Self> {
-        if frame.rain || (frame.a != 0.0 && frame.cos != 0.0) {
+        if frame.rain || (frame.a != 0.0 && frame.cos.abs() > Self::IN_PLANE) {
             return None;
         }
         let orbit = circular_orbit(frame.a, frame.r)?;

@@ -61,7 +61,7 @@ impl Scene {
             return Err(Error::state(format!(
                 "camera at r = {} M, at or inside the horizon, 2 M, cannot move as {}: there only FREE_FALL is \
                  possible",
-                frame.r,
+                Number(frame.r),
                 camera.motion.name()
             )));
         }
@@ -73,16 +73,17 @@ impl Scene {
                 Ok(Observer::moving(frame, frame.components(velocity)))
             }
             Motion::Orbit => Observer::orbiting(frame).ok_or_else(|| {
-                Error::state(if spin != 0.0 && frame.cos != 0.0 {
+                Error::state(if spin != 0.0 && frame.cos.abs() > Observer::IN_PLANE {
                     format!(
-                        "camera motion ORBIT off the equatorial plane (z = {} M) needs spin 0; spin is {spin}",
-                        frame.r * frame.cos
+                        "camera motion ORBIT off the equatorial plane (z = {} M) needs spin 0; spin is {}",
+                        Number(frame.r * frame.cos),
+                        Number(spin)
                     )
                 } else {
                     format!(
                         "camera motion ORBIT at r = {} M: circular orbits exist only outside the photon orbit, {} M",
-                        frame.r,
-                        photon_orbit(spin)
+                        Number(frame.r),
+                        Number(photon_orbit(spin))
                     )
                 })
             }),
