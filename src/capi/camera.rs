@@ -32,7 +32,7 @@ pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
 /// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
 /// or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
 /// circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
-/// circular geodesic, in the equatorial plane only.
+/// circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
 pub type BhrMotion = i32;
 /// At rest; with spin, the zero angular momentum observer (ZAMO).
 pub const BHR_MOTION_STATIC: BhrMotion = 0;
