@@ -22,8 +22,8 @@ static void begin_section(const char *title, const char *source) {
     if (form == TABLE) {
         printf("\n%s\n  %s\n", title, source);
     } else if (form == MARKDOWN) {
-        printf("\n## %s\n\nSource: %s\n\n| quantity | truth | bhr | error | tolerance |\n|---|---|---|---|---|\n", title,
-               source);
+        printf("\n## %s\n\nSource: %s\n\n", title, source);
+        printf("| quantity | truth | bhr | error | tolerance |\n|---|---|---|---|---|\n");
     }
 }
 
