@@ -56,6 +56,8 @@
  *
  * Errors
  *   Every call that can fail returns a BhrStatus; bhr_error_message says what was wrong, with the value and the limit.
+ *   A message belongs to the thread that called; where calls move between threads, bhr_context_error_message and
+ *   bhr_job_error_message have the last one of a context or a job.
  *   A failed setter leaves the context as it was. Whatever a call fills in is NULL or 0 after a failure. Setters check
  *   their own argument only; combinations that cannot be (a static camera inside the horizon, say) are
  *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means a bug in bhr: from then on
@@ -454,7 +456,7 @@ typedef int32_t BhrProjection;
  * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
  * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
  * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
- * circular geodesic, in the equatorial plane only.
+ * circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
  */
 typedef int32_t BhrMotion;
 
