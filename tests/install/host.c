@@ -1,8 +1,18 @@
 /* host.c -- the smallest host that knows whether it got a picture: one frame on the CPU tracer, with the shadow's
- * darkness and the disk's light in it. Compiled as C and as C++; linked as tests/install/run says. */
+ * darkness and the disk's light in it. Compiled as C and as C++; linked as tests/install/run says. With ANOTHER defined
+ * it also calls another Rust library, before and after. */
 #include <bhr.h>
 #include <stdio.h>
 #include <string.h>
+
+#ifdef ANOTHER
+#ifdef __cplusplus
+extern "C"
+#endif
+long long another_sum(unsigned count);
+#else
+#define another_sum(count) 499500
+#endif
 
 enum { WIDTH = 64, HEIGHT = 36 };
 
@@ -19,6 +29,7 @@ int main(void) {
     BhrCamera camera;
     BhrImage image;
     int x, y, dark = 0, bright = 0;
+    if (another_sum(1000) != 499500) return failed("the other library failed");
     if (bhr_abi_version() != BHR_ABI_VERSION) return failed("the library has another ABI");
     bhr_context_options_init(&options, sizeof options);
     options.backend = BHR_BACKEND_CPU;
@@ -39,7 +50,7 @@ int main(void) {
         }
     }
     printf("bhr %s: %d dark pixels, %d bright ones\n", bhr_version_string(), dark, bright);
-    /* A refused call ends in the library's own panic handling and messages. */
+    if (another_sum(1000) != 499500) return failed("the other library failed after the frame");
     if (bhr_camera_init(NULL, sizeof camera) >= 0 || strlen(bhr_error_message()) == 0) return failed("no refusal");
     return dark < 20 || bright < 20;
 }
