@@ -2,7 +2,7 @@
 # all. Sourced by tests/install/run.
 # shellcheck shell=bash
 
-# What is not in a usual Debian, in a folder of its own: from Python's and Rust's registries.
+# Programs that Debian does not have, from Python's and Rust's registries, go into a folder of their own.
 tools=$scratch/tools
 install_tools() {
     local missing=()
@@ -22,7 +22,7 @@ install_tools() {
 # with_tools COMMAND...
 with_tools() { PATH=$tools/bin:$PATH "$@"; }
 
-# What cargo-c installs is found and used as what ./install installs is.
+# An installation by cargo-c is found and used as one by ./install is.
 cargo_c() {
     with_tools cargo cinstall --release --locked --prefix="$scratch/cargo-c-prefix" --libdir=lib \
         --manifest-path "$root/Cargo.toml" || return 1
@@ -45,8 +45,8 @@ man_pages() {
     local page
     mkdir -p -- "$scratch/unpacked" && dpkg-deb -x "$scratch"/debs/bhr-tools_*.deb "$scratch/unpacked" || return 1
     for page in "$scratch"/unpacked/usr/share/man/man1/*.gz; do
-        zcat "$page" | man --warnings -l -Tutf8 - 2>"$scratch/warnings" >"$scratch/page" && [ ! -s "$scratch/warnings" ] &&
-            grep -q -e '--help' "$scratch/page" || { cat "$scratch/warnings" && return 1; }
+        zcat "$page" | man --warnings -l -Tutf8 - 2>"$scratch/warnings" >"$scratch/page" || return 1
+        [ ! -s "$scratch/warnings" ] && grep -q -e '--help' "$scratch/page" || { cat "$scratch/warnings" && return 1; }
     done
     [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 5 ]
 }
@@ -54,8 +54,8 @@ man_pages() {
 tarball() {
     with_tools "$root/packaging/tarball" "$scratch/tarball" && (cd "$scratch/tarball" && sha256sum -c SHA256SUMS) ||
         return 1
-    mkdir -p -- "$scratch/untarred" && tar -C "$scratch/untarred" --strip-components=1 -xzf "$scratch"/tarball/*.tar.gz ||
-        return 1
+    mkdir -p -- "$scratch/untarred" || return 1
+    tar -C "$scratch/untarred" --strip-components=1 -xzf "$scratch"/tarball/*.tar.gz || return 1
     (cd "$scratch/untarred" && sha256sum --quiet -c SHA256SUMS) || return 1
     ! grep -rlF -e "$root" -e "$HOME/.cargo" -- "$scratch/untarred" || return 1
     prefix=$scratch/untarred
@@ -115,7 +115,7 @@ conan_recipe() {
 
 homebrew_formula() { ruby -c "$root/packaging/homebrew/bhr.rb"; }
 
-# What would be published builds by itself.
+# The crate, as it would be published, builds by itself.
 crate_is_built() { cargo package --locked --allow-dirty --manifest-path "$root/Cargo.toml"; }
 
 runs_elsewhere() {
