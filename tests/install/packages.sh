@@ -104,12 +104,14 @@ END
     rm -rf -- "$scratch/found project" && by_find_package
 }
 
+# In a copy of the repository, as Conan builds the test beside its recipe.
 conan_recipe() {
-    local shared
+    local shared copy=$scratch/copy
+    mkdir -p -- "$copy" && tar -C "$root" --exclude=./target --exclude=./.git -cf - . | tar -C "$copy" -xf - || return 1
     export CONAN_HOME=$scratch/conan BHR_INSTALL=--no-build
     with_tools conan profile detect || return 1
     for shared in True False; do
-        with_tools conan create "$root/packaging/conan" -o "bhr/*:shared=$shared" || return 1
+        with_tools conan create "$copy/packaging/conan" -o "bhr/*:shared=$shared" || return 1
     done
 }
 

@@ -9,6 +9,10 @@ class Test(ConanFile):
     settings = "os", "arch", "compiler", "build_type"
     generators = "PkgConfigDeps", "VirtualRunEnv"
 
+    def layout(self):
+        self.folders.build = "build"
+        self.folders.generators = "build"
+
     def requirements(self):
         self.requires(self.tested_reference_str)
 
