@@ -68,7 +68,7 @@ tarball_again() {
         cmp "$scratch"/tarball/*.tar.gz "$scratch"/tarball-again/*.tar.gz
 }
 
-bill_of_materials() { with_tools pyspdxtools --infile "$scratch"/tarball/*.spdx.json; }
+bill_is_valid() { with_tools pyspdxtools --infile "$scratch"/tarball/*.spdx.json; }
 
 # The port of vcpkg, with stand-ins for vcpkg's functions, in the form of a script for CMake.
 vcpkg_port() {
@@ -130,7 +130,7 @@ check "Debian packages, by lintian" debian_packages
 check "man pages" man_pages
 check "tarball for old systems" tarball
 check "tarball, made again" tarball_again
-check "bill of materials" bill_of_materials
+check "the bill of materials is valid" bill_is_valid
 check "vcpkg port" vcpkg_port
 check "Conan recipe" conan_recipe
 check "Homebrew formula" homebrew_formula
