@@ -2,7 +2,8 @@
 # all. Sourced by tests/install/run.
 # shellcheck shell=bash
 
-# Programs that Debian does not have, from Python's and Rust's registries, go into a folder of their own.
+# Programs that Debian does not have, from Python's and Rust's registries, go into a folder of their own, unless they
+# are there.
 tools=$scratch/tools
 install_tools() {
     local missing=()
@@ -10,11 +11,13 @@ install_tools() {
     command -v lintian >/dev/null || missing+=(lintian)
     command -v debootstrap >/dev/null || missing+=(debootstrap)
     command -v ruby >/dev/null || missing+=(ruby)
+    python3 -c 'import ensurepip' || missing+=(python3-venv)
     if [ ${#missing[@]} -gt 0 ]; then
         apt-get install -y -qq --no-install-recommends "${missing[@]}" ||
             { echo "missing, by their Debian names: ${missing[*]}" && return 1; }
     fi
-    python3 -m venv "$tools" && "$tools/bin/pip" install -q cargo-zigbuild ziglang conan spdx-tools || return 1
+    { cargo-zigbuild --version && conan --version && pyspdxtools --help >/dev/null; } ||
+        { python3 -m venv "$tools" && "$tools/bin/pip" install -q cargo-zigbuild ziglang conan spdx-tools; } || return 1
     command -v cargo-cinstall >/dev/null ||
         CARGO_TARGET_DIR=$scratch/cargo-c cargo install -q cargo-c --version '=0.10.24' --locked --root "$tools"
 }
