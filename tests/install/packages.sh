@@ -27,8 +27,8 @@ with_tools() { PATH=$tools/bin:$PATH "$@"; }
 
 # An installation by cargo-c is found and used as one by ./install is.
 cargo_c() {
-    with_tools cargo cinstall --release --locked --prefix="$scratch/cargo-c-prefix" --libdir=lib \
-        --manifest-path "$root/Cargo.toml" || return 1
+    with_tools cargo cinstall --release --locked --prefix="$scratch/cargo-c-prefix" \
+        --libdir="$scratch/cargo-c-prefix/lib" --manifest-path "$root/Cargo.toml" || return 1
     find "$scratch/cargo-c-prefix" ! -type d -printf '%P\n' | sort
     prefix=$scratch/cargo-c-prefix
     [ "$(soname "$prefix/lib/libbhr.so")" = "$named" ] && [ -f "$prefix/lib/$file" ] &&
