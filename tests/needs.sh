@@ -57,6 +57,9 @@ missing_packages() {
     c_compiles || printf '%s\n' gcc libc6-dev
     cxx_compiles || printf '%s\n' g++
     command -v cmake >/dev/null && command -v make >/dev/null || printf '%s\n' cmake make
+    missing meson meson
+    missing ninja-build ninja
+    missing binutils ld objcopy readelf
     valgrind_works || printf '%s\n' valgrind libc6-dbg
     has_vulkan_loader || printf '%s\n' libvulkan1
     has_vulkan_driver || printf '%s\n' mesa-vulkan-drivers

@@ -263,6 +263,8 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
     match name.rsplit_once('.').map_or(name, |(_, extension)| extension) {
         "rs" | "wgsl" | "c" | "cpp" | "h" => Some(&["///", "//!", "//", "/*", "* "]),
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
+        // Scripts without an extension, and what packagers' tools read.
+        "install" | "deb" | "tarball" | "manpage" | "bare-container" | "rules" | "cmake" | "yml" | "rb" => Some(&["#"]),
         "txt" => name.starts_with("CMake").then_some(&["#"]),
         "md" => Some(&[]),
         _ => None,
@@ -273,7 +275,7 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
 fn written() -> Vec<(PathBuf, &'static [&'static str], String)> {
     let mut found = fs::read_dir(root()).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
     found.retain(|path| path.is_file());
-    for folder in [".ci", "benches", "docs", "examples-c", "include", "shaders", "src", "tests"] {
+    for folder in [".ci", "benches", "docs", "examples-c", "include", "packaging", "shaders", "src", "tests"] {
         files(&root().join(folder), &mut found);
     }
     let read = |path: PathBuf| {
