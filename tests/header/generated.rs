@@ -2,6 +2,7 @@
 //! and C++ takes it without a warning.
 
 use crate::c_header::{HEADER, compiler, functions, library, root, run, scratch};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
@@ -148,7 +149,7 @@ fn plain(name: &str) -> String {
 
 // ---- making it ----
 
-fn generate() -> String {
+pub fn generate() -> String {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
     let preface = config.header.take().unwrap_or_default();
     let mut header = format!("{}\n{OPENING}", preface.trim());
@@ -175,6 +176,25 @@ fn section(path: &Path, config: &cbindgen::Config) -> String {
         place.unwrap_or_else(|| panic!("{}: no public item declares {name:?}:\n{block}", path.display()))
     });
     in_tables(&blocks)
+}
+
+/// The Rust types of all constants, which a #define does not have.
+pub fn types_of_constants() -> BTreeMap<String, String> {
+    let mut types = BTreeMap::new();
+    for (file, _) in SECTIONS {
+        let source = std::fs::read_to_string(root().join("src/capi").join(file).with_extension("rs")).unwrap();
+        let constants = source.lines().filter_map(|line| line.strip_prefix("pub const BHR_")?.split_once(" = "));
+        types.extend(constants.filter_map(|(constant, _)| {
+            let (name, kind) = constant.split_once(": ")?;
+            let kind = match kind {
+                "u32" => "uint32_t",
+                "usize" => "size_t",
+                kind => kind,
+            };
+            Some((format!("BHR_{name}"), kind.to_owned()))
+        }));
+    }
+    types
 }
 
 /// The names of a source file's public items, in order.

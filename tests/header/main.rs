@@ -5,5 +5,7 @@ mod abi;
 mod c_header;
 mod contract;
 mod generated;
+mod json;
+mod model;
 mod symbols;
 mod third_party;
