@@ -37,11 +37,12 @@ fn output_of(name: &str, program: &str) -> String {
     run(&mut Command::new(binary))
 }
 
-/// The values that the *_init functions fill in, by "Struct.field": the library's own word for the defaults.
+/// The values that the *_init functions fill in, by "Struct.field": the library's own word for the defaults. Adding 0
+/// turns -0 into 0.
 fn defaults(json: &Value) -> BTreeMap<String, Value> {
     let mut program = String::from(
         "#include <stdio.h>\n#include \"bhr.h\"\n\
-         #define I(x) printf(\"%lld\", (long long)(x))\n#define D(x) printf(\"%.17g\", x)\nint main(void) {\n",
+         #define I(x) printf(\"%lld\", (long long)(x))\n#define D(x) printf(\"%.17g\", (x) + 0.0)\nint main(void) {\n",
     );
     for function in entries(json, "functions").iter().filter(|function| text(&function["name"]).ends_with("_init")) {
         let name = text(&function["parameters"][0]["base"]);

@@ -207,7 +207,8 @@ fn plain(text: &str, types: &Types) -> String {
     code
 }
 
-/// The result and the parameters of a prototype; `name` stands where the function's name does.
+/// The result and the parameters of a prototype; `name` stands where the function's name does. The *_init functions do
+/// not read the struct that they fill in.
 fn signature(code: &str, name: &str, types: &Types, opaque: &[String]) -> (Map<String, Value>, Vec<Value>) {
     let (before, after) = code.split_once(name).unwrap();
     let result = types.declarator(&format!("{} result", before.trim_end_matches("(*").trim())).as_json();
@@ -222,7 +223,9 @@ fn signature(code: &str, name: &str, types: &Types, opaque: &[String]) -> (Map<S
             parts.insert("type".into(), spelled.into());
             parts.insert("pointers".into(), 1.into());
         }
-        parts.insert("direction".into(), declarator.direction(opaque).into());
+        let direction =
+            if name.ends_with("_init") && declarator.pointers > 0 { "out" } else { declarator.direction(opaque) };
+        parts.insert("direction".into(), direction.into());
         Value::Object(parts)
     };
     (result, parameters.map(parameter).collect())
