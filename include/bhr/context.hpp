@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 namespace bhr {
 
@@ -315,6 +316,10 @@ class Context {
         Frame frame(width, height, format);
         Image image = frame.image();
         image.flags = flags;
+        const bool right = width > 0 && width <= 1u << 20 && height > 0 && height <= 1u << 20;
+        if (image.pixels == nullptr && right && bytes_per_pixel(format) > 0) {
+            return Error(StatusCode::out_of_memory, "bhr::Context::render: there is no memory for the frame");
+        }
         const Result<void> done = render(image);
         if (!done) {
             return done.error();

@@ -7,9 +7,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <iterator>
+#include <memory>
 #include <string>
-#include <vector>
 #if __has_include(<span>)
 #include <span>
 #endif
@@ -100,12 +101,12 @@ struct Image {
 /// is refused wherever an image is asked for.
 class Frame {
   public:
-    /// All bytes 0. It has no pixels where their size does not fit into memory's.
-    Frame(std::uint32_t width, std::uint32_t height, Format format = Format::rgba8_srgb)
+    /// All bytes 0. It has no pixels, and bytes() is empty, where there is no memory for them.
+    Frame(std::uint32_t width, std::uint32_t height, Format format = Format::rgba8_srgb) noexcept
         : width_(width), height_(height), format_(format) {
         const std::uint64_t row = static_cast<std::uint64_t>(width) * bytes_per_pixel(format);
-        if (height != 0 && row <= (SIZE_MAX / 2) / height) {
-            memory_.resize(static_cast<std::size_t>(row) * height);
+        if (row > 0 && height > 0 && row <= SIZE_MAX / 2) {
+            memory_.reset(static_cast<std::byte *>(std::calloc(height, static_cast<std::size_t>(row))));
         }
     }
     Frame(Frame &&) noexcept = default;
@@ -116,32 +117,39 @@ class Frame {
     std::uint32_t width() const noexcept { return width_; }
     std::uint32_t height() const noexcept { return height_; }
     Format format() const noexcept { return format_; }
-    span<std::byte> bytes() noexcept { return span<std::byte>(memory_.data(), memory_.size()); }
-    span<const std::byte> bytes() const noexcept { return span<const std::byte>(memory_.data(), memory_.size()); }
+    span<std::byte> bytes() noexcept { return span<std::byte>(memory_.get(), size()); }
+    span<const std::byte> bytes() const noexcept { return span<const std::byte>(memory_.get(), size()); }
 
     /// A view of the pixels, valid until the frame ends or is assigned to; moving it leaves them where they are. Its
     /// flags are the caller's to set.
-    Image image() noexcept { return Image(memory_, width_, height_, format_); }
+    Image image() noexcept { return Image(bytes(), width_, height_, format_); }
 
     /// A channel, 0 to 3 in their order in memory, of the pixel at x, y, both within the frame. T is the channels' type.
     template <class T> T channel(std::uint32_t x, std::uint32_t y, std::size_t index = 0) const noexcept {
         const std::size_t pixel = static_cast<std::size_t>(y) * width_ + x;
         T value;
-        std::memcpy(&value, memory_.data() + pixel * bytes_per_pixel(format_) + index * sizeof(T), sizeof(T));
+        std::memcpy(&value, memory_.get() + pixel * bytes_per_pixel(format_) + index * sizeof(T), sizeof(T));
         return value;
     }
 
     /// bhr_image_save, which reads the pixels only.
     Result<void> save(const char *path) const {
-        return Image(const_cast<std::vector<std::byte> &>(memory_), width_, height_, format_).save(path);
+        return Image(span<std::byte>(memory_.get(), size()), width_, height_, format_).save(path);
     }
     Result<void> save(const std::string &path) const { return save(path.c_str()); }
 
   private:
+    struct Free {
+        void operator()(std::byte *memory) const noexcept { std::free(memory); }
+    };
+    std::size_t size() const noexcept {
+        return memory_ ? static_cast<std::size_t>(width_) * bytes_per_pixel(format_) * height_ : 0;
+    }
+
     std::uint32_t width_;
     std::uint32_t height_;
     Format format_;
-    std::vector<std::byte> memory_;
+    std::unique_ptr<std::byte[], Free> memory_; // of calloc, which says so where there is none
 };
 
 /// A picture that bhr_image_load has read; bhr_image_release gives it back. Move-only.

@@ -9,11 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::process::Command;
 
-fn text(value: &Value) -> &str {
+pub fn text(value: &Value) -> &str {
     value.as_str().unwrap_or_else(|| panic!("{value} is no text"))
 }
 
-fn entries<'a>(json: &'a Value, list: &str) -> &'a [Value] {
+pub fn entries<'a>(json: &'a Value, list: &str) -> &'a [Value] {
     json[list].as_array().unwrap_or_else(|| panic!("bhr.json has no list {list}"))
 }
 
@@ -21,7 +21,7 @@ fn names<'a>(entries: &'a [Value]) -> Vec<&'a str> {
     entries.iter().map(|entry| text(&entry["name"])).collect()
 }
 
-fn committed() -> Value {
+pub fn committed() -> Value {
     serde_json::from_str(&std::fs::read_to_string(root().join("include/bhr.json")).unwrap()).unwrap()
 }
 

@@ -6,6 +6,7 @@ mod c_header;
 mod contract;
 mod generated;
 mod json;
+mod layouts;
 mod model;
 mod symbols;
 mod third_party;
