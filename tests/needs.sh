@@ -58,6 +58,7 @@ missing_packages() {
     cxx_compiles || printf '%s\n' g++
     command -v cmake >/dev/null && command -v make >/dev/null || printf '%s\n' cmake make
     valgrind_works || printf '%s\n' valgrind libc6-dbg
+    missing abigail-tools abidiff abidw
     has_vulkan_loader || printf '%s\n' libvulkan1
     has_vulkan_driver || printf '%s\n' mesa-vulkan-drivers
     has_software_gl || printf '%s\n' libegl1 libgl1-mesa-dri

@@ -371,35 +371,3 @@ pub fn of_header(
     }
     whole
 }
-
-/// JSON as text: what fits on a line is on one line.
-pub fn written(value: &Value, depth: usize) -> String {
-    let compact = serde_json::to_string(value).unwrap();
-    if depth > 1 && compact.len() + 2 * depth <= 118 {
-        return spaced(value);
-    }
-    let (inner, outer) = ("  ".repeat(depth + 1), "  ".repeat(depth));
-    match value {
-        Value::Object(parts) if !parts.is_empty() => {
-            let line = |(key, value): (&String, &Value)| format!("{inner}\"{key}\": {}", written(value, depth + 1));
-            format!("{{\n{}\n{outer}}}", parts.iter().map(line).collect::<Vec<_>>().join(",\n"))
-        }
-        Value::Array(elements) if !elements.is_empty() => {
-            let line = |value: &Value| format!("{inner}{}", written(value, depth + 1));
-            format!("[\n{}\n{outer}]", elements.iter().map(line).collect::<Vec<_>>().join(",\n"))
-        }
-        _ => compact,
-    }
-}
-
-/// JSON on one line, with spaces behind commas and colons.
-fn spaced(value: &Value) -> String {
-    match value {
-        Value::Object(parts) => {
-            let part = |(key, value): (&String, &Value)| format!("\"{key}\": {}", spaced(value));
-            format!("{{{}}}", parts.iter().map(part).collect::<Vec<_>>().join(", "))
-        }
-        Value::Array(elements) => format!("[{}]", elements.iter().map(spaced).collect::<Vec<_>>().join(", ")),
-        _ => serde_json::to_string(value).unwrap(),
-    }
-}
