@@ -17,7 +17,7 @@ pub fn entries<'a>(json: &'a Value, list: &str) -> &'a [Value] {
     json[list].as_array().unwrap_or_else(|| panic!("bhr.json has no list {list}"))
 }
 
-fn names<'a>(entries: &'a [Value]) -> Vec<&'a str> {
+fn names(entries: &[Value]) -> Vec<&str> {
     entries.iter().map(|entry| text(&entry["name"])).collect()
 }
 
@@ -47,7 +47,7 @@ fn defaults(json: &Value) -> BTreeMap<String, Value> {
     for function in entries(json, "functions").iter().filter(|function| text(&function["name"]).ends_with("_init")) {
         let name = text(&function["parameters"][0]["base"]);
         let object = entries(json, "structs").iter().find(|object| object["name"] == name).unwrap();
-        write!(program, "{{ {name} s; if ({}(&s, sizeof s) < 0) return 1;\n", text(&function["name"])).unwrap();
+        writeln!(program, "{{ {name} s; if ({}(&s, sizeof s) < 0) return 1;", text(&function["name"])).unwrap();
         for field in object["fields"].as_array().unwrap() {
             let member = text(&field["name"]);
             if member == "struct_size" || member == "reserved" {
