@@ -1,9 +1,12 @@
 //! The binary interface of each release holds. abidiff (libabigail) compares today's header, without what says that it
 //! came later, with the baseline of the release, tests/abi/bhr-X.Y.Z.abi; the two must be alike to the last field.
 //! Headers that are broken on purpose show that each kind of break is found. And programs that were compiled and linked
-//! at a release run with the library of the day under the names that they ask the system for. docs/abi.md has the rules.
+//! at a release run with the library of the day, under the names that they ask the system for. docs/abi.md has the
+//! rules.
 //!
 //! When a version is released its header comes there as bhr-X.Y.Z.h, and BHR_NEW_BASELINE=1 makes the baseline.
+
+#![cfg(target_os = "linux")]
 
 #[path = "header/c_header.rs"]
 mod c_header;
@@ -102,7 +105,7 @@ fn libabigail(program: &str) -> Command {
     command
 }
 
-/// What a header has otherwise than a release; "" for nothing.
+/// The differences of a header from a release; "" for none.
 fn difference(name: &str, release: &str, header: &str) -> String {
     let object = match probe(header, release) {
         Ok(probe) => compiled(&scratch(&format!("abidiff_{name}")), &probe),

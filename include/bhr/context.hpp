@@ -142,7 +142,7 @@ class Surface {
     detail::Handle<BhrSurface, bhr_surface_destroy> handle_;
 };
 
-/// What became of a frame for a window: skipped where the window is hidden or 0 x 0.
+/// The end of a frame for a window: skipped where the window is hidden or 0 x 0.
 enum class Presented { yes, skipped };
 
 /// A scene and what traces it (BhrContext).
@@ -248,7 +248,9 @@ class Context {
     /// bhr_get_disk.
     Result<std::optional<Disk>> disk() const {
         std::int32_t present = 0;
-        Result<Disk> disk = detail::ask_struct<Disk, BhrDisk>([&](BhrDisk *it) { return bhr_get_disk(get(), it, &present); });
+        const Result<Disk> disk = detail::ask_struct<Disk, BhrDisk>([&](BhrDisk *it) {
+            return bhr_get_disk(get(), it, &present);
+        });
         if (!disk) {
             return disk.error();
         }

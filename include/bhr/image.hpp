@@ -124,7 +124,7 @@ class Frame {
     /// flags are the caller's to set.
     Image image() noexcept { return Image(bytes(), width_, height_, format_); }
 
-    /// A channel, 0 to 3 in their order in memory, of the pixel at x, y, both within the frame. T is the channels' type.
+    /// A channel, 0 to 3 in their order in memory, of the pixel at x, y, both within the frame. T is a channel's type.
     template <class T> T channel(std::uint32_t x, std::uint32_t y, std::size_t index = 0) const noexcept {
         const std::size_t pixel = static_cast<std::size_t>(y) * width_ + x;
         T value;

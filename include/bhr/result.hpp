@@ -116,7 +116,7 @@ class Call {
     Call() noexcept { pending().depth++; }
     Call(const Call &) = delete;
     Call &operator=(const Call &) = delete;
-    /// What was not thrown again is dropped: destructors do not throw.
+    /// An exception that was not thrown again is dropped: destructors do not throw.
     ~Call() {
         Pending &own = pending();
         own.depth--;

@@ -1,5 +1,5 @@
-/* bhr/scene.hpp -- what a scene is set with, in C++: enum classes for the constants of bhr.h, and its plain structs with
- * their defaults. Touches no context. Include bhr.hpp. */
+/* bhr/scene.hpp -- the values that a scene is set with, in C++: enum classes for the constants of bhr.h, and its plain
+ * structs with their defaults. Touches no context. Include bhr.hpp. */
 #ifndef BHR_SCENE_HPP
 #define BHR_SCENE_HPP
 

@@ -1,5 +1,5 @@
-//! The layouts of include/bhr.json hold in C11, in C++17, where include/bhr.hpp has structs of its own, and in Rust; and
-//! bhr.hpp leaves out nothing that the header has.
+//! The layouts of include/bhr.json hold in C11, in C++17, where include/bhr.hpp has structs of its own, and in Rust;
+//! and bhr.hpp leaves out nothing that the header has.
 
 use crate::c_header::{HEADER, compiler, constants, functions, root, run, scratch};
 use crate::json::{committed, entries, text};
