@@ -52,6 +52,14 @@ missing_window_packages() {
     has_validation || printf '%s\n' vulkan-validationlayers
 }
 
+# The Debian packages of missing programs that only tests/run all needs.
+missing_packages_of_all() {
+    missing clang clang++
+    missing nodejs node
+    missing npm npm
+    missing golang-go go gofmt
+}
+
 # The Debian packages of what is missing, one a line.
 missing_packages() {
     c_compiles || printf '%s\n' gcc libc6-dev
@@ -61,10 +69,14 @@ missing_packages() {
     missing ninja-build ninja
     missing binutils ld objcopy readelf
     valgrind_works || printf '%s\n' valgrind libc6-dbg
+    missing abigail-tools abidiff abidw
     has_vulkan_loader || printf '%s\n' libvulkan1
     has_vulkan_driver || printf '%s\n' mesa-vulkan-drivers
     has_software_gl || printf '%s\n' libegl1 libgl1-mesa-dri
+    missing luajit luajit
+    luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
     missing_window_packages
+    ! runs_all || missing_packages_of_all
 }
 
 install_missing() {
