@@ -56,6 +56,7 @@ missing_window_packages() {
 missing_packages() {
     c_compiles || printf '%s\n' gcc libc6-dev
     cxx_compiles || printf '%s\n' g++
+    python3 -c 'import ensurepip, venv' 2>/dev/null || printf '%s\n' python3 python3-venv
     command -v cmake >/dev/null && command -v make >/dev/null || printf '%s\n' cmake make
     valgrind_works || printf '%s\n' valgrind libc6-dbg
     has_vulkan_loader || printf '%s\n' libvulkan1
