@@ -12,6 +12,14 @@ ROOT = Path(__file__).parents[2]
 HEADER = (ROOT / "include" / "bhr.h").read_text(encoding="utf-8")
 
 
+def all_tests():
+    return os.environ.get("BHR_TESTS_ALL") == "1"
+
+
+#: Their tools are installed for tests/run all only.
+collect_ignore = [] if all_tests() else ["test_tutorial.py", "test_types.py"]
+
+
 @pytest.fixture
 def ctx():
     with bhr.Context(bhr.Backend.CPU) as context:
@@ -43,7 +51,3 @@ def python():
 def resident():
     """Bytes of memory that this process has in use."""
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
-
-
-def all_tests():
-    return os.environ.get("BHR_TESTS_ALL") == "1"

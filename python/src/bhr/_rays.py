@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from ._ffi import ffi
-from ._structs import VectorLike
 
 
 def _dtype(kind: Any) -> np.dtype[Any]:
@@ -35,7 +34,7 @@ HIT: np.dtype[Any] = _dtype(ffi.typeof("BhrHit"))
 
 
 def rays(
-    position: VectorLike, direction: VectorLike, frequency_ratio: float | npt.NDArray[Any] = 1.0
+    position: npt.ArrayLike, direction: npt.ArrayLike, frequency_ratio: npt.ArrayLike = 1.0
 ) -> npt.NDArray[np.void]:
     """An array of rays, of the shape that numpy's broadcasting gives positions and directions (each with a last axis of
     3) and frequency ratios."""
