@@ -207,9 +207,9 @@ def test_the_interpreter_ends_with_jobs_running(python, backend):
 import logging, threading, time, bhr
 logging.basicConfig(level=logging.DEBUG, filename="/dev/null")
 ctx = bhr.Context(bhr.Backend.{backend})
-ctx.quality = bhr.Quality(samples_per_pixel=16)
-jobs = [ctx.render_async(1280, 720, progress=lambda fraction: None) for _ in range(8)]
-jobs[0].add_done_callback(lambda job: print(job.cancelled()))
+ctx.quality = bhr.Quality(samples_per_pixel=4)
+jobs = [ctx.render_async(640, 360, progress=lambda fraction: None) for _ in range(40)]
+jobs[-1].add_done_callback(lambda job: print(job.cancelled()))
 other = bhr.Context(bhr.Backend.{backend})
 def use():
     try:
@@ -221,9 +221,7 @@ threading.Thread(target=use, daemon=True).start()
 time.sleep(0.3)
 print("end")
 """
-    begin = time.monotonic()
     assert python(program) == "end\nTrue\n"
-    assert time.monotonic() - begin < 40.0
 
 
 def test_the_interpreter_ends_by_an_exception(python):
