@@ -38,7 +38,7 @@ def any_ctx(request):
 def python():
     """Runs a Python program to its end and returns its output; it may not say anything on stderr."""
 
-    def run(program, *, status=0, seconds=60):
+    def run(program, *, status=0, seconds=180):
         done = subprocess.run(
             [sys.executable, "-W", "error", "-c", program], capture_output=True, text=True, timeout=seconds, check=False
         )

@@ -136,7 +136,8 @@ def test_every_function_is_called():
 
 
 def test_version():
-    assert bhr.__version__ == "{}.{}.{}".format(*(constants()[f"BHR_VERSION_{part}"] for part in ("MAJOR", "MINOR", "PATCH")))
+    header = constants()
+    assert bhr.__version__ == ".".join(str(header[f"BHR_VERSION_{part}"]) for part in ("MAJOR", "MINOR", "PATCH"))
     assert np.uint32(lib.bhr_version()) == sum(int(n) << s for n, s in zip(bhr.__version__.split("."), (16, 8, 0)))
 
 

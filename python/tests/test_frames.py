@@ -42,7 +42,9 @@ def test_a_frame_is_its_array(ctx):
     assert (array[..., 3] == 255).all()
 
 
-@pytest.mark.parametrize(("format", "dtype"), [("RGBA8_SRGB", "u1"), ("BGRA8_SRGB", "u1"), ("RGBA16F", "f2"), ("RGBA32F", "f4")])
+@pytest.mark.parametrize(
+    ("format", "dtype"), [("RGBA8_SRGB", "u1"), ("BGRA8_SRGB", "u1"), ("RGBA16F", "f2"), ("RGBA32F", "f4")]
+)
 def test_formats(ctx, format, dtype):
     frame = ctx.render(32, 18, format=bhr.Format[format])
     assert frame.array.dtype == np.dtype(dtype)
@@ -102,7 +104,11 @@ def test_arrays_that_cannot_be_frames(ctx):
         (ValueError, "overlap", np.lib.stride_tricks.as_strided(good, (17, 32, 4), (127, 4, 1))),
         (bhr.InvalidArgument, "width", np.zeros((18, 0, 4), np.uint8)),
         (bhr.InvalidArgument, "height", np.zeros((0, 32, 4), np.uint8)),
-        (bhr.InvalidArgument, "multiple of 4", np.zeros(18 * 32 * 16 + 1, np.uint8)[1:].view(np.float32).reshape(18, 32, 4)),
+        (
+            bhr.InvalidArgument,
+            "multiple of 4",
+            np.zeros(18 * 32 * 16 + 1, np.uint8)[1:].view(np.float32).reshape(18, 32, 4),
+        ),
         (bhr.InvalidArgument, "R32F", np.zeros((18, 32), np.float32)),
     ]
     for error, message, array in bad:
@@ -166,7 +172,7 @@ def test_files(ctx, tmp_path):
     ]:
         with pytest.raises(error):
             picture.save(path)
-    with pytest.raises(OSError, match="absent.png") as caught:
+    with pytest.raises(OSError, match=r"absent\.png") as caught:
         bhr.load(tmp_path / "absent.png")
     assert caught.value.status == bhr.Status.IO
     assert sorted(file.name for file in tmp_path.iterdir()) == ["light.exr", "näme.png"]

@@ -91,8 +91,8 @@ def test_cancelled_tasks_cancel_their_jobs(ctx):
     begin = time.monotonic()
     job = asyncio.run(main())
     with pytest.raises(concurrent.futures.CancelledError):
-        job.result(timeout=30)
-    assert time.monotonic() - begin < 20.0
+        job.result(timeout=90)
+    assert time.monotonic() - begin < 60.0
     out[:] = 3
     time.sleep(0.05)
     assert (out == 3).all()  # the array is free
@@ -104,8 +104,8 @@ def test_cancel(ctx):
     begin = time.monotonic()
     for job in jobs:
         assert job.cancel() and job.cancel()
-    assert concurrent.futures.wait(jobs, timeout=30).not_done == set()
-    assert all(job.cancelled() for job in jobs) and time.monotonic() - begin < 20.0
+    assert concurrent.futures.wait(jobs, timeout=90).not_done == set()
+    assert all(job.cancelled() for job in jobs) and time.monotonic() - begin < 60.0
     assert jobs[0].cancel()  # as Future has it: it is cancelled
 
 
@@ -144,7 +144,7 @@ def test_progress_cancels(ctx):
         ctx.render(*LONG, progress=lambda fraction: False)
     job = ctx.render_async(*LONG, progress=lambda fraction: False)
     with pytest.raises(concurrent.futures.CancelledError):
-        job.result(timeout=30)
+        job.result(timeout=90)
     ctx.quality = bhr.Quality()
     assert ctx.render(*SIZE, progress=lambda fraction: None).array.any()
 
@@ -166,7 +166,7 @@ def test_exceptions_of_progress_come_out(ctx, capfd, kind):
 
     for ask in (
         lambda: ctx.render(*LONG, progress=fail),
-        lambda: ctx.render_async(*LONG, progress=fail).result(timeout=30),
+        lambda: ctx.render_async(*LONG, progress=fail).result(timeout=90),
     ):
         with pytest.raises(kind) as caught:
             ask()

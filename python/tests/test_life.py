@@ -244,7 +244,7 @@ begin = time.monotonic()
 try:
     ctx.render(1280, 720)
 except KeyboardInterrupt:
-    print("interrupted", time.monotonic() - begin < 20.0)
+    print("interrupted", time.monotonic() - begin < 60.0)
 ctx.quality = bhr.Quality()
 print(ctx.render(32, 18).array.any())
 ctx.close()

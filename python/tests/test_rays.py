@@ -64,7 +64,8 @@ def test_arrays_of_any_shape(any_ctx):
     assert any_ctx.trace(rays, out=out) is out and out.tobytes() == hits.tobytes()
     one = any_ctx.camera_ray(8, 6, 3.5, 2.5)
     assert one.shape == () and np.allclose(one["direction"], rays[2, 3]["direction"], rtol=1e-12)
-    assert any_ctx.trace(one).shape == ()
+    assert any_ctx.trace(one).shape == any_ctx.trace(rays[2, 3]).shape == ()
+    assert any_ctx.trace(rays[2, 3]).tobytes() == hits[2, 3].tobytes()
     assert any_ctx.trace(rays[:0]).shape == (0, 8)
     crossed = hits[hits["crossing_count"] > 0]
     assert crossed.size and (crossed["crossings"]["radius"][:, 0] > 0.0).all()

@@ -1,5 +1,5 @@
-"""The package's types, under mypy --strict: its own code, the README's, and what a host writes. In tests/run all, as mypy takes
-long."""
+"""The package's types, under mypy --strict: its own code, the README's, and what a host writes. In tests/run all, as
+mypy takes long."""
 
 import re
 import subprocess

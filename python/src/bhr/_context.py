@@ -6,8 +6,9 @@ import atexit
 import logging
 import operator
 import weakref
+from collections.abc import Sequence
 from types import TracebackType
-from typing import Any, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -57,8 +58,8 @@ class Context:
         validation: bool = False,
         logger: logging.Logger = _LOGGER,
     ) -> None:
-        """Opens the best adapter of a backend, or the one at this index of `adapters()`. `logger` is told what its level
-        of this moment lets through."""
+        """Opens the best adapter of a backend, or the one at this index of `adapters()`. `logger` is told what its
+        level of this moment lets through."""
         begin()
         options = ffi.new("BhrContextOptions *")
         check(lib.bhr_context_options_init(options, ffi.sizeof("BhrContextOptions")))
@@ -90,8 +91,9 @@ class Context:
         self._close(cancel, None)
 
     def _close(self, cancel: bool, patience: float | None) -> None:
-        if forked() or not self._gate.refuse():
+        if forked():
             return
+        self._gate.refuse()
         if cancel:
             self._waiter.cancel()
         if self._gate.empty(patience):
@@ -320,8 +322,8 @@ class Context:
         out: Frame | npt.NDArray[Any] | None = None,
         progress: Progress | None = None,
     ) -> Job:
-        """Begins the same in the background and returns at once: a future of the frame. The scene is taken as it is now.
-        At most 64 jobs of a context may be unfinished. `progress` is called on a thread of the package."""
+        """Begins the same in the background and returns at once: a future of the frame. The scene is taken as it is
+        now. At most 64 jobs of a context may be unfinished. `progress` is called on a thread of the package."""
         frame, image = _target(width, height, format, transparent, out)
         pointer = ffi.new("BhrJob **")
         with self._gate as context:
@@ -346,7 +348,12 @@ class Context:
         return values
 
     def prepare(
-        self, width: int, height: int, *, format: Format = Format.RGBA8_SRGB, transparent: bool = False,
+        self,
+        width: int,
+        height: int,
+        *,
+        format: Format = Format.RGBA8_SRGB,
+        transparent: bool = False,
         progress: Progress | None = None,
     ) -> None:
         """Makes everything that frames of the present scene need, so that the next one is no slower than later ones."""
@@ -372,27 +379,26 @@ class Context:
             check(lib.bhr_camera_ray(context, width, height, x, y, _pointer("BhrRay *", ray)))
         return ray
 
-    def trace(self, rays: npt.NDArray[np.void], *, out: npt.NDArray[np.void] | None = None) -> npt.NDArray[np.void]:
+    def trace(
+        self, rays: npt.NDArray[np.void] | np.void, *, out: npt.NDArray[np.void] | None = None
+    ) -> npt.NDArray[np.void]:
         """Traces an array of rays of any shape, and returns their ends, dtype HIT, in an array of that shape, or in
         `out`. Rays that are contiguous in memory are not copied; `out` must be."""
         packed = _rays(rays)
         if out is None:
             out = np.zeros(packed.shape, HIT)
         elif out.dtype != HIT or out.shape != packed.shape:
-            raise ValueError(f"out has the dtype {out.dtype} and the shape {out.shape} instead of HIT and {packed.shape}")
+            raise ValueError(f"out has dtype {out.dtype} and shape {out.shape} instead of HIT and {packed.shape}")
         elif not (out.flags.c_contiguous and out.flags.writeable):
             raise ValueError("out is not contiguous, or read-only")
         with self._gate as context:
-            check(
-                lib.bhr_trace_rays(
-                    context, _pointer("BhrRay *", packed), RAY.itemsize, packed.size, _pointer("BhrHit *", out), HIT.itemsize
-                )
-            )
+            ray, hit = _pointer("BhrRay *", packed), _pointer("BhrHit *", out)
+            check(lib.bhr_trace_rays(context, ray, RAY.itemsize, packed.size, hit, HIT.itemsize))
         return out
 
     def trace_path(self, ray: npt.NDArray[np.void] | np.void, capacity: int = 65536) -> npt.NDArray[np.float64]:
         """The curve that a ray follows, at most `capacity` points of x, y, z and t: shape (points, 4)."""
-        packed = _rays(np.asarray(ray))
+        packed = _rays(ray)
         if packed.size != 1:
             raise ValueError(f"{packed.size} rays instead of one")
         points, count = np.empty((min(capacity, 65536), 4)), ffi.new("uint32_t *")
@@ -409,8 +415,10 @@ def _pointer(kind: str, array: npt.NDArray[Any]) -> Any:
     return ffi.cast(kind, array.__array_interface__["data"][0])
 
 
-def _rays(rays: npt.NDArray[np.void]) -> npt.NDArray[np.void]:
+def _rays(rays: npt.NDArray[np.void] | np.void) -> npt.NDArray[np.void]:
     """Rays as the library reads them."""
+    if isinstance(rays, np.void):
+        rays = np.asarray(rays)
     if not isinstance(rays, np.ndarray) or rays.dtype != RAY:
         raise TypeError("rays are a numpy array of the dtype RAY: bhr.rays and Context.camera_rays make one")
     return np.asarray(rays, order="C")

@@ -61,7 +61,8 @@ class Frame:
         image.format, image.width, image.height, image.flags = self.format, self.width, self.height, flags
         pixel = array.itemsize * (4 if array.ndim == 3 else 1)
         row, between = pixel * self.width, array.strides[0]
-        packed = (self.width <= 1 or array.strides[1] == pixel) and (array.ndim == 2 or array.strides[2] == array.itemsize)
+        packed = self.width <= 1 or array.strides[1] == pixel
+        packed = packed and (array.ndim == 2 or array.strides[2] == array.itemsize)
         if array.size and not packed:
             raise ValueError(f"the pixels of a row are not packed: strides {array.strides}")
         if self.height > 1:

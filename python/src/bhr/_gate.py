@@ -40,16 +40,16 @@ class Gate:
     """Owns a context of the library. `with gate as pointer:` stands around every call on it."""
 
     def __init__(self, options: Any, logger: logging.Logger) -> None:
+        self._pointer = ffi.NULL
         end_orphans()
         self._users = 0
-        self._closed = True
+        self._closed = False
         self._changed = threading.Condition(threading.Lock())
         self._logger = ffi.new_handle(logger)
         options.log_fn, options.log_user = on_log, self._logger
         pointer = ffi.new("BhrContext **")
         check(lib.bhr_context_create(lib.BHR_ABI_VERSION, options, pointer))
         self._pointer = pointer[0]
-        self._closed = False
         check(lib.bhr_set_progress(self._pointer, on_progress, ffi.NULL))
 
     def __enter__(self) -> Any:
@@ -69,11 +69,10 @@ class Gate:
     def closed(self) -> bool:
         return self._closed
 
-    def refuse(self) -> bool:
-        """Lets nobody in any more; False if that was so before."""
+    def refuse(self) -> None:
+        """Lets nobody in any more."""
         with self._changed:
-            was_open, self._closed = not self._closed, True
-            return was_open
+            self._closed = True
 
     def empty(self, patience: float | None) -> bool:
         """Waits until nobody is inside, at most so many seconds."""
@@ -81,17 +80,19 @@ class Gate:
             return self._changed.wait_for(lambda: self._users == 0, patience)
 
     def destroy(self) -> None:
-        """Ends the context, after refuse and empty."""
-        pointer, self._pointer = self._pointer, ffi.NULL
+        """Ends the context, after refuse and empty, unless another thread has."""
+        with self._changed:
+            pointer, self._pointer = self._pointer, ffi.NULL
         lib.bhr_context_destroy(pointer)
 
     def __del__(self) -> None:
         # Nobody is inside, and no job is there: they all have the gate.
-        if not getattr(self, "_closed", True) and not forked() and self.refuse():
-            if inside_callback():
-                _orphans.append((self._pointer, self._logger))
-            else:
-                self.destroy()
+        if self._pointer == ffi.NULL or forked():
+            return
+        if inside_callback():
+            _orphans.append((self._pointer, self._logger))
+        else:
+            self.destroy()
 
 
 def end_orphans() -> None:

@@ -1,5 +1,5 @@
-"""Frames in the background: a Job is a future of its frame. A thread for each context waits for its jobs while there are
-any, in the library and without Python's lock."""
+"""Frames in the background: a Job is a future of its frame. A thread for each context waits for its jobs while there
+are any, in the library and without Python's lock."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ import asyncio
 import logging
 import threading
 from collections import deque
+from collections.abc import Generator
 from concurrent.futures import Future
-from typing import TYPE_CHECKING, Any, Generator
+from typing import TYPE_CHECKING, Any
 
 from ._constants import Status
 from ._ffi import ffi

@@ -1,5 +1,5 @@
-"""The loaded library, its errors, and the rules for calling it: what a failed call raises, which calls are refused after
-a fork, and what runs inside a callback of the library. Knows nothing of contexts and frames."""
+"""The loaded library, its errors, and the rules for calling it: what a failed call raises, which calls are refused
+after a fork, and what runs inside a callback of the library. Knows nothing of contexts and frames."""
 
 from __future__ import annotations
 

@@ -1,12 +1,13 @@
-"""The structs of bhr.h as frozen dataclasses: a changed copy is made by `replace`, and takes effect when it is set. Their
-defaults are those of the library. bhr.h says at length what each field means."""
+"""The structs of bhr.h as frozen dataclasses: a changed copy is made by `replace`, and takes effect when it is set.
+Their defaults are those of the library. bhr.h says at length what each field means."""
 
 from __future__ import annotations
 
 import dataclasses
 import enum
 import operator
-from typing import Any, ClassVar, Sequence, Tuple, TypeVar, Union
+from collections.abc import Sequence
+from typing import Any, ClassVar, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -27,8 +28,8 @@ from ._constants import (
 from ._ffi import ffi
 from ._library import begin, check, lib
 
-Vector = Tuple[float, float, float]
-Quaternion = Tuple[float, float, float, float]
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
 VectorLike = Union[Sequence[float], npt.NDArray[Any]]
 
 _Self = TypeVar("_Self", bound="_Struct")
