@@ -261,6 +261,7 @@ const AS_THEY_ARE: [&str; 4] = ["tests/abi", "tests/contract.h", "tests/golden",
 fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
     let name = path.file_name()?.to_str()?;
     match name.rsplit_once('.').map_or(name, |(_, extension)| extension) {
+        "py" | "pyi" => Some(&["\"\"\"", "#"]),
         "rs" | "wgsl" | "c" | "cpp" | "h" => Some(&["///", "//!", "//", "/*", "* "]),
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
         "txt" => name.starts_with("CMake").then_some(&["#"]),
@@ -273,7 +274,7 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
 fn written() -> Vec<(PathBuf, &'static [&'static str], String)> {
     let mut found = fs::read_dir(root()).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
     found.retain(|path| path.is_file());
-    for folder in [".ci", "benches", "docs", "examples-c", "include", "shaders", "src", "tests"] {
+    for folder in [".ci", "benches", "docs", "examples-c", "include", "python", "shaders", "src", "tests"] {
         files(&root().join(folder), &mut found);
     }
     let read = |path: PathBuf| {
@@ -363,6 +364,7 @@ fn every_kind_of_file_is_read() {
         "examples-c/CMakeLists.txt",
         "examples-c/panel.cpp",
         "include/bhr.h",
+        "python/src/bhr/__init__.py",
         "shaders/shared/math.wgsl",
         "tests/c/check.c",
         "tests/lib.sh",

@@ -1,4 +1,4 @@
-"""What the tests share: contexts on the CPU tracer, whose frames are quick without the Milky Way."""
+"""Shared by the tests: contexts on the CPU tracer, whose frames are quick without the Milky Way."""
 
 import os
 import subprocess

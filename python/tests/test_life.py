@@ -17,6 +17,7 @@ SIZE = 16, 9
 
 def test_use_after_close():
     ctx = bhr.Context(bhr.Backend.CPU)
+    ctx.set_preset(bhr.Preset.TEACHING)
     frame = ctx.render(*SIZE)
     ctx.close()
     ctx.close()
@@ -38,6 +39,7 @@ def test_use_after_close():
 def test_threads_share_a_context():
     with bhr.Context(bhr.Backend.CPU) as ctx:
         ctx.set_preset(bhr.Preset.TEACHING)
+        ctx.disk = None
         expected = ctx.render(*SIZE).array
         wrong = []
 
@@ -139,7 +141,7 @@ def test_a_thousand_frames_take_no_more_memory(ctx):
     def frames(count):
         out = np.zeros((9, 16, 4), np.uint8)
         for i in range(count):
-            ctx.time = float(i)
+            ctx.time, ctx.disk = float(i), None if i % 10 else bhr.Disk()
             if i % 2:
                 ctx.render(*SIZE, progress=lambda fraction: None)
             else:
@@ -195,6 +197,7 @@ import os, bhr
 pid = os.fork()
 if pid == 0:
     with bhr.Context(bhr.Backend.CPU) as ctx:
+        ctx.set_preset(bhr.Preset.TEACHING)
         os._exit(0 if ctx.render(32, 18).array.any() else 1)
 print(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))
 """

@@ -92,7 +92,7 @@ class Format(enum.IntEnum):
 
 
 class SkyFlags(enum.IntFlag):
-    """What the sky shows; MAP needs Context.set_sky_map."""
+    """The parts of the sky; MAP needs Context.set_sky_map."""
 
     STARS = 1
     PROCEDURAL = 2
