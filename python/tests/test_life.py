@@ -152,9 +152,10 @@ def test_a_thousand_frames_take_no_more_memory(ctx):
         gc.collect()
         return resident()
 
-    before = frames(200)
+    # Threads come and go, and glibc's heaps for them fill up in the beginning.
+    before = frames(2000 if all_tests() else 200)
     after = frames(10_000 if all_tests() else 1000)
-    assert after - before < 4 * 2**20, f"{(after - before) / 2**20:.1f} MiB"
+    assert after - before < 6 * 2**20, f"{(after - before) / 2**20:.1f} MiB"
 
 
 def test_loaded_frames_give_their_memory_back(tmp_path):

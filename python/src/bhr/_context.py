@@ -18,7 +18,7 @@ from ._ffi import ffi
 from ._frame import Frame
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
-from ._library import Call, Progress, begin, check, error, forked, inside_callback, lib
+from ._library import Call, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
 from ._rays import HIT, RAY
 from ._structs import (
     AdapterInfo,
@@ -65,7 +65,8 @@ class Context:
         check(lib.bhr_context_options_init(options, ffi.sizeof("BhrContextOptions")))
         options.flags = lib.BHR_CONTEXT_VALIDATION if validation else 0
         options.backend = Backend(backend)
-        options.adapter_index = -1 if adapter_index is None else operator.index(adapter_index)
+        if adapter_index is not None:
+            options.adapter_index = operator.index(adapter_index)
         options.cpu_threads = operator.index(cpu_threads)
         options.log_level = log_level(logger)
         self._gate = Gate(options, logger)
@@ -88,17 +89,17 @@ class Context:
         """Ends the context, after its jobs, which `cancel` stops. Calls afterwards are errors; closing again is not."""
         if inside_callback() or self._waiter.is_this_thread():
             raise error(Status.INVALID_STATE, "a context cannot be closed from inside a callback")
-        self._close(cancel, None)
+        self._close(cancel)
 
-    def _close(self, cancel: bool, patience: float | None) -> None:
+    def _close(self, cancel: bool) -> None:
         if forked():
             return
         self._gate.refuse()
         if cancel:
             self._waiter.cancel()
-        if self._gate.empty(patience):
-            self._waiter.end(cancel)
-            self._gate.destroy()
+        self._gate.wait_until_empty()
+        self._waiter.end(cancel)
+        self._gate.destroy()
 
     @property
     def closed(self) -> bool:
@@ -447,8 +448,8 @@ def _target(
 
 @atexit.register
 def _close_all() -> None:
-    """No callback may reach an interpreter that has ended."""
+    """No callback may reach an interpreter that has ended: it ends the thread, and so the process if Rust is on it."""
+    cancel_frames()
     for context in list(_contexts):
-        # A call that runs on a daemon thread may take longer than anyone waits for the interpreter's end.
-        context._close(cancel=True, patience=10.0)
+        context._close(cancel=True)
     end_orphans()

@@ -42,7 +42,8 @@ class Gate:
     def __init__(self, options: Any, logger: logging.Logger) -> None:
         self._pointer = ffi.NULL
         end_orphans()
-        self._users = 0
+        #: The threads inside.
+        self._inside: list[int] = []
         self._closed = False
         self._changed = threading.Condition(threading.Lock())
         self._logger = ffi.new_handle(logger)
@@ -57,12 +58,12 @@ class Gate:
         with self._changed:
             if self._closed:
                 raise error(Status.INVALID_STATE, "the context is closed")
-            self._users += 1
+            self._inside.append(threading.get_ident())
         return self._pointer
 
     def __exit__(self, *_: object) -> None:
         with self._changed:
-            self._users -= 1
+            self._inside.remove(threading.get_ident())
             self._changed.notify_all()
 
     @property
@@ -74,10 +75,11 @@ class Gate:
         with self._changed:
             self._closed = True
 
-    def empty(self, patience: float | None) -> bool:
-        """Waits until nobody is inside, at most so many seconds."""
+    def wait_until_empty(self) -> None:
+        """Waits until no other thread is inside. This one is not, even if an interrupt came as it entered or left."""
+        this = threading.get_ident()
         with self._changed:
-            return self._changed.wait_for(lambda: self._users == 0, patience)
+            self._changed.wait_for(lambda: all(thread == this for thread in self._inside))
 
     def destroy(self) -> None:
         """Ends the context, after refuse and empty, unless another thread has."""

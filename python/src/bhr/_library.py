@@ -141,10 +141,21 @@ def _keep_exception(_type: object, exception: BaseException, _traceback: object)
 @ffi.callback("int32_t(void *, double)", error=0, onerror=_keep_exception)  # type: ignore[untyped-decorator]
 def on_progress(_user: object, fraction: float) -> int:
     call = _thread.call
+    if _ending:
+        return 0
     if call is None or call.progress is None:
         return 1
     with InsideCallback():
         return 0 if call.progress(fraction) is False else 1
+
+
+_ending = False
+
+
+def cancel_frames() -> None:
+    """Cancels all frames, those of daemon threads too, as the interpreter ends."""
+    global _ending
+    _ending = True
 
 
 #: Whether the library has begun threads or opened drivers in this process, which a forked child inherits broken.
