@@ -64,6 +64,7 @@ missing_packages_of_all() {
 missing_packages() {
     c_compiles || printf '%s\n' gcc libc6-dev
     cxx_compiles || printf '%s\n' g++
+    python3 -c 'import ensurepip, venv' 2>/dev/null || printf '%s\n' python3 python3-venv
     command -v cmake >/dev/null && command -v make >/dev/null || printf '%s\n' cmake make
     missing meson meson
     missing ninja-build ninja

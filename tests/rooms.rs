@@ -263,6 +263,7 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
     match name.rsplit_once('.').map_or(name, |(_, extension)| extension) {
         "rs" | "wgsl" | "c" | "cpp" | "h" | "hpp" | "js" | "go" => Some(&["///", "//!", "//", "/*", "* "]),
         "lua" => Some(&["--"]),
+        "py" | "pyi" => Some(&["\"\"\"", "#"]),
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
         // Scripts without an extension, and what packagers' tools read.
         "install" | "deb" | "tarball" | "manpage" | "bare-container" | "rules" | "cmake" | "yml" | "rb" => Some(&["#"]),
@@ -276,7 +277,7 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
 fn written() -> Vec<(PathBuf, &'static [&'static str], String)> {
     let mut found = fs::read_dir(root()).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
     found.retain(|path| path.is_file());
-    for folder in [".ci", "benches", "docs", "examples-c", "examples-other", "include", "packaging", "shaders", "src", "tests"] {
+    for folder in [".ci", "benches", "docs", "examples-c", "examples-other", "include", "packaging", "python", "shaders", "src", "tests"] {
         files(&root().join(folder), &mut found);
     }
     let read = |path: PathBuf| {
@@ -370,6 +371,7 @@ fn every_kind_of_file_is_read() {
         "examples-other/hole.lua",
         "include/bhr.h",
         "include/bhr.hpp",
+        "python/src/bhr/__init__.py",
         "shaders/shared/math.wgsl",
         "tests/c/check.c",
         "tests/lib.sh",
