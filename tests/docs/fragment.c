@@ -20,6 +20,7 @@ int main(void) {
     bhr_context_options_init(&cpu, sizeof cpu);
     cpu.backend = BHR_BACKEND_CPU;
     if (bhr_context_create(BHR_ABI_VERSION, &cpu, &context) < 0) return 2;
+    bhr_set_sky(context, NULL); /* the Milky Way takes a second to make */
     bhr_camera_init(&camera, sizeof camera);
     bhr_image_init(&image, sizeof image);
     image.width = WIDTH, image.height = HEIGHT;
