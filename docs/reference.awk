@@ -43,4 +43,9 @@ first {
     next
 }
 /^#ifdef __cplusplus/ && sections { print "/** @} */"; sections = 0 }
-{ print }
+# Compilers warn by it; it says nothing to readers.
+/^#define BHR_NODISCARD/ { next }
+{
+    sub(/^BHR_NODISCARD /, "")
+    print
+}
