@@ -1,0 +1,51 @@
+# reference.awk -- turns a header of bhr's into one that Doxygen makes a reference of: the first comment becomes the
+# file's description, with its headings, and each section of the header a module. docs/build runs it.
+#
+# In the first comment a heading is alone in its line and not indented, and what belongs to it is indented by two
+# columns; under "Example" there is code.
+function close_code() { if (code) print " * @endcode"; code = 0 }
+FNR == 1 && /^\/\* / {
+    first = 1
+    sub(/^\/\* /, "")
+    name = $1
+    sub(/^[^ ]+ -- /, "")
+    print "/** @file " name
+    print " * @brief " $0
+    next
+}
+first && /\*\/ *$/ {
+    close_code()
+    first = 0
+    print
+    next
+}
+first && title_next && /^ \* [^ ]/ && !/[.,;:]$/ && length($0) < 40 {
+    close_code()
+    sub(/^ \* /, "")
+    print " * @par " $0
+    if ($0 == "Example") {
+        print " * @code{.cpp}"
+        code = 1
+    }
+    next
+}
+first {
+    title_next = $0 ~ /^ \*$/
+    sub(code ? "^ [*]   " : "^ [*] +", " * ")
+    print
+    next
+}
+/^\/\* ---- .* ---- \*\/$/ {
+    sub(/^\/\* ---- /, "")
+    sub(/ ---- \*\/$/, "")
+    if (sections++) print "/** @} */"
+    printf "/** @defgroup %s_%d %s\n * @{ */\n", prefix, sections, toupper(substr($0, 1, 1)) substr($0, 2)
+    next
+}
+/^#ifdef __cplusplus/ && sections { print "/** @} */"; sections = 0 }
+# Compilers warn by it; it says nothing to readers.
+/^#define BHR_NODISCARD/ { next }
+{
+    sub(/^BHR_NODISCARD /, "")
+    print
+}
