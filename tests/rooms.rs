@@ -277,7 +277,19 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
 fn written() -> Vec<(PathBuf, &'static [&'static str], String)> {
     let mut found = fs::read_dir(root()).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
     found.retain(|path| path.is_file());
-    for folder in [".ci", "benches", "docs", "examples-c", "examples-other", "include", "packaging", "python", "shaders", "src", "tests"] {
+    for folder in [
+        ".ci",
+        "benches",
+        "docs",
+        "examples-c",
+        "examples-other",
+        "include",
+        "packaging",
+        "python",
+        "shaders",
+        "src",
+        "tests",
+    ] {
         files(&root().join(folder), &mut found);
     }
     let read = |path: PathBuf| {
