@@ -189,7 +189,7 @@ static void frames(const std::string &folder) {
     EXPECT(bhr::LoadedImage::load(folder + "/absent.png").status() == bhr::StatusCode::io);
     bhr::Frame moved(1, 1);
     bhr::Frame target = std::move(moved);
-    EXPECT(target.save(folder + "/dot.ppm") && !moved.save(folder + "/none.ppm")); // NOLINT: it says so
+    EXPECT(target.save(folder + "/dot.ppm") && !moved.save(folder + "/none.ppm"));
 }
 
 static void jobs() {
