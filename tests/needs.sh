@@ -61,6 +61,7 @@ missing_packages() {
     has_vulkan_loader || printf '%s\n' libvulkan1
     has_vulkan_driver || printf '%s\n' mesa-vulkan-drivers
     has_software_gl || printf '%s\n' libegl1 libgl1-mesa-dri
+    missing doxygen doxygen
     missing_window_packages
 }
 

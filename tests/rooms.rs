@@ -265,6 +265,7 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
         "run" | "sh" | "toml" | "supp" => Some(&["#"]),
         "txt" => name.starts_with("CMake").then_some(&["#"]),
         "md" => Some(&[]),
+        "awk" | "build" | "check-links" | "Doxyfile" => Some(&["#"]),
         _ => None,
     }
 }
