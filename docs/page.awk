@@ -1,5 +1,5 @@
 # page.awk -- turns a page of Markdown from the repository into one of the site: its links to other pages lead to those
-# of the site, and links to files to copies of them, whose names are printed to the file `wanted`. Links to folders
+# of the site, and links to files to copies of them, whose names are added to the file `wanted`. Links to folders
 # become plain text. docs/build runs it with page (its path in the repository), root, wanted, and pages, a list of
 # "PATH=NAME" with spaces around each.
 #
@@ -39,7 +39,22 @@ fence || /^ *```/ { print; next }
     next
 }
 {
+    # Doxygen knows neither bold code nor, between single backticks, code with an apostrophe.
+    out = ""
     line = $0
+    while (match(line, /\*\*`[^`]+`\*\*/)) {
+        out = out substr(line, 1, RSTART - 1) "<b>" substr(line, RSTART + 2, RLENGTH - 4) "</b>"
+        line = substr(line, RSTART + RLENGTH)
+    }
+    line = out line
+    out = ""
+    while (match(line, /`[^`]+`/)) {
+        code = substr(line, RSTART, RLENGTH)
+        if (code ~ /\047/) code = "`" code "`"
+        out = out substr(line, 1, RSTART - 1) code
+        line = substr(line, RSTART + RLENGTH)
+    }
+    line = out line
     out = ""
     while (match(line, /\[[^]]*\]\([^) ]+\)/)) {
         whole = substr(line, RSTART, RLENGTH)

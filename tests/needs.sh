@@ -76,6 +76,7 @@ missing_packages() {
     has_software_gl || printf '%s\n' libegl1 libgl1-mesa-dri
     missing luajit luajit
     luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
+    missing doxygen doxygen
     missing_window_packages
     ! runs_all || missing_packages_of_all
 }

@@ -269,6 +269,7 @@ fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
         "install" | "deb" | "tarball" | "manpage" | "bare-container" | "rules" | "cmake" | "yml" | "rb" => Some(&["#"]),
         "txt" => name.starts_with("CMake").then_some(&["#"]),
         "md" => Some(&[]),
+        "awk" | "build" | "check-links" | "Doxyfile" => Some(&["#"]),
         _ => None,
     }
 }

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -54,6 +55,15 @@ std::uint64_t timeout_of(const std::chrono::duration<Rep, Period> &timeout) noex
     return whole == 0 ? 1 : whole;
 }
 
+/// The message that bhr_context_error_message or bhr_job_error_message has for the handle.
+template <class C> std::string message_of(std::size_t (*ask)(const C *, char *, std::size_t), const C *handle) {
+    std::string text(ask(handle, nullptr, 0), '\0');
+    // Another thread's call may have failed in between.
+    const std::size_t length = ask(handle, text.data(), text.size() + 1);
+    text.resize(length < text.size() ? length : text.size());
+    return text;
+}
+
 } // namespace detail
 
 /// BhrContextOptions, with the defaults of bhr_context_options_init.
@@ -95,6 +105,11 @@ class Job {
             progress.done = status == BHR_OK;
             return status;
         });
+    }
+
+    /// bhr_job_error_message: of the last call that failed on this job, on whichever thread.
+    [[nodiscard]] std::string error_message() const {
+        return detail::message_of(bhr_job_error_message, handle_.get());
     }
 
     /// bhr_job_cancel. Any thread, inside callbacks too.
@@ -327,6 +342,10 @@ class Context {
             return done.error();
         }
         return frame;
+    }
+    /// bhr_context_error_message: of the last call that failed on this context, on whichever thread.
+    [[nodiscard]] std::string error_message() const {
+        return detail::message_of(bhr_context_error_message, handle_.get());
     }
     /// bhr_prepare; without a value: windows of 1920 x 1080.
     Result<void> prepare(const std::optional<Image> &target = {}) { return set_or_none(bhr_prepare, target); }
