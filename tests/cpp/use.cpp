@@ -79,6 +79,8 @@ static void scene() {
     EXPECT(hole.mass == 2.0 && hole.spin == -0.5 && near(hole.axis[1], 1.0));
     const bhr::HoleInfo info = context.hole_info().value();
     EXPECT(near(info.horizon_radius, 2.0 + std::sqrt(3.0)) && near(info.ergosphere_equatorial_radius, 4.0));
+    EXPECT(context.error_message().empty() && !context.set_spin(2.0));
+    EXPECT(context.error_message().find("spin is 2;") != std::string::npos);
     EXPECT(context.set_mass(1.0) && context.set_spin(0.0) && context.set_axis({0.0, 0.0, 1.0}));
     EXPECT(near(context.metric_at({10.0, 0.0, 0.0}).value()[0], -0.8));
     EXPECT(near(context.christoffel_at({10.0, 0.0, 0.0}).value()[16 * 0 + 4 * 0 + 1], 0.0125));
