@@ -5,10 +5,15 @@ use std::path::{Path, PathBuf};
 
 fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed=build.rs");
-    // Drivers leave handlers that run at thread exit; unmapping the library under them would crash the host. No soname
-    // is set: a program linked with -lbhr finds libbhr.so by the name that cargo gives it.
     if matches!(std::env::var("CARGO_CFG_TARGET_OS").as_deref(), Ok("linux" | "android" | "freebsd")) {
+        // Drivers leave handlers that run at thread exit; unmapping the library under them would crash the host.
         println!("cargo:rustc-cdylib-link-arg=-Wl,-z,nodelete");
+        // Without a soname, a program that names the library's file when it is linked would look for it at that path
+        // for ever. The name is that of the file that cargo makes. An installed library is libbhr.so.N: ./install and
+        // cargo-c give it that name.
+        if std::env::var_os("CARGO_FEATURE_CAPI").is_none() {
+            println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libbhr.so");
+        }
     }
     list_shaders()
 }

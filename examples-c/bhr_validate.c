@@ -22,8 +22,8 @@ static void begin_section(const char *title, const char *source) {
     if (form == TABLE) {
         printf("\n%s\n  %s\n", title, source);
     } else if (form == MARKDOWN) {
-        printf("\n## %s\n\nSource: %s\n\n| quantity | truth | bhr | error | tolerance |\n|---|---|---|---|---|\n", title,
-               source);
+        printf("\n## %s\n\nSource: %s\n\n", title, source);
+        printf("| quantity | truth | bhr | error | tolerance |\n|---|---|---|---|---|\n");
     }
 }
 
@@ -317,8 +317,7 @@ static void circular_orbits(void) {
     static const double SPINS[][2] = {
         {0.0, 0.5432533304149215}, {0.5, NAN}, {0.998, NAN}, {-0.998, NAN}};
     begin_section("Circular orbits: sum of u^phi over r = 6, 6.5 ... 10 (9 ... 13 at spin -0.998), and u^t",
-                  "closed form r^-3/2 / sqrt(1 - 3 / r + 2 a r^-3/2), Bardeen, Press and Teukolsky 1972; the first "
-                  "sum: Gradus.jl 181f52a5, test/, to its 1e-9");
+                  "Bardeen, Press and Teukolsky 1972, in closed form; the first sum is that of Gradus.jl 181f52a5");
     for (size_t i = 0; i < COUNT_OF(SPINS); i++) {
         const double a = SPINS[i][0], first = a < 0.0 ? 9.0 : 6.0;
         double       truth = 0.0, found = 0.0, rate = 0.0, rate_truth = 0.0;
@@ -344,20 +343,13 @@ static void circular_orbits(void) {
         snprintf(what, sizeof what, "u^t, spin %g", a);
         compare(what, rate_truth, rate, 1e-13);
     }
-    begin_section("A circular orbit of another code: u^t",
-                  "Gyoto 64bfcaab, python/tests: a = 0.995, r = 10.791, to its 5 digits and by the closed form");
-    set_spin(0.995);
-    set_camera(10.791, 0.5 * PI, BHR_MOTION_ORBIT);
-    compare("Gyoto's digits", 1.12641, 1.0 / hole_info().camera_time_rate, 5e-6);
-    compare("the closed form", 1.1264104273542368, 1.0 / hole_info().camera_time_rate, 1e-13);
 }
 
 /* Seen from the axis the photons of a disk have no angular momentum, so that g has a closed form at every radius. */
 static void redshifts(void) {
     static const double SPINS[] = {0.0, 0.5, 0.9, 0.998};
     begin_section("Redshift factor g of a disk that is seen along the axis",
-                  "Luminet 1979, A&A 75, 228, and Cunningham 1975, ApJ 202, 788: sqrt(1 - 3 / r + 2 a r^-3/2) / (1 + a "
-                  "r^-3/2), over the observer's sqrt(-g_tt)");
+                  "Cunningham 1975, ApJ 202, 788; Luminet 1979, A&A 75, 228: in closed form for photons without L");
     for (size_t i = 0; i < COUNT_OF(SPINS); i++) {
         const double a = SPINS[i], r = 40.0, clock = sqrt((r * r - 2.0 * r + a * a) / (r * r + a * a));
         double       worst = 0.0;

@@ -56,13 +56,24 @@
  *
  * Errors
  *   Every call that can fail returns a BhrStatus; bhr_error_message says what was wrong, with the value and the limit.
+ *   A message belongs to the thread that called; where calls move between threads, bhr_context_error_message and
+ *   bhr_job_error_message have the last one of a context or a job.
  *   A failed setter leaves the context as it was. Whatever a call fills in is NULL or 0 after a failure. Setters check
  *   their own argument only; combinations that cannot be (a static camera inside the horizon, say) are
  *   BHR_ERROR_INVALID_STATE when a frame or rays are asked for. BHR_ERROR_INTERNAL means a bug in bhr: from then on
- *   only destroy calls are valid on that context, its jobs and its surfaces.
+ *   only destroy calls are valid on that context, its jobs and its surfaces. With BHR_WARN_UNUSED defined before this
+ *   header is included, compilers warn where a status is ignored.
  *
  *   Below, errors are named without BHR_ERROR_. Errors that any call may return, for NULL, from inside a callback or
  *   after BHR_ERROR_INTERNAL, are not named each time.
+ *
+ * Versions
+ *   Until BHR_ABI_VERSION rises, a later library runs every program that was compiled against this header. (libbhr.so.N
+ *   with N = BHR_ABI_VERSION is the name that programs ask the system for.) Versions add functions, constants, and
+ *   fields at the end of structs that begin with struct_size; they remove and rename nothing, and what is there keeps
+ *   its value and its meaning. A function that is better not used any more says "Deprecated since X.Y.Z", and works on.
+ *   What was added says "Since X.Y.Z": a program that must run with an older library, too, compares bhr_version, and
+ *   looks up by name (dlsym) what may not be there. docs/abi.md has the rules at length.
  *
  * Structs
  *   Structs that may grow begin with struct_size: sizeof the struct that the program was compiled with. A size smaller
@@ -108,6 +119,20 @@
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* A program that defines BHR_WARN_UNUSED before it includes this header is warned where it ignores a BhrStatus. It has
+ * to ask, because programs whose warnings are errors must go on compiling. */
+#if !defined(BHR_WARN_UNUSED)
+#define BHR_NODISCARD
+#elif defined(__cplusplus) && __cplusplus >= 201703L
+#define BHR_NODISCARD [[nodiscard]]
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L
+#define BHR_NODISCARD [[nodiscard]]
+#elif defined(__GNUC__)
+#define BHR_NODISCARD __attribute__((warn_unused_result))
+#else
+#define BHR_NODISCARD
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -231,14 +256,14 @@ typedef struct BhrAdapterInfo {
  * other than GL are looked for once in a process; bhr_context_recover looks again. Any thread, not inside callbacks.
  * Errors: INVALID_ARGUMENT for NULL.
  */
-BhrStatus bhr_adapter_count(uint32_t *out_count);
+BHR_NODISCARD BhrStatus bhr_adapter_count(uint32_t *out_count);
 
 /**
  * Fills in info for the adapter at index: GPUs come first, then software drivers, the CPU tracer last.
  * BHR_BACKEND_AUTO need not take the first one. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for NULL, a
  * wrong struct_size, or an index not below bhr_adapter_count.
  */
-BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
+BHR_NODISCARD BhrStatus bhr_adapter_info(uint32_t index, BhrAdapterInfo *info);
 
 /* ---- windows of the host ---- */
 
@@ -311,7 +336,7 @@ typedef struct BhrContextOptions {
 } BhrContextOptions;
 
 /** Clears struct_size bytes and fills in the defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_size);
 
 /**
  * Makes a context with the default scene, that of BHR_PRESET_CINEMATIC: a hole of mass 1 without spin, a turbulent
@@ -324,12 +349,12 @@ BhrStatus bhr_context_options_init(BhrContextOptions *options, size_t struct_siz
  * feature gl; NO_ADAPTER when the backend or adapter asked for is not there, cannot be opened, or cannot present to
  * compatible_window.
  */
-BhrStatus bhr_context_create(uint32_t abi_version,
-                             const BhrContextOptions *options,
-                             BhrContext **out_context);
+BHR_NODISCARD BhrStatus bhr_context_create(uint32_t abi_version,
+                                           const BhrContextOptions *options,
+                                           BhrContext **out_context);
 
 /** Fills in info for the adapter that the context runs on. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
+BHR_NODISCARD BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
 
 /**
  * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays, the
@@ -338,7 +363,7 @@ BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapterInfo *info);
  * DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost, and the call may
  * be tried again.
  */
-BhrStatus bhr_context_recover(BhrContext *context);
+BHR_NODISCARD BhrStatus bhr_context_recover(BhrContext *context);
 
 /**
  * Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was on,
@@ -367,19 +392,19 @@ void bhr_context_destroy(BhrContext *context);
  * Sets the mass M in scene lengths (G = c = 1; the Schwarzschild radius is 2 M): finite, > 0. Default 1.
  * Errors: INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_mass(BhrContext *context, double mass);
+BHR_NODISCARD BhrStatus bhr_set_mass(BhrContext *context, double mass);
 
 /** Sets the spin a / M in [-0.999, 0.999]; < 0: the hole turns towards -ph. Default 0. Errors: INVALID_ARGUMENT. */
-BhrStatus bhr_set_spin(BhrContext *context, double spin);
+BHR_NODISCARD BhrStatus bhr_set_spin(BhrContext *context, double spin);
 
 /**
  * Sets the spin axis, which is also the disk's normal: scene axes, any non-zero length. Default +z. Errors:
  * INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_axis(BhrContext *context, const double axis[3]);
+BHR_NODISCARD BhrStatus bhr_set_axis(BhrContext *context, const double axis[3]);
 
 /** Reads the mass, the spin and the axis (a unit vector) as they are set. Errors: INVALID_ARGUMENT for NULL. */
-BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_spin, double out_axis[3]);
+BHR_NODISCARD BhrStatus bhr_get_hole(const BhrContext *context, double *out_mass, double *out_spin, double out_axis[3]);
 
 /** Numbers about the hole and the camera's observer. Lengths are in scene units; what is not defined is NaN. */
 typedef struct BhrHoleInfo {
@@ -405,19 +430,19 @@ typedef struct BhrHoleInfo {
  * Fills in info for the hole and the camera as they are set; where the camera's motion cannot be, its numbers are
  * NaN. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
  */
-BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
+BHR_NODISCARD BhrStatus bhr_hole_info(const BhrContext *context, BhrHoleInfo *info);
 
 /**
  * Fills in the metric at a place in scene axes: out_metric[4 a + b] = g_ab in Boyer-Lindquist (t, r, th, ph),
  * signature - + + +. Errors: INVALID_ARGUMENT for NULL, a position that is not finite, the centre, or the horizon.
  */
-BhrStatus bhr_metric_at(const BhrContext *context, const double position[3], double out_metric[16]);
+BHR_NODISCARD BhrStatus bhr_metric_at(const BhrContext *context, const double position[3], double out_metric[16]);
 
 /**
  * Fills in the Christoffel symbols at a place in scene axes: out_gamma[16 a + 4 b + c] = Gamma^a_bc in Boyer-Lindquist
  * (t, r, th, ph). Errors: INVALID_ARGUMENT as bhr_metric_at, and on the axis.
  */
-BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
+BHR_NODISCARD BhrStatus bhr_christoffel_at(const BhrContext *context, const double position[3], double out_gamma[64]);
 
 /* ---- the camera: an observer with a lens ---- */
 
@@ -454,7 +479,7 @@ typedef int32_t BhrProjection;
  * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
  * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
  * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
- * circular geodesic, in the equatorial plane only.
+ * circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
  */
 typedef int32_t BhrMotion;
 
@@ -488,17 +513,17 @@ typedef struct BhrCamera {
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
  */
-BhrStatus bhr_camera_init(BhrCamera *camera, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_camera_init(BhrCamera *camera, size_t struct_size);
 
 /**
  * Sets position, forward (towards target) and up of a camera; touches no context. Any thread, inside callbacks
  * too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, numbers not finite, position (0,
  * 0, 0) or equal to target, up zero or along the line of sight.
  */
-BhrStatus bhr_camera_look_at(BhrCamera *camera,
-                             const double position[3],
-                             const double target[3],
-                             const double up[3]);
+BHR_NODISCARD BhrStatus bhr_camera_look_at(BhrCamera *camera,
+                                           const double position[3],
+                                           const double target[3],
+                                           const double up[3]);
 
 /**
  * Sets a camera at distance (> 0) from the hole, at azimuth from +x towards +y and elevation from the xy plane
@@ -507,16 +532,16 @@ BhrStatus bhr_camera_look_at(BhrCamera *camera,
  * inside callbacks too. On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, a number not
  * finite, distance <= 0.
  */
-BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, double elevation);
+BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, double azimuth, double elevation);
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
  * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
  */
-BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
+BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 
 /** The camera as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
+BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
 /**
  * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a STATIC
@@ -527,10 +552,10 @@ BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
  * stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible;
  * UNSUPPORTED for VELOCITY.
  */
-BhrStatus bhr_camera_advance(const BhrContext *context,
-                             BhrCamera *camera,
-                             double proper_time,
-                             double *out_coordinate_time);
+BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context,
+                                           BhrCamera *camera,
+                                           double proper_time,
+                                           double *out_coordinate_time);
 
 /* ---- accretion disk ---- */
 
@@ -627,19 +652,19 @@ typedef struct BhrDisk {
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
  */
-BhrStatus bhr_disk_init(BhrDisk *disk, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_disk_init(BhrDisk *disk, size_t struct_size);
 
 /**
  * Sets the disk; NULL: no disk. A new context has the default one. Errors: INVALID_ARGUMENT for a number outside
  * its range, or an unknown flag, reference or emission_law.
  */
-BhrStatus bhr_set_disk(BhrContext *context, const BhrDisk *disk);
+BHR_NODISCARD BhrStatus bhr_set_disk(BhrContext *context, const BhrDisk *disk);
 
 /**
  * Reads the disk as it is set. *out_present becomes 1 with a disk; without one it becomes 0, and disk gets the
  * defaults. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size.
  */
-BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_present);
+BHR_NODISCARD BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, int32_t *out_present);
 
 /* ---- images in the host's memory ---- */
 
@@ -702,7 +727,7 @@ typedef struct BhrImage {
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
  */
-BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
 
 /**
  * Writes an image to a file: 8-bit formats to .png or .ppm (without alpha), float formats to .exr; R32F becomes
@@ -716,7 +741,7 @@ BhrStatus bhr_image_init(BhrImage *image, size_t struct_size);
  * write, for another user's symbolic link in a sticky folder that all may write (such as /tmp), and for a full disk,
  * a quota and RLIMIT_FSIZE (without SIGXFSZ).
  */
-BhrStatus bhr_image_save(const BhrImage *image, const char *path);
+BHR_NODISCARD BhrStatus bhr_image_save(const BhrImage *image, const char *path);
 
 /**
  * Reads a PNG, EXR or PNM file. The caller sets image->struct_size; the rest is filled in: packed rows from the top
@@ -731,13 +756,13 @@ BhrStatus bhr_image_save(const BhrImage *image, const char *path);
  * readable, broken, of more than 2^20 pixels a side, or of more than 4 GiB of pixels in memory, however small the
  * file is. What a file claims is checked before memory is taken for it.
  */
-BhrStatus bhr_image_load(const char *path, BhrImage *image);
+BHR_NODISCARD BhrStatus bhr_image_load(const char *path, BhrImage *image);
 
 /**
  * Gives back the pixels of bhr_image_load and sets image->pixels to NULL and byte_size to 0. Any thread, inside
  * callbacks too. Errors: INVALID_ARGUMENT for pixels that are NULL, the host's, or were given back before.
  */
-BhrStatus bhr_image_release(BhrImage *image);
+BHR_NODISCARD BhrStatus bhr_image_release(BhrImage *image);
 
 /* ---- sky ---- */
 
@@ -787,16 +812,16 @@ typedef struct BhrSky {
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
  */
-BhrStatus bhr_sky_init(BhrSky *sky, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_sky_init(BhrSky *sky, size_t struct_size);
 
 /**
  * Sets the sky; NULL: black. Errors: INVALID_ARGUMENT for a number outside its range, an orientation that is no
  * unit quaternion, or an unknown flag; UNSUPPORTED for flags that this version cannot draw.
  */
-BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
+BHR_NODISCARD BhrStatus bhr_set_sky(BhrContext *context, const BhrSky *sky);
 
 /** The sky as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
+BHR_NODISCARD BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
 
 /**
  * Gives BHR_SKY_MAP its picture, copied before return (a second or two for 16384 x 8192); NULL removes it. The next
@@ -813,7 +838,7 @@ BhrStatus bhr_get_sky(const BhrContext *context, BhrSky *sky);
  * and on the device to its largest texture. Memory: 5.4 bytes a texel in the context and 6 on the device. Errors:
  * INVALID_ARGUMENT for a bad image or R32F; OUT_OF_MEMORY.
  */
-BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
+BHR_NODISCARD BhrStatus bhr_set_sky_map(BhrContext *context, const BhrImage *equirect);
 
 /* ---- film ---- */
 
@@ -889,13 +914,13 @@ typedef struct BhrFilm {
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
  */
-BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_film_init(BhrFilm *film, size_t struct_size);
 
 /** Sets the film. Errors: INVALID_ARGUMENT for NULL, a number outside its range, an unknown tone map or colour map. */
-BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
+BHR_NODISCARD BhrStatus bhr_set_film(BhrContext *context, const BhrFilm *film);
 
 /** The film as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
+BHR_NODISCARD BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 
 /* ---- relativistic effects, time ---- */
 
@@ -911,10 +936,10 @@ BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
  * emitter and camera. LIGHT_DELAY shows in a turbulent disk only, from inside a spin-0 horizon too; without it, all of
  * the disk is seen as it is at the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
  */
-BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
+BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 
 /** The effects as they are set. Since 0.2.0. Errors: INVALID_ARGUMENT for NULL. */
-BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
+BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
 
 /**
  * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera,
@@ -922,7 +947,7 @@ BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
  * T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that
  * falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_time(BhrContext *context, double time);
+BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 
 /* ---- presets: named looks ---- */
 
@@ -987,7 +1012,7 @@ typedef int32_t BhrPreset;
 #define BHR_PRESET_TEACHING 3
 
 /** Gives the scene a look: the values of BhrPreset. Since 0.2.0. Errors: INVALID_ARGUMENT for an unknown preset. */
-BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
+BHR_NODISCARD BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
 
 /* ---- quality ---- */
 
@@ -1055,13 +1080,13 @@ typedef struct BhrQuality {
  * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
  * for NULL or a wrong struct_size.
  */
-BhrStatus bhr_quality_init(BhrQuality *quality, size_t struct_size);
+BHR_NODISCARD BhrStatus bhr_quality_init(BhrQuality *quality, size_t struct_size);
 
 /** Sets the quality. Errors: INVALID_ARGUMENT for NULL, a number outside its range, or an unknown method. */
-BhrStatus bhr_set_quality(BhrContext *context, const BhrQuality *quality);
+BHR_NODISCARD BhrStatus bhr_set_quality(BhrContext *context, const BhrQuality *quality);
 
 /** The quality as it is set. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *quality);
+BHR_NODISCARD BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *quality);
 
 /* ---- what a pixel shows ---- */
 
@@ -1114,7 +1139,7 @@ typedef int32_t BhrView;
 #define BHR_VIEW_METRIC 5
 
 /** Sets the view. Default BHR_VIEW_LIGHT. Errors: INVALID_ARGUMENT for an unknown view. */
-BhrStatus bhr_set_view(BhrContext *context, BhrView view);
+BHR_NODISCARD BhrStatus bhr_set_view(BhrContext *context, BhrView view);
 
 /* ---- parts of a larger frame ---- */
 
@@ -1138,7 +1163,7 @@ typedef struct BhrRegion {
  * reaches out of the frame (x + width > full_width) is INVALID_ARGUMENT when it is rendered. Errors:
  * INVALID_ARGUMENT.
  */
-BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
+BHR_NODISCARD BhrStatus bhr_set_region(BhrContext *context, const BhrRegion *region);
 
 /* ---- rendering into memory ---- */
 
@@ -1153,7 +1178,7 @@ typedef int32_t (*BhrProgressFn)(void *user, double fraction);
  * Sets the callback that bhr_render_image and bhr_prepare report to, and, inside bhr_job_wait, the jobs that are begun
  * from now on. fn NULL: none (default). Errors: INVALID_ARGUMENT for a NULL context.
  */
-BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
+BHR_NODISCARD BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
 
 /**
  * Renders the scene as it is now into the host's memory and returns when it is there. Errors: INVALID_ARGUMENT for a
@@ -1163,7 +1188,7 @@ BhrStatus bhr_set_progress(BhrContext *context, BhrProgressFn fn, void *user);
  * DEVICE_LOST, OUT_OF_MEMORY. Until the first pixels are written an error leaves the target alone; after that the
  * message says so, and what is not yet rendered is untouched.
  */
-BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
+BHR_NODISCARD BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
 
 /**
  * Makes everything that frames of the present scene need, so that the next frame is no slower than later ones: GPU
@@ -1182,7 +1207,7 @@ BhrStatus bhr_render_image(BhrContext *context, const BhrImage *target);
  * callback may cancel it. The call waits for a job that is being rendered. Any thread, not inside callbacks. Errors:
  * as bhr_render_image. Since 0.2.0.
  */
-BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
+BHR_NODISCARD BhrStatus bhr_prepare(BhrContext *context, const BhrImage *target);
 
 /* ---- rendering in the background ---- */
 
@@ -1201,7 +1226,7 @@ typedef struct BhrJob BhrJob;
  * valid, and be used by nobody else, so long. End *out_job with bhr_job_destroy. Errors: those of
  * bhr_render_image, some of which come from bhr_job_wait instead; INVALID_STATE for too many jobs; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, BhrJob **out_job);
+BHR_NODISCARD BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, BhrJob **out_job);
 
 /**
  * Waits until the job is done, at most timeout_ns nanoseconds: 0 polls, UINT64_MAX waits without limit. NOT_READY:
@@ -1211,7 +1236,7 @@ BhrStatus bhr_render_image_async(BhrContext *context, const BhrImage *target, Bh
  * bhr_job_cancel or by the progress callback; DEVICE_LOST, OUT_OF_MEMORY, INVALID_STATE and others as
  * bhr_render_image; the message says so if pixels were written. Errors otherwise: INVALID_ARGUMENT for NULL.
  */
-BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
+BHR_NODISCARD BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *out_fraction);
 
 /**
  * Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
@@ -1262,12 +1287,12 @@ typedef int32_t BhrPresentMode;
  * cannot have (mostly beyond 16384); DEVICE_LOST (also for images that do not fit into the device's memory),
  * OUT_OF_MEMORY. A host that holds XGrabServer must not call on surfaces: it would wait for itself.
  */
-BhrStatus bhr_surface_create(BhrContext *context,
-                             const BhrWindow *window,
-                             uint32_t width,
-                             uint32_t height,
-                             BhrPresentMode mode,
-                             BhrSurface **out_surface);
+BHR_NODISCARD BhrStatus bhr_surface_create(BhrContext *context,
+                                           const BhrWindow *window,
+                                           uint32_t width,
+                                           uint32_t height,
+                                           BhrPresentMode mode,
+                                           BhrSurface **out_surface);
 
 /**
  * Tells a surface its window's new size in pixels; 0 x 0: minimised, frames are skipped. Cheap: images of the new
@@ -1276,13 +1301,13 @@ BhrStatus bhr_surface_create(BhrContext *context,
  * until then.) Errors: INVALID_ARGUMENT for NULL or a side beyond 2^20; UNSUPPORTED for a side that the device's
  * images cannot have; SURFACE_LOST.
  */
-BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
+BHR_NODISCARD BhrStatus bhr_surface_resize(BhrSurface *surface, uint32_t width, uint32_t height);
 
 /**
  * Changes how frames reach the screen, from the next one on. A mode that the window does not have becomes VSYNC.
  * Errors: INVALID_ARGUMENT for NULL or an unknown mode; SURFACE_LOST.
  */
-BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode);
+BHR_NODISCARD BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode);
 
 /**
  * Renders the scene into the surface's window and presents it, with the film, in sRGB; the region does not count.
@@ -1297,7 +1322,7 @@ BhrStatus bhr_surface_set_present_mode(BhrSurface *surface, BhrPresentMode mode)
  * then on, when the window is gone or the context was recovered: destroy the surface, and make it again if there is
  * a window; DEVICE_LOST: see bhr_context_recover; OUT_OF_MEMORY.
  */
-BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
+BHR_NODISCARD BhrStatus bhr_render_surface(BhrContext *context, BhrSurface *surface);
 
 /**
  * Ends a surface; the window is free for another one. NULL is a no-op; its context may be gone. No other thread
@@ -1371,19 +1396,19 @@ typedef struct BhrHit {
  * cannot be, or for a CUBE whose frame is not 6 times as wide as high; UNSUPPORTED inside a spinning hole's horizon.
  * out_rays is left alone by INVALID_ARGUMENT and cleared by other errors.
  */
-BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
+BHR_NODISCARD BhrStatus bhr_camera_rays(const BhrContext *context, uint32_t width, uint32_t height, BhrRay *out_rays);
 
 /**
  * One of those rays, at pixel position x, y: (0, 0) is the top-left corner of the frame (with a region: of the
  * image). Outside the frame the image plane, the angles (EQUIRECT) or the nearest face (CUBE) continue. Errors: as
  * bhr_camera_rays, and INVALID_ARGUMENT for x or y not finite.
  */
-BhrStatus bhr_camera_ray(const BhrContext *context,
-                         uint32_t width,
-                         uint32_t height,
-                         double x,
-                         double y,
-                         BhrRay *out_ray);
+BHR_NODISCARD BhrStatus bhr_camera_ray(const BhrContext *context,
+                                       uint32_t width,
+                                       uint32_t height,
+                                       double x,
+                                       double y,
+                                       BhrRay *out_ray);
 
 /**
  * Traces count rays on the context's backend. The scene's disk does not matter: crossings are those of the bare
@@ -1394,12 +1419,12 @@ BhrStatus bhr_camera_ray(const BhrContext *context,
  * 0 beyond it; a longer hit is cleared there. With count 0 the call does nothing. Errors: INVALID_ARGUMENT for NULL or
  * a size below the first version's; UNSUPPORTED; DEVICE_LOST, OUT_OF_MEMORY. An error while tracing clears out_hits.
  */
-BhrStatus bhr_trace_rays(BhrContext *context,
-                         const BhrRay *rays,
-                         size_t ray_size,
-                         size_t count,
-                         BhrHit *out_hits,
-                         size_t hit_size);
+BHR_NODISCARD BhrStatus bhr_trace_rays(BhrContext *context,
+                                       const BhrRay *rays,
+                                       size_t ray_size,
+                                       size_t count,
+                                       BhrHit *out_hits,
+                                       size_t hit_size);
 
 /**
  * Fills in the curve that a ray follows: x, y, z (scene axes) and t (scene lengths, t <= 0: backward) for each point.
@@ -1409,11 +1434,11 @@ BhrStatus bhr_trace_rays(BhrContext *context,
  * The curve is traced in double precision on the CPU, whatever the backend. Errors: INVALID_ARGUMENT for NULL,
  * capacity < 2, or a ray that is not valid; UNSUPPORTED inside a spinning hole's horizon.
  */
-BhrStatus bhr_trace_path(BhrContext *context,
-                         const BhrRay *ray,
-                         uint32_t capacity,
-                         double *out_points,
-                         uint32_t *out_count);
+BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context,
+                                       const BhrRay *ray,
+                                       uint32_t capacity,
+                                       double *out_points,
+                                       uint32_t *out_count);
 
 /* ---- numbers about the last finished frame ---- */
 
@@ -1431,13 +1456,13 @@ typedef struct BhrFrameStats {
 } BhrFrameStats;
 
 /** Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */
-BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
+BHR_NODISCARD BhrStatus bhr_frame_stats(const BhrContext *context, BhrFrameStats *stats);
 
 /**
  * Numbers about the frame of a job that is done. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size;
  * INVALID_STATE for a job that is not done, or that failed.
  */
-BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
+BHR_NODISCARD BhrStatus bhr_job_stats(const BhrJob *job, BhrFrameStats *stats);
 
 #ifdef __cplusplus
 }

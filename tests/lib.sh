@@ -76,7 +76,7 @@ own_target_folder() {
     local mark=$target/bhr-checkout profile
     if [ -f "$mark" ] && [ "$(cat -- "$mark")" != "$root" ]; then
         for profile in release checked; do
-            cargo clean --quiet --profile "$profile" --package bhr --manifest-path "$root/Cargo.toml" || return 1
+            cargo clean --quiet --profile "$profile" --package libbhr --manifest-path "$root/Cargo.toml" || return 1
         done
     fi
     mkdir -p -- "$target" && printf '%s\n' "$root" >"$mark"

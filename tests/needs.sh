@@ -52,17 +52,33 @@ missing_window_packages() {
     has_validation || printf '%s\n' vulkan-validationlayers
 }
 
+# The Debian packages of missing programs that only tests/run all needs.
+missing_packages_of_all() {
+    missing clang clang++
+    missing nodejs node
+    missing npm npm
+    missing golang-go go gofmt
+}
+
 # The Debian packages of what is missing, one a line.
 missing_packages() {
     c_compiles || printf '%s\n' gcc libc6-dev
     cxx_compiles || printf '%s\n' g++
+    python3 -c 'import ensurepip, venv' 2>/dev/null || printf '%s\n' python3 python3-venv
     command -v cmake >/dev/null && command -v make >/dev/null || printf '%s\n' cmake make
+    missing meson meson
+    missing ninja-build ninja
+    missing binutils ld objcopy readelf
     valgrind_works || printf '%s\n' valgrind libc6-dbg
+    missing abigail-tools abidiff abidw
     has_vulkan_loader || printf '%s\n' libvulkan1
     has_vulkan_driver || printf '%s\n' mesa-vulkan-drivers
     has_software_gl || printf '%s\n' libegl1 libgl1-mesa-dri
+    missing luajit luajit
+    luajit -e 'require "dkjson"' 2>/dev/null || printf '%s\n' lua-dkjson
     missing doxygen doxygen
     missing_window_packages
+    ! runs_all || missing_packages_of_all
 }
 
 install_missing() {

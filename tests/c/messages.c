@@ -36,7 +36,8 @@ static void each_context_has_its_own(BhrBackend backend) {
     BhrContext *one = check_context(backend), *other = check_context(backend);
     pthread_t   thread;
     CHECK(of_context(one)[0] == '\0', "a new context has the message %s", of_context(one));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "mass", bhr_set_mass(one, -1.0));
+    /* Not CHECK_FAILS, whose own calls leave messages with this thread. */
+    CHECK(bhr_set_mass(one, -1.0) == BHR_ERROR_INVALID_ARGUMENT, "mass -1 is taken");
     if (pthread_create(&thread, NULL, fail_elsewhere, other) == 0) {
         pthread_join(thread, NULL);
     }
@@ -58,7 +59,7 @@ static void buffers_of_every_size(BhrBackend backend) {
     size_t      length;
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "", bhr_image_save(NULL, "nothing.png"));
     CHECK(of_context(context)[0] == '\0', "a call without a context left %s", of_context(context));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "spin", bhr_set_spin(context, 2.0));
+    CHECK(bhr_set_spin(context, 2.0) == BHR_ERROR_INVALID_ARGUMENT, "spin 2 is taken");
     whole = bhr_error_message();
     length = strlen(whole);
     for (size_t size = 0; size <= length + 3; size++) {

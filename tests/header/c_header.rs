@@ -40,7 +40,7 @@ pub fn constants(text: &str) -> BTreeSet<String> {
     text.lines()
         .filter_map(|line| line.strip_prefix("#define "))
         .filter_map(|definition| words(definition).next())
-        .filter(|name| *name != "BHR_H")
+        .filter(|name| *name != "BHR_H" && *name != "BHR_NODISCARD")
         .map(str::to_owned)
         .collect()
 }

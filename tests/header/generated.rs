@@ -2,6 +2,7 @@
 //! and C++ takes it without a warning.
 
 use crate::c_header::{HEADER, compiler, functions, library, root, run, scratch};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
@@ -38,6 +39,20 @@ const OPENING: &str = r#"
 
 #include <stddef.h>
 #include <stdint.h>
+
+/* A program that defines BHR_WARN_UNUSED before it includes this header is warned where it ignores a BhrStatus. It has
+ * to ask, because programs whose warnings are errors must go on compiling. */
+#if !defined(BHR_WARN_UNUSED)
+#define BHR_NODISCARD
+#elif defined(__cplusplus) && __cplusplus >= 201703L
+#define BHR_NODISCARD [[nodiscard]]
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L
+#define BHR_NODISCARD [[nodiscard]]
+#elif defined(__GNUC__)
+#define BHR_NODISCARD __attribute__((warn_unused_result))
+#else
+#define BHR_NODISCARD
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -96,6 +111,35 @@ fn every_dialect_takes_the_header() {
     }
 }
 
+/// BHR_WARN_UNUSED asks for a warning where a status is ignored, in C and in C++; nobody gets one unasked. (GCC finds
+/// these when it makes code, not while it checks the syntax.)
+#[test]
+fn ignored_statuses_are_warned_of_on_request() {
+    let source = scratch("header_unused").join("ignores.c");
+    let ignores = "#include \"bhr.h\"\nvoid ignores(BhrContext *context);\n\
+                   void ignores(BhrContext *context) { bhr_set_spin(context, 0.5); }\n";
+    std::fs::write(&source, ignores).unwrap();
+    for (cpp, language, dialect) in
+        [(false, "c", "c99"), (false, "c", "c11"), (true, "c++", "c++11"), (true, "c++", "c++17")]
+    {
+        let compile = |asked: bool| {
+            let mut command = compiler(cpp);
+            command.args(["-x", language, &format!("-std={dialect}"), "-Wall", "-Wextra", "-Werror", "-S"]);
+            command
+                .args(asked.then_some("-DBHR_WARN_UNUSED"))
+                .arg("-I")
+                .arg(root().join("include"))
+                .arg(&source)
+                .args(["-o", "/dev/null"]);
+            command.output().unwrap()
+        };
+        let (silent, warned) = (compile(false), compile(true));
+        assert!(silent.status.success(), "{dialect}: {}", String::from_utf8_lossy(&silent.stderr));
+        let said = String::from_utf8_lossy(&warned.stderr);
+        assert!(!warned.status.success() && said.contains("unused-result"), "{dialect}: {said}");
+    }
+}
+
 /// A function is declared with C linkage in C++: an object that uses all of them asks for their plain names.
 #[test]
 fn cpp_programs_link_to_the_plain_names() {
@@ -148,7 +192,7 @@ fn plain(name: &str) -> String {
 
 // ---- making it ----
 
-fn generate() -> String {
+pub fn generate() -> String {
     let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
     let preface = config.header.take().unwrap_or_default();
     let mut header = format!("{}\n{OPENING}", preface.trim());
@@ -165,7 +209,7 @@ fn section(path: &Path, config: &cbindgen::Config) -> String {
     let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(path).generate();
     let mut text = Vec::new();
     bindings.unwrap_or_else(|error| panic!("{}: {error}", path.display())).write(&mut text);
-    let text = tidy(&String::from_utf8(text).unwrap());
+    let text = with_nodiscard(&tidy(&String::from_utf8(text).unwrap()));
     let mut blocks: Vec<&str> = text.trim().split("\n\n").map(str::trim).filter(|block| !block.is_empty()).collect();
     // cbindgen puts constants after the types; in the sources each one stands where a reader wants it.
     let order = public_items(&std::fs::read_to_string(path).unwrap());
@@ -175,6 +219,25 @@ fn section(path: &Path, config: &cbindgen::Config) -> String {
         place.unwrap_or_else(|| panic!("{}: no public item declares {name:?}:\n{block}", path.display()))
     });
     in_tables(&blocks)
+}
+
+/// The Rust types of all constants, which a #define does not have.
+pub fn types_of_constants() -> BTreeMap<String, String> {
+    let mut types = BTreeMap::new();
+    for (file, _) in SECTIONS {
+        let source = std::fs::read_to_string(root().join("src/capi").join(file).with_extension("rs")).unwrap();
+        let constants = source.lines().filter_map(|line| line.strip_prefix("pub const BHR_")?.split_once(" = "));
+        types.extend(constants.filter_map(|(constant, _)| {
+            let (name, kind) = constant.split_once(": ")?;
+            let kind = match kind {
+                "u32" => "uint32_t",
+                "usize" => "size_t",
+                kind => kind,
+            };
+            Some((format!("BHR_{name}"), kind.to_owned()))
+        }));
+    }
+    types
 }
 
 /// The names of a source file's public items, in order.
@@ -237,6 +300,23 @@ fn table(group: &[&str]) -> Option<String> {
     let line = |(comment, code): &(&str, &str)| format!("#define {code:<width$} /**< {comment} */");
     let lines: Vec<_> = rows.iter().map(line).collect();
     lines.iter().all(|line| line.len() <= MAX_LINE && !line.contains('\n')).then(|| lines.join("\n"))
+}
+
+/// BHR_NODISCARD before each function that returns a status; its parameters on a line each where they need it.
+fn with_nodiscard(text: &str) -> String {
+    let mut parts = text.split("\nBhrStatus bhr_");
+    let mut marked = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (prototype, rest) = part.split_once(");").expect("a prototype ends");
+        let line = prototype.split_whitespace().collect::<Vec<_>>().join(" ");
+        let mut line = format!("BHR_NODISCARD BhrStatus bhr_{line});");
+        if line.len() > MAX_LINE {
+            let margin = " ".repeat(line.find('(').unwrap() + 1);
+            line = line.replace(", ", &format!(",\n{margin}"));
+        }
+        marked += &format!("\n{line}{rest}");
+    }
+    marked
 }
 
 /// Comments of one line on one line, no empty line at the end of a comment, and structs by their typedef, which every

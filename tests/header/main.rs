@@ -5,5 +5,8 @@ mod abi;
 mod c_header;
 mod contract;
 mod generated;
+mod json;
+mod layouts;
+mod model;
 mod symbols;
 mod third_party;

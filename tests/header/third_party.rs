@@ -131,7 +131,7 @@ fn crates() -> Vec<Crate> {
         repository: text(&package["repository"]),
         folder: Path::new(&text(&package["manifest_path"])).parent().unwrap().to_owned(),
     });
-    let mut crates = packages.filter(|package| package.name != "bhr").collect::<Vec<_>>();
+    let mut crates = packages.filter(|package| package.name != "libbhr").collect::<Vec<_>>();
     crates.sort_by_key(Crate::title);
     crates
 }

@@ -3,6 +3,7 @@
 //! lies outside a fisheye's circle.
 
 use crate::frames::{both, differing, floats, picture, tiled};
+use crate::random::runs_all;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, LensTables, Projection, Ray, Region, Scene, Sky, View};
@@ -17,6 +18,11 @@ const WAYS: [(f64, LensTables); 4] =
 /// One of them with spin, one without: of what they have little part in. (A kernel takes lavapipe half a second to
 /// compile.)
 const TWO_WAYS: [(f64, LensTables); 2] = [WAYS[1], WAYS[2]];
+
+/// All of them in `tests/run all`, else two.
+fn ways() -> &'static [(f64, LensTables)] {
+    if runs_all() { &WAYS } else { &TWO_WAYS }
+}
 
 /// A camera that has the hole beside, not before it, its axes no axes of the scene.
 fn camera(projection: Projection) -> Camera {
@@ -71,7 +77,7 @@ fn faces_of_the_cube_are_perspective_views() {
     const SIDE: u32 = 40;
     let side = SIDE as usize;
     for (tracer, mut renderer) in both() {
-        for way in WAYS {
+        for &way in ways() {
             for view in [View::Light, View::Deflection, View::Redshift, View::Order] {
                 let format = if view == View::Light { PixelFormat::Rgba32F } else { PixelFormat::R32F };
                 let words = format.bytes_per_pixel() / 4;
@@ -200,7 +206,7 @@ fn gpu_and_cpu_pictures_of_every_projection_agree() {
         let middle = if projection == Projection::Cube { full_width / 4 * 3 } else { full_width / 2 };
         let width = size[0].min(100);
         let part = Region { full_width, full_height, x: middle - width / 2, y: full_height / 2 - size[1] / 2 };
-        for way in WAYS {
+        for &way in ways() {
             // Each ray by itself is small frames' way.
             let looked_up = way.1 == LensTables::Always;
             let part = looked_up.then_some(([width, size[1]], Some(part)));

@@ -1,0 +1,479 @@
+/* bhr/context.hpp -- contexts, jobs and surfaces of bhr.h as C++ objects that end themselves. Include bhr.hpp. */
+#ifndef BHR_CONTEXT_HPP
+#define BHR_CONTEXT_HPP
+
+#include "image.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bhr {
+
+/// Is told how much of a frame is done, 0 to 1; false cancels it (BhrProgressFn).
+using ProgressFunction = std::function<bool(double fraction)>;
+
+/// Is told messages; on any thread, on several at once (BhrLogFn). The text lives for the call only.
+using LogFunction = std::function<void(LogLevel level, std::string_view message)>;
+
+namespace detail {
+
+inline std::int32_t on_progress(void *user, double fraction) noexcept {
+    bool goes_on = false;
+    const bool whole = shielded([&] { goes_on = (*static_cast<ProgressFunction *>(user))(fraction); });
+    return whole && goes_on ? 1 : 0;
+}
+
+inline void on_log(void *user, BhrLogLevel level, const char *message) noexcept {
+    shielded([&] { (*static_cast<LogFunction *>(user))(static_cast<LogLevel>(level), message); });
+}
+
+/// A handle of C that is ended once.
+template <class C, void (*destroy)(C *)> struct Destroy {
+    void operator()(C *handle) const noexcept {
+        const Call inside;
+        destroy(handle);
+    }
+};
+template <class C, void (*destroy)(C *)> using Handle = std::unique_ptr<C, Destroy<C, destroy>>;
+
+/// The time in nanoseconds, for bhr_job_wait: rounded up; at the longest without limit.
+template <class Rep, class Period>
+std::uint64_t timeout_of(const std::chrono::duration<Rep, Period> &timeout) noexcept {
+    using Seconds = std::chrono::duration<long double>;
+    const long double seconds = std::chrono::duration_cast<Seconds>(timeout).count();
+    if (!(seconds > 0.0L)) {
+        return 0;
+    }
+    const long double most = 9.0e9L; // about 285 years
+    if (seconds >= most) {
+        return UINT64_MAX;
+    }
+    const std::uint64_t whole = static_cast<std::uint64_t>(seconds * 1.0e9L);
+    return whole == 0 ? 1 : whole;
+}
+
+/// The message that bhr_context_error_message or bhr_job_error_message has for the handle.
+template <class C> std::string message_of(std::size_t (*ask)(const C *, char *, std::size_t), const C *handle) {
+    std::string text(ask(handle, nullptr, 0), '\0');
+    // Another thread's call may have failed in between.
+    const std::size_t length = ask(handle, text.data(), text.size() + 1);
+    text.resize(length < text.size() ? length : text.size());
+    return text;
+}
+
+} // namespace detail
+
+/// BhrContextOptions, with the defaults of bhr_context_options_init.
+struct ContextOptions {
+    std::uint32_t struct_size;
+    ContextFlags flags;
+    Backend backend;
+    std::int32_t adapter_index;
+    std::uint32_t cpu_threads;
+    LogLevel log_level;
+    BhrLogFn log_fn;
+    void *log_user;
+    const BhrWindow *compatible_window;
+
+    ContextOptions() noexcept { detail::defaults(*this, bhr_context_options_init); }
+    explicit ContextOptions(Backend wanted) noexcept : ContextOptions() { backend = wanted; }
+    BhrContextOptions c() const noexcept { return detail::as_c<BhrContextOptions>(*this); }
+};
+
+/// How far a job is (bhr_job_wait).
+struct JobProgress {
+    bool done = false;
+    double fraction = 0.0;
+};
+
+/// A frame that is rendered in the background (BhrJob). The memory of its target must outlive it.
+class Job {
+  public:
+    /// Waits for the end; a job that failed gives its failure.
+    Result<void> wait() {
+        return detail::call([&] { return bhr_job_wait(handle_.get(), UINT64_MAX, nullptr); });
+    }
+
+    /// Waits so long at most; 0 asks how far it is. Done means that the image is complete.
+    template <class Rep, class Period>
+    Result<JobProgress> wait_for(const std::chrono::duration<Rep, Period> &timeout) {
+        return detail::ask(JobProgress(), [&](JobProgress &progress) {
+            const BhrStatus status = bhr_job_wait(handle_.get(), detail::timeout_of(timeout), &progress.fraction);
+            progress.done = status == BHR_OK;
+            return status;
+        });
+    }
+
+    /// bhr_job_error_message: of the last call that failed on this job, on whichever thread.
+    [[nodiscard]] std::string error_message() const {
+        return detail::message_of(bhr_job_error_message, handle_.get());
+    }
+
+    /// bhr_job_cancel. Any thread, inside callbacks too.
+    void cancel() noexcept { bhr_job_cancel(handle_.get()); }
+
+    /// bhr_job_stats.
+    Result<FrameStats> stats() const {
+        return detail::ask_struct<FrameStats, BhrFrameStats>([&](BhrFrameStats *it) {
+            return bhr_job_stats(handle_.get(), it);
+        });
+    }
+
+    BhrJob *get() const noexcept { return handle_.get(); }
+
+  private:
+    friend class Context;
+    Job(BhrJob *handle, std::shared_ptr<ProgressFunction> progress) noexcept
+        : progress_(std::move(progress)), handle_(handle) {}
+
+    std::shared_ptr<ProgressFunction> progress_; // the job calls it until it has ended, so that it ends after it
+    detail::Handle<BhrJob, bhr_job_destroy> handle_;
+};
+
+/// A window that a context renders into (BhrSurface). The window and its display must outlive it.
+class Surface {
+  public:
+    /// bhr_surface_resize.
+    Result<void> resize(std::uint32_t width, std::uint32_t height) {
+        return detail::call([&] { return bhr_surface_resize(handle_.get(), width, height); });
+    }
+
+    /// bhr_surface_set_present_mode.
+    Result<void> set_present_mode(PresentMode mode) {
+        return detail::call([&] {
+            return bhr_surface_set_present_mode(handle_.get(), static_cast<BhrPresentMode>(mode));
+        });
+    }
+
+    BhrSurface *get() const noexcept { return handle_.get(); }
+
+  private:
+    friend class Context;
+    explicit Surface(BhrSurface *handle) noexcept : handle_(handle) {}
+
+    detail::Handle<BhrSurface, bhr_surface_destroy> handle_;
+};
+
+/// The end of a frame for a window: skipped where the window is hidden or 0 x 0.
+enum class Presented { yes, skipped };
+
+/// A scene and what traces it (BhrContext).
+class Context {
+  public:
+    /// bhr_context_create. `log` takes the place of the options' log_fn and log_user, where it is not empty.
+    static Result<Context> create(const ContextOptions &options = {}, LogFunction log = {}) {
+        const detail::Call inside;
+        std::unique_ptr<LogFunction> kept;
+        BhrContextOptions raw = options.c();
+        if (log) {
+            kept = std::make_unique<LogFunction>(std::move(log));
+            raw.log_fn = detail::on_log;
+            raw.log_user = kept.get();
+        }
+        BhrContext *handle = nullptr;
+        const BhrStatus status = bhr_context_create(BHR_ABI_VERSION, &raw, &handle);
+        if (status < 0) {
+            Error error = Error::last(status);
+            inside.rethrow();
+            return error;
+        }
+        Context context(handle, std::move(kept));
+        inside.rethrow();
+        return context;
+    }
+
+    Context(Context &&) noexcept = default;
+    /// Ends the context that it was, if any.
+    Context &operator=(Context &&other) noexcept {
+        if (this != &other) {
+            handle_ = std::move(other.handle_);
+            progress_ = std::move(other.progress_);
+            log_ = std::move(other.log_);
+        }
+        return *this;
+    }
+
+    BhrContext *get() const noexcept { return handle_.get(); }
+
+    /// bhr_context_adapter.
+    Result<AdapterInfo> adapter() const {
+        return filled<AdapterInfo, BhrAdapterInfo>(bhr_context_adapter);
+    }
+
+    /// bhr_context_recover.
+    Result<void> recover() {
+        return detail::call([&] { return bhr_context_recover(get()); });
+    }
+
+    /* ---- the hole ---- */
+
+    Result<void> set_mass(double mass) {
+        return detail::call([&] { return bhr_set_mass(get(), mass); });
+    }
+    Result<void> set_spin(double spin) {
+        return detail::call([&] { return bhr_set_spin(get(), spin); });
+    }
+    Result<void> set_axis(const Vector &axis) {
+        return detail::call([&] { return bhr_set_axis(get(), axis.data()); });
+    }
+    /// bhr_get_hole.
+    Result<Hole> hole() const {
+        return detail::ask(Hole(), [&](Hole &hole) {
+            return bhr_get_hole(get(), &hole.mass, &hole.spin, hole.axis.data());
+        });
+    }
+    /// bhr_hole_info.
+    Result<HoleInfo> hole_info() const { return filled<HoleInfo, BhrHoleInfo>(bhr_hole_info); }
+    /// bhr_metric_at: g_ab at 4 a + b.
+    Result<std::array<double, 16>> metric_at(const Vector &position) const {
+        using Numbers = std::array<double, 16>;
+        return detail::ask(Numbers(), [&](Numbers &metric) {
+            return bhr_metric_at(get(), position.data(), metric.data());
+        });
+    }
+    /// bhr_christoffel_at: Gamma^a_bc at 16 a + 4 b + c.
+    Result<std::array<double, 64>> christoffel_at(const Vector &position) const {
+        using Numbers = std::array<double, 64>;
+        return detail::ask(Numbers(), [&](Numbers &gamma) {
+            return bhr_christoffel_at(get(), position.data(), gamma.data());
+        });
+    }
+
+    /* ---- camera, disk, sky, film, and what else a scene has; without a value: none ---- */
+
+    Result<void> set_camera(const Camera &camera) { return set(bhr_set_camera, camera.c()); }
+    /// bhr_get_camera.
+    Result<Camera> camera() const { return filled<Camera, BhrCamera>(bhr_get_camera); }
+    /// bhr_camera_advance: moves `camera`, not the context's own; the scene time that went by.
+    Result<double> advance(Camera &camera, double proper_time) const {
+        BhrCamera copy = camera.c();
+        return detail::ask(0.0, [&](double &time) {
+            const BhrStatus status = bhr_camera_advance(get(), &copy, proper_time, &time);
+            if (status >= 0) {
+                detail::take(camera, copy);
+            }
+            return status;
+        });
+    }
+
+    Result<void> set_disk(const std::optional<Disk> &disk) { return set_or_none(bhr_set_disk, disk); }
+    /// bhr_get_disk.
+    Result<std::optional<Disk>> disk() const {
+        std::int32_t present = 0;
+        const Result<Disk> disk = detail::ask_struct<Disk, BhrDisk>([&](BhrDisk *it) {
+            return bhr_get_disk(get(), it, &present);
+        });
+        if (!disk) {
+            return disk.error();
+        }
+        return present != 0 ? std::optional<Disk>(*disk) : std::optional<Disk>();
+    }
+
+    Result<void> set_sky(const std::optional<Sky> &sky) { return set_or_none(bhr_set_sky, sky); }
+    /// bhr_get_sky.
+    Result<Sky> sky() const { return filled<Sky, BhrSky>(bhr_get_sky); }
+    Result<void> set_sky_map(const std::optional<Image> &equirect) { return set_or_none(bhr_set_sky_map, equirect); }
+
+    Result<void> set_film(const Film &film) { return set(bhr_set_film, film.c()); }
+    /// bhr_get_film.
+    Result<Film> film() const { return filled<Film, BhrFilm>(bhr_get_film); }
+
+    Result<void> set_effects(Effects effects) {
+        return detail::call([&] { return bhr_set_effects(get(), static_cast<std::uint32_t>(effects)); });
+    }
+    /// bhr_get_effects.
+    Result<Effects> effects() const {
+        return detail::ask(Effects::none, [&](Effects &effects) {
+            std::uint32_t bits = 0;
+            const BhrStatus status = bhr_get_effects(get(), &bits);
+            effects = static_cast<Effects>(bits);
+            return status;
+        });
+    }
+
+    /// bhr_set_time: in scene lengths, which no clock counts.
+    Result<void> set_time(double time) {
+        return detail::call([&] { return bhr_set_time(get(), time); });
+    }
+    Result<void> set_preset(Preset preset) {
+        return detail::call([&] { return bhr_set_preset(get(), static_cast<BhrPreset>(preset)); });
+    }
+    Result<void> set_quality(const Quality &quality) { return set(bhr_set_quality, quality.c()); }
+    /// bhr_get_quality.
+    Result<Quality> quality() const { return filled<Quality, BhrQuality>(bhr_get_quality); }
+    Result<void> set_view(View view) {
+        return detail::call([&] { return bhr_set_view(get(), static_cast<BhrView>(view)); });
+    }
+    Result<void> set_region(const std::optional<Region> &region) { return set_or_none(bhr_set_region, region); }
+
+    /* ---- frames ---- */
+
+    /// bhr_set_progress; an empty functor: none. The one before lives on as long as a job that began with it.
+    Result<void> on_progress(ProgressFunction progress) {
+        std::shared_ptr<ProgressFunction> next;
+        if (progress) {
+            next = std::make_shared<ProgressFunction>(std::move(progress));
+        }
+        const BhrProgressFn function = next ? detail::on_progress : nullptr;
+        Result<void> done = detail::call([&] { return bhr_set_progress(get(), function, next.get()); });
+        if (done) {
+            progress_.swap(next);
+        }
+        return done;
+    }
+
+    /// bhr_render_image.
+    Result<void> render(const Image &target) { return set(bhr_render_image, target.c()); }
+    /// A frame in memory of its own.
+    Result<Frame> render(std::uint32_t width, std::uint32_t height, Format format = Format::rgba8_srgb,
+                         ImageFlags flags = ImageFlags::none) {
+        Frame frame(width, height, format);
+        Image image = frame.image();
+        image.flags = flags;
+        const bool right = width > 0 && width <= 1u << 20 && height > 0 && height <= 1u << 20;
+        if (image.pixels == nullptr && right && bytes_per_pixel(format) > 0) {
+            return Error(StatusCode::out_of_memory, "bhr::Context::render: there is no memory for the frame");
+        }
+        const Result<void> done = render(image);
+        if (!done) {
+            return done.error();
+        }
+        return frame;
+    }
+    /// bhr_context_error_message: of the last call that failed on this context, on whichever thread.
+    [[nodiscard]] std::string error_message() const {
+        return detail::message_of(bhr_context_error_message, handle_.get());
+    }
+    /// bhr_prepare; without a value: windows of 1920 x 1080.
+    Result<void> prepare(const std::optional<Image> &target = {}) { return set_or_none(bhr_prepare, target); }
+
+    /// bhr_render_image_async.
+    Result<Job> render_async(const Image &target) {
+        const detail::Call inside;
+        const BhrImage image = target.c();
+        BhrJob *handle = nullptr;
+        const BhrStatus status = bhr_render_image_async(get(), &image, &handle);
+        if (status < 0) {
+            Error error = Error::last(status);
+            inside.rethrow();
+            return error;
+        }
+        Job job(handle, progress_);
+        inside.rethrow();
+        return job;
+    }
+
+    /// bhr_surface_create.
+    Result<Surface> create_surface(const Window &window, std::uint32_t width, std::uint32_t height,
+                                   PresentMode mode = PresentMode::vsync) {
+        const detail::Call inside;
+        const BhrWindow raw = window.c();
+        BhrSurface *handle = nullptr;
+        const BhrStatus status =
+            bhr_surface_create(get(), &raw, width, height, static_cast<BhrPresentMode>(mode), &handle);
+        if (status < 0) {
+            Error error = Error::last(status);
+            inside.rethrow();
+            return error;
+        }
+        Surface surface(handle);
+        inside.rethrow();
+        return surface;
+    }
+
+    /// bhr_render_surface.
+    Result<Presented> render(Surface &surface) {
+        return detail::ask(Presented::yes, [&](Presented &presented) {
+            const BhrStatus status = bhr_render_surface(get(), surface.get());
+            presented = status == BHR_FRAME_SKIPPED ? Presented::skipped : Presented::yes;
+            return status;
+        });
+    }
+
+    /// bhr_frame_stats.
+    Result<FrameStats> frame_stats() const { return filled<FrameStats, BhrFrameStats>(bhr_frame_stats); }
+
+    /* ---- rays ---- */
+
+    /// bhr_camera_rays: row by row.
+    Result<std::vector<Ray>> camera_rays(std::uint32_t width, std::uint32_t height) const {
+        // The library refuses larger sides before it writes; memory is not asked for in vain.
+        const bool fits = width <= (1u << 20) && height <= (1u << 20);
+        std::vector<Ray> rays(fits ? static_cast<std::size_t>(width) * height + 1 : 1);
+        return detail::ask(std::move(rays), [&](std::vector<Ray> &filled_in) {
+            const BhrStatus status = bhr_camera_rays(get(), width, height, c_rays(filled_in.data()));
+            filled_in.pop_back();
+            return status;
+        });
+    }
+
+    /// bhr_camera_ray.
+    Result<Ray> camera_ray(std::uint32_t width, std::uint32_t height, double x, double y) const {
+        return detail::ask(Ray(), [&](Ray &ray) {
+            return bhr_camera_ray(get(), width, height, x, y, c_rays(&ray));
+        });
+    }
+
+    /// bhr_trace_rays: what becomes of each ray, in the same order.
+    Result<std::vector<Hit>> trace(span<const Ray> rays) {
+        std::vector<Hit> hits(rays.size());
+        Result<void> done = trace(rays, hits);
+        if (!done) {
+            return done.error();
+        }
+        return hits;
+    }
+    /// The same into memory of the caller's, which has room for as many hits as there are rays.
+    Result<void> trace(span<const Ray> rays, span<Hit> hits) {
+        static_assert(sizeof(Ray) == sizeof(BhrRay) && sizeof(Hit) == sizeof(BhrHit));
+        if (hits.size() < rays.size()) {
+            return Error(StatusCode::invalid_argument, "bhr::Context::trace: there are fewer hits than rays");
+        }
+        return detail::call([&] {
+            return rays.size() == 0 ? BHR_OK
+                                    : bhr_trace_rays(get(), c_rays(rays.data()), sizeof(Ray), rays.size(),
+                                                     reinterpret_cast<BhrHit *>(hits.data()), sizeof(Hit));
+        });
+    }
+
+    /// bhr_trace_path: at most `capacity` points.
+    Result<std::vector<PathPoint>> trace_path(const Ray &ray, std::uint32_t capacity = 4096) {
+        const std::uint32_t most = capacity < 65536 ? capacity : 65536; // it never has more
+        static_assert(sizeof(PathPoint) == 4 * sizeof(double));
+        return detail::ask(std::vector<PathPoint>(most + std::size_t(1)), [&](std::vector<PathPoint> &points) {
+            std::uint32_t count = 0;
+            const BhrStatus status = bhr_trace_path(get(), c_rays(&ray), most, &points.front().x, &count);
+            points.resize(count);
+            return status;
+        });
+    }
+
+  private:
+    Context(BhrContext *handle, std::unique_ptr<LogFunction> log) noexcept : log_(std::move(log)), handle_(handle) {}
+
+    static BhrRay *c_rays(Ray *rays) noexcept { return reinterpret_cast<BhrRay *>(rays); }
+    static const BhrRay *c_rays(const Ray *rays) noexcept { return reinterpret_cast<const BhrRay *>(rays); }
+
+    template <class C> Result<void> set(BhrStatus (*setter)(BhrContext *, const C *), const C &value) {
+        return detail::call([&] { return setter(get(), &value); });
+    }
+    template <class C, class T>
+    Result<void> set_or_none(BhrStatus (*setter)(BhrContext *, const C *), const std::optional<T> &value) {
+        return value ? set(setter, value->c()) : detail::call([&] { return setter(get(), nullptr); });
+    }
+    template <class T, class C> Result<T> filled(BhrStatus (*getter)(const BhrContext *, C *)) const {
+        return detail::ask_struct<T, C>([&](C *it) { return getter(get(), it); });
+    }
+
+    // The functors end after the context, which calls them until it has ended.
+    std::unique_ptr<LogFunction> log_;
+    std::shared_ptr<ProgressFunction> progress_;
+    detail::Handle<BhrContext, bhr_context_destroy> handle_;
+};
+
+} // namespace bhr
+
+#endif

@@ -1,0 +1,78 @@
+"""Puts into the wheel what pyproject.toml cannot name: the built library and the declarations of include/bhr.h.
+
+The environment variable BHR_LIBRARY names a built library; without it, cargo builds the release library. hatchling was
+chosen over maturin because it takes a library that is already there, built by whatever cross-compiler, and because
+maturin would need cbindgen a second time for what include/bhr.h already says.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import cffi
+from hatchling.builders.hooks.plugin.interface import BuildHookInterface
+
+LIBRARY_NAMES = {"darwin": "libbhr.dylib", "win32": "bhr.dll"}
+
+
+def declarations(header: str) -> str:
+    """The declarations of bhr.h in the C that cffi understands: without comments and preprocessor."""
+    text = re.sub(r"/\*.*?\*/|//[^\n]*", " ", header, flags=re.DOTALL).replace("\\\n", " ")
+    text = re.sub(r"^#ifdef __cplusplus$.*?^#endif$", "", text, flags=re.DOTALL | re.MULTILINE)
+    constants, attributes = [], []
+    for name, value in re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+\b(?:\([^)]*\))?)[ \t]*(.*)$", text, re.MULTILINE):
+        number = re.fullmatch(r"(?:(\d+)u?|\(0 - (\d+)\))", value.strip())
+        if number:
+            constants.append(f"#define {name} {number[1] or '-' + number[2]}")
+        elif name.startswith("BHR_") and name != "BHR_H":
+            # A macro that stands before or behind functions, for the compiler's warnings.
+            attributes.append(name.split("(")[0])
+    text = re.sub(r"^[ \t]*#.*$", "", text, flags=re.MULTILINE)
+    for name in set(attributes):
+        text = re.sub(rf"\b{name}\b(\([^()]*\))?", "", text)
+    lines = [line for line in text.splitlines() if line.strip()]
+    return "\n".join(constants + lines) + "\n"
+
+
+def library(root: Path) -> Path:
+    """The library that goes into the wheel."""
+    given = os.environ.get("BHR_LIBRARY")
+    if given:
+        path = Path(given).resolve()
+    else:
+        subprocess.run(["cargo", "build", "--release", "--lib", "--locked"], cwd=root, check=True)
+        target = root / os.environ.get("CARGO_TARGET_DIR", "target")
+        path = target / "release" / LIBRARY_NAMES.get(sys.platform, "libbhr.so")
+    if not path.is_file():
+        raise FileNotFoundError(f"the library that the wheel is to hold is not there: {path}")
+    return path
+
+
+class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
+    def initialize(self, version: str, build_data: dict[str, Any]) -> None:
+        if version == "editable":
+            raise RuntimeError("an editable install would lack the library: install the wheel")
+        root = Path(self.root).parent
+        if not (root / "include" / "bhr.h").is_file():
+            raise FileNotFoundError("the wheel is built within bhr's repository, because it holds the Rust library")
+        self.scratch = tempfile.TemporaryDirectory(prefix="bhr-wheel-")
+        module = Path(self.scratch.name) / "_ffi.py"
+        ffi = cffi.FFI()
+        ffi.set_source("bhr._ffi", None)
+        ffi.cdef(declarations((root / "include" / "bhr.h").read_text(encoding="utf-8")))
+        ffi.emit_python_code(str(module))
+        platform = re.sub(r"[^A-Za-z0-9]", "_", sysconfig.get_platform())
+        build_data["pure_python"] = False
+        build_data["tag"] = f"py3-none-{platform}"
+        build_data["force_include"][str(module)] = "bhr/_ffi.py"
+        build_data["force_include"][str(library(root))] = f"bhr/{LIBRARY_NAMES.get(sys.platform, 'libbhr.so')}"
+
+    def finalize(self, version: str, build_data: dict[str, Any], artifact_path: str) -> None:
+        self.scratch.cleanup()

@@ -1,0 +1,97 @@
+"""bhr: physically right pictures of black holes, and the numbers behind them, in numpy arrays.
+
+    import bhr
+
+    with bhr.Context() as ctx:
+        ctx.spin = 0.9
+        ctx.camera = bhr.Camera.orbit(20.0, 0.0, 0.1)
+        ctx.render(1280, 720).save("hole.png")
+
+Units are geometric, G = c = 1: the mass is given in the scene's unit of length, and the disk's radii in units of M.
+Angles are in radians, temperatures in kelvin. The hole is at the origin, its spin axis along +z.
+"""
+
+from ._constants import (
+    AdapterFlags,
+    Backend,
+    ColourMap,
+    DiskFlags,
+    DiskReference,
+    Effects,
+    EmissionLaw,
+    Fate,
+    Format,
+    Method,
+    Motion,
+    Preset,
+    Projection,
+    SkyFlags,
+    Status,
+    ToneMap,
+    View,
+)
+from ._context import Context
+from ._ffi import ffi as _ffi
+from ._frame import Frame, load
+from ._job import Job
+from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
+from ._rays import CROSSING, HIT, RAY, rays
+from ._structs import (
+    AdapterInfo,
+    Camera,
+    Disk,
+    Film,
+    FrameStats,
+    HoleInfo,
+    Quality,
+    Region,
+    Sky,
+    adapters,
+)
+
+#: The version of the library in this package.
+__version__: str = _ffi.string(_lib.bhr_version_string()).decode()
+
+__all__ = [
+    "AdapterFlags",
+    "AdapterInfo",
+    "Backend",
+    "CROSSING",
+    "Camera",
+    "Cancelled",
+    "ColourMap",
+    "Context",
+    "DeviceLost",
+    "Disk",
+    "DiskFlags",
+    "DiskReference",
+    "Effects",
+    "EmissionLaw",
+    "Error",
+    "Fate",
+    "FileError",
+    "Film",
+    "Format",
+    "Frame",
+    "FrameStats",
+    "HIT",
+    "HoleInfo",
+    "InvalidArgument",
+    "Job",
+    "Method",
+    "Motion",
+    "OutOfMemory",
+    "Preset",
+    "Projection",
+    "Quality",
+    "RAY",
+    "Region",
+    "Sky",
+    "SkyFlags",
+    "Status",
+    "ToneMap",
+    "View",
+    "adapters",
+    "load",
+    "rays",
+]

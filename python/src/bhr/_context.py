@@ -1,0 +1,455 @@
+"""The context: a scene and what traces it."""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import operator
+import weakref
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._constants import Backend, Effects, Format, Preset, Status, View
+from ._ffi import ffi
+from ._frame import Frame
+from ._gate import Gate, end_orphans, log_level
+from ._job import Job, Waiter
+from ._library import Call, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
+from ._rays import HIT, RAY
+from ._structs import (
+    AdapterInfo,
+    Camera,
+    Disk,
+    Film,
+    FrameStats,
+    HoleInfo,
+    Quality,
+    Region,
+    Sky,
+    Vector,
+    VectorLike,
+    doubles,
+    new,
+)
+
+_LOGGER = logging.getLogger("bhr")
+_LOGGER.addHandler(logging.NullHandler())
+
+_contexts: weakref.WeakSet[Context] = weakref.WeakSet()
+
+
+class Context:
+    """A scene and what traces it. A new one shows a hole of mass 1 without spin, with a golden disk, before the stars.
+
+    Setting an attribute changes the scene; an attribute that is read is a copy, which can be set again after `replace`.
+    Any thread may call; calls on one context wait for each other, and other Python threads run meanwhile.
+    """
+
+    def __init__(
+        self,
+        backend: Backend = Backend.AUTO,
+        *,
+        adapter_index: int | None = None,
+        cpu_threads: int = 0,
+        validation: bool = False,
+        logger: logging.Logger = _LOGGER,
+    ) -> None:
+        """Opens the best adapter of a backend, or the one at this index of `adapters()`. `logger` is told what its
+        level of this moment lets through."""
+        begin()
+        options = ffi.new("BhrContextOptions *")
+        check(lib.bhr_context_options_init(options, ffi.sizeof("BhrContextOptions")))
+        options.flags = lib.BHR_CONTEXT_VALIDATION if validation else 0
+        options.backend = Backend(backend)
+        if adapter_index is not None:
+            options.adapter_index = operator.index(adapter_index)
+        options.cpu_threads = operator.index(cpu_threads)
+        options.log_level = log_level(logger)
+        self._gate = Gate(options, logger)
+        self._waiter = Waiter()
+        self._view, self._time = View.LIGHT, 0.0
+        self._region: Region | None = None
+        _contexts.add(self)
+
+    # ---- life ----
+
+    def __enter__(self) -> Context:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, exception: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close(cancel=kind is not None)
+
+    def close(self, cancel: bool = False) -> None:
+        """Ends the context, after its jobs, which `cancel` stops. Calls afterwards are errors; closing again is not."""
+        if inside_callback() or self._waiter.is_this_thread():
+            raise error(Status.INVALID_STATE, "a context cannot be closed from inside a callback")
+        self._close(cancel)
+
+    def _close(self, cancel: bool) -> None:
+        if forked():
+            return
+        self._gate.refuse()
+        if cancel:
+            self._waiter.cancel()
+        self._gate.wait_until_empty()
+        self._waiter.end(cancel)
+        self._gate.destroy()
+
+    @property
+    def closed(self) -> bool:
+        return self._gate.closed
+
+    def recover(self) -> None:
+        """Opens the device anew after DeviceLost; the scene stays."""
+        with self._gate as context:
+            check(lib.bhr_context_recover(context))
+
+    @property
+    def adapter(self) -> AdapterInfo:
+        """The adapter that the context runs on."""
+        return AdapterInfo.from_c(self._read("BhrAdapterInfo", lib.bhr_context_adapter))
+
+    @property
+    def stats(self) -> FrameStats:
+        """Numbers about the last finished frame; all 0 before the first."""
+        return FrameStats.from_c(self._read("BhrFrameStats", lib.bhr_frame_stats))
+
+    def _read(self, name: str, function: Any) -> Any:
+        struct = new(name)
+        with self._gate as context:
+            check(function(context, struct))
+        return struct
+
+    def _set(self, function: Any, value: Any) -> None:
+        with self._gate as context:
+            check(function(context, value))
+
+    # ---- the hole ----
+
+    def _hole(self) -> tuple[float, float, Vector]:
+        mass, spin, axis = ffi.new("double *"), ffi.new("double *"), ffi.new("double[3]")
+        with self._gate as context:
+            check(lib.bhr_get_hole(context, mass, spin, axis))
+        return mass[0], spin[0], (axis[0], axis[1], axis[2])
+
+    @property
+    def mass(self) -> float:
+        """The mass M in scene lengths (G = c = 1). Default 1."""
+        return self._hole()[0]
+
+    @mass.setter
+    def mass(self, mass: float) -> None:
+        self._set(lib.bhr_set_mass, mass)
+
+    @property
+    def spin(self) -> float:
+        """The spin a / M, -0.999 .. 0.999. Default 0."""
+        return self._hole()[1]
+
+    @spin.setter
+    def spin(self, spin: float) -> None:
+        self._set(lib.bhr_set_spin, spin)
+
+    @property
+    def axis(self) -> Vector:
+        """The spin axis, which is also the disk's normal: a unit vector. It may be set to any length. Default +z."""
+        return self._hole()[2]
+
+    @axis.setter
+    def axis(self, axis: VectorLike) -> None:
+        self._set(lib.bhr_set_axis, doubles(axis, 3, "axis"))
+
+    @property
+    def hole_info(self) -> HoleInfo:
+        """Numbers about the hole and the camera's observer."""
+        return HoleInfo.from_c(self._read("BhrHoleInfo", lib.bhr_hole_info))
+
+    def metric_at(self, position: VectorLike) -> npt.NDArray[np.float64]:
+        """The metric g_ab at a place, 4 x 4, in Boyer-Lindquist (t, r, th, ph), signature - + + +."""
+        return self._tensor(lib.bhr_metric_at, position, (4, 4))
+
+    def christoffel_at(self, position: VectorLike) -> npt.NDArray[np.float64]:
+        """The Christoffel symbols Gamma^a_bc at a place, 4 x 4 x 4, in Boyer-Lindquist (t, r, th, ph)."""
+        return self._tensor(lib.bhr_christoffel_at, position, (4, 4, 4))
+
+    def _tensor(self, function: Any, position: VectorLike, shape: tuple[int, ...]) -> npt.NDArray[np.float64]:
+        tensor = np.empty(shape)
+        at = doubles(position, 3, "position")
+        with self._gate as context:
+            check(function(context, at, ffi.from_buffer("double[]", tensor)))
+        return tensor
+
+    # ---- the camera ----
+
+    @property
+    def camera(self) -> Camera:
+        return Camera.from_c(self._read("BhrCamera", lib.bhr_get_camera))
+
+    @camera.setter
+    def camera(self, camera: Camera) -> None:
+        self._set(lib.bhr_set_camera, camera.to_c())
+
+    def advance(self, camera: Camera, proper_time: float) -> tuple[Camera, float]:
+        """A camera moved along its world line about this hole by a proper time, and the scene time that went by. The
+        context's own camera stays where it is."""
+        struct, elapsed = camera.to_c(), ffi.new("double *")
+        with self._gate as context:
+            check(lib.bhr_camera_advance(context, struct, proper_time, elapsed))
+        return Camera.from_c(struct), elapsed[0]
+
+    # ---- the scene ----
+
+    @property
+    def disk(self) -> Disk | None:
+        """The accretion disk; None: there is none."""
+        struct, present = new("BhrDisk"), ffi.new("int32_t *")
+        with self._gate as context:
+            check(lib.bhr_get_disk(context, struct, present))
+        return Disk.from_c(struct) if present[0] else None
+
+    @disk.setter
+    def disk(self, disk: Disk | None) -> None:
+        self._set(lib.bhr_set_disk, ffi.NULL if disk is None else disk.to_c())
+
+    @property
+    def sky(self) -> Sky:
+        return Sky.from_c(self._read("BhrSky", lib.bhr_get_sky))
+
+    @sky.setter
+    def sky(self, sky: Sky | None) -> None:
+        """None: black."""
+        self._set(lib.bhr_set_sky, ffi.NULL if sky is None else sky.to_c())
+
+    def set_sky_map(self, picture: Frame | npt.NDArray[Any] | None) -> None:
+        """Gives SkyFlags.MAP its all-round picture, which is copied; None removes it. The north pole is at the top,
+        right ascension 0 in the middle, and it grows to the left."""
+        frame = Frame(picture) if isinstance(picture, np.ndarray) else picture
+        self._set(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
+
+    @property
+    def film(self) -> Film:
+        return Film.from_c(self._read("BhrFilm", lib.bhr_get_film))
+
+    @film.setter
+    def film(self, film: Film) -> None:
+        self._set(lib.bhr_set_film, film.to_c())
+
+    @property
+    def quality(self) -> Quality:
+        return Quality.from_c(self._read("BhrQuality", lib.bhr_get_quality))
+
+    @quality.setter
+    def quality(self, quality: Quality) -> None:
+        self._set(lib.bhr_set_quality, quality.to_c())
+
+    @property
+    def effects(self) -> Effects:
+        """The relativistic effects that colour the light. Default: all."""
+        effects = ffi.new("uint32_t *")
+        with self._gate as context:
+            check(lib.bhr_get_effects(context, effects))
+        return Effects(effects[0])
+
+    @effects.setter
+    def effects(self, effects: Effects) -> None:
+        self._set(lib.bhr_set_effects, Effects(effects) & Effects.ALL)
+
+    def set_preset(self, preset: Preset) -> None:
+        """Gives disk, sky, film and effects the values of a named look."""
+        self._set(lib.bhr_set_preset, Preset(preset))
+
+    @property
+    def time(self) -> float:
+        """The scene's time in scene lengths, which turns the disk. Default 0."""
+        return self._time
+
+    @time.setter
+    def time(self, time: float) -> None:
+        self._set(lib.bhr_set_time, time)
+        self._time = float(time)
+
+    @property
+    def view(self) -> View:
+        """The quantity that pixels show. Default LIGHT."""
+        return self._view
+
+    @view.setter
+    def view(self, view: View) -> None:
+        self._set(lib.bhr_set_view, View(view))
+        self._view = View(view)
+
+    @property
+    def region(self) -> Region | None:
+        """The part of a larger frame that images hold; None (default): all of it."""
+        return self._region
+
+    @region.setter
+    def region(self, region: Region | None) -> None:
+        self._set(lib.bhr_set_region, ffi.NULL if region is None else region.to_c())
+        self._region = region
+
+    # ---- frames ----
+
+    def render(
+        self,
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        format: Format | None = None,
+        transparent: bool = False,
+        out: Frame | npt.NDArray[Any] | None = None,
+        progress: Progress | None = None,
+    ) -> Frame:
+        """Renders the scene as it is now, into `out` if that is given; width and height may then be left out. Default
+        format: RGBA8_SRGB, or that of `out`. `transparent` leaves the sky out, and alpha says where it was."""
+        frame, image = _target(width, height, format, transparent, out)
+        with self._gate as context, Call(progress) as call:
+            call.check(lib.bhr_render_image(context, image))
+        return frame
+
+    def render_async(
+        self,
+        width: int | None = None,
+        height: int | None = None,
+        *,
+        format: Format | None = None,
+        transparent: bool = False,
+        out: Frame | npt.NDArray[Any] | None = None,
+        progress: Progress | None = None,
+    ) -> Job:
+        """Begins the same in the background and returns at once: a future of the frame. The scene is taken as it is
+        now. At most 64 jobs of a context may be unfinished. `progress` is called on a thread of the package."""
+        frame, image = _target(width, height, format, transparent, out)
+        pointer = ffi.new("BhrJob **")
+        with self._gate as context:
+            check(lib.bhr_render_image_async(context, image, pointer))
+            job = Job(self, pointer[0], frame, progress)
+            self._waiter.add(job)
+        return job
+
+    def render_views(self, width: int, height: int, views: Sequence[View]) -> npt.NDArray[Any]:
+        """The values of several views as a structured array of shape (height, width), a float32 field for each, named
+        "redshift", "order" and so on. Frames that other threads ask for meanwhile may show these views."""
+        chosen = [View(view) for view in views]
+        values = np.empty((height, width), [(view.name.lower(), np.float32) for view in chosen])
+        plane = Frame.empty(width, height, Format.R32F)
+        before = self.view
+        try:
+            for view in chosen:
+                self.view = view
+                values[view.name.lower()] = self.render(out=plane).array
+        finally:
+            self.view = before
+        return values
+
+    def prepare(
+        self,
+        width: int,
+        height: int,
+        *,
+        format: Format = Format.RGBA8_SRGB,
+        transparent: bool = False,
+        progress: Progress | None = None,
+    ) -> None:
+        """Makes everything that frames of the present scene need, so that the next one is no slower than later ones."""
+        image = new("BhrImage")
+        image.format, image.width, image.height = Format(format), width, height
+        image.flags = lib.BHR_IMAGE_TRANSPARENT if transparent else 0
+        with self._gate as context, Call(progress) as call:
+            call.check(lib.bhr_prepare(context, image))
+
+    # ---- rays ----
+
+    def camera_rays(self, width: int, height: int) -> npt.NDArray[np.void]:
+        """The rays of a frame through the centres of its pixels: dtype RAY, shape (height, width)."""
+        rays = np.zeros((height, width), RAY)
+        with self._gate as context:
+            check(lib.bhr_camera_rays(context, width, height, _pointer("BhrRay *", rays)))
+        return rays
+
+    def camera_ray(self, width: int, height: int, x: float, y: float) -> npt.NDArray[np.void]:
+        """One of those rays, at a pixel position; (0, 0) is the frame's top-left corner. Its shape is ()."""
+        ray = np.zeros((), RAY)
+        with self._gate as context:
+            check(lib.bhr_camera_ray(context, width, height, x, y, _pointer("BhrRay *", ray)))
+        return ray
+
+    def trace(
+        self, rays: npt.NDArray[np.void] | np.void, *, out: npt.NDArray[np.void] | None = None
+    ) -> npt.NDArray[np.void]:
+        """Traces an array of rays of any shape, and returns their ends, dtype HIT, in an array of that shape, or in
+        `out`. Rays that are contiguous in memory are not copied; `out` must be."""
+        packed = _rays(rays)
+        if out is None:
+            out = np.zeros(packed.shape, HIT)
+        elif out.dtype != HIT or out.shape != packed.shape:
+            raise ValueError(f"out has dtype {out.dtype} and shape {out.shape} instead of HIT and {packed.shape}")
+        elif not (out.flags.c_contiguous and out.flags.writeable):
+            raise ValueError("out is not contiguous, or read-only")
+        with self._gate as context:
+            ray, hit = _pointer("BhrRay *", packed), _pointer("BhrHit *", out)
+            check(lib.bhr_trace_rays(context, ray, RAY.itemsize, packed.size, hit, HIT.itemsize))
+        return out
+
+    def trace_path(self, ray: npt.NDArray[np.void] | np.void, capacity: int = 65536) -> npt.NDArray[np.float64]:
+        """The curve that a ray follows, at most `capacity` points of x, y, z and t: shape (points, 4)."""
+        packed = _rays(ray)
+        if packed.size != 1:
+            raise ValueError(f"{packed.size} rays instead of one")
+        points, count = np.empty((min(capacity, 65536), 4)), ffi.new("uint32_t *")
+        with self._gate as context:
+            check(
+                lib.bhr_trace_path(
+                    context, _pointer("BhrRay *", packed), len(points), _pointer("double *", points), count
+                )
+            )
+        return points[: count[0]].copy()
+
+
+def _pointer(kind: str, array: npt.NDArray[Any]) -> Any:
+    return ffi.cast(kind, array.__array_interface__["data"][0])
+
+
+def _rays(rays: npt.NDArray[np.void] | np.void) -> npt.NDArray[np.void]:
+    """Rays as the library reads them."""
+    if isinstance(rays, np.void):
+        rays = np.asarray(rays)
+    if not isinstance(rays, np.ndarray) or rays.dtype != RAY:
+        raise TypeError("rays are a numpy array of the dtype RAY: bhr.rays and Context.camera_rays make one")
+    return np.asarray(rays, order="C")
+
+
+def _target(
+    width: int | None,
+    height: int | None,
+    format: Format | None,
+    transparent: bool,
+    out: Frame | npt.NDArray[Any] | None,
+) -> tuple[Frame, Any]:
+    """The frame to render into, and the struct that describes it."""
+    if out is None:
+        if width is None or height is None:
+            raise TypeError("a frame needs width and height, or an array in `out`")
+        frame = Frame.empty(operator.index(width), operator.index(height), format or Format.RGBA8_SRGB)
+    else:
+        frame = out if isinstance(out, Frame) else Frame(out, format)
+        if format not in (None, frame.format):
+            raise ValueError(f"out has the format {frame.format.name}, not {Format(format).name}")
+        if width not in (None, frame.width) or height not in (None, frame.height):
+            raise ValueError(f"out has {frame.width} x {frame.height} pixels, not {width} x {height}")
+    return frame, frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0)
+
+
+@atexit.register
+def _close_all() -> None:
+    """No callback may reach an interpreter that has ended: it ends the thread, and so the process if Rust is on it."""
+    cancel_frames()
+    for context in list(_contexts):
+        context._close(cancel=True)
+    end_orphans()

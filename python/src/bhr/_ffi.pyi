@@ -1,0 +1,4 @@
+# The declarations of bhr.h, which the build of the wheel writes as a module for cffi (hatch_build.py).
+from typing import Any
+
+ffi: Any

@@ -1,0 +1,144 @@
+"""Frames: pixels in numpy arrays, which the library writes and reads in place."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._constants import Format
+from ._ffi import ffi
+from ._library import check, lib
+from ._structs import new
+
+_DTYPES: dict[Format, type[np.generic]] = {
+    Format.RGBA8_SRGB: np.uint8,
+    Format.BGRA8_SRGB: np.uint8,
+    Format.RGBA16F: np.float16,
+    Format.RGBA32F: np.float32,
+    Format.R32F: np.float32,
+}
+
+
+class Frame:
+    """A picture, or the values of a view. `array` is its memory; np.asarray(frame) is the same array."""
+
+    array: npt.NDArray[Any]
+    format: Format
+
+    def __init__(self, array: npt.NDArray[Any], format: Format | None = None) -> None:
+        """Wraps an array, without a copy: uint8 (RGBA8_SRGB, or BGRA8_SRGB if `format` says so), float16 or float32 of
+        shape (height, width, 4), or float32 of shape (height, width). Rows may have any stride; pixels are packed."""
+        self.format = _format(array, format)
+        self.array = array
+        self.image()
+
+    @classmethod
+    def empty(cls, width: int, height: int, format: Format = Format.RGBA8_SRGB) -> Frame:
+        """A frame with memory of its own, not yet filled."""
+        format = Format(format)
+        shape = (height, width) if format == Format.R32F else (height, width, 4)
+        return cls(np.empty(shape, _DTYPES[format]), format)
+
+    @property
+    def width(self) -> int:
+        return int(self.array.shape[1])
+
+    @property
+    def height(self) -> int:
+        return int(self.array.shape[0])
+
+    def image(self, writable: bool = False, flags: int = 0) -> Any:
+        """The C struct that describes the array, which must outlive it."""
+        array = self.array
+        if writable and not array.flags.writeable:
+            raise ValueError("the array is read-only")
+        image = new("BhrImage")
+        image.format, image.width, image.height, image.flags = self.format, self.width, self.height, flags
+        pixel = array.itemsize * (4 if array.ndim == 3 else 1)
+        row, between = pixel * self.width, array.strides[0]
+        packed = self.width <= 1 or array.strides[1] == pixel
+        packed = packed and (array.ndim == 2 or array.strides[2] == array.itemsize)
+        if array.size and not packed:
+            raise ValueError(f"the pixels of a row are not packed: strides {array.strides}")
+        if self.height > 1:
+            if abs(between) < row:
+                raise ValueError(f"rows of {row} bytes overlap: strides {array.strides}")
+            image.row_stride = between
+            image.byte_size = (self.height - 1) * abs(between) + row
+        else:
+            image.byte_size = row
+        image.pixels = ffi.cast("void *", array.__array_interface__["data"][0])
+        return image
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes 8-bit frames to .png or .ppm, float frames to .exr."""
+        check(lib.bhr_image_save(self.image(), _path(path)))
+
+    def to_png(self) -> bytes:
+        """The PNG file of an 8-bit frame."""
+        with tempfile.TemporaryDirectory(prefix="bhr-") as folder:
+            file = Path(folder, "frame.png")
+            self.save(file)
+            return file.read_bytes()
+
+    def _repr_png_(self) -> bytes | None:
+        return self.to_png() if self.array.dtype == np.uint8 else None
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        if dtype is not None and np.dtype(dtype) != self.array.dtype:
+            if copy is False:
+                raise ValueError(f"a frame of {self.array.dtype} becomes {np.dtype(dtype)} only by a copy")
+            return self.array.astype(dtype)
+        return self.array.copy() if copy else self.array
+
+    def __dlpack__(self, **options: Any) -> Any:
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        """The CPU's memory, always."""
+        kind, index = self.array.__dlpack_device__()
+        return int(kind), int(index)
+
+    def __repr__(self) -> str:
+        return f"<bhr.Frame {self.width} x {self.height}, {self.format.name}>"
+
+
+def _format(array: Any, format: Format | None) -> Format:
+    """The format of an array, which `format` may choose where there are two."""
+    if not isinstance(array, np.ndarray):
+        raise TypeError(f"a frame is a numpy array, not {type(array).__name__}; np.asarray makes one of most memory")
+    given = None if format is None else Format(format)
+    if not array.dtype.isnative:
+        raise TypeError("the array's bytes are in the order of another machine")
+    for known, dtype in _DTYPES.items():
+        shaped = array.ndim == 2 if known == Format.R32F else array.ndim == 3 and array.shape[2] == 4
+        if shaped and array.dtype == dtype and given in (None, known):
+            return known
+    wanted = "" if given is None else f" for {given.name}"
+    raise TypeError(
+        f"an array of {array.dtype} with shape {array.shape} does not do{wanted}: uint8, float16 or float32 with shape"
+        " (height, width, 4), or float32 with shape (height, width) for the values of a view"
+    )
+
+
+def load(path: str | os.PathLike[str]) -> Frame:
+    """Reads a PNG, EXR or PNM file: RGBA8_SRGB from files of 8 bits, else RGBA32F."""
+    image = new("BhrImage")
+    check(lib.bhr_image_load(_path(path), image))
+    format = Format(image.format)
+    # The array keeps the buffer, which keeps the pixels until nobody has the array any more.
+    pixels = ffi.gc(ffi.cast("char *", image.pixels), lambda _: lib.bhr_image_release(image), image.byte_size)
+    array = np.frombuffer(ffi.buffer(pixels, image.byte_size), _DTYPES[format])
+    return Frame(array.reshape(image.height, image.width, 4), format)
+
+
+def _path(path: str | os.PathLike[str]) -> bytes:
+    name = os.fsencode(path)
+    if b"\0" in name:
+        raise ValueError("the path contains a null character")
+    return name

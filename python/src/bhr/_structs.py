@@ -1,0 +1,292 @@
+"""The structs of bhr.h as frozen dataclasses: a changed copy is made by `replace`, and takes effect when it is set.
+Their defaults are those of the library. bhr.h says at length what each field means."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import operator
+from collections.abc import Sequence
+from typing import Any, ClassVar, TypeVar, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from ._constants import (
+    AdapterFlags,
+    Backend,
+    ColourMap,
+    DiskFlags,
+    DiskReference,
+    EmissionLaw,
+    Method,
+    Motion,
+    Projection,
+    SkyFlags,
+    ToneMap,
+)
+from ._ffi import ffi
+from ._library import begin, check, lib
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+VectorLike = Union[Sequence[float], npt.NDArray[Any]]
+
+_Self = TypeVar("_Self", bound="_Struct")
+
+
+def doubles(values: VectorLike, count: int, name: str) -> tuple[float, ...]:
+    """The numbers as floats; cffi would take too few of them, and leave the rest 0."""
+    numbers = tuple(float(value) for value in values)
+    if len(numbers) != count:
+        raise ValueError(f"{name} has {len(numbers)} numbers instead of {count}")
+    return numbers
+
+
+def new(name: str) -> Any:
+    """A C struct, cleared but for its size."""
+    struct = ffi.new(f"{name} *")
+    struct.struct_size = ffi.sizeof(name)
+    return struct
+
+
+class _Struct:
+    """A dataclass whose fields are named as those of a C struct, and converted as that has them."""
+
+    c_name: ClassVar[str]
+    #: Fields that are enumerations.
+    c_enums: ClassVar[dict[str, type[enum.IntEnum] | type[enum.IntFlag]]] = {}
+
+    def __post_init__(self) -> None:
+        types = dict(ffi.typeof(self.c_name).fields)
+        for name in _names(type(self)):
+            value = getattr(self, name)
+            kind = types[name].type
+            if name in self.c_enums:
+                value = self.c_enums[name](value)
+            elif kind.kind == "array" and kind.item.cname == "double":
+                value = doubles(value, kind.length, name)
+            elif kind.cname == "double":
+                value = float(value)
+            elif kind.kind == "primitive":
+                value = operator.index(value)
+            object.__setattr__(self, name, value)
+
+    def replace(self: _Self, **changes: Any) -> _Self:
+        """A copy with other values in these fields."""
+        return dataclasses.replace(self, **changes)  # type: ignore[type-var]
+
+    def to_c(self) -> Any:
+        struct = new(self.c_name)
+        for name in _names(type(self)):
+            setattr(struct, name, getattr(self, name))
+        return struct
+
+    @classmethod
+    def from_c(cls: type[_Self], struct: Any) -> _Self:
+        types = dict(ffi.typeof(cls.c_name).fields)
+        values = {}
+        for name in _names(cls):
+            value, kind = getattr(struct, name), types[name].type
+            if kind.kind == "array":
+                text = kind.item.cname == "char"
+                value = ffi.string(value).decode("utf-8", "replace") if text else tuple(value)
+            values[name] = value
+        return cls(**values)
+
+
+def _names(cls: type[_Struct]) -> list[str]:
+    return [field.name for field in dataclasses.fields(cls)]  # type: ignore[arg-type]
+
+
+@dataclasses.dataclass(frozen=True)
+class Camera(_Struct):
+    """An observer with a lens. Lengths in scene units, angles in radians."""
+
+    c_name: ClassVar[str] = "BhrCamera"
+    c_enums = {"projection": Projection, "motion": Motion}
+
+    position: Vector = (0.0, 26.0, 2.5)
+    #: Any non-zero length.
+    forward: Vector = (0.0, -26.0, -2.5)
+    up: Vector = (0.0, 0.0, 1.0)
+    #: The full vertical angle of PERSPECTIVE, (0, pi); across the circle of FISHEYE, (0, 2 pi].
+    fov_y: float = 0.25 * np.pi
+    projection: Projection = Projection.PERSPECTIVE
+    motion: Motion = Motion.STATIC
+    #: v / c for VELOCITY, against the local static observer (ZAMO).
+    velocity: Vector = (0.0, 0.0, 0.0)
+
+    @classmethod
+    def orbit(cls, distance: float, azimuth: float, elevation: float, **fields: Any) -> Camera:
+        """A camera that looks at the hole, at this distance from it, azimuth from +x towards +y, and elevation from the
+        xy plane towards +z."""
+        struct = cls(**fields).to_c()
+        check(lib.bhr_camera_orbit(struct, distance, azimuth, elevation))
+        return cls.from_c(struct)
+
+    @classmethod
+    def look_at(
+        cls, position: VectorLike, target: VectorLike = (0.0, 0.0, 0.0), up: VectorLike = (0.0, 0.0, 1.0), **fields: Any
+    ) -> Camera:
+        """A camera at a position that looks towards a target, by default the hole."""
+        struct = cls(**fields).to_c()
+        vectors = doubles(position, 3, "position"), doubles(target, 3, "target"), doubles(up, 3, "up")
+        check(lib.bhr_camera_look_at(struct, *vectors))
+        return cls.from_c(struct)
+
+
+@dataclasses.dataclass(frozen=True)
+class Disk(_Struct):
+    """A thin accretion disk in the equatorial plane, by default the golden one of the preset CINEMATIC."""
+
+    c_name: ClassVar[str] = "BhrDisk"
+    c_enums = {"flags": DiskFlags, "reference": DiskReference, "emission_law": EmissionLaw}
+
+    #: In M; the disk does not begin inside the ISCO, or with PLUNGES inside the horizon.
+    inner_radius: float = 0.0
+    #: In M.
+    outer_radius: float = 17.0
+    #: Kelvin, at the ring that `reference` says.
+    temperature: float = 3500.0
+    opacity: float = 1.0
+    #: The luminance of that ring at rest.
+    brightness: float = 0.6
+    #: The contrast of the structure that orbits with the matter, 0 .. 1.
+    turbulence: float = 1.0
+    seed: int = 0
+    flags: DiskFlags = DiskFlags(0)
+    reference: DiskReference = DiskReference.AT_MEDIAN
+    emission_law: EmissionLaw = EmissionLaw.ISOTROPIC
+    edge_softness: float = 0.4
+
+
+@dataclasses.dataclass(frozen=True)
+class Sky(_Struct):
+    """Everything that lies at infinity."""
+
+    c_name: ClassVar[str] = "BhrSky"
+    c_enums = {"flags": SkyFlags}
+
+    flags: SkyFlags = SkyFlags.STARS | SkyFlags.MILKY_WAY
+    stars_brightness: float = 1.0
+    #: A factor on the light of the Milky Way and of the map.
+    map_brightness: float = 1.0
+    #: The unit quaternion x y z w that takes J2000 equatorial axes to scene axes.
+    orientation: Quaternion = (0.0, 0.0, 0.0, 1.0)
+    seed: int = 0
+
+
+@dataclasses.dataclass(frozen=True)
+class Film(_Struct):
+    """How light becomes the pixels of 8-bit formats."""
+
+    c_name: ClassVar[str] = "BhrFilm"
+    c_enums = {"tone_map": ToneMap, "colour_map": ColourMap}
+
+    tone_map: ToneMap = ToneMap.ACES
+    #: Stops, -20 .. 20.
+    exposure_ev: float = 0.0
+    #: Glare, 0 .. 1: the share of the light that optics scatter.
+    bloom: float = 0.25
+    #: The full width at half maximum of a telescope's beam, in frame heights; 0: off.
+    beam_fwhm: float = 0.0
+    colour_map: ColourMap = ColourMap.NONE
+
+
+@dataclasses.dataclass(frozen=True)
+class Quality(_Struct):
+    """How exactly to trace."""
+
+    c_name: ClassVar[str] = "BhrQuality"
+    c_enums = {"method": Method}
+
+    method: Method = Method.AUTO
+    #: 1 .. 256.
+    samples_per_pixel: int = 1
+    #: Steps of an integrated ray, 16 .. 100000.
+    max_steps: int = 2000
+    #: RK4: 1e-3 .. 0.5; 0 means the default, 0.1.
+    step: float = 0.0
+    #: ADAPTIVE: the relative tolerance, 1e-14 .. 1e-3; 0 means the default, 1e-10.
+    tolerance: float = 0.0
+    #: Images of the disk to follow, 0 .. 15.
+    max_disk_order: int = 3
+    #: For windows, which this package does not have.
+    render_scale: float = 1.0
+
+
+@dataclasses.dataclass(frozen=True)
+class Region(_Struct):
+    """The part of a larger frame that an image holds: for tiles, dome walls and render farms."""
+
+    c_name: ClassVar[str] = "BhrRegion"
+
+    full_width: int
+    full_height: int
+    x: int = 0
+    y: int = 0
+
+
+@dataclasses.dataclass(frozen=True)
+class HoleInfo(_Struct):
+    """Numbers about the hole and the camera's observer, in scene lengths; NaN where not defined."""
+
+    c_name: ClassVar[str] = "BhrHoleInfo"
+
+    horizon_radius: float
+    ergosphere_equatorial_radius: float
+    photon_orbit_prograde: float
+    photon_orbit_retrograde: float
+    isco_prograde: float
+    isco_retrograde: float
+    #: Without spin; NaN with spin.
+    critical_impact_parameter: float
+    #: Without spin, as the camera's observer sees the shadow, radians; NaN with spin.
+    shadow_angular_radius: float
+    camera_radius: float
+    #: d tau / d t of the camera's observer.
+    camera_time_rate: float
+
+
+@dataclasses.dataclass(frozen=True)
+class FrameStats(_Struct):
+    """Numbers about a finished frame. Times in nanoseconds."""
+
+    c_name: ClassVar[str] = "BhrFrameStats"
+
+    frame_index: int
+    rays: int
+    steps: int
+    cpu_ns: int
+    gpu_ns: int
+    readback_ns: int
+    device_bytes: int
+
+
+@dataclasses.dataclass(frozen=True)
+class AdapterInfo(_Struct):
+    """Hardware, or a software driver, that can trace."""
+
+    c_name: ClassVar[str] = "BhrAdapterInfo"
+    c_enums = {"backend": Backend, "flags": AdapterFlags}
+
+    name: str
+    driver: str
+    backend: Backend
+    flags: AdapterFlags
+    vendor_id: int
+    device_id: int
+
+
+def adapters() -> list[AdapterInfo]:
+    """The adapters of this machine; the position in the list is Context's adapter_index. The CPU tracer is the last."""
+    begin()
+    count = ffi.new("uint32_t *")
+    check(lib.bhr_adapter_count(count))
+    found = []
+    for index in range(count[0]):
+        info = new("BhrAdapterInfo")
+        check(lib.bhr_adapter_info(index, info))
+        found.append(AdapterInfo.from_c(info))
+    return found

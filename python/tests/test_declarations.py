@@ -1,0 +1,145 @@
+"""The package says what bhr.h says: every constant with its value, every struct with its fields and defaults, every
+function."""
+
+import dataclasses
+import enum
+import re
+from pathlib import Path
+
+import bhr
+import numpy as np
+import pytest
+from bhr._ffi import ffi
+from bhr._library import lib
+from conftest import HEADER
+
+CODE = re.sub(r"/\*.*?\*/", " ", HEADER, flags=re.DOTALL)
+
+#: The prefix of each enumeration's constants.
+ENUMS = {
+    "BHR_": bhr.Status,
+    "BHR_BACKEND_": bhr.Backend,
+    "BHR_ADAPTER_": bhr.AdapterFlags,
+    "BHR_PROJECTION_": bhr.Projection,
+    "BHR_MOTION_": bhr.Motion,
+    "BHR_FORMAT_": bhr.Format,
+    "BHR_SKY_": bhr.SkyFlags,
+    "BHR_TONE_MAP_": bhr.ToneMap,
+    "BHR_COLOUR_MAP_": bhr.ColourMap,
+    "BHR_EFFECT_": bhr.Effects,
+    "BHR_PRESET_": bhr.Preset,
+    "BHR_METHOD_": bhr.Method,
+    "BHR_VIEW_": bhr.View,
+    "BHR_FATE_": bhr.Fate,
+}
+
+#: Constants of C that Python has by other means: arguments, logging's levels, numpy's strides. Windows are left out.
+ELSEWHERE = re.compile(
+    r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|MAX_CROSSINGS"
+    r"|WINDOW_\w+|PRESENT_\w+)"
+)
+
+#: Functions for windows, which this package does not have; and what cffi or numpy do in their place.
+LEFT_OUT = {
+    "bhr_surface_create",
+    "bhr_surface_destroy",
+    "bhr_surface_resize",
+    "bhr_surface_set_present_mode",
+    "bhr_render_surface",
+    "bhr_version",
+    "bhr_status_name",
+    "bhr_image_init",
+    "bhr_camera_init",
+    "bhr_disk_init",
+    "bhr_sky_init",
+    "bhr_film_init",
+    "bhr_quality_init",
+    # Messages are read on the thread of the call that failed.
+    "bhr_context_error_message",
+    "bhr_job_error_message",
+}
+
+STRUCTS = [
+    bhr.AdapterInfo,
+    bhr.Camera,
+    bhr.Disk,
+    bhr.Film,
+    bhr.FrameStats,
+    bhr.HoleInfo,
+    bhr.Quality,
+    bhr.Region,
+    bhr.Sky,
+]
+
+
+def constants():
+    found = re.findall(r"^#define (BHR_\w+) +(?:(\d+)u?|\(0 - (\d+)\)) *$", CODE, re.MULTILINE)
+    return {name: int(value) if value else -int(negative) for name, value, negative in found}
+
+
+def test_every_constant_has_a_member():
+    header = constants()
+    assert len(header) > 80
+    members = {}
+    for prefix, kind in ENUMS.items():
+        for name, member in kind.__members__.items():
+            error = kind is bhr.Status and member < 0
+            members[f"{prefix}ERROR_{name}" if error else prefix + name] = int(member)
+    # Three enumerations share the prefix of the disk's constants.
+    for kind in bhr.DiskFlags, bhr.DiskReference, bhr.EmissionLaw:
+        members.update({f"BHR_DISK_{name}": int(member) for name, member in kind.__members__.items()})
+    assert {name: value for name, value in header.items() if not ELSEWHERE.fullmatch(name)} == members
+
+
+@pytest.mark.parametrize("struct", STRUCTS, ids=lambda struct: struct.__name__)
+def test_every_field_is_there(struct):
+    fields = {name for name, _ in ffi.typeof(struct.c_name).fields} - {"struct_size", "reserved"}
+    assert fields == {field.name for field in dataclasses.fields(struct)}
+    for name, kind in struct.c_enums.items():
+        assert name in fields and issubclass(kind, enum.Enum)
+
+
+def test_every_struct_is_there():
+    structs = set(re.findall(r"^typedef struct \w+ \{.*?^\} (\w+);", CODE, re.MULTILINE | re.DOTALL))
+    others = {"BhrContextOptions", "BhrImage", "BhrRay", "BhrHit", "BhrCrossing", "BhrWindow"}
+    assert structs == others | {struct.c_name for struct in STRUCTS}
+
+
+@pytest.mark.parametrize("struct", [bhr.Camera, bhr.Disk, bhr.Film, bhr.Quality, bhr.Sky])
+def test_defaults_are_the_librarys(struct):
+    c = ffi.new(f"{struct.c_name} *")
+    assert getattr(lib, f"bhr_{struct.__name__.lower()}_init")(c, ffi.sizeof(struct.c_name)) == 0
+    assert struct.from_c(c) == struct()
+    made = struct().to_c()
+    assert made.struct_size == c.struct_size and struct.from_c(made) == struct()
+
+
+@pytest.mark.parametrize(("dtype", "name"), [(bhr.RAY, "BhrRay"), (bhr.HIT, "BhrHit"), (bhr.CROSSING, "BhrCrossing")])
+def test_dtypes_have_the_layout_of_c(dtype, name):
+    assert dtype.itemsize == ffi.sizeof(name)
+    fields = ffi.typeof(name).fields
+    assert list(dtype.names) == [field for field, _ in fields]
+    for field, c in fields:
+        kind, offset = dtype.fields[field][:2]
+        assert (offset, kind.itemsize) == (c.offset, ffi.sizeof(c.type))
+
+
+def test_every_function_is_called():
+    functions = set(re.findall(r"\b(bhr_\w+)\(", CODE))
+    assert len(functions) > 60
+    package = Path(bhr.__file__).parent
+    source = "".join(file.read_text() for file in package.glob("*.py") if file.name != "_ffi.py")
+    called = {name for name in functions if re.search(rf"lib\.{name}\b", source)}
+    assert functions - called == LEFT_OUT & functions
+    for name in functions:
+        assert getattr(lib, name)
+
+
+def test_version():
+    header = constants()
+    assert bhr.__version__ == ".".join(str(header[f"BHR_VERSION_{part}"]) for part in ("MAJOR", "MINOR", "PATCH"))
+    assert np.uint32(lib.bhr_version()) == sum(int(n) << s for n, s in zip(bhr.__version__.split("."), (16, 8, 0)))
+
+
+def test_names_that_are_exported_are_there():
+    assert {name for name in vars(bhr) if not name.startswith("_")} == set(bhr.__all__)

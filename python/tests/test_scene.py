@@ -1,0 +1,192 @@
+"""The scene: what is set is what is read, and what is refused says why and changes nothing."""
+
+import dataclasses
+import math
+import pickle
+
+import bhr
+import numpy as np
+import pytest
+
+
+def test_the_hole(ctx):
+    assert (ctx.mass, ctx.spin, ctx.axis) == (1.0, 0.0, (0.0, 0.0, 1.0))
+    ctx.mass, ctx.spin, ctx.axis = 2.0, np.float64(0.5), np.array([0.0, 3.0, 0.0])
+    assert (ctx.mass, ctx.spin, ctx.axis) == (2.0, 0.5, (0.0, 1.0, 0.0))
+    info = ctx.hole_info
+    assert info.horizon_radius == pytest.approx(2.0 * (1.0 + math.sqrt(0.75)))
+    assert math.isnan(info.shadow_angular_radius)
+
+
+def test_metric():
+    with bhr.Context(bhr.Backend.CPU) as ctx:
+        metric = ctx.metric_at((3.0, 4.0, 0.0))
+        assert metric.shape == (4, 4) and np.allclose(np.diag(metric), [-0.6, 1.0 / 0.6, 25.0, 25.0])
+        gamma = ctx.christoffel_at((3.0, 4.0, 0.0))
+        assert gamma.shape == (4, 4, 4) and gamma[0, 0, 1] == pytest.approx(1.0 / 25.0 / 0.6)
+        with pytest.raises(bhr.InvalidArgument):
+            ctx.metric_at((0.0, 0.0, 0.0))
+
+
+CHANGED = {
+    "camera": bhr.Camera.look_at((9, 1, 2), (0, 1, 0), (0, 1, 1), fov_y=1.0, motion=bhr.Motion.ORBIT),
+    "disk": bhr.Disk(
+        3.0, 20.0, 9000.0, 0.5, 2.0, 0.25, 2**64 - 1, bhr.DiskFlags.RETROGRADE | bhr.DiskFlags.PLUNGES,
+        bhr.DiskReference.AT_HOTTEST, bhr.EmissionLaw.LIMB_DARKENED, 0.125,
+    ),
+    "sky": bhr.Sky(bhr.SkyFlags.GRID | bhr.SkyFlags.MAP, 2.0, 3.0, (0.0, 1.0, 0.0, 0.0), 5),
+    "film": bhr.Film(bhr.ToneMap.AGX, -1.5, 0.5, 0.25, bhr.ColourMap.AFMHOT),
+    "quality": bhr.Quality(bhr.Method.RK4, 4, 500, 0.05, 1e-9, 5, 0.5),
+    "effects": bhr.Effects.BEAMING | bhr.Effects.LIGHT_DELAY,
+    "time": -3.5,
+    "view": bhr.View.ORDER,
+    "region": bhr.Region(100, 50, 10, 20),
+    "mass": 3.0,
+    "spin": -0.5,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CHANGED)
+def test_what_is_set_is_read(ctx, name):
+    before = getattr(ctx, name)
+    assert before != CHANGED[name]
+    setattr(ctx, name, CHANGED[name])
+    assert getattr(ctx, name) == CHANGED[name]
+
+
+def test_nothing_instead_of_disk_sky_region(ctx):
+    ctx.disk = ctx.sky = ctx.region = None
+    assert ctx.disk is None and ctx.sky.flags == 0 and ctx.region is None
+
+
+def test_presets(ctx):
+    ctx.set_preset(bhr.Preset.OBSERVATORY)
+    assert ctx.film == bhr.Film(bhr.ToneMap.NONE, -0.5, 0.0, 0.15, bhr.ColourMap.AFMHOT)
+    ctx.set_preset(bhr.Preset.CINEMATIC)
+    assert (ctx.disk, ctx.film, ctx.sky) == (bhr.Disk(), bhr.Film(), bhr.Sky())
+    with pytest.raises(ValueError):
+        ctx.set_preset(17)
+
+
+def test_structs_are_values(ctx):
+    camera = ctx.camera
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        ctx.camera.fov_y = 1.0
+    ctx.camera = camera.replace(fov_y=1, position=np.array([0, 10, 0]))
+    assert ctx.camera.fov_y == 1.0 and ctx.camera.position == (0.0, 10.0, 0.0)
+    assert pickle.loads(pickle.dumps(camera)) == camera and hash(camera) == hash(bhr.Camera())
+    assert camera.motion is bhr.Motion.STATIC
+
+
+def test_cameras():
+    camera = bhr.Camera.orbit(20.0, 0.0, 0.1, fov_y=0.5)
+    assert camera.fov_y == 0.5
+    assert camera.position == pytest.approx((20.0 * math.cos(0.1), 0.0, 20.0 * math.sin(0.1)))
+    assert np.allclose(np.cross(camera.position, camera.forward), 0.0)
+    with pytest.raises(bhr.InvalidArgument):
+        bhr.Camera.orbit(0.0, 0.0, 0.0)
+    with pytest.raises(bhr.InvalidArgument):
+        bhr.Camera.look_at((1.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+
+
+def test_a_camera_falls(ctx):
+    camera = bhr.Camera.orbit(10.0, 0.0, 0.0, motion=bhr.Motion.FREE_FALL)
+    fallen, elapsed = ctx.advance(camera, 1.0)
+    # r^(3/2) falls evenly in the proper time of one who fell from rest at infinity.
+    radius = (10.0**1.5 - 1.5 * math.sqrt(2.0)) ** (2.0 / 3.0)
+    assert np.linalg.norm(fallen.position) == pytest.approx(radius) and elapsed > 1.0
+    with pytest.raises(bhr.Error) as caught:
+        ctx.advance(camera.replace(motion=bhr.Motion.VELOCITY), 1.0)
+    assert caught.value.status == bhr.Status.UNSUPPORTED
+
+
+REFUSED = [
+    ("mass", 0.0),
+    ("mass", math.nan),
+    ("mass", -math.inf),
+    ("spin", 1.0),
+    ("spin", math.nan),
+    ("axis", (0.0, 0.0, 0.0)),
+    ("axis", (math.nan, 0.0, 1.0)),
+    ("time", math.inf),
+    ("camera", bhr.Camera(position=(0.0, 0.0, 0.0))),
+    ("camera", bhr.Camera(fov_y=math.nan)),
+    ("camera", bhr.Camera(velocity=(1.0, 0.0, 0.0))),
+    ("disk", bhr.Disk(outer_radius=math.nan)),
+    ("disk", bhr.Disk(opacity=1.5)),
+    ("sky", bhr.Sky(orientation=(0.0, 0.0, 0.0, 0.0))),
+    ("film", bhr.Film(exposure_ev=99.0)),
+    ("quality", bhr.Quality(samples_per_pixel=0)),
+    ("region", bhr.Region(0, 10)),
+]
+
+
+@pytest.mark.parametrize(("name", "value"), REFUSED)
+def test_what_is_refused_changes_nothing(ctx, name, value):
+    before = getattr(ctx, name)
+    with pytest.raises(bhr.InvalidArgument) as caught:
+        setattr(ctx, name, value)
+    assert isinstance(caught.value, ValueError) and caught.value.status == bhr.Status.INVALID_ARGUMENT
+    assert str(caught.value) == caught.value.message and len(caught.value.message) > 20
+    assert getattr(ctx, name) == before
+
+
+def test_what_python_refuses(ctx):
+    for wrong in [
+        lambda: bhr.Camera(position=(1.0, 2.0)),
+        lambda: bhr.Camera(position=(1.0, 2.0, 3.0, 4.0)),
+        lambda: bhr.Camera(motion=9),
+        lambda: bhr.Disk(seed=1.5),
+        lambda: bhr.Disk(temperature="hot"),
+        lambda: bhr.Context(backend=77),
+        lambda: setattr(ctx, "spin", "fast"),
+        lambda: setattr(ctx, "axis", (1.0, 2.0)),
+        lambda: setattr(ctx, "view", 99),
+        lambda: setattr(ctx, "disk", bhr.Disk(seed=-1)),
+        lambda: setattr(ctx, "disk", bhr.Disk(seed=2**64)),
+    ]:
+        with pytest.raises((TypeError, ValueError, OverflowError)):
+            wrong()
+
+
+def test_errors_are_values():
+    with pytest.raises(bhr.Error) as caught:
+        bhr.Context(bhr.Backend.CPU, adapter_index=10_000)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (type(again), again.status, again.message) == (type(caught.value), caught.value.status, str(caught.value))
+    for kind, base in [(bhr.OutOfMemory, MemoryError), (bhr.FileError, OSError), (bhr.Cancelled, bhr.Error)]:
+        assert issubclass(kind, bhr.Error) and issubclass(kind, base)
+        assert str(kind(bhr.Status.IO, "why")) == "why"
+
+
+def test_impossible_combinations_show_when_a_frame_is_asked_for(ctx):
+    ctx.camera = bhr.Camera.orbit(1.5, 0.0, 0.0)
+    for ask in (lambda: ctx.render(32, 18)), (lambda: ctx.camera_rays(32, 18)):
+        with pytest.raises(bhr.Error) as caught:
+            ask()
+        assert caught.value.status == bhr.Status.INVALID_STATE
+
+
+def test_tiles_make_the_frame(ctx):
+    whole = ctx.render(32, 18).array
+    tiles = np.zeros_like(whole)
+    for y in 0, 9:
+        for x in 0, 16:
+            ctx.region = bhr.Region(32, 18, x, y)
+            ctx.render(out=tiles[y : y + 9, x : x + 16])
+    assert np.array_equal(tiles, whole)
+
+
+def test_adapters():
+    found = bhr.adapters()
+    assert found[-1].backend == bhr.Backend.CPU and found[-1].flags == bhr.AdapterFlags.SOFTWARE
+    assert any(adapter.backend == bhr.Backend.VULKAN for adapter in found)
+    with bhr.Context(adapter_index=len(found) - 1, cpu_threads=1) as ctx:
+        assert ctx.adapter == found[-1]
+        assert ctx.stats.frame_index == 0
+        ctx.set_preset(bhr.Preset.TEACHING)
+        ctx.prepare(32, 18)
+        ctx.render(32, 18)
+        assert (ctx.stats.frame_index, ctx.stats.rays) == (1, 32 * 18)
+        ctx.recover()
+        ctx.render(32, 18)

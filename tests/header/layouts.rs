@@ -1,0 +1,136 @@
+//! The layouts of include/bhr.json hold in C11, in C++17, where include/bhr.hpp has structs of its own, and in Rust;
+//! and bhr.hpp leaves out nothing that the header has.
+
+use crate::c_header::{HEADER, compiler, constants, functions, root, run, scratch};
+use crate::json::{committed, entries, text};
+use bhr::capi;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
+use std::mem::{align_of, offset_of, size_of};
+
+/// Structs of bhr.h that bhr.hpp has no type of its own for.
+const C_ONLY: [&str; 1] = ["BhrCrossing"];
+
+/// A file of assertions, each `assertion(condition, "")`: those of `name_of(struct)` for every struct that has a name.
+fn assertions(include: &str, assertion: &str, align: &str, name_of: impl Fn(&str) -> Option<String>) -> String {
+    let json = committed();
+    let mut program = format!("#include <stddef.h>\n#include \"{include}\"\n");
+    for object in entries(&json, "structs") {
+        let Some(name) = name_of(text(&object["name"])) else { continue };
+        writeln!(program, "{assertion}(sizeof({name}) == {}, \"size\");", object["size"]).unwrap();
+        writeln!(program, "{assertion}({align}({name}) == {}, \"alignment\");", object["alignment"]).unwrap();
+        for field in object["fields"].as_array().unwrap() {
+            let (member, size) = (text(&field["name"]), &field["size"]);
+            writeln!(program, "{assertion}(offsetof({name}, {member}) == {}, \"{member}\");", field["offset"]).unwrap();
+            writeln!(program, "{assertion}(sizeof((({name} *)0)->{member}) == {size}, \"{member}\");").unwrap();
+        }
+    }
+    program
+}
+
+/// Compiles the assertions, and then finds out that a wrong one does not compile.
+fn hold(cpp: bool, name: &str, dialect: &str, program: &str) {
+    let compile = |text: &str| {
+        let source = scratch("layouts").join(name);
+        std::fs::write(&source, text).unwrap();
+        let mut command = compiler(cpp);
+        command.args([dialect, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only", "-I"]);
+        command.arg(root().join("include")).arg(source);
+        command
+    };
+    run(&mut compile(program));
+    let wrong = program.replacen("== 8,", "== 9,", 1);
+    assert!(wrong != program && !compile(&wrong).output().unwrap().status.success());
+}
+
+#[test]
+fn layouts_hold_in_c11() {
+    hold(false, "c11.c", "-std=c11", &assertions("bhr.h", "_Static_assert", "_Alignof", |name| Some(name.to_owned())));
+}
+
+#[test]
+fn layouts_hold_in_cpp17() {
+    let program = assertions("bhr.hpp", "static_assert", "alignof", |name| {
+        let own = name.strip_prefix("Bhr").filter(|_| !C_ONLY.contains(&name));
+        own.map(|name| format!("bhr::{name}"))
+    });
+    hold(true, "own.cpp", "-std=c++17", &program);
+    let program = assertions("bhr.h", "static_assert", "alignof", |name| Some(name.to_owned()));
+    hold(true, "plain.cpp", "-std=c++17", &program);
+}
+
+#[test]
+fn bhr_hpp_names_every_function_and_constant() {
+    /// Values that C++ has no use for: they are in other functions, or BHR_MAX_CROSSINGS is the size of an array.
+    const OTHERWISE: [&str; 3] = ["BHR_VERSION_MAJOR", "BHR_VERSION_MINOR", "BHR_VERSION_PATCH"];
+    let mut named = BTreeSet::new();
+    for part in std::fs::read_dir(root().join("include/bhr")).unwrap() {
+        let text = std::fs::read_to_string(part.unwrap().path()).unwrap();
+        // A comment is no use.
+        let code = text.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
+        named.extend(code.split(|c: char| !c.is_alphanumeric() && c != '_').map(str::to_owned));
+    }
+    let wanted = functions(HEADER).into_iter().chain(constants(HEADER));
+    let missing: Vec<_> = wanted.filter(|name| !named.contains(name) && !OTHERWISE.contains(&name.as_str())).collect();
+    assert!(missing.is_empty(), "include/bhr/ has no {missing:?}");
+}
+
+/// Size, alignment and the fields' places of structs of the library, by the struct's name.
+macro_rules! layouts {
+    ($($module:ident::$name:ident { $($field:ident),* })*) => {
+        BTreeMap::from([$((stringify!($name), (
+            size_of::<capi::$module::$name>(),
+            align_of::<capi::$module::$name>(),
+            vec![$((stringify!($field), offset_of!(capi::$module::$name, $field))),*],
+        ))),*])
+    };
+}
+
+#[test]
+fn layouts_hold_in_rust() {
+    let ours = layouts! {
+        adapter::BhrAdapterInfo { struct_size, backend, flags, vendor_id, device_id, reserved, name, driver }
+        window::BhrWindow { struct_size, kind, display, handle, aux, id, visual_id, screen, reserved }
+        context::BhrContextOptions {
+            struct_size, flags, backend, adapter_index, cpu_threads, log_level, log_fn, log_user, compatible_window
+        }
+        hole::BhrHoleInfo {
+            struct_size, reserved, horizon_radius, ergosphere_equatorial_radius, photon_orbit_prograde,
+            photon_orbit_retrograde, isco_prograde, isco_retrograde, critical_impact_parameter, shadow_angular_radius,
+            camera_radius, camera_time_rate
+        }
+        camera::BhrCamera { struct_size, projection, position, forward, up, fov_y, motion, reserved, velocity }
+        disk::BhrDisk {
+            struct_size, flags, inner_radius, outer_radius, temperature, opacity, brightness, turbulence, seed,
+            reference, emission_law, edge_softness
+        }
+        image::BhrImage { struct_size, format, width, height, pixels, row_stride, byte_size, flags, reserved }
+        sky::BhrSky { struct_size, flags, stars_brightness, map_brightness, orientation, seed }
+        film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, reserved }
+        quality::BhrQuality {
+            struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale
+        }
+        region::BhrRegion { struct_size, full_width, full_height, x, y, reserved }
+        rays::BhrRay { position, direction, frequency_ratio }
+        rays::BhrCrossing { radius, azimuth, redshift, delay }
+        rays::BhrHit {
+            fate, crossing_count, sky_direction, sky_redshift, swept_angle, steps, reserved, crossings
+        }
+        stats::BhrFrameStats {
+            struct_size, reserved, frame_index, rays, steps, cpu_ns, gpu_ns, readback_ns, device_bytes
+        }
+    };
+    let json = committed();
+    let number = |value: &serde_json::Value| usize::try_from(value.as_u64().unwrap()).unwrap();
+    let mut left: BTreeSet<&str> = ours.keys().copied().collect();
+    for object in entries(&json, "structs") {
+        let name = text(&object["name"]);
+        let (size, alignment, fields) = ours.get(name).unwrap_or_else(|| panic!("this test does not know {name}"));
+        assert_eq!((number(&object["size"]), number(&object["alignment"])), (*size, *alignment), "{name}");
+        let places = object["fields"].as_array().unwrap().iter();
+        let places: Vec<_> = places.map(|field| (text(&field["name"]), number(&field["offset"]))).collect();
+        assert_eq!(places, *fields, "{name}: left: bhr.json, right: Rust");
+        left.remove(name);
+    }
+    assert!(left.is_empty(), "bhr.json has no {left:?}");
+}
