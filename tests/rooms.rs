@@ -254,8 +254,8 @@ fn circles_of_files_are_small() {
     }
 }
 
-/// Files that are kept as they were once written.
-const AS_THEY_ARE: [&str; 4] = ["tests/abi", "tests/contract.h", "tests/golden", "src/sky/data"];
+/// Files that are kept as they were once written, and those that Doxygen writes.
+const AS_THEY_ARE: [&str; 5] = ["tests/abi", "tests/contract.h", "tests/golden", "src/sky/data", "docs/site"];
 
 /// The marks that begin a comment in a file; `None` for data, which nobody reads.
 fn comment_marks(path: &Path) -> Option<&'static [&'static str]> {
