@@ -242,7 +242,7 @@ def test_control_c_stops_a_frame(python):
     program = """
 import bhr, signal, threading, time
 ctx = bhr.Context(bhr.Backend.CPU)
-ctx.quality = bhr.Quality(method=bhr.Method.ADAPTIVE, samples_per_pixel=64)
+ctx.quality = bhr.Quality(method=bhr.Method.ADAPTIVE, samples_per_pixel=4)
 threading.Timer(0.5, lambda: signal.raise_signal(signal.SIGINT)).start()
 begin = time.monotonic()
 try:
