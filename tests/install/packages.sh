@@ -18,7 +18,7 @@ install_tools() {
     fi
     { cargo-zigbuild --version && conan --version && pyspdxtools --help >/dev/null; } ||
         { python3 -m venv "$tools" && "$tools/bin/pip" install -q cargo-zigbuild ziglang conan spdx-tools; } || return 1
-    command -v cargo-cinstall >/dev/null ||
+    [[ $(cargo-cinstall --version 2>&1) == *' 0.1'* ]] || # Debian's 0.9 does not know the edition 2024
         CARGO_TARGET_DIR=$scratch/cargo-c cargo install -q cargo-c --version '=0.10.24' --locked --root "$tools"
 }
 
