@@ -51,7 +51,7 @@ static void compare(const char *what, double truth, double found, double toleran
     }
 }
 
-/* What a library call that fails leaves is compared as NaN, so that nothing holds by accident. */
+/* A call that fails leaves NaN to be compared, so that nothing holds by accident. */
 static int worked(BhrStatus status) {
     if (status < 0) {
         fprintf(stderr, "%s\n", bhr_error_message());

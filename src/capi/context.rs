@@ -33,7 +33,7 @@ pub struct BhrContext {
     pub(super) broken: Arc<AtomicBool>,
     /// The gate that progress callbacks of jobs pass through; jobs may outlive the context.
     pub(super) progress_gate: Arc<Gate>,
-    /// Of the last call that failed on this context or on a surface of its; surfaces may outlive it.
+    /// The message of the last call that failed on this context or on a surface of its; surfaces may outlive it.
     pub(super) message: Arc<LastMessage>,
     /// Dropped after `state`, so that a renderer's last messages are still heard.
     log: Option<Registered>,
@@ -240,7 +240,7 @@ pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
 }
 
 /// Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was on,
-/// into buffer: for hosts whose calls move between threads (goroutines, worker threads of Node's or of asyncio's), where
+/// into buffer. For hosts whose calls move between threads (goroutines, worker threads of Node or asyncio), where
 /// bhr_error_message may tell of another call. At most size - 1 bytes, cut between characters, and a NUL are written,
 /// nothing when buffer is NULL or size is 0. Returns the length of the whole message in bytes without its NUL, less
 /// than 10,000; 0 when no call has failed, and for a NULL context. While other threads make calls that fail on the

@@ -28,7 +28,7 @@ pub struct BhrJob {
     progress_gate: Arc<Gate>,
     /// The log callback of the context.
     sink: Option<Arc<Sink>>,
-    /// Of the last call that failed on this job.
+    /// The message of the last call that failed on this job.
     message: LastMessage,
     /// The context's.
     broken: Arc<AtomicBool>,

@@ -1,10 +1,10 @@
 //! A second EGL context that shares the objects of wgpu's, current on a thread of its own for as long as they are used.
 //! Touches nothing of wgpu's but the handles it reads.
 //!
-//! Between its calls into GL wgpu has no context current, and then eglTerminate, called by another library of the
-//! process, ends wgpu's context at once and frees its buffers: also those that are mapped, which wgpu and bhr write into
-//! without a call. A context that is current on some thread outlives eglTerminate (EGL 1.5, 3.2), and buffers live as
-//! long as any context of their share group.
+//! Between its calls into GL wgpu has no context current. If another library of the process then calls eglTerminate,
+//! wgpu's context ends at once, and its buffers are freed, even those that are mapped: wgpu goes on writing into these.
+//! A context that is current on some thread outlives eglTerminate (EGL 1.5, section 3.2), and buffers live as long as
+//! any context of their share group.
 
 #[cfg(all(feature = "gl", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 pub use egl::ContextGuard;
