@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sets the shared library's link options, and lists the files of shaders/ for src/gpu/kernel/fragments.rs.
 
 use std::io;

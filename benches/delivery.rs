@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How frames get to the host: what presenting costs beyond tracing (into an off-screen image where no display
 //! exists), what a submission costs the calling thread, how many frames a second jobs bring into the host's memory
 //! beside what the GPU and the bus could, and how long one takes. `cargo bench --bench delivery`, or the program by

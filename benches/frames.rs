@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How long frames take: named scenes, on the GPU by its own timestamps (software drivers: wall time, their timestamps
 //! mean nothing) and on the CPU tracer by wall time. `cargo bench`, or the program by itself; a word measures the
 //! scenes whose names have it. Ends with a table: median and the 5 % and 95 % quantiles of all frames measured.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How long a host waits for frames that are the first of their kind: from the context on, through a tour of spins,
 //! effects, views, projections and formats. `cargo bench --bench tour -- [WxH] [hold ms] [cpu|vulkan|gl] [--verbose]`.
 //! For each step the slowest frame and the one in the middle, by wall time from the call to the pixels in memory; the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # page.awk -- turns a page of Markdown from the repository into one of the site: its links to other pages lead to those
 # of the site, and links to files to copies of them, whose names are added to the file `wanted`. Links to folders
 # become plain text. docs/build runs it with page (its path in the repository), root, wanted, and pages, a list of

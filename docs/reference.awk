@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # reference.awk -- turns a header of bhr's into one that Doxygen makes a reference of: the first comment becomes the
 # file's description, with its headings, and each section of the header a module. docs/build runs it.
 #

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bhr_validate.c -- compares what libbhr computes with formulas and with numbers that others published: prints each
  * truth with its source, bhr's value, the error and the tolerance, as a table, as Markdown (docs/validation.md) or as
  * JSON. Exits with 1 when one does not hold. Asks the library for rays and numbers only, on the CPU tracer, which

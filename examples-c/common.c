@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* common.c -- see common.h. Asks more of the system than C99, which else only video.c does: a monotonic clock,
  * whether a stream is a terminal, a new folder, the number of cores. */
 #if defined(__linux__)

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* common.h -- what the example programs, in C and C++, share: names of constants, a clock, reports of failures. Needs
  * libc and bhr.h only; knows no scene and makes no frame. */
 #ifndef EXAMPLES_COMMON_H

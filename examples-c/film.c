@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* film.c -- a fall into a black hole without spin, through the horizon to near its centre, as numbered pictures or as a
  * video: the frames are evenly spaced in the time of the one who falls, whose clock and radius each of them shows. Two
  * jobs are under way at a time, so that one frame is written while the next is rendered. Lengths in units of M, angles

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* gallery.c -- named scenes into PNG files, and a contact sheet of them: what the renderer can show, each in a few
  * lines. Lengths are in units of the hole's mass M, angles in degrees. */
 #include "options.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* glfw_window.c -- see glfw_window.h. */
 #include "glfw_window.h"
 

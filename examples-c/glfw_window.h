@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* glfw_window.h -- how a GLFW window becomes the BhrWindow that bhr_context_create and bhr_surface_create take. The
  * only home of that translation; needs GLFW and bhr.h, makes and destroys nothing. */
 #ifndef EXAMPLES_GLFW_WINDOW_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* options.c -- see options.h. */
 #include "options.h"
 

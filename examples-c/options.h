@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* options.h -- command lines as tables: a program lists what it takes, one line each, and the table reads the arguments
  * and prints --help. Knows no scene; scene_options.h has the table of those. */
 #ifndef EXAMPLES_OPTIONS_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // panel.cpp -- a black hole inside another program: frames come through asynchronous jobs into the program's own
 // memory and are shown as an OpenGL texture, among panels that set and measure everything. For C++ hosts that have a
 // picture to fill and no window to give away. This file: command line, context, exit status.

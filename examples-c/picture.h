@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* picture.h -- blocks of pixels in the program's memory: made, scaled, written on, saved into a folder. 8-bit pictures
  * are packed RGBA8_SRGB. Knows no scene and no context. */
 #ifndef EXAMPLES_PICTURE_H

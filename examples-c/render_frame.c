@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* render_frame.c -- one frame of a black hole into a file: what a host does from context to pixels, each step with its
  * check. Lengths on the command line are in units of the hole's mass M, angles in degrees. */
 #include "picture.h"

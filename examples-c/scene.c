@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* scene.c -- see scene.h. */
 #include "scene.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* scene.h -- everything that a frame of viewer, gallery or film shows, as plain values that are copied to try a change
  * and thrown away when bhr refuses it. Knows no window and no input. */
 #ifndef EXAMPLES_SCENE_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* scene_options.c -- see scene_options.h. */
 #include "scene_options.h"
 

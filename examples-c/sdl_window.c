@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* sdl_window.c -- a black hole in a window of SDL2: all that a host has to do for frames in a window of its own, from
  * the handle to every status that a frame can come back with. Drag with the mouse to go about the hole. Needs SDL 2.26,
  * for sizes in pixels; needs no renderer and no OpenGL of SDL's. */

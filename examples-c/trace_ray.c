@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* trace_ray.c -- one photon around a black hole, in numbers: its path, crossings of the equatorial plane, deflection,
  * fate. The light is followed backward, from a static observer (ZAMO) into the direction it looks. Asks for
  * rays; makes no image. Lengths on the command line are in units of the hole's mass M, angles in degrees. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* vectors.h -- arithmetic of three components, for the example programs' cameras. Needs libc only. */
 #ifndef EXAMPLES_VECTORS_H
 #define EXAMPLES_VECTORS_H

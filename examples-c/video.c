@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* video.c -- see video.h. ffmpeg is started without a shell: no name of a file can be taken for a command. */
 #ifndef _WIN32
 #define _POSIX_C_SOURCE 200112L /* posix_spawnp, waitpid, fcntl */

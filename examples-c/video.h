@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* video.h -- frames into a video file, by ffmpeg, which runs beside the program and reads raw pixels from a pipe. Knows
  * no scene. Needs POSIX; on Windows it refuses. */
 #ifndef EXAMPLES_VIDEO_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer.c -- a black hole in a window, to fly around in: how a host hands its window to bhr, presents frames, follows
  * sizes, and lives through a lost window or GPU. Its camera, scene, quality, input and pictures are in viewer_*.c.
  * Lengths on the command line are in units of the hole's mass M, angles in degrees. */

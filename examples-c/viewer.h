@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer.h -- what the viewer's parts share: its one struct, which GLFW's callbacks find through the window's user
  * pointer. viewer.c renders and presents, viewer_input.c turns keys and mouse into wishes. */
 #ifndef EXAMPLES_VIEWER_H

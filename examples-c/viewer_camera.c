@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_camera.c -- see viewer_camera.h. */
 #include "viewer_camera.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_camera.h -- how the viewer's camera moves: by the user's hand, eased, and by itself, along the world line of a
  * falling or orbiting observer. Moves Scene.camera and Scene.time; knows no window and draws nothing. */
 #ifndef EXAMPLES_VIEWER_CAMERA_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_input.c -- see viewer_input.h. */
 #include "viewer_input.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_input.h -- keys and mouse. One table holds the keys: it dispatches them and prints the help. Changes wishes
  * and values in the Viewer; renders nothing except for the picture keys. */
 #ifndef EXAMPLES_VIEWER_INPUT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_pictures.c -- see viewer_pictures.h. */
 #include "viewer_pictures.h"
 

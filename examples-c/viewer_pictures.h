@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_pictures.h -- pictures and recordings: frames that are rendered into memory and saved as PNG, under names that
  * overwrite nothing. Knows no window: what the context holds is what is saved. */
 #ifndef EXAMPLES_VIEWER_PICTURES_H

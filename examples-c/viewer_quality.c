@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_quality.c -- see viewer_quality.h.
  *
  * A frame's cost goes with its pixels, so with the square of the scale. Where the GPU tells its time, the load is known

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // hole.go -- a frame of a spinning black hole as hole.png, from Go through cgo, which reads bhr.h itself.
 //
 //	CGO_CFLAGS=-Iinclude CGO_LDFLAGS="-Ltarget/release -Wl,-rpath,$PWD/target/release" go run examples-other/hole.go

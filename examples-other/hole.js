@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // hole.js -- a frame of a spinning black hole as hole.png, from Node. bhr.json declares the library to koffi (npm
 // install koffi).
 //

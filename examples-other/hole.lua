@@ -1,3 +1,4 @@
+-- SPDX-License-Identifier: MIT OR Apache-2.0
 -- hole.lua -- a frame of a spinning black hole as hole.png, from LuaJIT. bhr.json declares the library; dkjson reads it
 -- (Debian: luajit lua-dkjson).
 --

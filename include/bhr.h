@@ -1,4 +1,5 @@
 /* bhr.h -- the C API of bhr, the embeddable black-hole renderer.
+ * SPDX-License-Identifier: MIT OR Apache-2.0
  *
  * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing else: make a
  * context, set the hole and the camera, and render into memory of your own.

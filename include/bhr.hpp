@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* bhr.hpp -- bhr for C++17 and later: the whole of bhr.h with ownership, types and errors of C++. Header only; it needs
  * the library that bhr.h needs, and nothing else. Compiles with and without exceptions and RTTI.
  *

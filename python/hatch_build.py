@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Puts into the wheel what pyproject.toml cannot name: the built library and the declarations of include/bhr.h.
 
 The environment variable BHR_LIBRARY names a built library; without it, cargo builds the release library. hatchling was

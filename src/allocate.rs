@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Allocates memory in amounts that are large, or that depend on the host's requests: where the system refuses it,
 //! these functions return OUT_OF_MEMORY, while `vec!`, `collect` and `push` would end the process. Knows nothing of
 //! what the memory is for.

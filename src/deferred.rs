@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Work that a thread does once it holds no lock of the process any more. A host's callback may wait for another
 //! thread's call, so none may run under a lock that such a call may need: bhr's own, wgpu's, a driver's. Messages that
 //! are logged under them wait here until the outermost [`Holding`] ends. Knows neither locks nor messages.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The one error type of the crate. Everything fallible returns it; `capi::status` maps it to a `BhrStatus` and a
 //! message. Knows nothing of C, of the GPU, or of the scene.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames in the background: requests, each with its own copy of the scene, and all that their host knows of them. The
 //! threads of worker.rs make them. Knows no callbacks and nothing of C.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! bhr, the embeddable black-hole renderer. The map of the crate, from left to right as a frame flows:
 //!
 //! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Numbers that look random and are the same on every machine.
 
 /// A bijection of 32 bits in which every input bit moves every output bit (Wellons 2018, "lowbias32").

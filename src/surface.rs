@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! One window and the way frames get into it. Frames of the window's own device are not waited for: their numbers are
 //! taken when they have run. Locks: its own before the tracer's.
 

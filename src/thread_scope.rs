@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A thread of the library enters the scope of the thread that it works for. The C API installs what a scope is: the
 //! context whose log gets the thread's messages. This module does not know that.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The two tracers behind one face: the CPU's, the GPU's, and the GPU's with GL, which runs on a thread of its own.
 //! Renderers, their jobs and their windows take turns with one. Knows no target of frames.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The binary interface of each release holds. abidiff (libabigail) compares today's header, without what says that it
 //! came later, with the baseline of the release, tests/abi/bhr-X.Y.Z.abi; the two must be alike to the last field.
 //! Headers that are broken on purpose show that each kind of break is found. And programs that were compiled and linked

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Log and progress callbacks through the C API: who hears what, what a call back in gets, and silence after the end.
 
 use bhr::capi::adapter::*;

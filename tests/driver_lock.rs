@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Everything that begins or ends the use of a driver happens under the process's one lock, whoever does it last. The
 //! test is alone in its process, as it listens to wgpu's log. Without a Vulkan adapter it fails.
 

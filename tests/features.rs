@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The library's parts that a build may go without (Cargo.toml, features): what is missing is UNSUPPORTED and says so,
 //! and nothing else is.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Both tracers against the reference values in tests/golden, inside the bars of 'What "right" means' (design.md):
 //! every error is divided by (1 + the case's conditioning). The GPU cases run on whatever adapter comes first and
 //! fail when there is none.

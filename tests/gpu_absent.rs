@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Searches for adapters where there is no loader, and where there is no driver: each in a process of its own, in
 //! silence.
 #![cfg(target_os = "linux")]

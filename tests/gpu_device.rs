@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The device layer of the GPU tracer on a real adapter; lavapipe will do. Without a Vulkan adapter these tests fail.
 
 use bhr::error::{ErrorKind, Result};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A host that draws with GL keeps its context while bhr looks for adapters. Needs EGL with a surfaceless platform,
 //! as Mesa has.
 #![cfg(target_os = "linux")]

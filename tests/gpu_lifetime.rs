@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Memory and time of GPU devices that are opened and closed many times, and memory of many frames on one. Alone in its
 //! process, and one test at a time, so that no other test's memory is seen. Without a Vulkan adapter this fails.
 #![cfg(all(target_os = "linux", target_env = "gnu"))]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # lib.sh -- what the scripts of tests/ share: folders, the Vulkan driver, building, counting. Sourced by them; runs no
 # test.
 # shellcheck shell=bash

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The WGSL of colour, stars and film: parses, validates with no capability, and agrees with the Rust that it
 //! mirrors on whatever Vulkan adapter there is (a software one will do; with none it fails).
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # needs.sh -- finds the programs and libraries that the tests need, and installs them on Debian and Ubuntu. Sourced by
 # tests/run after lib.sh; runs no test. Its functions answer by their exit status, or print the Debian packages of
 # what is missing.

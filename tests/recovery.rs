@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A GPU device that is really destroyed under a running context: every call that needs it says so until the context
 //! is recovered, and the scene comes back. Through the C API. Needs a Vulkan and a GL adapter (Mesa's software drivers
 //! will do); the tests with a window need an X server too and are run by tests/windows/run.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! `physics` alone against the reference values in tests/golden that need no tracer of pictures: shadows, redshifts,
 //! Kerr radii, Bardeen's curve, Luminet's isoradials and the Page-Thorne flux; to 1e-9 relative, flux to 1e-11. Files
 //! are found from the package's root, where cargo runs tests.

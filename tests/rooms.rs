@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The rooms of src/ and who may use whom: every room imports from the rooms below it only, files that import each
 //! other in a circle are at most three, and no file that people write is long or wide. It tests what ARCHITECTURE.md
 //! says.
@@ -365,6 +366,16 @@ fn no_comment_begins_with_a_dangling_word() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Documents and data have theirs in REUSE.toml.
+#[test]
+fn every_source_names_its_licence() {
+    const LINE: &str = "SPDX-License-Identifier: MIT OR Apache-2.0";
+    let mut without = written();
+    without.retain(|(_, marks, text)| !marks.is_empty() && !text.lines().take(3).any(|line| line.contains(LINE)));
+    let names = without.iter().map(|(path, ..)| path.display().to_string()).collect::<Vec<_>>();
+    assert!(names.is_empty(), "without a line of their licence: {names:#?}");
 }
 
 /// The rules find what they are for.

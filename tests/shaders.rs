@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Translates every shader of the GPU tracer into the languages of Vulkan, Metal, D3D12 and GL, as wgpu does when
 //! it makes a pipeline, so that an interface which nobody here can run is no surprise; and holds every loop against a
 //! list that says why it ends. Needs no adapter.

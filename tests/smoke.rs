@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! One scene on each tracer, by Vulkan and by GL, for a first look after an edit (tests/run fast): disk, turbulence,
 //! sky, stars and bloom are in it, and the tracers agree. Pictures are tested in tests/tracers. A missing adapter is a
 //! failure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // app.cpp -- see app.h.
 #include "app.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // app.h -- the program itself: the loop that begins frames, takes those that are done, and draws the window. One
 // thread, which never waits for a frame.
 #ifndef PANEL_APP_H

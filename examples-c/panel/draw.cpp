@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // draw.cpp -- see draw.h.
 #include "draw.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // draw.h -- what the panel draws with besides Dear ImGui's widgets: an OpenGL texture, a diagram to scale, line plots,
 // colours. Knows nothing of bhr.
 #ifndef PANEL_DRAW_H

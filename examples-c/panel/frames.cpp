@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // frames.cpp -- see frames.h.
 #include "frames.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // frames.h -- frames that are traced in the background, each into memory of the program's own. Never waits for one,
 // except to end it. Knows no scene and no window.
 #ifndef PANEL_FRAMES_H

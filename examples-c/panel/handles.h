@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // handles.h -- the C API in C++ terms: handles that end what they own, structs that know their size, failures that keep
 // their message. Knows neither scene nor window; a C++ host may copy it as it is.
 #ifndef PANEL_HANDLES_H

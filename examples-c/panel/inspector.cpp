@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // inspector.cpp -- see inspector.h.
 #include "inspector.h"
 

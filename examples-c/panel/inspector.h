@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // inspector.h -- questions about single rays and about space-time at a place, answered at once. Asks a context of its
 // own, on the CPU tracer: one that is busy with frames on a GPU would let the program wait for them. Draws nothing.
 #ifndef PANEL_INSPECTOR_H

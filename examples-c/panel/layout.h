@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // layout.h -- where in the window each panel stands. ImGui of this age docks nothing: the arrangement is computed from
 // the window's size.
 #ifndef PANEL_LAYOUT_H

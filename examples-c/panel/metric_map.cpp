@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // metric_map.cpp -- see metric_map.h.
 #include "metric_map.h"
 

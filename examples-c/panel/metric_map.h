@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // metric_map.h -- g_tt over a plane through the hole, as colours with a scale, the horizon and the static limit in it.
 #ifndef PANEL_METRIC_MAP_H
 #define PANEL_METRIC_MAP_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // performance.cpp -- see performance.h.
 #include "performance.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // performance.h -- how fast frames come: numbers of each finished frame, and their course over the last ones.
 #ifndef PANEL_PERFORMANCE_H
 #define PANEL_PERFORMANCE_H

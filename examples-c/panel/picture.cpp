@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // picture.cpp -- see picture.h.
 #include "picture.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // picture.h -- the picture as the window shows it, and what the mouse does on it. Traces nothing and sets nothing.
 #ifndef PANEL_PICTURE_H
 #define PANEL_PICTURE_H

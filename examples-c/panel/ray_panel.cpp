@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // ray_panel.cpp -- see ray_panel.h.
 #include "ray_panel.h"
 

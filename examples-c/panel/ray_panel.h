@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // ray_panel.h -- one ray in numbers, and its curve about the hole from the side and from above, to scale. Draws what
 // the inspector found; traces nothing itself.
 #ifndef PANEL_RAY_PANEL_H

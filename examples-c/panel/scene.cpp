@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // scene.cpp -- see scene.h.
 #include "scene.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // scene.h -- the scene as the panel edits it. Every change goes through the library's own checks: what a setter refuses
 // leaves everything as it was. Knows no window.
 #ifndef PANEL_SCENE_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // settings.cpp -- see settings.h.
 #include "settings.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // settings.h -- the panel of settings: each widget shows the value in force and asks the library for another one; what
 // it refuses is said in red under the widget and changes nothing. Makes no frames.
 #ifndef PANEL_SETTINGS_H

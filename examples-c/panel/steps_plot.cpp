@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // steps_plot.cpp -- see steps_plot.h.
 #include "steps_plot.h"
 

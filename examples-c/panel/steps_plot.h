@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // steps_plot.h -- how many integration steps the rays of the picture take: along the row of a pixel, and over the whole
 // picture. Asks for small frames in the background and shows the last ones that came.
 #ifndef PANEL_STEPS_PLOT_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // vec.h -- vectors of three doubles, and the hole's chart: scene axes turned so that the spin axis is +z. Plain
 // mathematics; knows no window.
 #ifndef PANEL_VEC_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // window.cpp -- see window.h.
 #include "window.h"
 

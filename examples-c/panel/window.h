@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 // window.h -- the program's window: GLFW, OpenGL and Dear ImGui from their start to their end. Knows nothing of bhr but
 // how an image in memory is described.
 #ifndef PANEL_WINDOW_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* bhr/context.hpp -- contexts, jobs and surfaces of bhr.h as C++ objects that end themselves. Include bhr.hpp. */
 #ifndef BHR_CONTEXT_HPP
 #define BHR_CONTEXT_HPP

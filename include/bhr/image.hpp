@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* bhr/image.hpp -- pixels in C++: views of the host's memory, frames that own theirs, pictures from files, and spans.
  * Include bhr.hpp. */
 #ifndef BHR_IMAGE_HPP

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* bhr/result.hpp -- errors of bhr.hpp: statuses, Error, Result, and how exceptions get around C. Include bhr.hpp. */
 #ifndef BHR_RESULT_HPP
 #define BHR_RESULT_HPP

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* bhr/scene.hpp -- the values that a scene is set with, in C++: enum classes for the constants of bhr.h, and its plain
  * structs with their defaults. Touches no context. Include bhr.hpp. */
 #ifndef BHR_SCENE_HPP

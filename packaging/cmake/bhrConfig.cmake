@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # find_package(bhr) of an installed bhr. Gives the targets bhr::bhr, the shared library, and bhr::static, for those of
 # the two that are there. Everything is found from this file's own place, so that the prefix may be moved: the file
 # lies in <libdir>/cmake/bhr, or in <prefix>/share/<any folders>.

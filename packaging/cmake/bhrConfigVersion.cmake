@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # The version of the bhr that bhrConfig.cmake, beside this file, finds: bhr.h has it. A version goes for every older one
 # with the same first number, because newer ones only add.
 get_filename_component(bhr_prefix "${CMAKE_CURRENT_LIST_DIR}" REALPATH)

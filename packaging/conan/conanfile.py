@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """A Conan 2 recipe for Linux and macOS, which packs the repository that it lies in. Checked by
 
     conan create packaging/conan

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # A Homebrew formula, which builds the crate that cargo packs from this repository. Checked by
 #
 #     cargo package --no-verify && brew install --build-from-source ./packaging/homebrew/bhr.rb && brew test bhr

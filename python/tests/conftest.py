@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Shared by the tests: contexts on the CPU tracer, whose frames are quick without the Milky Way."""
 
 import os

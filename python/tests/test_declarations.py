@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The package says what bhr.h says: every constant with its value, every struct with its fields and defaults, every
 function."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Frames: the same bytes as C's, in whichever array, and what becomes of them."""
 
 import math

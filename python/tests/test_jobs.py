@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Frames in the background: futures, coroutines, cancelling, progress, and the exceptions of progress functions."""
 
 import asyncio

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The lives of contexts and of the process: closing, threads, forks, the interpreter's end, memory, the log."""
 
 import gc

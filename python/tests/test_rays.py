@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Rays: their ends against theory, their arrays, and what is refused."""
 
 import math

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The scene: what is set is what is read, and what is refused says why and changes nothing."""
 
 import dataclasses

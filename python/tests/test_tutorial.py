@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The tutorial runs from its first cell to its last, in which it compares the library with theory. In tests/run all."""
 
 import base64

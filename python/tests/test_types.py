@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The package's types, under mypy --strict: its own code, the README's, and what a host writes. In tests/run all, as
 mypy takes long."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The installed wheel: its licences, its tag, its needs; and the programs of its README."""
 
 import asyncio

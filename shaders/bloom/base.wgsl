@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: does what bloom/gather.wgsl does, for the finest grid's cells of 2 x 2 pixels. Their shares 1 3 3 1 are those
 // of linear filtering between the pixels of two pairs, so that 4 samples serve instead of 16. Beyond the frame's border
 // lies the border's pixel, which so keeps its light.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: spreads the light of a grid's cells by the beam's Gaussian, along rows or along columns. Mirrors
 // src/film/bloom/beam.rs, where the formulas, sources and reasons are.
 

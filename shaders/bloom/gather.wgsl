@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: each cell of a grid takes the mean of what the finer cells, or pixels, about it give it of their light.
 
 #import bloom/level

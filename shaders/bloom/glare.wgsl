@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The light that film/develop.wgsl and film/develop_rows.wgsl develop in frames with bloom: the share that a pixel
 // keeps of its own light, and its share of the light that the finest grid spreads, which falls linearly from the cells'
 // centres.

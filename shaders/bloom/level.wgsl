@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Bloom: a grid of mean light over a finer one, which for the finest grid is the frame itself. Mirrors
 // src/film/bloom.rs, where the formulas, sources and reasons are.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: each cell of a grid gets its share of the light that the coarser grids spread, on top of what it spreads
 // itself.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // How far look directions are from the critical curve, by their rays' constants alone. Mirrors `CurveLevel` of
 // src/physics/lens/critical.rs, where the formulas are; knows no tables and integrates nothing.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The way from a look direction to the start of its ray: aberration and the local frame. Mirrors
 // src/physics/observer.rs; knows no integrator.
 

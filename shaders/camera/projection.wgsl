@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // How the camera's projection takes positions of the full frame, in pixels, to look directions. Mirrors
 // src/scene/projection.rs, where the formulas and conventions are.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The disk's light at a crossing. Mirrors src/emit/thin_disk.rs. The table of the temperature profile comes from
 // src/physics/disk_flux.rs and lies at PROFILE_OFFSET; an entry is the value and the step to the next one. Its other
 // half is the table of src/physics/limb_darkening.rs.

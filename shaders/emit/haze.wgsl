@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // A glowing haze about the hole. Mirrors src/emit/haze.rs, where the formulas are.
 
 #import emit/shift

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The matter that a ray passes between two crossings of the plane, summed up. Mirrors src/emit/medium.rs, where the
 // formulas are. Knows no kind of matter.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The light of the emitters in the equatorial plane. Mirrors `PlaneLight` of src/emit/mod.rs; an emitter more is called
 // here.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The parts of light's frequency shift that a scene's effects (BHR_EFFECT_*) show. Mirrors src/cpu/shade.rs and
 // src/physics/orbit.rs. Knows no emitter and no colour.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The streaks of the disk's turbulence in a patch of the disk. Mirrors src/emit/streaks.rs, where the reasons are. They
 // are filtered by the hardware, whose weights have 8 bits: that changes light by less than a step of 255.
 

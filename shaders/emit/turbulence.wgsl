@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The structure of the disk. Mirrors src/emit/turbulence.rs, where the reasons are. Knows no colours.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The emitters with depth, along a ray while it is traced. Mirrors `Emitters::along` of src/emit/mod.rs and
 // `Medium::add_part` of src/emit/medium.rs; an emitter more is called here.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Colour maps for the luminance of developed light. Mirrors src/film/colour_map.rs, where the formulas and sources are.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: develops the light of a tile to pixels. The curves are in film/film.wgsl; the light comes from
 // film/summed.wgsl or bloom/glare.wgsl.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: does what film/develop.wgsl does, for film/packed_rows.wgsl.
 
 #import constants

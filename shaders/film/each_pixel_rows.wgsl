@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: makes the record of each pixel of a tile and hands it to take_record, as records/each_pixel.wgsl does; but a
 // workgroup gathers its 32 x 4 pixels and writes them row by row, which is faster where the pixels lie in the host's
 // memory (film/packed_rows.wgsl says by how much).

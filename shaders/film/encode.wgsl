@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Limits radiance to the range of a pixel, and encodes it by the sRGB curve. Mirrors src/film/mod.rs, where the
 // formulas and reasons are.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // False colour for views other than light. Mirrors src/film/false_colour.rs, where the formulas, sources and reasons
 // are.
 

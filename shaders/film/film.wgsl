@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Film: develops radiance to pixels. Mirrors src/film, where the formulas, sources and reasons are. Functions that are
 // called from loops have no early return, as Mesa 22.3's shader compiler crashes on some; but for those under an `if`
 // over constants, which src/gpu/device/specialise.rs leaves out.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes the exposed light of a frame with bloom, from shading or from the sum of samples, into a texture from which it
 // then spreads. The bindings are those of film/packed.wgsl.
 

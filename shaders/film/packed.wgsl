@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes the packed pixels of a tile, rows without gaps, into the buffer that a frame's last kernel writes for the
 // host. (The uniforms of group 2 come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
 

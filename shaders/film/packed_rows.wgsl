@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes the packed pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory. The
 // bus carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row
 // (H200: 49 against 24.5 GB/s). So a workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide,

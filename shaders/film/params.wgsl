@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The uniform `film`, which says how pixels are developed; the fragment that writes the pixels binds it. Mirrors
 // `FilmParams` of src/film/mod.rs.
 

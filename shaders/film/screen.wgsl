@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes pixels into a window's texture, from which window/present.wgsl fills the window's image. The bindings are
 // those of film/packed.wgsl.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The light that film/develop.wgsl and film/develop_rows.wgsl develop in frames without bloom: the sum of a tile's
 // samples.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Light rays traced backward, in Mino time: the equations of motion. Mirrors src/physics/geodesic.rs,
 // where the formulas and their sources stand. Knows no integrator and no observer.
 

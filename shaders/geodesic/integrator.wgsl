@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Steps of a light ray in Mino time, their dense output, and the step limit beside the horizon. Mirrors
 // src/physics/integrator.rs. Knows the equations only through geodesic/geodesic.wgsl.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: traces rays whose start the host computed in f64 (`Scene::start`), one a thread, for bhr_trace_rays.
 // Redshifts, azimuths and units are the host's work; the kernel gives back where the ray crossed the plane and ended.
 

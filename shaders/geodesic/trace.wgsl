@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // One light ray from its start to its fate. Mirrors src/physics/trace.rs; knows no observer, no pixel and no buffer.
 //
 // The inner loop only steps; whatever happens in a step is looked into outside it: GPUs (and lavapipe, which runs both

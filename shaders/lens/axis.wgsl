@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The parts that the lens tables of both kinds share: the logarithmic axis of distance from the critical curve, and
 // cubic interpolation. Mirrors src/physics/lens/coordinate.rs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: makes the records of the pixels that records/each_pixel.wgsl deferred, and hands each to take_record.
 
 #import lens/kerr_record

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Tables of what becomes of the rays of one observer, who is outside the photon region of a spinning hole: sky
 // direction and crossings of the equatorial plane, by look direction. Look directions are in polar coordinates about
 // the centre of the shadow: psi is the angle from the centre, chi the angle around it, psi = R(chi) the critical curve

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Ray records with spin of pixels that the tables of lens/kerr.wgsl do not hold, integrated. The sky's footprint is the
 // tables' all the same; those of crossings come from the next pixels' rays.
 

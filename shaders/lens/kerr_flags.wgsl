@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: what may happen in each cell of the tables of lens/kerr.wgsl, and whether it may be interpolated; one thread
 // a cell. Mirrors `Patch` of src/physics/lens/kerr/cells.rs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: the nodes of the tables of lens/kerr.wgsl, one thread each: traces a ray to infinity and a little beyond, so
 // that crossings continue smoothly past it.
 

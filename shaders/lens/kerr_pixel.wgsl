@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Ray records with spin, as the tables of lens/kerr.wgsl have them; rays that the tables do not hold are left to
 // lens/kerr_deferred.wgsl.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Looks rays up in the tables of lens/kerr.wgsl. Mirrors src/physics/lens/kerr/ and src/cpu/lens.rs.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Tables of what becomes of an observer's rays about a hole without spin. A ray depends on psi alone, the angle between
 // its look direction and the direction to the hole. Shared by the kernels that build the tables and those that read
 // them; the formulas are in src/physics/lens/schwarzschild.rs and coordinate.rs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: fills u, and the delay's integral, along the ray of each node; one thread a node. The curves are in
 // lens/schwarzschild_curve.wgsl.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The ray of a node of the tables of lens/schwarzschild.wgsl, for the kernels that build them. A ray is followed in
 // sigma = S tau, tau being Mino time and S Constants.scale, in which all rays are about equally long. The angle that
 // it sweeps is phi = kappa sigma. The formulas are in src/physics/lens/schwarzschild.rs.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: finds where the ray of each node ends; one thread a node. The curves are in lens/schwarzschild_curve.wgsl.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Ray records about a hole without spin, looked up in the tables of lens/schwarzschild.wgsl. Mirrors
 // src/physics/lens/schwarzschild.rs, src/physics/lens/plane.rs and src/cpu/lens.rs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: makes the record of each pixel of a tile, and hands it to take_record.
 
 #import records/record

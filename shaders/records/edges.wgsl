@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The list of a tile's pixels that edges run through. The kernels that shade pixels write it, refine/refine.wgsl reads
 // it. Knows no light.
 

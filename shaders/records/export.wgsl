@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes the ray records of a tile into a buffer, for tests: src/gpu/frame/export.rs reads them.
 
 #import constants

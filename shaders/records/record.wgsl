@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The ray record of a pixel: the one interface between lensing and shading. Its counterpart is src/scene/record.rs,
 // where crossings and media are members; here the functions below give them one by one. A file of traced/, lens/ or
 // refine/ makes the records of a kernel, and declares those of these functions that the kernel calls:

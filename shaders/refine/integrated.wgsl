@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // A ray that is integrated for one sample of a pixel, and its crossings of the whole plane. Used by
 // refine/traced.wgsl and refine/kerr.wgsl; knows no tables and no textures.
 

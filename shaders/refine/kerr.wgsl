@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Ray records about a spinning hole for the extra rays of pixels that are refined: looked up in the tables of
 // lens/kerr.wgsl, or integrated where the tables are not exact enough.
 

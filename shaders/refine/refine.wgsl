@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: shades `pass_.refined` samples of each pixel of a list of records/edges.wgsl, and hands their mean to
 // take_light in place of the pixel's light. Mirrors src/cpu/refine.rs and src/scene/refine.rs, where the reasons are.
 // Knows no way to make records.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Ray records of samples of traced pixels: integrated.
 
 #import records/record

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Develops the light of a pixel at once, where the pixel has but one sample.
 
 #requires fn write_pixel(id: vec2<u32>, radiance: vec4<f32>)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Shades a pixel's record, and lists the pixel if edges run through it. take_light takes the light of the tile's pixel
 // `id`; where it is called a second time, that light takes the place of the first.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Adds the light of one of a pixel's samples to the sum of those before.
 
 #import shared/not_inlined

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The linear radiance (or a view's value) of a ray record. Mirrors src/cpu/shade.rs. Does not know how the record was
 // made.
 

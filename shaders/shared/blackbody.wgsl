@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Thermal light as the eye sees it: mirrors src/physics/blackbody.rs (BlackbodyTable), where the formulas and reasons
 // are. Node i of the table, light_table(i), holds rgb / Y and ln(Y / T) + WIEN_TEMPERATURE / T.
 

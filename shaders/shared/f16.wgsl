@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Numbers rounded to what f16 tells apart, to even: storing them in a texture of f16 changes nothing, whatever way the
 // driver rounds. So sums of light keep what they are on average.
 

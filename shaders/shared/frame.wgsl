@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms.rs.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Elementary functions whose error the lens can bear: drivers' sin, cos and atan2 may be as loose as 5e-4 (Vulkan's
 // precision table). Used by every other file; knows nothing of them.
 

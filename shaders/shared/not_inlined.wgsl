@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Words of uniforms that by themselves decide an `if`, a `switch` or a loop's end go through `not_inlined`. Knows no
 // other file; used by kernels, which set `unknown_zero` first.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // One sample of one tile: the uniform `pass_`, which the kernel binds. The traced rectangle is the tile and one pixel
 // around it, for the derivatives.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The coordinate grid laid over the sky. Mirrors src/sky/grid.rs, where the reasons are.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The light of sky maps in a pixel. Mirrors src/sky/filter.rs, where the reasons are, on the texels of src/sky/map.rs.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The light of sky maps under frequency shifts. Mirrors src/sky/shift.rs, where the formulas and reasons are.
 
 #import constants

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // The stars of a pixel. Mirrors src/sky/index.rs (cell_of, level_for, margin) and src/sky/stars.rs (the drawing rule),
 // where the reasons are.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: the steps of all rays of a traced rectangle, summed. In a pass of its own: a barrier or an atomic for every
 // pixel would cost the tracing kernel more than this does.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Footprints of traced pixels, from their neighbours' records, which traced/pixels.wgsl wrote. The layout of the
 // textures is in traced/layout.wgsl.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // How traced/pixels.wgsl leaves what it traced for traced/record.wgsl: in textures of the traced rectangle's size,
 // because neighbours are read together and software drivers reach into buffers lane by lane.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Kernel: traces the pixels of a tile's rectangle into record textures. Does not know what shading will do with them.
 
 #import constants

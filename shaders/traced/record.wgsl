@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Ray records of traced pixels: reads what traced/pixels.wgsl wrote.
 
 #import constants

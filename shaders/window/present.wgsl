@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 // Shaders: one triangle that covers a window's image, and the codes of `screen` in it. The only stage of a frame that
 // is not compute.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrAdapterInfo and BhrBackend: what bhr can run on.
 
 use super::entry::outside_callbacks;

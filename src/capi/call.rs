@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Calls on a context: one at a time, with its log callback listening.
 
 use super::context::{BhrContext, State};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Counts, for each thread, the calls and the callbacks of the host's that it is inside of.
 
 use std::cell::Cell;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrCamera: the struct, the helpers that aim one, and setting, getting and advancing it.
 
 use super::call::on_context;

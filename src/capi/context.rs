@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrContext: one `Renderer` behind a lock, with its region, callbacks and log. Makes and ends it; what is drawn
 //! is set elsewhere.
 

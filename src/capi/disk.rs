@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrDisk: the accretion disk.
 
 use super::call::on_context;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BHR_EFFECT_*, the relativistic effects that colour the light, and the scene's time.
 
 use super::call::on_context;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrFilm: how light becomes 8-bit pixels.
 
 use super::call::on_context;

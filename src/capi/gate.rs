@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A gate that callbacks of the host pass: once it is closed none runs any more, and those that run are waited for.
 
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};

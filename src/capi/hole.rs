@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The hole: mass, spin, axis, and numbers about it.
 
 use super::call::on_context;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrImage: pixels in the host's memory, and image files. The pixels that bhr_image_load hands out are kept here
 //! until they are released.
 

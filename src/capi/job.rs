@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrJob: frames in the background. One `Job` with what its waits need of the context, which may be gone by then.
 
 use super::call::{break_if_internal, keep, on_context};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrLogLevel, BhrLogFn, and the way from the `log` crate to the hosts' callbacks. The process-wide logger is
 //! installed here, when the first context with a callback is made, and only if the process has none. Nothing is
 //! ever printed. What comes up under a lock of the process is told when that is released (`deferred`).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The message of a thread's last failed call, and those of a context's and a job's, which any thread may ask for.
 
 use parking_lot::Mutex;

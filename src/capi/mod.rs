@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The C boundary: the only `extern "C"` of the crate and all code that touches a host's pointers. One file per C
 //! concept; each holds the types, constants and functions of one section of `include/bhr.h`, which
 //! `tests/header/generated.rs` makes from them. Public items that begin with `bhr_`, `Bhr` or `BHR_` are the API, and

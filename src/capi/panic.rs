@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The whole panic policy: a panic inside a call becomes an error of that call, and is not printed.
 
 use super::callback::{CALLS, Depth, count};

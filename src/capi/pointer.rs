@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Plain pointers of the host: NULL checks, fixed arrays in, out-parameters out. Copies only, never a reference, so
 //! that alignment does not matter. Structs that carry a size are in `versioned`.
 

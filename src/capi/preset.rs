@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BHR_PRESET_*: named looks.
 
 use super::call::on_context;

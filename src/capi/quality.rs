@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrQuality: how exactly to trace.
 
 use super::call::on_context;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrRay, BhrHit: the tracer, asked directly. Arrays of the host's are packed with the struct sizes it was
 //! compiled with.
 

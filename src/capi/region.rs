@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrRegion: the part of a larger frame that an image holds.
 
 use super::call::on_context;

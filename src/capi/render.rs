@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rendering into the host's memory, and the progress callback that goes with it.
 
 use super::call::on_context;

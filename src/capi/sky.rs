@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrSky: the stars, the Milky Way, a map and a grid at infinity.
 
 use super::call::on_context;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrFrameStats: numbers about the last finished frame.
 
 use super::call::on_context;

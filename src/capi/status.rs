@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrStatus, its names, and the message of this thread's last failure. The mapping from `ErrorKind` stands here
 //! and nowhere else.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrSurface: rendering into a window of the host's. One `Surface`, shared with its context, which may go first.
 
 use super::call::{keep, on_context};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Versions: the header's (constants) and the loaded library's (functions). The crate's version in Cargo.toml must
 //! agree.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Structs that may grow: they begin with `struct_size`, the size the host was compiled with. The rule in the header's
 //! preface is implemented here, and nowhere else. Structs are copied in and out; no reference into the host's memory is
 //! ever made.

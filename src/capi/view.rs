@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrView: the quantity that pixels show.
 
 use super::call::on_context;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! BhrWindow: a window of the host's, as the raw-window-handle crate describes it. Its fields are read and checked
 //! here; nothing behind its pointers is touched.
 

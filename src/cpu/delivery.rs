@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How the tiles of a frame go to the sink: each as soon as it has its light, or, with bloom, once all have theirs, as
 //! every pixel gets a little of every other's. Knows neither how light is made nor host memory.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A frame on the CPU: tile by tile, sample by sample; rows of a tile in parallel. Knows no host memory: finished
 //! tiles go to the sink.
 

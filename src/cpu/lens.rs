@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Ray records of pixels, looked up in tables of the observer's lens (`physics::lens`), and the tables themselves,
 //! built in parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them
 //! by tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The CPU tracer: f64, on a rayon pool of its own. The fallback where no driver exists, and the reference that the
 //! GPU tracer is held against. Calls `physics`; knows no pixel memory and nothing of C.
 

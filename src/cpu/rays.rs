@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, traced side by side.
 
 use crate::scene::host_rays::trace_ray;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Ray records of pixels, made by tracing each ray in f64; derivatives come from the neighbours' rays.
 
 use crate::emit::along::MediaAlong;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The second look at a pixel that edges run through: more rays, each for a cell of its own, and their mean light.
 //! Mirrored by shaders/refine/refine.wgsl; `scene::refine` has the rules. Knows no film.
 

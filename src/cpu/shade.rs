@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl`. Does not
 //! know how the records were made.
 

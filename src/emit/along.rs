@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The media along a ray, gathered while it is traced. Knows no kind of matter.
 
 use super::Emitters;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A crossing of the equatorial plane, as emitters see it, and the light that they add there. Plain data.
 
 /// The place and time at which the light of a crossing left, or the change of both from pixel to pixel.

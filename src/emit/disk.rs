@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The accretion disk as the host states it: geometrically thin, in the equatorial plane, on circular geodesics. Plain
 //! data.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A glowing haze about the hole, the simplest emitter with depth: density e^(-r^2 / 2 R^2), at rest as the local ZAMO
 //! is. It has no colour of its own and no place in the C API: it is there for the tests of light through matter.
 //! Mirrored by `shaders/emit/haze.wgsl`.

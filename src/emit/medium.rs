@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The matter that a ray passes between two crossings of the plane, summed up: the light that it sends to the observer
 //! and the share of the light from behind that it lets through. Knows no kind of matter.
 

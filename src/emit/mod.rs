@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The matter that shines or absorbs near the hole: the emitters of a scene, the facts about a ray that each needs, and
 //! the light that each adds to a ray. Mirrored by `shaders/emit/`. A camera enters only as a ratio of frequencies,
 //! pixels only as the change of a crossing to the next pixel; knows nothing else of either, and no tracer.

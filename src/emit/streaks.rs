@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The streaks that the disk's turbulence is made of: noise drawn once for a process into a picture that repeats in
 //! azimuth and in ln r, filtered over the patch that a pixel sees of it. Mirrored by `shaders/emit/streaks.wgsl`, which
 //! reads the same texels. Knows neither orbits nor time.

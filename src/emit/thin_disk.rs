@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The accretion disk of a scene: where it lies, and its light at a crossing. Mirrored by `shaders/emit/disk.wgsl`.
 
 use super::crossing::{Crossing, Emission, Shift};

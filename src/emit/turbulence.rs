@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Structure of the disk: the factor by which its turbulence changes the brightness at a place and a time. The
 //! pattern's motion, the split of the scene's time, and where which pattern shows are here; `streaks` has the pattern.
 //! Both tracers use them, and `shaders/emit/turbulence.wgsl` mirrors `brightness`. Knows no colours and no rays.

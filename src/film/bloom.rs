@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bloom: the glare that scattered light makes around bright things. This file says which share of a frame's light
 //! goes how far, makes the grids that spread it, and spreads it on the CPU; `shaders/bloom*.wgsl` and
 //! `src/gpu/frame/bloom.rs` do the same with these numbers. Works on exposed light

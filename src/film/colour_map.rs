@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Colour maps: the luminance of developed light to a colour, as radio astronomers show their images. In f32, as
 //! `shaders/film/colour_map.wgsl`, which has the same functions. Knows nothing of pixels and formats.
 

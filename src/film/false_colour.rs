@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! False colour for views other than light: a value to 8-bit sRGB. In f32, as `shaders/film/false_colour.wgsl`, which
 //! has the same functions. The maps are curves of constant speed in CIELAB (CIE 1976), so that equal steps of the
 //! scaled value are equal steps of colour, and lightness is linear in it (Kovesi 2015: what makes fine structure

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Film: linear Rec. 709 radiance to the pixels of a format. 8-bit formats get exposure, tone map, the sRGB curve or a
 //! colour map, and dithering; float formats get the radiance as it is. Views other than light get false colour, or
 //! their value. In f32, so that `shaders/film/film.wgsl`, which has the same functions, agrees to one step of 8 bits.

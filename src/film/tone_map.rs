@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The tone maps: linear Rec. 709 scene light, 1.0 being a bright surface, to linear display light in [0, 1].
 //! In f32, as `shaders/film/film.wgsl`, which has the same functions. Knows nothing of pixels and formats.
 

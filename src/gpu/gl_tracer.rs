@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A GPU tracer on GL: every call, and the end, on the one thread that its context may be current on
 //! (device/gl_thread.rs). Knows no scenes.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The GPU tracer: wgpu compute, f32. Owns the device, the pipelines and the readback. Mirrors the CPU tracer in what
 //! a frame shows; knows no host memory (tiles go to a sink) and nothing of C. Its rooms, each above those before it:
 //! `device`, `kernel`, `lens`, `frame`; beside the last two `window`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Threads that share the copying of large pieces of memory: one core brings about 12 GB/s out of a GPU's staging
 //! memory, a PCIe 5 bus carries 50. Knows no images and touches no memory itself.
 

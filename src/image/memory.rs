@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Images in the host's memory: formats and strides. Bytes between rows are never touched, not even borrowed:
 //! images may lie side by side in one block and be written by different threads. Outside `capi` this is the only
 //! file with raw pointers.

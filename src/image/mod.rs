@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pixels in memory and in files: formats, strides, and reading and writing image files. Knows neither scenes nor
 //! tracers.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The two threads that make a renderer's jobs. One prepares frames and submits them to the GPU; the other waits for
 //! what it has made and copies that into the host's memory. So copying, which may take as long as tracing, delays no
 //! submission. Frames end in the order in which they were requested. Only the first thread holds a tracer; the second

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Thermal light as the eye sees it: Planck's law through the CIE 1931 observer to linear Rec. 709 colour, the table
 //! of it that both tracers read, and the one rule by which a redshift changes it. Knows nothing of disks, stars or
 //! film. `shaders/shared/blackbody.wgsl` mirrors `BlackbodyTable` under the same names.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The colour matching functions of the CIE 1931 standard colorimetric observer (2 degrees): a table of facts, nothing
 //! else. Source: CIE S 014-1 (ISO/CIE 11664-1), tabulated at 1 nm from 360 to 830 nm; every fifth row is kept. 5 nm
 //! agree with the full table to 4e-6 in chromaticity for blackbodies. The ends beyond CIE 15's 380 to 780 nm matter

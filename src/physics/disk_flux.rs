@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The flux of a geometrically thin, optically thick disk on circular geodesics (Page & Thorne 1974), and the
 //! temperature profile that the tracers look up. Knows orbits only.
 

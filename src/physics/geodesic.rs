@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light rays traced backward, in Mino time tau: the equations of motion and what is measured along a ray.
 //! Knows no integrator and no observer. Mirrored by `shaders/geodesic/geodesic.wgsl`.
 //!

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Steps of a light ray in Mino time: classic RK4, the embedded Dormand-Prince 5(4) pair, and the Nystrom method of
 //! order 5 that the renderer uses; their common dense output; the step limit beside the horizon. Knows the equations
 //! only through `geodesic`. Mirrored by `shaders/geodesic/integrator.wgsl`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The light that leaves a surface by the angle to its normal: limb darkening of an atmosphere that scatters by
 //! electrons. Knows no disk.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The Kerr metric in Boyer-Lindquist coordinates (t, r, th, ph), signature - + + +, its inverse, its Christoffel
 //! symbols, and the conversion between Boyer-Lindquist and chart coordinates. Knows nothing of geodesics.
 //!

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light and matter around a black hole, in f64 and units G = c = M = 1 (r_s = 2): usable alone, tested alone.
 //! Knows neither scenes nor tracers; the WGSL in `shaders/` mirrors it, function by function, under the same names.
 //!

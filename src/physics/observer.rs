@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Observers: the local orthonormal frame at a place, how a moving observer's directions look in it (aberration), and
 //! the start of the light ray that a look direction stands for. Knows no integrator.
 //!

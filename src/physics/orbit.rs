@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Radii and circular equatorial orbits of the Kerr spacetime. Knows nothing of light beyond the photon orbits.
 //!
 //! Bardeen, Press & Teukolsky 1972, eq. 2.12 - 2.21. `a` is signed; matter moves towards +ph ("prograde") unless

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The motion of the matter in the equatorial plane: circular geodesics, and, where it is said to plunge, the geodesics
 //! that lead from the ISCO to the horizon. The frequency of light that such matter measures. Knows no light's colour.
 //!

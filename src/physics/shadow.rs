@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The shadow: critical impact parameter, and its angular radius for spin-0 observers.
 //! Knows observers, no integrator.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! One light ray from its start to its fate: steps, crossings of the equatorial plane, escape and capture. The only
 //! driver of the integrators; knows no light, no camera and no pixel. Mirrored by `shaders/geodesic/trace.wgsl`.
 //!

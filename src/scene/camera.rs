@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The camera: an observer with a lens. It checks only itself; a motion that the hole does not allow is found when a
 //! frame is asked for (`scene::observer`).
 

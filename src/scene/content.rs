@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The scene itself: everything that a frame depends on but its size.
 
 use super::camera::Camera;

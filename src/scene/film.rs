@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How linear radiance becomes 8-bit pixels, as the host states it. The curves are in `crate::film`.
 
 use crate::error::{Result, out_of_range};

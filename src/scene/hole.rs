@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The black hole as the host states it: mass, spin, axis, and the rotation between scene axes and the hole's chart.
 
 use crate::error::{Error, Number, Result, out_of_range};

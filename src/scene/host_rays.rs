@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, traced in f64: where each ends, and the curve that it follows.
 
 use super::{Fate, Hit, Ray, Scene};

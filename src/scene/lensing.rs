@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Whether a frame looks its rays up in tables of the observer's lens or integrates each. Decided by scene and frame
 //! size alone, so that a frame's bytes never depend on those before it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The scene as plain validated data: hole, camera, disk, sky, film, quality, view. A tracer works on a snapshot of it.
 //! May use `physics`, `sky` and `emit`; may not know of C, of pointers or of the GPU.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Converts the host's scene to the hole's units (M = 1, chart axes): where the camera's observer is and how it looks
 //! through a pixel. The only place that converts; both tracers and the queries build on it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Presets: named looks, each a set of values for disk, sky, film and effects that hosts may then change; and the plain
 //! scene, which tests begin with whatever the defaults are. Plain data; the values are documented for hosts in
 //! `capi::preset`.

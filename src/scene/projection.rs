@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a camera's projection takes positions of the frame to directions, in the camera's own axes (right, up,
 //! forward). Knows neither hole nor observer. Mirrored by `shaders/camera/projection.wgsl`.
 

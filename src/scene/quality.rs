@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The settings that decide how exactly rays are traced, as the host states them.
 
 use crate::error::{Error, Number, Result};

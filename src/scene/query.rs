@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Questions a host asks of a scene that need no tracer: numbers about the hole, camera rays, the camera's world line.
 
 use super::frame::Region;

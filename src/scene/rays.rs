@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays and their ends, in scene units, as a host asks for them directly. Field by field as in `bhr.h`.
 
 use glam::DVec3;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The ray record of a pixel: the one interface between lensing and shading, on both tracers; its counterpart is
 //! shaders/records/record.wgsl. However it was made, shading cannot tell. Plain data.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pixels that edges run through: which these are, where their samples lie, and how much of a sample's cell the disk
 //! covers. Shared by both tracers (shaders/records/record.wgsl and shaders/refine/refine.wgsl mirror it); knows no rays
 //! and no light.

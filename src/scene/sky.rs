@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The sky at infinity, as the host states it. The stars themselves are in `crate::sky`.
 
 use super::{Scene, View};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A host's ray and quality in the terms of `physics::trace`, and the result of a trace in the host's terms. Both
 //! tracers use it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The embedded stars, decoded: where they are, how bright, how hot. `data/README.md` describes the bytes and names
 //! their source.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The stars that a sky shows, and their index: one for the whole process, made when it is first asked for and shared
 //! while anybody holds it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The light of a sky map in a pixel, filtered over the pixel's patch of sky. Both tracers filter alike:
 //! `shaders/sky/map.wgsl` has the functions under the same names. Knows no cameras and no holes.
 //!

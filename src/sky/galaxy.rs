@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where the Milky Way's plane lies, and how stars crowd towards it: one law for the procedural field, for the mean
 //! light of faint stars and for `shaders/sky/stars.wgsl`.
 

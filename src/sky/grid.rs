@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The coordinate grid of the sky axes: lines of constant width on the screen, laid over the sky. The same in both
 //! tracers (`shaders/sky/grid.wgsl`). Knows no cameras and no holes.
 //!

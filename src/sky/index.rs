@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The star index: finds the stars near a direction with one lookup. A pyramid of cube maps; every cell lists the
 //! stars within the cell enlarged by half its size on every side. Flat arrays, the same ones on the GPU.
 //! `shaders/sky/stars.wgsl` has `cell_of` and `level_for` too.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures of the whole sky as both tracers read them: an equirectangular pyramid of RGB9E5 texels, filtered so that
 //! a texel is as wide on the sky as it is high, everywhere. `filter.rs` reads it. Knows the host's pixel formats, but
 //! neither holes nor cameras.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The glow of the Milky Way as a sky map, made at first use from an embedded picture of nested outlines
 //! (`data/README.md`): smooth brightness from the picture, colour from the galactic longitude, and dust and star clouds
 //! finer than the picture by noise that is always the same. Plausible, not measured; where things are is true to about

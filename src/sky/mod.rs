@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The sky at infinity: the embedded star catalogue, random stars, the index that finds the stars of a pixel, and the
 //! rule that draws them; pictures of the whole sky, the Milky Way's and the host's, and how they are filtered; the
 //! coordinate grid. Works in sky axes (J2000 equatorial: +x vernal equinox, +z north celestial pole); knows nothing of

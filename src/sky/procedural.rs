@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A random sky that is like the real one in what can be counted: how many stars of each magnitude, how they crowd
 //! towards the Milky Way, and which colours they have. The same stars for the same seed on every machine.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The light of sky maps under frequency shifts. The same in both tracers (`shaders/sky/shift.wgsl`), by one table.
 //! Knows no maps.
 //!

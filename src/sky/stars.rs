@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How stars are drawn, the same in both tracers (`shaders/sky/stars.wgsl`): as points with a fixed footprint in
 //! pixels, so that they neither alias nor sparkle, and with the brightness that the lens's magnification gives them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The description of an adapter, as programs that use bhr get it. Plain values: src/tracers.rs lists the adapters of a
 //! machine, src/gpu/device/adapter.rs finds the GPUs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Requests for a tracer: a frame, whose tiles go to a sink as they are finished. Knows no target.
 
 use crate::error::Result;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Numbers about finished frames, and where those about the last one are kept.
 
 use parking_lot::Mutex;

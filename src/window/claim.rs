@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The windows that have a surface. A window takes one surface: which of two would show is up to the driver, if it does
 //! not fail.
 

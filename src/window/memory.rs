@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames into a window as plain memory, where no GPU device can present to it: by XCB to X11 windows, by the
 //! softbuffer crate to others. (Softbuffer's own X11 loads Xlib into every process that loads bhr, and sets Xlib's
 //! error handler.)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Takes the place of `memory` without the feature `window`: no window takes frames.
 
 use super::Window;

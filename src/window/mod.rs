@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Windows of the host, as their platforms know them: handles, sizes, pacing, and frames put there as memory. Hosts'
 //! handles come in as a [`NativeWindow`]; nothing here knows C, a GPU, or what a frame shows. Without the cargo feature
 //! `window` every window is UNSUPPORTED.

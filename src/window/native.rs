@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A host's window by its platform's handles, and the raw-window-handle that stands for it. Looks behind no handle.
 
 use super::claim;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! When a window of Wayland takes its next frame: by wl_surface.frame ("a hint when it is a good time to start drawing
 //! a new frame", Wayland protocol, wl_surface), on the host's connection, with an event queue of bhr's own. Drivers do
 //! the same for VSYNC, some of them (Mesa's) without a limit: a compositor says nothing to a window that it does not

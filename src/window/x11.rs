@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! X11 windows, through a connection of bhr's own to the server they are on. Errors of the X server then never reach
 //! the host's connection, whose Xlib handler would end the process, and the host may destroy its window, or close its
 //! connection, before the surface. From the host's connection only its server is read.

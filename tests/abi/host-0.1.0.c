@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* host-0.1.0.c -- a program as one was written for bhr 0.1.0: it is compiled against bhr-0.1.0.h and run against the
  * library of the day (tests/header/abi.rs). It uses every function and every struct of that header, and holds what the
  * header promised: sizes are its own, nothing beyond its structs is written, defaults and results are those of then.

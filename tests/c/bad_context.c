@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_context.c -- version, status names, adapters, options and contexts, asked wrongly and rightly. Renders only to
  * see that a context is unchanged. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_image.c -- images asked wrongly: sizes, strides, block sizes, alignment, formats, regions. Each refusal leaves
  * the context and every byte of the host's memory as it was. Files are in files.c, legal layouts in frames.c. */
 #include "check.h"

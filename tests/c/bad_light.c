@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_light.c -- the setters of disk, sky, film and quality asked wrongly, as bad_scene.c asks those of the hole and
  * the camera: each refusal must leave the context as it was, and values at the limits must be taken. */
 #include "check.h"

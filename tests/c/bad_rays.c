@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_rays.c -- rays, paths, tensors and the camera's world line asked wrongly, and the cameras that no observer can
  * carry, which are found when a frame or rays are asked for. What right rays give is tested against golden values
  * elsewhere. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_scene.c -- the setters of hole, camera, time, effects and view asked wrongly: NULL, NaN, infinities, values
  * beyond each documented limit, unknown constants, structs of other sizes. Each refusal must leave the context as it
  * was. Values at the limits must be taken. Disk, sky, film and quality are in bad_light.c. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* callbacks.c -- the host's functions that the library calls: progress that watches, cancels or calls back in, and
  * the log. A refused call from inside leaves the frame in progress and the context as they were. */
 #include "check.h"

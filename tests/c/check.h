@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* check.h -- the harness of the C tests: counted checks that print file, line and the library's message when they
  * fail, and a watch that tells whether a refused call changed its context. Knows the C API only; tests nothing by
  * itself.

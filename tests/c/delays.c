@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* delays.c -- times about a hole without spin: the delay of BhrCrossing and the t of bhr_trace_path, against the
  * orbit equation (Darwin 1959), integrated here: u'' = 3 u^2 - u and dt = d phi / (b u^2 (1 - 2 u)), by RK4 in the
  * angle swept about the hole; and the scene time of a fall through the horizon, against Gullstrand's. M = 1. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* disk.c -- saving onto a disk that fails: errors of write, fsync, close and rename reach the host, and the old file
  * stays. Stands between the library and the C library: its own write, fsync, close and rename are the ones that the
  * dynamic linker finds first. Linux. Works in the folder named by its second argument, which must exist and be

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* dynamic.c -- a plug-in's life: loads the library named by its second argument on a second thread, renders, unloads
  * it, and lets the thread end; twice. Not linked with the library, so it counts by itself. */
 #define _POSIX_C_SOURCE 200809L

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* files.c -- saving and loading: round trips that keep every bit, files that cannot be read or written, files that
  * lie. Works in the folder named by its second argument, which must exist and be empty. */
 #define _POSIX_C_SOURCE 200809L

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* frames.c -- frames in the host's memory: every legal layout holds the same pixels and nothing else is written;
  * tiles make the whole; two runs are equal; the formats agree with each other. */
 #include "check.h"

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* job_ends.c -- how jobs end while the host goes on: waits end in time, on several threads too; progress is heard by
  * the waiter and may cancel; a target is left alone once its job is gone; jobs outlive their context; and no call waits
  * for a job but those that say so. The frames of jobs are in jobs.c.

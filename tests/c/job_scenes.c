@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* job_scenes.c -- see job_scenes.h. */
 #include "job_scenes.h"
 

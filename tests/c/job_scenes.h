@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* job_scenes.h -- what the tests of jobs share: eight scenes that differ in what a job has to take along, their frames
  * as bhr_render_image has them, and a job that is far from its end whenever it is looked at. It tests nothing by
  * itself. */

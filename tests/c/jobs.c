@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* jobs.c -- frames in the background: every job shows the scene as it was when the job was begun, whatever is set,
  * waited for, cancelled or destroyed meanwhile and in whatever order; in every layout of a target; with its own
  * numbers; as many as a context may have; and a refused job changes nothing. The ends of jobs are in job_ends.c.

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* large.c -- large frames: the peak memory of an 8192 x 8192 render into the host's buffer stays within 600 MB above
  * that buffer, and a part of a 16384 x 16384 frame can be rendered, equal to the same pixels rendered in smaller
  * parts. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* lifetimes.c -- creates, renders and destroys again and again, and watches what the process holds. Its second
  * argument is the number of cycles (default 120); below 100 nothing is measured, for valgrind, which counts better.
  *

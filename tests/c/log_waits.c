@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* log_waits.c -- a log callback that waits for another thread's calls on another context: create, render, destroy. It
  * does so at moments of every call that logs: bhr holds no lock then that such calls need. */
 #define _POSIX_C_SOURCE 200809L

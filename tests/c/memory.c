@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* memory.c -- address space and threads that run out: whatever is left, each call on the CPU backend ends with a
  * status, and the process lives. Every limit has a process of its own, forked before the library is used.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* messages.c -- bhr_context_error_message and bhr_job_error_message: each tells of its own object's last failure,
  * whichever thread that was on, into buffers of every size; and messages that name constants, short numbers and what is
  * to be installed. */

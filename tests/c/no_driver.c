@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* no_driver.c -- a machine without a usable Vulkan driver: AUTO still gives a context that renders, VULKAN says
  * NO_ADAPTER, and the log says why. The runner makes such a machine: "no-vulkan" hides the drivers' manifests
  * (another interface, GL, may be there), "cpu-only" makes libvulkan and libEGL impossible to load, so that the CPU

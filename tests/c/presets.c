@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* presets.c -- bhr_set_preset: the values that bhr.h states, and nothing else; setters change them; unknown ones are
  * refused. */
 #include "check.h"

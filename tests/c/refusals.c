@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* refusals.c -- see refusals.h. */
 #include "refusals.h"
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* refusals.h -- what the tests of badly called setters share: a scene in which every setter has been used, and checks
  * of a struct's numbers and sizes. Tests nothing by itself. */
 #ifndef BHR_REFUSALS_H

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* sky.c -- the host's map of the sky asked wrongly and filled oddly: zero, huge, NaN-filled, of every format and of
  * none, at strange strides; and orientations that are no unit quaternions. A refusal leaves the context as it was;
  * what is taken gives a frame of finite light. */

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* threads.c -- two contexts on two threads, one context shared by four, messages that belong to a thread, a context
  * that moves between threads, and any order of destruction. Every frame must be the one a single thread gets. */
 #define _POSIX_C_SOURCE 200809L

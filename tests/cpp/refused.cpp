@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* refused.cpp -- lines that a compiler must not take, each marked so (tests/cpp/run). Without REFUSED it compiles. */
 #include <bhr.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 /* use.cpp -- a C++ host of bhr.hpp that does all that a context can do without a window, on the CPU backend. It is
  * compiled with and without exceptions, as C++17 and C++20 (tests/cpp/run).
  *

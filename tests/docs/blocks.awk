@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # blocks.awk -- takes the fenced blocks out of a page of Markdown. Each is written to FOLDER/N.LANGUAGE, and a line says
 # what it is: its number, its line in the page, its language, and the comment <!-- ... --> on the line before its fence.
 # Indented blocks have no fence: a line of shell in one is a block of its own, one of C is in the language "indented".

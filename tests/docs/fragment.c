@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* fragment.c -- the program around a piece of C that a page of docs/ shows without its main. The piece, FRAGMENT, finds
  * a context on the CPU tracer, a camera, and an image of its pixels, and may make structs and blocks of its own. After
  * it a frame is rendered: what the piece has set must go together. No call may have failed, as pages leave out what a

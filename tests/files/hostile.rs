@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Files that are made to do harm: small ones that claim to be large, and valid ones with faults put in.
 
 use crate::random::Random;

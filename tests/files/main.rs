@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Image files that are broken, or made to do harm: each is an image or an error, within the memory there is. An
 //! allocation that fails inside a decoder ends the process, and nothing can catch that; so files are read in children
 //! that have little memory, and a child that dies is a failed test. Files are the same in every run. BHR_TESTS_ALL=1:

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Small valid files of every kind that is read, made here: no corpus to carry. Knows the formats, not bhr.
 
 use crate::random::Random;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames for tests: a renderer of each kind, and the bytes of what it renders. Renderers on the GPU are lent from a
 //! pool, as each of them compiles its kernels, which takes lavapipe longer than most tests' frames.
 

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* calls.c -- sequences of calls that bytes decide: any order, any values, several contexts and jobs. A call may succeed
  * or fail with a status that bhr.h lists and a message; it never fails internally, writes past what it was lent, or
  * brings the process down. With libFuzzer the bytes are its; alone, the program makes them from a seed:

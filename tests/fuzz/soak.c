@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* soak.c -- frames of ever-changing scenes in one context, and jobs between them: memory, descriptors and threads of
  * the process do not grow. Linux only.
  *

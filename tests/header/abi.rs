@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Programs that were compiled against a release's header (tests/abi) run with today's library, and what that header
 //! declares is declared today: the same values, places, types and prototypes. Structs may have grown at their end,
 //! and more may have been added.

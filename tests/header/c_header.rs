@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Shared by the tests of the C header: reading a header's declarations and running the C compiler.
 
 #![allow(dead_code)]

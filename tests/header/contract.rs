@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! include/bhr.h keeps the contract that programs are written against (tests/contract.h): the same names,
 //! constants, layouts and prototypes. What is compared is what a C compiler makes of the two.
 

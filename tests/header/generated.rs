@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! include/bhr.h is the header that cbindgen makes from `src/capi`, one section per source file, and every dialect of C
 //! and C++ takes it without a warning.
 

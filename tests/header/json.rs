@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! include/bhr.json is the header for machines: made with it, and it says what a C compiler says. docs/bhr-json.md
 //! describes it.
 

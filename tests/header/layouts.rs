@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The layouts of include/bhr.json hold in C11, in C++17, where include/bhr.hpp has structs of its own, and in Rust;
 //! and bhr.hpp leaves out nothing that the header has.
 

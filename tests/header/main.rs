@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The library's outside: the header, the contract and releases before this one, the symbols, and the notices of what
 //! is linked. Traces nothing; needs a C and a C++ compiler.
 

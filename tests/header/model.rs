@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Reads include/bhr.h, as tests/header/generated.rs has made it, into what include/bhr.json holds: every declaration
 //! with its comment, and the layout that the rules of C give structs on machines with pointers of 64 bits. The test
 //! in tests/header/json.rs compares those with what a C compiler says.

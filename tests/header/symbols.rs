@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The shared library exports exactly the header's functions, and stays mapped when a host closes it.
 
 use crate::c_header::{HEADER, functions, library};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! THIRD-PARTY.txt is made here, from Cargo.lock and the crates' own licence files: it names all that a built library
 //! contains, on one platform or another. A licence that nobody has agreed to fails. Security advisories are not
 //! checked: the tests run offline, without a database of them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Another Rust library in the same program, with a standard library of its own: it allocates, panics and catches.
 
 use std::collections::HashMap;

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* host.c -- the smallest host that knows whether it got a picture: one frame on the CPU tracer, with the shadow's
  * darkness and the disk's light in it. Compiled as C and as C++; linked as tests/install/run says. With ANOTHER defined
  * it also calls another Rust library, before and after. */

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # packages.sh -- the tests of packages, which build the library again for old systems and for cargo-c: for tests/run
 # all. Sourced by tests/install/run.
 # shellcheck shell=bash

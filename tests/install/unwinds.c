@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* unwinds.c -- a host in which the library panics: clock_gettime fails, which Rust's standard library takes for
  * impossible. The panic must unwind through the library and end in a status. */
 #include <bhr.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Numbers for tests with random scenes, the same in every run. Knows directions, no scenes.
 
 #![allow(dead_code)]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bloom in pictures, on both tracers: no light lost, no tile seen, nothing changed where none was asked for. Its
 //! shape is tested in src/film/bloom.rs. The GPU is whatever adapter comes first; without one the tests fail.
 

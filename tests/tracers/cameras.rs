@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Projections: the faces of the cube against perspective views, fisheye and equirectangular frames against
 //! perspective ones that look the same way, the GPU's pictures against the CPU's, tiles against the whole, and what
 //! lies outside a fisheye's circle.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Random scenes at the ends of every range: no NaN where a number is promised, no endless loop, no lost device, on
 //! both tracers.
 

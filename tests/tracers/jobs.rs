@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames in the background: they equal frames that were waited for, end in their order, and end however they are
 //! left. On whatever adapter comes first (lavapipe counts), and on the CPU tracer.
 

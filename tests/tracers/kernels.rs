@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pipelines are there before a frame needs them: frames list all that they run, `prepare` leaves nothing to wait for,
 //! and what is a host's likely next change is made in the background.
 

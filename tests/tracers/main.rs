@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames of both tracers: whole pictures, stars, skies, disks, cameras, tables and jobs, each against theory or
 //! against the other tracer. The GPU is whatever adapter comes first; without one the tests fail. One program, so that
 //! wgpu is linked once; tests that need a process of their own are in programs of their own.

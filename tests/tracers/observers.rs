@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The view of falling and fast observers, against integrals and formulas that share nothing with the tracers: the sky
 //! from inside the horizon, the shadow's size, aberration and Doppler shift at 0.999 c.
 

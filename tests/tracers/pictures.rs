@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pictures: the GPU's against the CPU's, tiles against the whole, run against run, and the shadow's outline against
 //! theory. The GPU is whatever adapter comes first; without one the tests fail.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Pixels with one sample against the means of finer frames, the pixels beside the shadow row by row, and pixels in
 //! time while the camera turns by parts of a pixel: on both tracers, however rays are found. Everyday some sights are
 //! taken, each in one way; `./tests/run all` takes all of them in all ways. The GPU is whatever adapter comes first.

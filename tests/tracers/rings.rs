@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Edges and thin rings: each pixel against the mean of many rays through it, rings without gaps, and steady while the
 //! camera turns by parts of a pixel. On both tracers; the GPU is whatever adapter comes first.
 

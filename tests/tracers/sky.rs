@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The sky in pictures: the Milky Way, the host's map and the grid on both tracers, what the lens does to them, and
 //! where they are. The GPU is whatever adapter comes first; without one the tests fail.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Stars in whole frames, CPU and GPU: their light against the lens equation, image by image; its steadiness while the
 //! camera turns; their places; tiles; and the procedural sky. The GPU is whatever adapter comes first; without one the
 //! tests fail.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Several samples a pixel, on the disk's outer edge, on both tracers: they converge, the edge is as sharp as the
 //! filter, and fine structure does not alias. How samples are placed is tested in src/scene/frame.rs.
 

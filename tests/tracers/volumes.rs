@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light through matter with depth: the haze, whose light and optical depth along radial rays are integrals over the
 //! proper length, and both tracers against each other with the disk within it.
 

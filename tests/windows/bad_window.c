@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_window.c -- whatever a host passes for a window, and in whatever state it calls, it gets a status and a message
  * that names the value and the limit; nothing breaks, and the next good call works.
  *

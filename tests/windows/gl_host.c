@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* gl_host.c -- hosts that draw with OpenGL themselves, by GLX and by EGL: a context that is current on the thread that
  * calls bhr stays so through everything that a context of bhr's does, and draws as before. The second argument is the
  * host's way to GL: glx, egl (both GLFW's), sdl (EGL on Wayland), surfaceless (EGL's display without windows, which bhr

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* gl_terminated.c -- a host in which some other library terminates the EGL display that bhr's GL tracer uses too, at
  * random moments of a context's life: while it is made, renders, is recovered and is destroyed. Each call then succeeds
  * or fails as the header says, the process lives, and later contexts of every backend work. The second argument is the

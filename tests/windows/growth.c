@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* growth.c -- thousands of frames of a moving camera, into a window and into memory by jobs, and many windows: after a
  * warm-up the process holds no more memory (to MAX_GROWTH), descriptors or threads than before. A device's driver
  * counts, too: software drivers once leaked with every submission (shaders/shared/not_inlined.wgsl).

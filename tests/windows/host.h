@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* host.h -- a host's X11 window for the tests of surfaces, by Xlib or by XCB, and what a person would see in it. Knows
  * bhr's image and window structs only; tests nothing by itself, but ends the program when there is no X server.
  *

@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* orders.c -- context, surface, job, window and the window system's connection end in every order there is, 120, each
  * with frames under way; after each end, what is left still answers as the header says. Nothing may break, and the log
  * stays silent but for the failures of calls that fail: with "validation", the driver's validation layers speak there

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # panel.sh -- examples-c/panel driven as a person would, under the X display of DISPLAY. Functions only, for check of
 # tests/lib.sh: each succeeds or says what was wrong. Needs xdotool and ImageMagick, and from its caller: $panel and
 # $render_frame, the programs; $scratch, a folder.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # sdl.sh -- tests of examples-c/sdl_window, a host with SDL2, on X11 and on Wayland. Functions only, for check of
 # tests/lib.sh: each succeeds or says what was wrong. Needs xdotool, ImageMagick and weston, and from its caller:
 # $sdl_window, the program; $scratch, a folder; XDG_RUNTIME_DIR; an X server in DISPLAY without a window manager.

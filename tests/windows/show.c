@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* show.c -- a window shows what bhr_render_image gives of the same scene and size, in every way that frames get there:
  * `direct` (by the device that traces), `uploaded` (traced by the CPU, presented by a device), `memory` (no driver at
  * all). The test goes through ten sizes, with and without word from the host that they have changed; minimised; in

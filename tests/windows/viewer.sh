@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # viewer.sh -- tests of examples-c/viewer in a window: started, driven with xdotool, looked at with ImageMagick.
 # Functions only, each one a test for `check` or a helper of them. Needs tests/lib.sh's $scratch, $viewer (the program),
 # and an X server in DISPLAY without a window manager; Xvfb with -noreset, as it is deaf for a moment after its last

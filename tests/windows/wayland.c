@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* wayland.c -- frames into windows of Wayland, made by SDL2: in each way that they can get there, through ten sizes, in
  * every present mode, from other threads. The compositor, whose screen of WIDTH x HEIGHT is the top left of DISPLAY's,
  * shows what bhr_render_image gives, and ends no connection over what bhr sends. VSYNC keeps to the compositor's rate

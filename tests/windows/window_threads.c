@@ -1,3 +1,4 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* window_threads.c -- windows and threads: frames from another thread than the creator's, two threads on one surface,
  * two surfaces of one context, jobs beside frames, sizes and modes changed meanwhile. Afterwards every window shows the
  * picture that it should, and every job has its own.

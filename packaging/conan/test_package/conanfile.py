@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Builds tests/install/host.c with the package, by the compiler and pkg-config, and runs it."""
 
 import os

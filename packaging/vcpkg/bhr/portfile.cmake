@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # An overlay port of vcpkg for Linux, which installs the repository that it lies in. Checked by
 #
 #     vcpkg install bhr --overlay-ports=packaging/vcpkg

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """bhr: physically right pictures of black holes, and the numbers behind them, in numpy arrays.
 
     import bhr

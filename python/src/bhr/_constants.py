@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The constants of bhr.h as enumerations. bhr.h says at length what each one means."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The context: a scene and what traces it."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 # The declarations of bhr.h, which the build of the wheel writes as a module for cffi (hatch_build.py).
 from typing import Any
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Frames: pixels in numpy arrays, which the library writes and reads in place."""
 
 from __future__ import annotations

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The way to a context of the library: it is open until the context is closed, which waits until nobody is inside any
 more, because the library's context must not end under a call."""
 

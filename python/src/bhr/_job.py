@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Frames in the background: a Job is a future of its frame. A thread for each context waits for its jobs while there
 are any, in the library and without Python's lock."""
 

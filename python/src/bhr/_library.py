@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The loaded library, its errors, and the rules for calling it: what a failed call raises, which calls are refused
 after a fork, and what runs inside a callback of the library. Knows nothing of contexts and frames."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Rays and their ends as structured arrays with the layout of BhrRay and BhrHit, which the library reads and writes in
 place."""
 

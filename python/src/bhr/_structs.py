@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """The structs of bhr.h as frozen dataclasses: a changed copy is made by `replace`, and takes effect when it is set.
 Their defaults are those of the library. bhr.h says at length what each field means."""
 

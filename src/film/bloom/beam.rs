@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The beam of a telescope: a Gaussian that the whole frame's light is spread by, as the images of the Event Horizon
 //! Telescope are. This file says on which grid of the bloom it is done and by which shares, and does it on the CPU;
 //! `shaders/bloom/beam.wgsl` does the same with these numbers. Knows cells and their light, not how they were gathered.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bloom: that light is kept and spreads as it should.
 
 use super::*;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bind groups, kept from frame to frame: the frames of a setup bind the same resources again and again. Knows no
 //! kernel.
 

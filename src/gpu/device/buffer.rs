@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Buffers on a device: checked against its limits before wgpu is asked, and counted while they exist.
 
 use super::wgpu_device::Device;

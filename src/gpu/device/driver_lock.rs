@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The one lock of a process under which drivers are started and ended. NVIDIA's Vulkan driver hangs or crashes where
 //! threads do at once what begins or ends its use, even on instances and devices of their own: making instances
 //! (gfx-rs/wgpu #5930, kvark/blade #336), devices and their first pipelines (gfx-rs/wgpu #10234; on an H200 with

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A second EGL context that shares the objects of wgpu's, current on a thread of its own for as long as they are used.
 //! Touches nothing of wgpu's but the handles it reads.
 //!

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A thread for the calls into GL. wgpu makes its GL context current on whichever thread calls it, and leaves
 //! none current there. On a thread of the host's that takes the host's own context away (EGL), or fails because the
 //! host has one (GLX beside EGL: libglvnd), and then wgpu panics, in destructors too, where the second panic ends the

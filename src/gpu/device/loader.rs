@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Whether the Vulkan loader of this system may be handed to ash, whose stand-ins for functions that are missing panic
 //! in a foreign frame: nothing can catch that, and the process ends. Asks the loader for nothing else.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Adapters, devices, and what lies on them: buffers, textures, timers, and the ways to and from the host. Knows no
 //! kernel and no scene.
 

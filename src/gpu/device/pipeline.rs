@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Compute pipelines from WGSL. Knows no shader.
 
 use super::specialise::Parsed;

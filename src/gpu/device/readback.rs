@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Brings bytes from the device to the host through staging buffers that are used again and again, so that one piece
 //! is copied out while the next are being made. Knows nothing of pixels.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Shaders without what their constants switch off. naga puts the values of `override` constants into a shader, and
 //! leaves both sides of every `if` to the driver, which takes in all functions that either side calls before it finds
 //! that one never runs: in the kernels of this tracer up to three quarters of the code. Without that code lavapipe

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Textures on a device, which counts their bytes while they exist.
 
 use super::wgpu_device::Device;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! GPU time of compute passes, by timestamp queries. Knows nothing of what the passes do.
 
 use super::buffer::Buffer;

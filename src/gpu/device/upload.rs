@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Brings bytes from the host to the device before its next submission runs: into buffers that the host fills, and from
 //! there by commands that go before it. Knows nothing of what the bytes mean.
 //!

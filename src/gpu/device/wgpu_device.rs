@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! One wgpu device: opened with the least it needs, and with every way it can fail turned into an [`Error`]. All calls
 //! into wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of
 //! scenes.

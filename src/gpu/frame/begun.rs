@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A frame whose steps are being submitted, and what is known of it meanwhile.
 
 use super::stages::Stages;

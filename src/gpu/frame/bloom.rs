@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that
 //! spread it. What goes where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The buffers that frames of one size share: made, grown, and written with what all tiles share. Knows no kernels.
 
 use super::bloom::BloomBuffers;

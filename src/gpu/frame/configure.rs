@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The setup of a frame from its scene: which records, which shader variants, which film. Knows no buffers.
 
 use super::settings::{for_f32, variant};

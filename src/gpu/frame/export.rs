@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The ray records of a frame, for tests: has records/export.wgsl write them, and reads them back.
 
 use super::buffers::Size;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The list of kernels that a frame runs, known before any is bound, so that all are made at once; and the list of
 //! those that the host's next frames may need. tests/tracers/kernels.rs holds the list against what frames ask for.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames and rays on the GPU, from a scene to pixels.
 
 pub(in crate::gpu) mod begun;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, on the GPU: started and judged in f64 on the host (`Scene::start`, `Scene::hit`), traced
 //! in f32; but for observers so near to the horizon that f32 cannot tell them from it: those rays the f64 tracer takes.
 

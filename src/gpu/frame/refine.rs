@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The second look at pixels that edges run through: their list on the device, and the kernels that go over it
 //! (records/edges.wgsl, refine/refine.wgsl). Knows kernels and their groups, no records and no light.
 

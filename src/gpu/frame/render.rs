@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A frame on the GPU: tile by tile, sample by sample, records -> shade (-> bloom) -> develop -> readback, or a
 //! window's texture. A frame is prepared ([`GpuTracer::begin`]), submitted step by step, and each step read when it
 //! has run, so that readback overlaps the work of the next steps and frames. Knows no host memory: finished tiles go

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Settings of the f64 tracer brought to what f32 can do, and what the tracing kernels are compiled with for them.
 
 use crate::gpu::kernel::variant::TraceVariant;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The setup of a frame, made before its tiles run: how its records are made, its light shaded and its pixels written.
 //! Plain data; configure.rs fills it from a scene.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The sky maps of a scene as textures: the Milky Way's, made when it is first shown, and the host's, made anew when
 //! it is another.
 

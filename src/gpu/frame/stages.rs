@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The kernels of a frame with what they bind, from records to pixels, and the order in which a tile goes through
 //! them. Knows no submissions.
 

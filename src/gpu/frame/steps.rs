@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! In which steps a frame is made, each a submission: tiles and samples of them; and with bloom, what comes between
 //! shading and development. Knows numbers only.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The streaks of the disk's turbulence as a texture, made when a scene first shows them.
 
 use crate::emit::streaks::{STREAK_COLUMNS, STREAK_LAST, STREAK_ROWS, Streaks};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
 
 use super::begun::{BegunFrame, ExtraCommands};

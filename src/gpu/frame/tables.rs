@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
 //! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
 //! entries a row (shade/shade.wgsl says why). Beside them lie the pictures that shading reads: sky maps, and the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How a frame is cut into tiles, so that memory stays bounded and no submission runs for long. Knows numbers only.
 
 use crate::tracer::{FrameRequest, Tile};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The GPU tracer itself: one device, and what frames and rays keep on it.
 
 use super::buffers::FrameBuffers;

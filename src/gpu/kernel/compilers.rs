@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The threads that make pipelines: some at once for a frame that waits for them, and few of low priority for frames
 //! that may come. They end with their owner. Knows no scene.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The numbers that shaders share with Rust, by their names in WGSL: the fragment `constants` is printed from them, so
 //! that neither side can change alone. What each one means stands where Rust declares it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The files of shaders/, embedded in the library, by their names there without the ending; and `constants`, which Rust
 //! writes. Knows nothing of what is in them.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The pipelines of a device's kernels: made at first use, or before by threads of their own, several at a time. Knows
 //! what each kernel binds ([`KernelKey`]), not what with.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings. Knows
 //! neither devices nor pipelines; two equal keys are the same kernel.
 

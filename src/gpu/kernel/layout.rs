@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! How tests say where the members of a Rust struct lie that WGSL has too.
 
 /// A Rust struct as WGSL should have it: name there, size, and members with their offsets.

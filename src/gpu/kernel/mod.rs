@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The compute kernels: their keys, their WGSL, and the pipelines made of them, at once or in the background. Knows no
 //! scene.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Joins WGSL from fragments that say what they need, in the manner of vello's preprocessor. Two directives do so, each
 //! on a line of its own:
 //!

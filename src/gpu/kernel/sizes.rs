@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sizes that kernels share with those who make their tables and dispatch them.
 
 use crate::physics::lens::critical::CRITICAL_NODES;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The bindings of kernels: their kinds, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 

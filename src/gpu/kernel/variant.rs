@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The variants that kernels are compiled in: how rays are traced, light is shaded, and pixels are written. Plain data.
 
 use crate::image::PixelFormat;

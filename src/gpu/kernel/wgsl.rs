@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The WGSL of every kernel: which fragments of shaders/ make it, for which choices. Knows neither bindings nor
 //! devices.
 

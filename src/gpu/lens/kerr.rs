@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The tables of a Kerr lens on the device: nodes traced and cells judged by compute passes when the observer or the
 //! disk has changed, read by lens/kerr_record.wgsl; and the pixels that they leave to integration. Knows observers and
 //! kernels, no scene.

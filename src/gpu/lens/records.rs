@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens.
 //! Gives shading its group 1 and knows nothing else of it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The tables of a spin-0 lens on the device: built by compute passes when the observer's radius has changed, read by
 //! lens/schwarzschild_record.wgsl. Knows observers and kernels, no scene.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of camera/projection and camera/observer: from a place of the frame to the start of its ray.
 
 use super::inputs::{Inputs, Outputs};

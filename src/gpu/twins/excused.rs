@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Functions of shaders/ that are not compared one by one, and why.
 
 /// Why a function has no twin.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of film, and of the sRGB curve of window/present: from light to pixels. Both sides are f32 here.
 
 use super::inputs::{Inputs, Outputs};

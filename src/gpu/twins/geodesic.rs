@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of shared/math, shared/f16, shared/not_inlined and geodesic/geodesic.
 
 use super::inputs::{Inputs, Outputs};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Random numbers that both twins are given, and the values that the one in Rust expects of the one in WGSL.
 
 use glam::{DVec2, DVec3, DVec4};

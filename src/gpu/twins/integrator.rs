@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of geodesic/integrator and geodesic/trace.
 
 use super::geodesic::{

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of the lens with spin: where a look direction lies in its tables, and what their nodes hold.
 
 use super::geodesic::{RAYS, STATE, constants, push_state, spinning_ray, state};

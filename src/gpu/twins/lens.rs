@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of lens/axis and of the tables of a spin-0 lens (lens/schwarzschild_curve, lens/schwarzschild_columns).
 
 use super::inputs::{Inputs, Outputs};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of shared/blackbody and emit: thermal light, the disk's profile, its turbulence.
 
 use super::inputs::{Inputs, Outputs};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Compiled for tests only: every function of shaders/ that has a counterpart in Rust, f32 against f64 over random
 //! input. `TABLES` lists these twins, `excused` the functions that have none, and the tests fail for a function that is
 //! on neither list, for one that is gone, and for twins that differ.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of records/record, traced/layout, traced/footprints, shared/pass, and of lens/schwarzschild_record: what
 //! becomes of the rays that were traced or looked up.
 

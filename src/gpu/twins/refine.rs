@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of refine/refine: where samples lie, and how much the disk covers of their cells.
 
 use super::inputs::Inputs;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Runs kernels of WGSL functions on whatever Vulkan adapter there is (a software one will do; with none it fails).
 //! What a kernel binds is read from its module by naga.
 

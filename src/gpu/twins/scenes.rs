@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Scenes that twins see through the uniform `frame`, as the GPU tracer writes it: items name one by its number.
 
 use super::inputs::{Inputs, Random};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of shade/shade: the light of a whole record, and the values of views, as the CPU tracer has them. The disk is
 //! that of spin 0, whose profile is bound.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of sky: stars, maps, the grid.
 
 use super::inputs::Inputs;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The full-screen triangle that fills an image with a texture of 8-bit codes. Knows no window.
 
 use crate::error::Result;

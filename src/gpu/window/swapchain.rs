@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A window's images, from wgpu: which device can present to which window, their format, and taking and presenting
 //! one. Everything that wgpu can say or do about them becomes an [`Acquired`] or an [`Error`]. Knows nothing of
 //! scenes.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! OpenEXR by the `exr` crate, block by block: what a header claims is checked before a block is read, one block at a
 //! time is held, and only those are unpacked that reach the picture.
 

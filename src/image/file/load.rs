@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Reading image files: the kind of a file, told by its first bytes, and the image that every kind becomes.
 
 use super::loaded::Loaded;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A file's pixels in memory, which every kind of file becomes when it is read.
 
 use super::support::reserve;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Image files: PNG, OpenEXR (cargo feature `exr`) and PNM. A file appears whole or not at all; a broken one is an
 //! error, and what it claims to hold is checked before memory is taken for it. Each kind of file has a module of its
 //! own; `support` holds what they share: limits, errors, memory. Decoders and encoders run on a thread of their own:

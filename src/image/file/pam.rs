@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! PAM, the PNM kind with alpha, which the `image` crate reads only in versions that bring colour management along: a
 //! header of words, then samples as in PGM and PPM.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! PNG by the `png` crate, row by row: no second copy of the picture, neither read nor written.
 
 use super::loaded::{Loaded, Pixels, linear_codes};

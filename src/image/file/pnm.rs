@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! PBM, PGM and PPM by the `image` crate; PPM is written too.
 
 use super::loaded::{Loaded, Pixels, linear_codes};

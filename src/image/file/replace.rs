@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Files that appear whole or not at all: each is written in the same folder under another name, brought to the disk,
 //! then renamed.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Writing image files: the kind of file that goes with a path and a format.
 
 use super::support::{about, on_own_thread};

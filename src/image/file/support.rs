@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The things that the readers and writers of all kinds of files share: limits, errors, memory, and the thread that
 //! they run on.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Saving and loading by the Rust face: round trips, names, modes, links, broken files.
 
 use super::*;

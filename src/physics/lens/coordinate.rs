@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The axis of a lens table: distance of a ray from the critical direction, on a logarithmic scale. Plain trigonometry
 //! of one angle; knows nothing of metrics.
 //!

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The critical curve - the shadow's edge - on the sky of an observer outside the photon region, as a table over the
 //! angle along it, and polar coordinates about its centre. Knows the ray's constants and the local frame; integrates
 //! nothing.

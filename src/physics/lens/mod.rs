@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Lens tables: for one observer, the fates of all its light rays, so that looking in a direction costs an
 //! interpolation instead of an integration. Knows light and observers only: no scene, no pixel, no thread.
 //!

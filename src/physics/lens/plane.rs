@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Takes a spin-0 ray from its own plane to the chart: where it goes on the sky, where it crosses the equatorial plane,
 //! and how both change with the look direction. Geometry of great circles; the ray itself comes from
 //! `table::SchwarzschildLookup`.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The light rays of one observer at spin 0, integrated one by one (`Family::column`), as a lens table holds them.
 //! Each ray is independent of the others. Knows neither threads nor how the tables are interpolated.
 //!

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The lens table of one observer at spin 0, and looking directions up in it: what becomes of a ray and where it is
 //! after a swept angle. Knows the rays' family, not how they are integrated; works in the ray's own plane (`plane`
 //! leads to the chart).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The tables against integrating each ray (`physics::trace`). Knows the public face of `lens` only.
 
 use super::*;

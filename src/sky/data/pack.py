@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Packs a star catalogue from CSV into stars.bin, as README.md here describes it.
 
     python3 pack.py hipparcos_mag9.csv stars.bin

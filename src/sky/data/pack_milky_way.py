@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT OR Apache-2.0
 """Turns nested outlines of the Milky Way into milky_way.png, as README.md here describes it.
 
     python3 pack_milky_way.py milky_way_outlines.json milky_way.png

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Errors of one quantity, and the bars that shares of them stay below.
 
 /// A share of the errors, and what they stay below.

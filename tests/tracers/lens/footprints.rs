@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The footprints of records: changes to the next pixel, against true differences.
 
 use super::errors::Errors;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The lens tables against integration: records of random observers, their footprints, and scan lines without a seam,
 //! on both tracers. Truth is `physics::trace` in f64 with small steps; it knows nothing of tables. Where a tracer
 //! integrates every ray itself, it is held to the same bars. The GPU is whatever adapter comes first; without one the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Random observers, and where their cameras look.
 
 use super::truth::{Truth, around};

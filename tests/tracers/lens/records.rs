@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Records of one frame beside the truth, ray by ray.
 
 use super::errors::{Bar, Errors};

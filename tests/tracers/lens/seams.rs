@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Scan lines through the lens tables: their errors neither jump nor step.
 
 use super::errors::Errors;

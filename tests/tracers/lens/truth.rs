@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The fate of a ray in truth: integrated in f64 with small steps, with how well that is conditioned, and whether
 //! rounding alone may decide otherwise.
 

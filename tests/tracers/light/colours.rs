@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The colour of a ring at rest, through pictures: against the CIE's, as linear light and through the 8-bit encoding.
 
 use super::{both, bytes, camera, floats, light, luminance, whole};

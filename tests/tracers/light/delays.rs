@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Times along rays: the delay of a crossing and the t of a path, against Carter's equations in Boyer-Lindquist
 //! coordinates, written and integrated here. The tracer has other variables, another method and another form of dt.
 

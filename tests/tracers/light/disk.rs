@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The disk's light summed over a picture, against the integral over the isoradials; and pixel by pixel, against the
 //! rule of light.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The light of the disk by the angle to its normal: pixel by pixel against the angle that follows from the ray's
 //! angular momentum, and as distant disks show it.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A fall through a horizon without spin sees the turbulent disk go on: the times at which its light left, from inside
 //! too, against an integral in advanced time, and pictures a little before and after against those between others.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Whether the light is right: of the disk, its colours, its turbulence, the delays and the views, each against an
 //! expected value that owes nothing to the tracers. What is a picture is asked of both tracers; the GPU is whatever
 //! adapter comes first, and without one the tests fail. This file: what the tests share.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Light about a hole without spin, and the disk there, written from the textbooks: nothing of the library's tracer. M
 //! = 1.
 

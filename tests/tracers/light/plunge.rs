@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The light of matter that falls from the ISCO to the horizon: against the closed forms of spin 0, where the disk
 //! begins and what it leaves as it was, and both tracers against each other.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The disk's turbulence as pictures show it: mean, motion, steadiness of its statistics, and the time at which it is
 //! seen.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The views' raw values, pixel by pixel, against the tracer asked for the same rays; where there is no value, NaN.
 
 use super::{both, bytes, camera, hits, neighbours, view, whole};

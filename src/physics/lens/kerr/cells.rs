@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Judges the cells of a Kerr lens table: whether they are good enough to be interpolated, and which crossings their
 //! rays may have.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The coordinates of a Kerr lens table, its size, and what it is computed from.
 
 use crate::physics::lens::critical::{CriticalCurve, Polar};

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! Looking into a Kerr lens table: interpolation between its nodes.
 
 use super::grid::*;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The Kerr lens table: everything about a ray of one observer as a function of its look direction, tabulated in polar
 //! coordinates about the critical curve (`critical`), interpolated instead of integrated. Physics alone: knows neither
 //! pixels nor threads; callers may spread `Grid::node` and `Grid::flags`, which are one independent task per node and

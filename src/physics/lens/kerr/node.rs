@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The content of a node of a Kerr lens table, by integration of its ray.
 
 use super::grid::*;

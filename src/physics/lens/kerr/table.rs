@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! A whole Kerr lens table, and its rows, of which callers may compute many at a time.
 
 use super::grid::*;

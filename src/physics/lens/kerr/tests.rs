@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
 //! The Kerr lens table against tracing. Part of `kerr`, whose insides it looks at.
 
 use super::grid::*;
