@@ -119,7 +119,7 @@ static void hole(BhrContext *context) {
     EXPECT(info.it.horizon_radius == 2.0 && fabs(info.it.isco_prograde - 6.0) < 1e-9);
     EXPECT(fabs(info.it.photon_orbit_retrograde - 3.0) < 1e-9 && fabs(info.it.photon_orbit_prograde - 3.0) < 1e-9);
     EXPECT(fabs(info.it.critical_impact_parameter - sqrt(27.0)) < 1e-9 && info.it.shadow_angular_radius > 0.0);
-    EXPECT(info.it.camera_radius > 30.0 && info.it.camera_time_rate < 1.0 && info.it.isco_retrograde > 5.9);
+    EXPECT(info.it.camera_radius > 20.0 && info.it.camera_time_rate < 1.0 && info.it.isco_retrograde > 5.9);
     EXPECT(info.it.ergosphere_equatorial_radius == 2.0);
 }
 
@@ -129,7 +129,7 @@ static void camera(BhrContext *context) {
     GUARDED(BhrCamera, camera);
     EXPECT(bhr_camera_init(&camera.it, sizeof camera.it) == BHR_OK && untouched(camera.guard));
     EXPECT(camera.it.projection == BHR_PROJECTION_PERSPECTIVE && camera.it.motion == BHR_MOTION_STATIC);
-    EXPECT(camera.it.position[1] == -30.0 && camera.it.position[2] == 5.0);
+    EXPECT(fabs(camera.it.position[1]) > 20.0 && camera.it.position[2] > 0.0); /* since 0.2.0 not at (0, -30, 5) */
     EXPECT(bhr_camera_look_at(&camera.it, position, target, up) == BHR_OK && untouched(camera.guard));
     EXPECT(camera.it.position[1] == -20.0 && camera.it.forward[1] > 0.0);
     EXPECT(bhr_camera_orbit(&camera.it, 25.0, 0.0, 0.15) == BHR_OK && untouched(camera.guard));
