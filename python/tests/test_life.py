@@ -242,6 +242,8 @@ sys.exit(7)
 def test_control_c_stops_a_frame(python):
     program = """
 import bhr, signal, threading, time
+# A shell's background jobs, and what they start, ignore it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 ctx = bhr.Context(bhr.Backend.CPU)
 ctx.quality = bhr.Quality(method=bhr.Method.ADAPTIVE, samples_per_pixel=4)
 threading.Timer(0.5, lambda: signal.raise_signal(signal.SIGINT)).start()
