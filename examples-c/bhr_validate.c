@@ -35,10 +35,10 @@ static void compare(const char *what, double truth, double found, double toleran
     count++;
     failed += !holds;
     if (form == JSON) {
-        /* JSON has no NaN. */
+        /* JSON has neither NaN nor infinity. */
         printf("%s  {\"quantity\": \"%s\", \"source\": \"%s\", \"truth\": %.17g, ", count > 1 ? ",\n" : "", what,
                section_source, truth);
-        if (isnan(found)) {
+        if (!isfinite(found)) {
             printf("\"value\": null, \"error\": null, ");
         } else {
             printf("\"value\": %.17g, \"error\": %.3g, ", found, error);
@@ -309,7 +309,8 @@ static void first_crossings(void) {
         set_spin(a);
         const BhrHit hit = trace(r, theta, -p_r, -p_theta, -p_phi);
         snprintf(what, sizeof what, "spin %g, %g degrees, alpha %g, beta %g", a, c->inclination, c->alpha, c->beta);
-        compare(what, c->radius, hit.crossing_count > 0 ? hit.crossings[0].radius : 0.0, 1e-6);
+        const double none = hit.fate == BHR_FATE_CAPTURED ? 0.0 : NAN;
+        compare(what, c->radius, hit.crossing_count > 0 ? hit.crossings[0].radius : none, 1e-6);
     }
 }
 
@@ -365,7 +366,10 @@ static void redshifts(void) {
             }
             const double w = pow(hit.crossings[0].radius, -1.5);
             const double truth = sqrt(1.0 - 3.0 / hit.crossings[0].radius + 2.0 * a * w) / (1.0 + a * w) / clock;
-            worst = fmax(worst, fabs(hit.crossings[0].redshift / truth - 1.0));
+            const double error = fabs(hit.crossings[0].redshift / truth - 1.0);
+            if (!(error <= worst)) {
+                worst = isnan(error) ? INFINITY : error; /* which no later ray takes away */
+            }
             seen++;
         }
         snprintf(what, sizeof what, "spin %g: worst ratio to the truth of %d rays", a, seen);

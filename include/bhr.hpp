@@ -33,8 +33,9 @@
  *
  * Callbacks
  *   Progress and log callbacks are functors. An exception in one does not cross C: the progress callback's cancels the
- *   work; the exception is thrown again by the call that it came from, on the same thread, whether or not value() is
- *   called. One from a log callback on a thread of the library's is dropped, because nobody waits there.
+ *   work; the exception is thrown again by the outermost call of bhr that the thread is in, whether or not value() is
+ *   called. One from a log callback on a thread of the library's is dropped, because nobody waits there. Do not end a
+ *   context, job or surface inside a callback: as in C that is ignored, and it is never freed.
  *
  * Threads
  *   As in bhr.h: any thread may call, and calls on one context wait for each other. Two things change a C++ object and

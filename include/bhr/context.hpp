@@ -5,6 +5,8 @@
 
 #include "image.hpp"
 
+#include <cmath>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <string>
@@ -52,16 +54,15 @@ std::uint64_t timeout_of(const std::chrono::duration<Rep, Period> &timeout) noex
     if (seconds >= most) {
         return UINT64_MAX;
     }
-    const std::uint64_t whole = static_cast<std::uint64_t>(seconds * 1.0e9L);
-    return whole == 0 ? 1 : whole;
+    return static_cast<std::uint64_t>(std::ceil(seconds * 1.0e9L));
 }
 
 /// The message that bhr_context_error_message or bhr_job_error_message has for the handle.
 template <class C> std::string message_of(std::size_t (*ask)(const C *, char *, std::size_t), const C *handle) {
     std::string text(ask(handle, nullptr, 0), '\0');
-    // Another thread's call may have failed in between.
-    const std::size_t length = ask(handle, text.data(), text.size() + 1);
-    text.resize(length < text.size() ? length : text.size());
+    // Another thread's call may have failed in between, with a message of another length.
+    ask(handle, text.data(), text.size() + 1);
+    text.resize(std::strlen(text.c_str()));
     return text;
 }
 
@@ -167,10 +168,10 @@ class Context {
     /// bhr_context_create. `log` takes the place of the options' log_fn and log_user, where it is not empty.
     static Result<Context> create(const ContextOptions &options = {}, LogFunction log = {}) {
         const detail::Call inside;
-        std::unique_ptr<LogFunction> kept;
+        detail::Functor<LogFunction> kept;
         BhrContextOptions raw = options.c();
         if (log) {
-            kept = std::make_unique<LogFunction>(std::move(log));
+            kept.reset(new LogFunction(std::move(log)));
             raw.log_fn = detail::on_log;
             raw.log_user = kept.get();
         }
@@ -316,7 +317,7 @@ class Context {
     Result<void> on_progress(ProgressFunction progress) {
         std::shared_ptr<ProgressFunction> next;
         if (progress) {
-            next = std::make_shared<ProgressFunction>(std::move(progress));
+            next.reset(new ProgressFunction(std::move(progress)), detail::EndFunctor());
         }
         const BhrProgressFn function = next ? detail::on_progress : nullptr;
         Result<void> done = detail::call([&] { return bhr_set_progress(get(), function, next.get()); });
@@ -453,7 +454,7 @@ class Context {
     }
 
   private:
-    Context(BhrContext *handle, std::unique_ptr<LogFunction> log) noexcept : log_(std::move(log)), handle_(handle) {}
+    Context(BhrContext *handle, detail::Functor<LogFunction> log) noexcept : log_(std::move(log)), handle_(handle) {}
 
     static BhrRay *c_rays(Ray *rays) noexcept { return reinterpret_cast<BhrRay *>(rays); }
     static const BhrRay *c_rays(const Ray *rays) noexcept { return reinterpret_cast<const BhrRay *>(rays); }
@@ -470,7 +471,7 @@ class Context {
     }
 
     // The functors end after the context, which calls them until it has ended.
-    std::unique_ptr<LogFunction> log_;
+    detail::Functor<LogFunction> log_;
     std::shared_ptr<ProgressFunction> progress_;
     detail::Handle<BhrContext, bhr_context_destroy> handle_;
 };

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -88,8 +89,34 @@ inline Pending &pending() noexcept {
 }
 #endif
 
+/// How many functors of callbacks this thread is in.
+inline int &functors_running() noexcept {
+    static thread_local int count = 0;
+    return count;
+}
+
+/// Lives while a functor runs.
+struct FunctorRuns {
+    FunctorRuns() noexcept { functors_running()++; }
+    FunctorRuns(const FunctorRuns &) = delete;
+    FunctorRuns &operator=(const FunctorRuns &) = delete;
+    ~FunctorRuns() { functors_running()--; }
+};
+
+/// Ends a functor, but not inside one: there C ignores the end of its context, which goes on calling it.
+struct EndFunctor {
+    template <class Functor> void operator()(Functor *functor) const noexcept {
+        if (functors_running() == 0) {
+            delete functor;
+        }
+    }
+};
+
+template <class T> using Functor = std::unique_ptr<T, EndFunctor>;
+
 /// Runs a functor inside C: its exception is kept for the C++ call that this thread is in. Whether it threw none.
 template <class Functor> bool shielded(Functor &&functor) noexcept {
+    const FunctorRuns inside;
 #ifdef BHR_NO_EXCEPTIONS
     functor();
     return true;
@@ -125,8 +152,11 @@ class Call {
             own.thrown = nullptr;
         }
     }
-    /// Throws what a functor threw; to be called when nothing is left to lose.
+    /// Throws what a functor threw, out of the outermost call; to be called when nothing is left to lose.
     void rethrow() const {
+        if (pending().depth > 1) {
+            return;
+        }
         if (std::exception_ptr thrown = std::exchange(pending().thrown, nullptr)) {
             std::rethrow_exception(std::move(thrown));
         }

@@ -39,9 +39,11 @@ pub(super) unsafe fn on_context<T: Success>(
         guarded(|| body(&mut state))
     };
     break_if_internal(&result, &context.broken);
+    // bhr_context_destroy waits for the lock alone: after it the context may be gone.
+    let message = context.message.clone();
     // Threads that wait for the lock go first: one that calls again and again would otherwise keep them out.
     MutexGuard::unlock_fair(state);
-    keep(finish(function, result), Some(&context.message))
+    keep(finish(function, result), Some(&message))
 }
 
 /// Keeps the message of a call that has just failed with the object it was on, too. Passes `status` on.

@@ -11,8 +11,8 @@
 //!
 //! So the lock is held while an instance is made or dropped, adapters are listed, a device is opened, until it has its
 //! first pipeline, and while the device is dropped; on Linux also while a thread that has used a driver runs the
-//! handlers of its end. Who holds it waits for no other thread and calls no host: messages
-//! wait (`deferred`).
+//! handlers of its end. Who holds it calls no host (messages wait: `deferred`), and waits for
+//! no other thread but one that it has just started and that takes no lock (`gl_guard`).
 
 use crate::deferred::{Holding, hold};
 use parking_lot::{ReentrantMutex, ReentrantMutexGuard, const_reentrant_mutex};

@@ -14,6 +14,7 @@ pub use none::ContextGuard;
 
 #[cfg(all(feature = "gl", unix, not(target_vendor = "apple"), not(target_os = "android")))]
 mod egl {
+    use crate::gpu::device::driver_lock;
     use khronos_egl::{self as egl, DynamicInstance, EGL1_4};
     use std::sync::mpsc;
     use std::thread::{self, JoinHandle};
@@ -26,8 +27,8 @@ mod egl {
     }
 
     impl ContextGuard {
-        /// Guards the objects of the adapter's context. `None`, with the reason in the log, where that cannot be done;
-        /// without a guard all is well as long as nobody ends the display.
+        /// Guards the objects of the adapter's context, for a caller that holds the driver lock. Where that cannot be
+        /// done, which the log tells, all is well as long as nobody ends the display.
         pub fn of(adapter: &wgpu::Adapter) -> Option<Self> {
             // SAFETY: nothing is destroyed through it.
             let hal = unsafe { adapter.as_hal::<wgpu::hal::api::Gles>() }?;
@@ -39,44 +40,39 @@ mod egl {
             let (end, ended) = mpsc::channel::<()>();
             let run = move || hold(display, shared, &tell, &ended);
             let thread = thread::Builder::new().name("bhr-gl-guard".into()).spawn(run).ok()?;
-            let guard = Self { end: Some(end), thread: Some(thread) };
-            match told.recv() {
-                Ok(Ok(())) => Some(guard),
-                Ok(Err(error)) => {
-                    log::info!("GL goes without a guard against the end of its display: {error}");
-                    None
-                }
-                Err(mpsc::RecvError) => None,
+            if let Ok(Err(error)) = told.recv() {
+                log::info!("GL goes without a guard against the end of its display: {error}");
             }
+            Some(Self { end: Some(end), thread: Some(thread) })
         }
     }
 
     impl Drop for ContextGuard {
         fn drop(&mut self) {
             drop(self.end.take());
-            if let Some(thread) = self.thread.take() {
+            // It ends under the driver lock.
+            if let Some(thread) = self.thread.take().filter(|_| !driver_lock::is_held()) {
                 let _ = thread.join();
             }
         }
     }
 
+    /// The caller of `of` holds the driver lock until it is told; this thread ends later, under the lock.
     fn hold(display: usize, shared: usize, tell: &mpsc::Sender<Result<(), String>>, ended: &mpsc::Receiver<()>) {
+        driver_lock::guard();
         // SAFETY: the library that wgpu has loaded, by the same name, as sound as any of the system's.
-        let egl = match unsafe { DynamicInstance::<EGL1_4>::load_required() } {
-            Ok(egl) => egl,
-            Err(error) => {
-                let _ = tell.send(Err(error.to_string()));
-                return;
-            }
-        };
-        let made = make_current(&egl, display, shared);
-        let guards = made.is_ok();
-        let _ = tell.send(made.map_err(|error| error.to_string()));
-        if guards {
-            // An error: the sender is gone.
-            let _ = ended.recv();
+        let egl = unsafe { DynamicInstance::<EGL1_4>::load_required() }.map_err(|error| error.to_string());
+        let made = egl
+            .as_ref()
+            .map_err(Clone::clone)
+            .and_then(|egl| make_current(egl, display, shared).map_err(|error| error.to_string()));
+        let _ = tell.send(made);
+        // An error: the sender is gone.
+        let _ = ended.recv();
+        let _driver = driver_lock::lock();
+        if let Ok(egl) = egl {
+            let _ = egl.release_thread();
         }
-        let _ = egl.release_thread();
     }
 
     /// Makes a context of the same configuration, interface and version that shares `shared`'s objects, current on this
