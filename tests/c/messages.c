@@ -132,6 +132,44 @@ static void callbacks_may_ask(BhrBackend backend) {
     bhr_context_destroy(context);
 }
 
+/* ---- ends ---- */
+
+static volatile int rendering;
+
+static int32_t cancel_late(void *user, double fraction) {
+    (void)user;
+    (void)fraction;
+    rendering = 1;
+    pause_ms(5);
+    return 0;
+}
+
+static void *fail_while_it_ends(void *context) {
+    static unsigned char pixels[SIDE * SIDE * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, SIDE, SIDE, pixels, sizeof pixels);
+    CHECK(bhr_render_image(context, &image) == BHR_ERROR_CANCELLED, "%s", bhr_error_message());
+    return NULL;
+}
+
+/* bhr_context_destroy waits for a call that is running; that call's failure is then told without the context. */
+static void calls_fail_while_their_context_ends(BhrBackend backend) {
+    for (int i = 0; i < (backend == BHR_BACKEND_CPU ? 20 : 3); i++) { /* on lavapipe each takes half a second */
+        BhrContext *context = check_context(backend);
+        pthread_t   thread;
+        rendering = 0;
+        CHECK_OK(bhr_set_progress(context, cancel_late, NULL));
+        if (pthread_create(&thread, NULL, fail_while_it_ends, context) != 0) {
+            bhr_context_destroy(context);
+            return;
+        }
+        while (!rendering) {
+            pause_ms(1);
+        }
+        bhr_context_destroy(context);
+        pthread_join(thread, NULL);
+    }
+}
+
 /* ---- words ---- */
 
 static void messages_are_plain(BhrBackend backend) {
@@ -164,6 +202,7 @@ int main(int argc, char **argv) {
     buffers_of_every_size(backend);
     each_job_has_its_own(backend);
     callbacks_may_ask(backend);
+    calls_fail_while_their_context_ends(backend);
     messages_are_plain(backend);
     return check_end();
 }
