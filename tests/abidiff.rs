@@ -92,10 +92,11 @@ fn probe(header: &str, release: &str) -> Result<String, String> {
 
 /// Compiles a probe into `folder`, with debugging information.
 fn compiled(folder: &Path, probe: &str) -> PathBuf {
-    let (source, object) = (folder.join("probe.c"), folder.join("probe.so"));
-    std::fs::write(&source, probe).unwrap();
-    run(compiler(false).args(["-std=gnu11", "-g", "-fPIC", "-shared"]).arg(&source).arg("-o").arg(&object));
-    object
+    std::fs::write(folder.join("probe.c"), probe).unwrap();
+    // By its name alone: the debugging information, and a baseline with it, has the path that the compiler is told.
+    let options = ["-std=gnu11", "-g", "-fPIC", "-shared", "probe.c", "-o", "probe.so"];
+    run(compiler(false).current_dir(folder).args(options));
+    folder.join("probe.so")
 }
 
 fn libabigail(program: &str) -> Command {

@@ -8,7 +8,7 @@ use super::callback::in_callback;
 use super::entry::{anywhere, finish, outside_callbacks};
 use super::gate::Gate;
 use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
-use super::message::{LastMessage, copy_text};
+use super::message::{LastMessage, copy_last};
 use super::panic::guarded;
 use super::pointer::{Out, check_flags};
 use super::render::Callback;
@@ -255,15 +255,7 @@ pub unsafe extern "C" fn bhr_context_error_message(
     size: usize,
 ) -> usize {
     // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
-    unsafe {
-        match context.as_ref() {
-            Some(context) => context.message.copy_to(buffer, size),
-            None => {
-                copy_text(b"", buffer, size);
-                0
-            }
-        }
-    }
+    unsafe { copy_last(context.as_ref().map(|context| &*context.message), buffer, size) }
 }
 
 /// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a

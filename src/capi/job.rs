@@ -8,7 +8,7 @@ use super::entry::{self, SuccessStatus, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
 use super::log::{self, Sink};
-use super::message::{LastMessage, copy_text};
+use super::message::{LastMessage, copy_last};
 use super::panic::guarded;
 use super::pointer::{Out, is_null};
 use super::render::{Callback, Report};
@@ -134,15 +134,7 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_error_message(job: *const BhrJob, buffer: *mut c_char, size: usize) -> usize {
     // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
-    unsafe {
-        match job.as_ref() {
-            Some(job) => job.message.copy_to(buffer, size),
-            None => {
-                copy_text(b"", buffer, size);
-                0
-            }
-        }
-    }
+    unsafe { copy_last(job.as_ref().map(|job| &job.message), buffer, size) }
 }
 
 /// Asks a job to stop, and does not wait: bhr_job_wait then returns CANCELLED, or OK when the job was done before.

@@ -64,6 +64,18 @@ impl LastMessage {
     }
 }
 
+/// The message of an object into a host's buffer, as [`LastMessage::copy_to`] has it; "" and 0 for no object.
+///
+/// # Safety
+/// `buffer` is NULL or has `size` writable bytes.
+pub(super) unsafe fn copy_last(message: Option<&LastMessage>, buffer: *mut c_char, size: usize) -> usize {
+    // SAFETY: this function's contract.
+    unsafe {
+        copy_text(b"", buffer, size);
+        message.map_or(0, |message| message.copy_to(buffer, size))
+    }
+}
+
 /// Copies `text`, cut at a character, and a NUL into a host's buffer.
 ///
 /// # Safety

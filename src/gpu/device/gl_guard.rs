@@ -34,7 +34,8 @@ mod egl {
             let hal = unsafe { adapter.as_hal::<wgpu::hal::api::Gles>() }?;
             let context = hal.adapter_context();
             // Addresses, because pointers do not go to threads.
-            let (display, shared) = (context.raw_display()?.as_ptr().addr(), context.raw_context().addr());
+            let (display, shared) =
+                (context.raw_display()?.as_ptr().expose_provenance(), context.raw_context().expose_provenance());
             drop(hal);
             let (tell, told) = mpsc::channel();
             let (end, ended) = mpsc::channel::<()>();
