@@ -134,12 +134,12 @@ static void callbacks_may_ask(BhrBackend backend) {
 
 /* ---- ends ---- */
 
-static volatile int rendering;
+static int rendering; /* by the compiler's atomic built-ins: C99 has none of its own */
 
 static int32_t cancel_late(void *user, double fraction) {
     (void)user;
     (void)fraction;
-    rendering = 1;
+    __atomic_store_n(&rendering, 1, __ATOMIC_SEQ_CST);
     pause_ms(5);
     return 0;
 }
@@ -156,13 +156,13 @@ static void calls_fail_while_their_context_ends(BhrBackend backend) {
     for (int i = 0; i < (backend == BHR_BACKEND_CPU ? 20 : 3); i++) { /* on lavapipe each takes half a second */
         BhrContext *context = check_context(backend);
         pthread_t   thread;
-        rendering = 0;
+        __atomic_store_n(&rendering, 0, __ATOMIC_SEQ_CST);
         CHECK_OK(bhr_set_progress(context, cancel_late, NULL));
         if (pthread_create(&thread, NULL, fail_while_it_ends, context) != 0) {
             bhr_context_destroy(context);
             return;
         }
-        while (!rendering) {
+        while (!__atomic_load_n(&rendering, __ATOMIC_SEQ_CST)) {
             pause_ms(1);
         }
         bhr_context_destroy(context);
