@@ -233,12 +233,33 @@ static void check_log(BhrBackend backend, BhrLogLevel level, int expects_message
     CHECK(level != BHR_LOG_OFF || log.messages == 0, "%d messages although the log is off", log.messages);
 }
 
+/* Software takes long for a sample: a frame that is cancelled ends after the next one, whatever its number. */
+static void software_asks_after_each_sample(BhrContext *context) {
+    enum { SIDE = 64, SAMPLES = 12 };
+    static unsigned char pixels[SIDE * SIDE * 4];
+    const BhrImage       image = image_of(BHR_FORMAT_RGBA8_SRGB, SIDE, SIDE, pixels, sizeof pixels);
+    Progress             progress = silent_progress(context);
+    BhrAdapterInfo       adapter;
+    BhrQuality           quality;
+    adapter.struct_size = sizeof adapter;
+    CHECK_OK(bhr_context_adapter(context, &adapter));
+    CHECK_OK(bhr_quality_init(&quality, sizeof quality));
+    quality.samples_per_pixel = SAMPLES;
+    CHECK_OK(bhr_set_quality(context, &quality));
+    CHECK_OK(bhr_set_progress(context, on_progress, &progress));
+    CHECK_OK(bhr_render_image(context, &image));
+    CHECK(!(adapter.flags & BHR_ADAPTER_SOFTWARE) || progress.calls >= SAMPLES, "%d calls for %d samples",
+          progress.calls, SAMPLES);
+    CHECK_OK(bhr_set_progress(context, NULL, NULL));
+}
+
 int main(int argc, char **argv) {
     const BhrBackend backend = check_begin(argc, argv);
     BhrContext      *context = check_context(backend);
     progress_from_inside(context);
     cancel_at_once(context);
     cancel_in_the_middle(context);
+    software_asks_after_each_sample(context);
     bhr_context_destroy(context);
     check_log(backend, BHR_LOG_OFF, 0);
     check_log(backend, BHR_LOG_ERROR, 0);

@@ -159,17 +159,19 @@ impl GpuTracer {
         let longest = self.device.limits().max_texture_dimension_2d;
         let side = longest.min(MAX_TILE_SIDE);
         let (samples, size) = (setup.samples, [request.width, request.height]);
+        // Software takes a good part of a second for a sample: a frame that is cancelled ends after the next one.
+        let batch = if self.adapter.info.software { 1 } else { samples };
         let Some(bloom) = &setup.bloom else {
-            return Steps::plain(TilePlan::new(request, bytes, side, ray_steps, samples), samples);
+            return Steps::plain(TilePlan::new(request, bytes, side, ray_steps, batch), samples);
         };
         let light = LIGHT_BYTES * size.map(u64::from).iter().product::<u64>();
         let fits = size.iter().all(|side| *side <= longest) && light <= MEMORY;
         if fits && scene.quality.keep_light.unwrap_or(true) {
-            return Steps::kept(TilePlan::new(request, bytes, side, ray_steps, samples), samples, bloom);
+            return Steps::kept(TilePlan::new(request, bytes, side, ray_steps, batch), samples, bloom);
         }
         Steps::twice(request, samples, bloom, |request, pixels| {
             let side = (u64::from(side) / pixels.isqrt()) as u32;
-            TilePlan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, samples)
+            TilePlan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, batch)
         })
     }
 

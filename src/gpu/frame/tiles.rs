@@ -21,8 +21,8 @@ pub struct TilePlan {
 
 impl TilePlan {
     /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to
-    /// take.
-    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, samples: u32) -> Self {
+    /// take; `batch` is the most samples that one submission may have.
+    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, batch: u32) -> Self {
         let steps = steps.max(1);
         let max_side = max_side.saturating_sub(2).max(1);
         let by_memory = MEMORY / bytes_per_pixel.max(1);
@@ -38,7 +38,7 @@ impl TilePlan {
         let share = |full: u32, part: u32| full.div_ceil(full.div_ceil(part).max(1)).max(1);
         let tile = [share(request.width, width), share(request.height, height)];
         let traced = u64::from(tile[0] + 2) * u64::from(tile[1] + 2);
-        let batch = (STEPS_PER_SUBMISSION / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(samples.max(1)))) as u32;
+        let batch = (STEPS_PER_SUBMISSION / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(batch.max(1)))) as u32;
         Self { frame: [request.width, request.height], tile, batch }
     }
 
