@@ -37,10 +37,19 @@ pub struct Place {
 impl Place {
     /// 1/r = `u`, outside the horizon; `cos` of theta.
     pub fn new(a: f64, u: f64, cos: f64) -> Self {
+        Self::beside(a, [horizon_outer(a), horizon_inner(a)], u, cos)
+    }
+
+    /// The same along a ray, whose constants know the radii of the horizons.
+    pub fn on_ray(c: &Constants, u: f64, cos: f64) -> Self {
+        Self::beside(c.a, [c.r_plus, c.r_minus], u, cos)
+    }
+
+    fn beside(a: f64, [r_plus, r_minus]: [f64; 2], u: f64, cos: f64) -> Self {
         let r = 1.0 / u;
         let sin2 = ((1.0 - cos) * (1.0 + cos)).max(LEAST_SIN2);
         let sum = r * r + a * a;
-        let delta = (1.0 - horizon_outer(a) * u) * (r - horizon_inner(a)) * r;
+        let delta = (1.0 - r_plus * u) * (r - r_minus) * r;
         let big_a = sum * sum - delta * a * a * sin2;
         let sigma = r * r + (a * cos).powi(2);
         Self {
@@ -188,11 +197,14 @@ pub fn keplerian(a: f64, at: &Place, isco: f64, sub_keplerian: f64, infall: f64)
     let orbit = at.r.max(isco);
     let root = orbit.sqrt();
     let l = sub_keplerian * (orbit * orbit - 2.0 * a * root + a * a) / (orbit * root - 2.0 * root + a);
-    let equator = Place::new(a, 1.0 / at.r, 0.0);
-    let ratio = equator.lapse / equator.around;
+    // A and om in the plane, and al^2 / g_phph = Delta r^4 / A^2 there.
+    let (r2, a2) = (at.r * at.r, a * a);
+    let equator = (r2 + a2) * (r2 + a2) - at.delta * a2;
+    let ratio = at.delta * r2 * r2 / (equator * equator);
+    let omega = 2.0 * a * at.r / equator;
     // Omega - om, in which om(equator) - om is written without the difference: near the horizon both vanish with Delta.
-    let drag = 2.0 * a * at.r * at.delta * (a * at.cos).powi(2) / (at.big_a * equator.big_a);
-    let over = drag + ratio * ratio * l / (1.0 - equator.omega(a) * l);
+    let drag = 2.0 * a * at.r * at.delta * (a * at.cos).powi(2) / (at.big_a * equator);
+    let over = drag + ratio * l / (1.0 - omega * l);
     let excess = (isco / at.r - 1.0).max(0.0);
     let plunge = -(2.0 / (3.0 * isco)).sqrt() * excess * excess.sqrt();
     let rain = -(2.0 * at.r * (at.r * at.r + a * a)).sqrt() / at.sigma;
@@ -221,7 +233,7 @@ pub fn outflow(a: f64, at: &Place, speed: f64, base: f64) -> Velocity {
 
 /// The state of a ray in terms of the place that it is at.
 pub fn place_of(c: &Constants, there: &State) -> Place {
-    Place::new(c.a, there.u, there.n.z / there.n.length())
+    Place::on_ray(c, there.u, there.n.z / there.n.length())
 }
 
 #[cfg(test)]
