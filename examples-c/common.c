@@ -45,7 +45,7 @@ const Choice TONE_MAPS[] = {
 const Choice COLOUR_MAPS[] = {{"none", BHR_COLOUR_MAP_NONE}, {"afmhot", BHR_COLOUR_MAP_AFMHOT}, {NULL, 0}};
 const Choice VIEWS[] = {{"light", BHR_VIEW_LIGHT}, {"redshift", BHR_VIEW_REDSHIFT},     {"order", BHR_VIEW_ORDER},
                         {"steps", BHR_VIEW_STEPS}, {"deflection", BHR_VIEW_DEFLECTION}, {"metric", BHR_VIEW_METRIC},
-                        {NULL, 0}};
+                        {"optical_depth", BHR_VIEW_OPTICAL_DEPTH}, {"intensity", BHR_VIEW_INTENSITY}, {NULL, 0}};
 const Choice PROJECTIONS[] = {{"perspective", BHR_PROJECTION_PERSPECTIVE},
                               {"fisheye", BHR_PROJECTION_FISHEYE},
                               {"equirect", BHR_PROJECTION_EQUIRECT},

@@ -32,12 +32,14 @@ ENUMS = {
     "BHR_METHOD_": bhr.Method,
     "BHR_VIEW_": bhr.View,
     "BHR_FATE_": bhr.Fate,
+    "BHR_FLOW_": bhr.Flow,
+    "BHR_HOT_SPOT_": bhr.HotSpotFlags,
 }
 
 #: Constants of C that Python has by other means: arguments, logging's levels, numpy's strides. Windows are left out.
 ELSEWHERE = re.compile(
     r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|MAX_CROSSINGS"
-    r"|WINDOW_\w+|PRESENT_\w+)"
+    r"|MAX_VOLUMES|MAX_HOT_SPOTS|WINDOW_\w+|PRESENT_\w+)"
 )
 
 #: Functions for windows, which this package does not have; and what cffi or numpy do in their place.
@@ -55,6 +57,8 @@ LEFT_OUT = {
     "bhr_sky_init",
     "bhr_film_init",
     "bhr_quality_init",
+    "bhr_volume_init",
+    "bhr_hot_spot_init",
     # Messages are read on the thread of the call that failed.
     "bhr_context_error_message",
     "bhr_job_error_message",
@@ -67,9 +71,11 @@ STRUCTS = [
     bhr.Film,
     bhr.FrameStats,
     bhr.HoleInfo,
+    bhr.HotSpot,
     bhr.Quality,
     bhr.Region,
     bhr.Sky,
+    bhr.Volume,
 ]
 
 
@@ -86,9 +92,11 @@ def test_every_constant_has_a_member():
         for name, member in kind.__members__.items():
             error = kind is bhr.Status and member < 0
             members[f"{prefix}ERROR_{name}" if error else prefix + name] = int(member)
-    # Three enumerations share the prefix of the disk's constants.
+    # Enumerations share the prefixes of the disk's and the volumes' constants.
     for kind in bhr.DiskFlags, bhr.DiskReference, bhr.EmissionLaw:
         members.update({f"BHR_DISK_{name}": int(member) for name, member in kind.__members__.items()})
+    for kind in bhr.VolumeFlags, bhr.VolumeShape:
+        members.update({f"BHR_VOLUME_{name}": int(member) for name, member in kind.__members__.items()})
     assert {name: value for name, value in header.items() if not ELSEWHERE.fullmatch(name)} == members
 
 
@@ -102,20 +110,24 @@ def test_every_field_is_there(struct):
 
 def test_every_struct_is_there():
     structs = set(re.findall(r"^typedef struct \w+ \{.*?^\} (\w+);", CODE, re.MULTILINE | re.DOTALL))
-    others = {"BhrContextOptions", "BhrImage", "BhrRay", "BhrHit", "BhrCrossing", "BhrWindow"}
+    others = {"BhrContextOptions", "BhrImage", "BhrRay", "BhrHit", "BhrCrossing", "BhrTransfer", "BhrWindow"}
     assert structs == others | {struct.c_name for struct in STRUCTS}
 
 
-@pytest.mark.parametrize("struct", [bhr.Camera, bhr.Disk, bhr.Film, bhr.Quality, bhr.Sky])
+@pytest.mark.parametrize("struct", [bhr.Camera, bhr.Disk, bhr.Film, bhr.HotSpot, bhr.Quality, bhr.Sky, bhr.Volume])
 def test_defaults_are_the_librarys(struct):
     c = ffi.new(f"{struct.c_name} *")
-    assert getattr(lib, f"bhr_{struct.__name__.lower()}_init")(c, ffi.sizeof(struct.c_name)) == 0
+    name = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", struct.__name__).lower()
+    assert getattr(lib, f"bhr_{name}_init")(c, ffi.sizeof(struct.c_name)) == 0
     assert struct.from_c(c) == struct()
     made = struct().to_c()
     assert made.struct_size == c.struct_size and struct.from_c(made) == struct()
 
 
-@pytest.mark.parametrize(("dtype", "name"), [(bhr.RAY, "BhrRay"), (bhr.HIT, "BhrHit"), (bhr.CROSSING, "BhrCrossing")])
+RAYS = [(bhr.RAY, "BhrRay"), (bhr.HIT, "BhrHit"), (bhr.CROSSING, "BhrCrossing"), (bhr.TRANSFER, "BhrTransfer")]
+
+
+@pytest.mark.parametrize(("dtype", "name"), RAYS)
 def test_dtypes_have_the_layout_of_c(dtype, name):
     assert dtype.itemsize == ffi.sizeof(name)
     fields = ffi.typeof(name).fields

@@ -112,3 +112,34 @@ def test_a_path_is_the_rays(ctx):
         ctx.trace_path(bhr.rays((30.0, 0.0, 0.0), (0.0, 0.0, 0.0)))
     with pytest.raises(bhr.InvalidArgument):
         ctx.trace_path(ray, capacity=1)
+
+
+def test_matter_along_rays_is_summed(ctx):
+    """Far from the hole rays are chords of a Gaussian cloud: its depth is kappa sqrt(2 pi) R e^(-b^2 / 2 R^2)."""
+    cloud = bhr.Volume(
+        shape=bhr.VolumeShape.HALO,
+        flow=bhr.Flow.ANGULAR_MOMENTUM,
+        flags=bhr.VolumeFlags.POWER_LAW,
+        angular_momentum=0.0,
+        radius=1000.0,
+        outer_radius=9000.0,
+        thickness=1e6,
+        absorption=1e-4,
+        spectral_index=-2.5,
+    )
+    ctx.volumes = [cloud]
+    assert ctx.volumes == (cloud,)
+    impact = np.array([[400.0, 800.0], [1200.0, 1600.0]])
+    position = np.stack([np.full_like(impact, 1e4), impact, np.zeros_like(impact)], axis=-1)
+    found = ctx.transfer(bhr.rays(position, (-1.0, 0.0, 0.0)))
+    depth = 0.1 * math.sqrt(2.0 * math.pi) * np.exp(-0.5 * (impact / 1000.0) ** 2)
+    assert found.shape == (2, 2) and np.all(found["fate"] == bhr.Fate.ESCAPED)
+    assert np.allclose(found["optical_depth"], depth, rtol=5e-3)
+    assert np.allclose(found["intensity"], 1e4 * (1.0 - np.exp(-depth)), rtol=1e-2)
+    with pytest.raises(bhr.InvalidArgument, match="volume count is 5"):
+        ctx.volumes = [cloud] * 5
+    spots = [bhr.HotSpot(azimuth=float(i), flags=bhr.HotSpotFlags.THERMAL) for i in range(8)]
+    ctx.hot_spots = spots
+    assert ctx.hot_spots == tuple(spots)
+    ctx.volumes, ctx.hot_spots = [], []
+    assert ctx.volumes == () and ctx.transfer(bhr.rays((20.0, 0.0, 0.0), (-1.0, 1.0, 0.0)))["intensity"] == 0.0

@@ -8,6 +8,7 @@
 pub mod blackbody;
 pub mod cie1931;
 pub mod disk_flux;
+pub mod flow;
 pub mod geodesic;
 pub mod integrator;
 pub mod lens;

@@ -226,7 +226,7 @@ static void time_effects_view(Watch *watch, BhrContext *context) {
     /* Unknown bits are ignored: the watched scene is lit with all of them set, all but BEAMING. */
     CHECK_OK(bhr_set_effects(context, BHR_EFFECT_DOPPLER_SHIFT | BHR_EFFECT_GRAVITY_SHIFT | BHR_EFFECT_LIGHT_DELAY));
     check_unchanged(watch, __FILE__, __LINE__, "unknown effects");
-    static const int32_t unknown[] = {-1, 6, 1000, INT32_MIN};
+    static const int32_t unknown[] = {-1, 8, 1000, INT32_MIN};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "view", bhr_set_view(context, unknown[i]));
     }

@@ -186,7 +186,9 @@ static void scene_call(BhrContext *context) {
     BhrDisk   disk;
     BhrSky    sky;
     BhrFilm   film;
-    switch (byte() % 16) {
+    BhrVolume  volumes[2];
+    BhrHotSpot spots[2];
+    switch (byte() % 18) {
     case 0: check(bhr_set_mass(context, number())); break;
     case 1: check(bhr_set_spin(context, number())); break;
     case 2: check(bhr_set_axis(context, byte() < 250 ? vector : NULL)); break;
@@ -240,10 +242,33 @@ static void scene_call(BhrContext *context) {
         break;
     case 8: check(bhr_set_time(context, number())); break;
     case 9: check(bhr_set_preset(context, constant(BHR_PRESET_TEACHING))); break;
-    case 10: check(bhr_set_view(context, constant(BHR_VIEW_METRIC))); break;
+    case 10: check(bhr_set_view(context, constant(BHR_VIEW_INTENSITY))); break;
     case 11: check(bhr_set_effects(context, byte())); break;
     case 12: check(bhr_metric_at(context, vector, gamma)); break;
     case 13: check(bhr_christoffel_at(context, vector, gamma)); break;
+    case 15:
+        for (size_t i = 0; i < 2; i++) {
+            bhr_volume_init(&volumes[i], sizeof volumes[i]);
+            volumes[i].struct_size = mostly(sizeof volumes[i], byte());
+            volumes[i].flags = mostly(byte() % 4, byte());
+            volumes[i].shape = constant(BHR_VOLUME_JET);
+            volumes[i].flow = constant(BHR_FLOW_OUTFLOW);
+            volumes[i].thickness = mostly(1, 0) != 0 ? volumes[i].thickness : number();
+            volumes[i].outer_radius = mostly(1, 0) != 0 ? volumes[i].outer_radius : number();
+            volumes[i].absorption = mostly(1, 0) != 0 ? volumes[i].absorption : number();
+        }
+        check(bhr_set_volumes(context, volumes, mostly(sizeof volumes[0], byte()), mostly(byte() % 3, 5)));
+        break;
+    case 16:
+        for (size_t i = 0; i < 2; i++) {
+            bhr_hot_spot_init(&spots[i], sizeof spots[i]);
+            spots[i].struct_size = mostly(sizeof spots[i], byte());
+            spots[i].flags = mostly(byte() % 4, byte());
+            spots[i].radius = mostly(1, 0) != 0 ? spots[i].radius : number();
+            spots[i].azimuth = number();
+        }
+        check(bhr_set_hot_spots(context, spots, mostly(sizeof spots[0], byte()), mostly(byte() % 3, 9)));
+        break;
     case 14:
         bhr_camera_init(&camera, sizeof camera);
         check(bhr_get_camera(context, &camera));
@@ -271,6 +296,7 @@ static void set_quality(BhrContext *context) {
 static void ray_call(BhrContext *context) {
     BhrRay   rays[3];
     BhrHit   hits[3];
+    BhrTransfer found_matter[3];
     double   points[4 * 16];
     uint32_t found = 0;
     for (size_t i = 0; i < 3; i++) {
@@ -280,7 +306,11 @@ static void ray_call(BhrContext *context) {
         }
         rays[i].frequency_ratio = number();
     }
-    switch (byte() % 4) {
+    switch (byte() % 5) {
+    case 4:
+        check(bhr_transfer_rays(context, rays, mostly(sizeof rays[0], 3), byte() % 4, found_matter,
+                                sizeof found_matter[0]));
+        break;
     case 0: check(bhr_trace_rays(context, rays, mostly(sizeof rays[0], 3), byte() % 4, hits, sizeof hits[0])); break;
     case 1: check(bhr_trace_path(context, &rays[0], byte() % 17, points, &found)); break;
     case 2: check(bhr_camera_ray(context, count(), count(), number(), number(), &rays[0])); break;

@@ -8,8 +8,9 @@
         ctx.camera = bhr.Camera.orbit(20.0, 0.0, 0.1)
         ctx.render(1280, 720).save("hole.png")
 
-Units are geometric, G = c = 1: the mass is given in the scene's unit of length, and the disk's radii in units of M.
-Angles are in radians, temperatures in kelvin. The hole is at the origin, its spin axis along +z.
+Units are geometric, G = c = 1: the mass is given in the scene's unit of length, and the lengths of the disk, of volumes
+and of hot spots in units of M. Angles are in radians, temperatures in kelvin. The hole is at the origin, its spin axis
+along +z.
 """
 
 from ._constants import (
@@ -21,7 +22,9 @@ from ._constants import (
     Effects,
     EmissionLaw,
     Fate,
+    Flow,
     Format,
+    HotSpotFlags,
     Method,
     Motion,
     Preset,
@@ -30,13 +33,15 @@ from ._constants import (
     Status,
     ToneMap,
     View,
+    VolumeFlags,
+    VolumeShape,
 )
 from ._context import Context
 from ._ffi import ffi as _ffi
 from ._frame import Frame, load
 from ._job import Job
 from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
-from ._rays import CROSSING, HIT, RAY, rays
+from ._rays import CROSSING, HIT, RAY, TRANSFER, rays
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -44,9 +49,11 @@ from ._structs import (
     Film,
     FrameStats,
     HoleInfo,
+    HotSpot,
     Quality,
     Region,
     Sky,
+    Volume,
     adapters,
 )
 
@@ -72,11 +79,14 @@ __all__ = [
     "Fate",
     "FileError",
     "Film",
+    "Flow",
     "Format",
     "Frame",
     "FrameStats",
     "HIT",
     "HoleInfo",
+    "HotSpot",
+    "HotSpotFlags",
     "InvalidArgument",
     "Job",
     "Method",
@@ -90,8 +100,12 @@ __all__ = [
     "Sky",
     "SkyFlags",
     "Status",
+    "TRANSFER",
     "ToneMap",
     "View",
+    "Volume",
+    "VolumeFlags",
+    "VolumeShape",
     "adapters",
     "load",
     "rays",

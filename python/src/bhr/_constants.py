@@ -82,6 +82,38 @@ class EmissionLaw(enum.IntEnum):
     LIMB_DARKENED = 1
 
 
+class VolumeFlags(enum.IntFlag):
+    """RETROGRADE: the matter moves towards -ph. POWER_LAW: its light is a power law of the frequency, not a
+    blackbody's."""
+
+    RETROGRADE = 1
+    POWER_LAW = 2
+
+
+class VolumeShape(enum.IntEnum):
+    """Where the matter of a volume is."""
+
+    DISK = 0
+    TORUS = 1
+    HALO = 2
+    JET = 3
+
+
+class Flow(enum.IntEnum):
+    """How the matter of a volume moves."""
+
+    KEPLERIAN = 0
+    ANGULAR_MOMENTUM = 1
+    OUTFLOW = 2
+
+
+class HotSpotFlags(enum.IntFlag):
+    """RETROGRADE: the spot moves towards -ph. THERMAL: its light is a blackbody's, not a power law of the frequency."""
+
+    RETROGRADE = 1
+    THERMAL = 2
+
+
 class Format(enum.IntEnum):
     """A pixel's bytes in memory. Float formats hold linear light; R32F holds the value of a view."""
 
@@ -153,6 +185,8 @@ class View(enum.IntEnum):
     DEFLECTION = 3
     STEPS = 4
     METRIC = 5
+    OPTICAL_DEPTH = 6
+    INTENSITY = 7
 
 
 class Fate(enum.IntEnum):

@@ -20,7 +20,7 @@ from ._frame import Frame
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
-from ._rays import HIT, RAY
+from ._rays import HIT, RAY, TRANSFER
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -28,11 +28,13 @@ from ._structs import (
     Film,
     FrameStats,
     HoleInfo,
+    HotSpot,
     Quality,
     Region,
     Sky,
     Vector,
     VectorLike,
+    Volume,
     doubles,
     new,
 )
@@ -219,6 +221,34 @@ class Context:
         self._set(lib.bhr_set_disk, ffi.NULL if disk is None else disk.to_c())
 
     @property
+    def volumes(self) -> tuple[Volume, ...]:
+        """Matter with depth, at most four volumes; none by default. So far Backend.CPU alone draws them."""
+        found, count = ffi.new("BhrVolume[]", lib.BHR_MAX_VOLUMES), ffi.new("uint32_t *")
+        with self._gate as context:
+            check(lib.bhr_get_volumes(context, found, ffi.sizeof("BhrVolume"), len(found), count))
+        return tuple(Volume.from_c(found[i]) for i in range(count[0]))
+
+    @volumes.setter
+    def volumes(self, volumes: Sequence[Volume]) -> None:
+        given = ffi.new("BhrVolume[]", [volume.to_c()[0] for volume in volumes])
+        with self._gate as context:
+            check(lib.bhr_set_volumes(context, given, ffi.sizeof("BhrVolume"), len(given)))
+
+    @property
+    def hot_spots(self) -> tuple[HotSpot, ...]:
+        """Blobs on circular orbits, at most eight; none by default. So far Backend.CPU alone draws them."""
+        found, count = ffi.new("BhrHotSpot[]", lib.BHR_MAX_HOT_SPOTS), ffi.new("uint32_t *")
+        with self._gate as context:
+            check(lib.bhr_get_hot_spots(context, found, ffi.sizeof("BhrHotSpot"), len(found), count))
+        return tuple(HotSpot.from_c(found[i]) for i in range(count[0]))
+
+    @hot_spots.setter
+    def hot_spots(self, hot_spots: Sequence[HotSpot]) -> None:
+        given = ffi.new("BhrHotSpot[]", [spot.to_c()[0] for spot in hot_spots])
+        with self._gate as context:
+            check(lib.bhr_set_hot_spots(context, given, ffi.sizeof("BhrHotSpot"), len(given)))
+
+    @property
     def sky(self) -> Sky:
         return Sky.from_c(self._read("BhrSky", lib.bhr_get_sky))
 
@@ -397,6 +427,17 @@ class Context:
             ray, hit = _pointer("BhrRay *", packed), _pointer("BhrHit *", out)
             check(lib.bhr_trace_rays(context, ray, RAY.itemsize, packed.size, hit, HIT.itemsize))
         return out
+
+    def transfer(self, rays: npt.NDArray[np.void] | np.void) -> npt.NDArray[np.void]:
+        """The matter with depth along an array of rays of any shape, thin disk and sky left out: intensities, optical
+        depths and light, dtype TRANSFER, in an array of that shape. In double precision on the CPU, whatever the
+        backend."""
+        packed = _rays(rays)
+        found = np.zeros(packed.shape, TRANSFER)
+        with self._gate as context:
+            ray, out = _pointer("BhrRay *", packed), _pointer("BhrTransfer *", found)
+            check(lib.bhr_transfer_rays(context, ray, RAY.itemsize, packed.size, out, TRANSFER.itemsize))
+        return found
 
     def trace_path(self, ray: npt.NDArray[np.void] | np.void, capacity: int = 65536) -> npt.NDArray[np.float64]:
         """The curve that a ray follows, at most `capacity` points of x, y, z and t: shape (points, 4)."""

@@ -33,6 +33,9 @@ CROSSING: np.dtype[Any] = _dtype(ffi.typeof("BhrCrossing"))
 #: equatorial plane, of which `crossing_count` are there.
 HIT: np.dtype[Any] = _dtype(ffi.typeof("BhrHit"))
 
+#: The matter with depth along a ray: `fate`, `intensity`, `optical_depth` (NaN unless escaped) and `light`.
+TRANSFER: np.dtype[Any] = _dtype(ffi.typeof("BhrTransfer"))
+
 
 def rays(
     position: npt.ArrayLike, direction: npt.ArrayLike, frequency_ratio: npt.ArrayLike = 1.0

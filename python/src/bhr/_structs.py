@@ -20,11 +20,15 @@ from ._constants import (
     DiskFlags,
     DiskReference,
     EmissionLaw,
+    Flow,
+    HotSpotFlags,
     Method,
     Motion,
     Projection,
     SkyFlags,
     ToneMap,
+    VolumeFlags,
+    VolumeShape,
 )
 from ._ffi import ffi
 from ._library import begin, check, lib
@@ -160,6 +164,74 @@ class Disk(_Struct):
     reference: DiskReference = DiskReference.AT_MEDIAN
     emission_law: EmissionLaw = EmissionLaw.ISOTROPIC
     edge_softness: float = 0.4
+
+
+@dataclasses.dataclass(frozen=True)
+class Volume(_Struct):
+    """Matter with depth, which shines and absorbs; by default a soft disk. Radii are in M."""
+
+    c_name: ClassVar[str] = "BhrVolume"
+    c_enums = {"flags": VolumeFlags, "shape": VolumeShape, "flow": Flow}
+
+    shape: VolumeShape = VolumeShape.DISK
+    flow: Flow = Flow.KEPLERIAN
+    flags: VolumeFlags = VolumeFlags(0)
+    #: DISK, JET: the inner edge; OUTFLOW: where matter is at rest. 0: the ISCO.
+    inner_radius: float = 0.0
+    #: Nothing is beyond it.
+    outer_radius: float = 17.0
+    #: TORUS: the ring's; HALO: the scale; JET: where it opens by `opening`.
+    radius: float = 8.0
+    #: TORUS: its Gaussian width in R.
+    width: float = 2.0
+    #: The Gaussian width in cos th; TORUS: in z, over `radius`.
+    thickness: float = 0.05
+    #: JET: half the angle of its cone, radians.
+    opening: float = 0.3
+    #: DISK, JET: density goes as r^-slope.
+    slope: float = 0.7
+    #: Per M at density 1.
+    absorption: float = 3.0
+    #: Kelvin, at the inner edge or at `radius`.
+    temperature: float = 4800.0
+    #: The temperature goes as r^-temperature_slope.
+    temperature_slope: float = 0.35
+    #: POWER_LAW.
+    spectral_index: float = 1.0
+    #: POWER_LAW: its colour, linear Rec. 709.
+    tint: Vector = (1.0, 1.0, 1.0)
+    #: The luminance of opaque matter at rest; of a power law, of 1 M of density 1.
+    brightness: float = 1.0
+    sub_keplerian: float = 1.0
+    #: 0 circular .. 1 free fall.
+    infall: float = 0.0
+    angular_momentum: float = 1.0
+    #: OUTFLOW: far away, in units of c.
+    speed: float = 0.9
+
+
+@dataclasses.dataclass(frozen=True)
+class HotSpot(_Struct):
+    """A glowing blob on a circular geodesic in the equatorial plane. Lengths are in M."""
+
+    c_name: ClassVar[str] = "BhrHotSpot"
+    c_enums = {"flags": HotSpotFlags}
+
+    radius: float = 8.0
+    #: Its Gaussian width.
+    size: float = 0.8
+    #: At scene time 0, radians.
+    azimuth: float = 0.0
+    flags: HotSpotFlags = HotSpotFlags(0)
+    #: Per M at the centre.
+    absorption: float = 0.0
+    #: Kelvin.
+    temperature: float = 10000.0
+    #: Without THERMAL.
+    spectral_index: float = 1.0
+    #: Without THERMAL: its colour, linear Rec. 709.
+    tint: Vector = (1.0, 1.0, 1.0)
+    brightness: float = 1.0
 
 
 @dataclasses.dataclass(frozen=True)
