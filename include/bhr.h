@@ -832,9 +832,8 @@ BHR_NODISCARD BhrStatus bhr_hot_spot_init(BhrHotSpot *hot_spot, size_t struct_si
  * Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it,
  * and then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size
  * = sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger. Frames that are being
- * rendered keep the volumes that they began with. So far BHR_BACKEND_CPU alone draws volumes: with others rendering a
- * scene that has any is UNSUPPORTED. Errors: INVALID_ARGUMENT for NULL, a count, a size or a number outside its
- * range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
+ * rendered keep the volumes that they began with. Errors: INVALID_ARGUMENT for NULL, a count, a size or a number
+ * outside its range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_volumes(BhrContext *context,
                                         const BhrVolume *volumes,

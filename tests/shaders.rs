@@ -135,7 +135,11 @@ const ORDERS: Because = Because("it counts crossings that a table holds, of whic
 const SAMPLES: Because = Because("it counts a pixel's samples, of which the host asks for 4 or 32");
 const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most");
 const TURBULENCE: Because = Because("it counts bands or generations, 2 at most, or taps, 8 at most");
-const PIECES: Because = Because("it counts three times the pieces of a part of a ray, of which there are 24 at most");
+const PIECES: Because = Because("it counts the pieces of a part of a ray, of which there are 96 at most");
+const MATTER: Because = Because("it counts volumes and hot spots, of which there are 12 at most");
+const CELLS: Because = Because(
+    "a turn that goes on leaves `cuts` above 1, and every other one adds to `cut` or `cell`: 16 times 256 turns at most",
+);
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
 
@@ -148,7 +152,11 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("emit/streaks", "streak_exponent", "for (var i = 0u; i < u32(count); i += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var k = 0u; k < bands; k += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var old = 0u; old < alive; old += 1u)", TURBULENCE),
-    ("emit/volumes", "add_part", "for (var i = 0u; i < 3u * count; i += 1u)", PIECES),
+    ("emit/volumes", "add_part", "for (var k = 1u; k <= count; k += 1u)", PIECES),
+    ("emit/volumes", "cells_between", "for (var k = 0u; k < frame.matter_count; k += 1u)", MATTER),
+    ("emit/volumes", "add_piece", "while cell < u32(cells) && !is_dark()", CELLS),
+    ("emit/volumes", "add_piece", "for (var node = 0u; node < 3u; node += 1u)", CONSTANT),
+    ("emit/volumes", "coefficients_at", "for (var k = 0u; k < frame.matter_count; k += 1u)", MATTER),
     ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),
     ("geodesic/integrator", "quintic_root", "for (var i = 0; i < 4; i++)", CONSTANT),
     ("geodesic/trace", "tau_at_horizon", "for (var i = 0; i < 4; i++)", CONSTANT),

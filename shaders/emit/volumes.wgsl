@@ -1,52 +1,251 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// The emitters with depth, along a ray while it is traced. Mirrors `Emitters::along` of src/emit/mod.rs and
-// `Medium::add_part` of src/emit/medium.rs; an emitter more is called here.
+// The matter with depth, along a ray while it is traced. Mirrors src/emit/volumes.rs, where the reasons are, but for
+// this: samples come from the dense output of a step, not from steps of their own; a piece is not parted at the ISCO;
+// and the last stretch before the horizon, a millionth of its radius, is left out.
 
 #import constants
-#import emit/haze
+#import emit/flow
+#import emit/glow
+#import shared/matter
 #import emit/medium
+#import emit/shape
+#import emit/shift
 #import geodesic/geodesic
 #import geodesic/integrator
 #import geodesic/trace
 #import shared/frame
 
+// Whether the view shows I_nu and optical depth, not light.
+override SHOWS_DEPTH: bool = false;
+// Less light from behind than this share is not looked for.
+const DARKEST: f32 = 1e-6;
+
 // The medium since the last crossing that was kept.
 var<private> medium: vec4<f32>;
 
-// Emission and, in w, absorption of all matter per unit of affine length at a place.
-fn matter_at(c: Constants, there: State, ratio: f32) -> vec4<f32> {
-    return haze_matter(c, there, ratio);
+// Dense output over a step: 1/r, N, and the values and slopes (times the step) of drag and delay at its ends.
+struct StepCourse {
+    u: Quintic,
+    n_x: Quintic,
+    n_y: Quintic,
+    n_z: Quintic,
+    drag: vec4<f32>,
+    delay: vec4<f32>,
 }
 
-// Adds the matter along a part of a ray to the medium: the step that begins at `from_state`, from `begin` to `end` in
-// tau since then. `ratio`: nu(camera) / nu(local frame).
-fn add_part(c: Constants, from_state: State, begin: f32, end: f32, ratio: f32) {
-    // Half of sqrt(3/5): the places of Gauss and Legendre, good to the fifth degree.
-    const OFFSET: f32 = 0.3872983346207417;
-    let u = step_ray(c, from_state, begin).state.u;
-    let v = step_ray(c, from_state, end).state.u;
-    let count = pieces(u, v);
-    let size = (end - begin) / f32(count);
-    for (var i = 0u; i < 3u * count; i += 1u) {
-        let place = i % 3u;
-        let x = f32(i / 3u) + 0.5 + OFFSET * (f32(place) - 1.0);
-        let weight = select(5.0 / 18.0, 8.0 / 18.0, place == 1u) * size;
-        let there = step_ray(c, from_state, begin + size * x).state;
-        // No matter is past infinity (u <= 0), where the last step of a ray may end, nor within the horizon.
-        if there.u > 0.0 && there.u < 1.0 / c.r_plus {
-            let a_cosine = c.a * there.n.z;
-            // d lambda / d tau = Sigma (`Part::length`).
-            let length = weight * c.nu_local * (1.0 / (there.u * there.u) + a_cosine * a_cosine);
-            let matter = matter_at(c, there, ratio) * length;
-            medium = medium_with(medium, matter.xyz, matter.w);
+fn step_course(c: Constants, a: State, b: State, h: f32) -> StepCourse {
+    let hh = h * h;
+    let f = n_acceleration(c, a.n) * hh;
+    let g = n_acceleration(c, b.n) * hh;
+    return StepCourse(
+        quintic_of_u(c, a, b, h),
+        quintic(a.n.x, a.dn.x * h, f.x, b.n.x, b.dn.x * h, g.x),
+        quintic(a.n.y, a.dn.y * h, f.y, b.n.y, b.dn.y * h, g.y),
+        quintic(a.n.z, a.dn.z * h, f.z, b.n.z, b.dn.z * h, g.z),
+        vec4<f32>(a.drag, drag_rate(c, a.u) * h, b.drag, drag_rate(c, b.u) * h),
+        vec4<f32>(a.delay, delay_rate(c, a.u, a.n.z) * h, b.delay, delay_rate(c, b.u, b.n.z) * h),
+    );
+}
+
+fn quintic_at(q: Quintic, x: f32) -> f32 {
+    return q.low.x + x * (q.low.y + x * (q.low.z + x * (q.high.x + x * (q.high.y + x * q.high.z))));
+}
+
+fn quintic_slope(q: Quintic, x: f32) -> f32 {
+    return q.low.y + x * (2.0 * q.low.z + x * (3.0 * q.high.x + x * (4.0 * q.high.y + x * 5.0 * q.high.z)));
+}
+
+// Cubic Hermite interpolation: value and slope at 0, value and slope at 1. It keeps slopes even from step to step,
+// without which rings would show (a clock that is linear within steps makes them).
+fn cubic_at(ends: vec4<f32>, x: f32) -> f32 {
+    let rise = ends.z - ends.x;
+    return ends.x + x * (ends.y + x * (3.0 * rise - 2.0 * ends.y - ends.w + x * (ends.y + ends.w - 2.0 * rise)));
+}
+
+// Adds the matter along a part of a ray to the medium: the step of the length `h` in tau from `from_state` to
+// `to_state`, from `begin` to `end` in tau since its begin. `observer`: the state there; `ratio`: nu(camera) / nu(local
+// frame).
+fn add_part(
+    c: Constants,
+    observer: State,
+    from_state: State,
+    to_state: State,
+    h: f32,
+    begin: f32,
+    end: f32,
+    ratio: f32,
+) {
+    let outer = frame.depth_u.x;
+    if max(from_state.u, to_state.u) * MARGIN_STEP < outer || is_dark() {
+        return;
+    }
+    let course = step_course(c, from_state, to_state, h);
+    let first = begin / h;
+    let run = (end - begin) / h;
+    let swept = abs(end - begin) * c.scale;
+    // The pieces' borders, as Pieces of the Rust.
+    let u = quintic_at(course.u, first);
+    let v = quintic_at(course.u, first + run);
+    let edge = outer * (1.0 - MARGIN_U);
+    let enters = abs((edge - u) / (v - u));
+    let from_share = select(0.0, enters, u < edge && v > edge);
+    let to_share = select(1.0, enters, v < edge && u > edge);
+    let quotient = max(v, edge) / max(u, edge);
+    let wanted = max(abs(log(quotient)) / PIECE_LN_R, swept / PIECE_ANGLE);
+    // u32 of NaN may be any number.
+    let count = clamp(u32(min(ceil(wanted), MOST_PIECES)), 1u, u32(MOST_PIECES));
+    var at = from_share;
+    var before = vec2<f32>(quintic_at(course.u, first + run * at), quintic_at(course.n_z, first + run * at));
+    for (var k = 1u; k <= count; k += 1u) {
+        let even = f32(k) / f32(count);
+        let rise = quotient - 1.0;
+        let share = select((pow(quotient, even) - 1.0) / rise, even, abs(rise) < 1e-4);
+        let next = from_share + (to_share - from_share) * share;
+        let last = vec2<f32>(quintic_at(course.u, first + run * next), quintic_at(course.n_z, first + run * next));
+        let cut = cells_between(vec2<f32>(before.x, last.x), vec2<f32>(before.y, last.y), swept * (next - at));
+        if cut.z > 0.0 {
+            let low = at + (next - at) * cut.x;
+            let high = at + (next - at) * cut.y;
+            add_piece(c, observer, course, first + run * low, first + run * high, h, cut.z, ratio);
+        }
+        at = next;
+        before = last;
+    }
+}
+
+// The share of a stretch that has matter, and the number of cells that it should be cut into: 0 without matter.
+fn cells_between(u: vec2<f32>, cosines: vec2<f32>, swept: f32) -> vec3<f32> {
+    var share = vec2<f32>(1.0, 0.0);
+    var cells = 0.0;
+    for (var k = 0u; k < frame.matter_count; k += 1u) {
+        let matter = frame.matter[k];
+        let within = clip(matter, u, cosines);
+        if within.x < within.y {
+            share = vec2<f32>(min(share.x, within.x), max(share.y, within.y));
+            cells = max(cells, cells_of(u, cosines, swept, matter));
+        }
+    }
+    let width = share.y - share.x;
+    return vec3<f32>(share, select(0.0, clamp(ceil(cells * width), 1.0, MOST_CELLS), width > 0.0));
+}
+
+// The share of a stretch, of which the straight lines between its ends lie within a matter's reach; (1, 0) for none.
+fn clip(matter: Matter, u: vec2<f32>, cosines: vec2<f32>) -> vec2<f32> {
+    let most = matter.reach.z * (1.0 + MARGIN_U) + MARGIN_COS;
+    let radial = clip_between(u, matter.reach.x * (1.0 - MARGIN_U), matter.reach.y * (1.0 + MARGIN_U));
+    let polar = clip_between(cosines, -most, most);
+    return vec2<f32>(max(radial.x, polar.x), min(radial.y, polar.y));
+}
+
+// The share of the way between two values that lies within limits; (1, 0) for none.
+fn clip_between(ends: vec2<f32>, low: f32, high: f32) -> vec2<f32> {
+    let change = ends.y - ends.x;
+    let a = (low - ends.x) / change;
+    let b = (high - ends.x) / change;
+    let still = abs(change) < 1e-7 * high;
+    let moving = vec2<f32>(max(min(a, b), 0.0), min(max(a, b), 1.0));
+    return select(moving, select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), ends.x >= low && ends.x <= high), still);
+}
+
+// Adds a piece between two shares of a step in cells; one of too great an optical depth is cut again.
+fn add_piece(
+    c: Constants,
+    observer: State,
+    course: StepCourse,
+    begin: f32,
+    end: f32,
+    h: f32,
+    cells: f32,
+    ratio: f32,
+) {
+    let size = (end - begin) / cells;
+    var cell = 0u;
+    var cut = 0u;
+    var cuts = 1u;
+    while cell < u32(cells) && !is_dark() {
+        let part = size / f32(cuts);
+        let low = begin + size * f32(cell) + part * f32(cut);
+        var light = array<vec3<f32>, 3>();
+        var depths = vec3<f32>(0.0);
+        for (var node = 0u; node < 3u; node += 1u) {
+            let there = coefficients_at(c, observer, course, low + part * GAUSS_NODES[node], h, part * h, ratio);
+            light[node] = there.xyz;
+            depths[node] = there.w;
+        }
+        let depth = dot(GAUSS_WEIGHTS, depths);
+        if cuts == 1u && depth > 1.0 {
+            cuts = u32(min(ceil(depth), MOST_CUTS));
+            continue;
+        }
+        let gains = node_gains(depths) * medium.w;
+        let seen = light[0] * gains.x + light[1] * gains.y + light[2] * gains.z;
+        medium.x += seen.x;
+        if SHOWS_DEPTH {
+            medium.y += depth;
+        } else {
+            medium.y += seen.y;
+            medium.z += seen.z;
+        }
+        medium.w *= exp(-depth);
+        cut += 1u;
+        if cut >= cuts {
+            cut = 0u;
+            cuts = 1u;
+            cell += 1u;
         }
     }
 }
 
-// The number of pieces that a part between two places is cut into.
-fn pieces(u: f32, v: f32) -> u32 {
-    let least = 0.01 * max(max(u, v), 1e-30);
-    let change = abs(log(max(u, least) / max(v, least)));
-    // u32 of NaN may be any number.
-    return clamp(u32(min(ceil(change / PIECE), f32(MOST_PIECES))), 1u, MOST_PIECES);
+// Whether so much matter is in front that what is behind does not matter.
+fn is_dark() -> bool {
+    if SHOWS_DEPTH {
+        return medium.y > DARK;
+    }
+    return medium.w < DARKEST;
+}
+
+// All matter at the share x of a step of the length `h`, as if the length `tau` of it were as it is there: light, and
+// in w the optical depth. In views of matter x of the light is I_nu.
+fn coefficients_at(c: Constants, observer: State, course: StepCourse, x: f32, h: f32, tau: f32, ratio: f32) -> vec4<f32> {
+    let u = quintic_at(course.u, x);
+    let cosine = clamp(quintic_at(course.n_z, x), -1.0, 1.0);
+    var sum = vec4<f32>(0.0);
+    // None is past infinity (u <= 0), where the last step of a ray may end, nor within the horizon.
+    if u > 0.0 && u * c.r_plus < 1.0 - HORIZON_ROOM {
+        let r = 1.0 / u;
+        let du = quintic_slope(course.u, x) / h;
+        var azimuth = 0.0;
+        var later = 0.0;
+        if (SHAPES & (1u << SHAPE_SPOT)) != 0u {
+            azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x);
+            if DELAY {
+                let integral = cubic_at(course.delay, x) - observer.delay;
+                later = frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
+            }
+        }
+        let at = place_at(c, u, cosine);
+        let light = zamo_light(c, at, du);
+        for (var k = 0u; k < frame.matter_count; k += 1u) {
+            let matter = frame.matter[k];
+            let density = density_at(r, cosine, azimuth, later, matter);
+            let nu = measured_by(light, flow_velocity(c, at, matter)) / c.nu_local;
+            // Nothing can move so where this fails, NaN among it.
+            if density >= matter.light.w && nu > 0.0 && nu < 1e30 {
+                let g = ratio / nu;
+                var shift = Shift(g, g);
+                if !ALL_EFFECTS {
+                    shift = visible_shift(g, nu_static_observer(c.energy / c.nu_local) * c.nu_local / light.frequency);
+                }
+                let found = glow_coefficients(matter, density, 1.0, r, nu, g, shift);
+                if SHOWS_DEPTH {
+                    sum += vec4<f32>(found.intensity, 0.0, 0.0, found.absorption);
+                } else {
+                    sum += vec4<f32>(found.light, found.absorption);
+                }
+            }
+        }
+        // d lambda / d tau = Sigma (`Part::length`).
+        sum *= tau * c.nu_local * at.sigma;
+    }
+    return sum;
 }

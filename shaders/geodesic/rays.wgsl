@@ -50,7 +50,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
 // Hosts' rays meet no emitter.
-fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
 }
 
 @compute @workgroup_size(64)

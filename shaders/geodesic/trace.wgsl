@@ -9,10 +9,10 @@
 #import geodesic/geodesic
 #import geodesic/integrator
 #requires fn on_crossing(c: Constants, crossing: PlaneCrossing)
-#requires fn on_part(c: Constants, from_state: State, begin: f32, end: f32)
+#requires fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32)
 
-// Whether on_part is told of every part of the ray in which it crosses no plane: a step that begins at `from_state`,
-// or what lies of it on one side of a crossing, from `begin` to `end` in tau since then.
+// Whether on_part is told of every part of the ray in which it crosses no plane: a step of the length `h` in tau from
+// `from_state` to `to_state`, or what lies of it on one side of a crossing, from `begin` to `end` in tau since its begin.
 override PARTS: bool = false;
 
 struct Settings {
@@ -92,7 +92,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
                 break;
             }
             if PARTS {
-                on_part(c, state, 0.0, h);
+                on_part(c, start, state, next, h, 0.0, h);
             }
             tau += h;
             state = next;
@@ -104,7 +104,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
                 let crossing = find_crossing(c, start, state, next, h, order);
                 if crossing.u > 0.0 && crossing.u <= 1.0 / (c.r_plus * (1.0 + 1e-5)) {
                     if PARTS {
-                        on_part(c, state, 0.0, crossing.tau);
+                        on_part(c, start, state, next, h, 0.0, crossing.tau);
                         begin = crossing.tau;
                     }
                     on_crossing(c, crossing);
@@ -116,7 +116,7 @@ fn trace(c: Constants, start: State, settings: Settings) -> RayTrace {
             order += 1u;
         }
         if PARTS && fate != FATE_HIDDEN && (crossed || fate != FATE_UNRESOLVED) {
-            on_part(c, state, begin, h);
+            on_part(c, start, state, next, h, begin, h);
         }
         // Ended, or out of steps.
         if fate != FATE_UNRESOLVED || !crossed {

@@ -35,7 +35,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
 // Scenes with emitters that have depth use no tables.
-fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
 }
 
 fn medium_before(k: u32) -> vec4<f32> {

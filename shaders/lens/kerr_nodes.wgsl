@@ -99,7 +99,7 @@ fn trace_nodes(@builtin(global_invocation_id) id: vec3<u32>) {
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
-fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
+fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
 }
 
 fn store_crossing(c: Constants, observer: State, there: State) {

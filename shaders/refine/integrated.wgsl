@@ -30,7 +30,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if FOOTPRINTS {
         azimuth = wrap_angle(arctan2(crossing.n.y, crossing.n.x) + crossing.drag);
     }
-    if PARTS && is_wanted(crossing.u) {
+    if PARTS && PLANE && is_wanted(crossing.u) {
         kept_media[min(kept_given, CROSSINGS_KEPT)] = medium;
         kept_given += 1u;
         medium = NO_MEDIUM;
@@ -40,8 +40,8 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         vec4<f32>(crossing.u, azimuth, crossing.delay, crossing.du);
 }
 
-fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
-    add_part(c, from_state, begin, end, kept_ratio);
+fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
+    add_part(c, observer, from_state, to_state, h, begin, end, kept_ratio);
 }
 
 fn medium_before(k: u32) -> vec4<f32> {

@@ -166,6 +166,14 @@ fn extended_light(here: Record, shift: Shift) -> vec3<f32> {
     return light;
 }
 
+// I_nu and optical depth of all matter with depth along the ray; views of it have no crossings.
+fn seen_matter() -> vec2<f32> {
+    if VOLUMES {
+        return medium_before(0u).xy;
+    }
+    return vec2<f32>(0.0);
+}
+
 // The value that BHR_VIEW_* shows; NaN where there is nothing.
 fn view_value(here: Record, id: vec2<u32>) -> f32 {
     let nothing = no_value();
@@ -192,6 +200,12 @@ fn view_value(here: Record, id: vec2<u32>) -> f32 {
         }
         case VIEW_STEPS: {
             return f32(here.steps);
+        }
+        case VIEW_OPTICAL_DEPTH: {
+            return select(nothing, seen_matter().y, in_sky);
+        }
+        case VIEW_INTENSITY: {
+            return seen_matter().x;
         }
         default: {
             // METRIC: -g_tt = 1 - 2/r in the plane.

@@ -2,6 +2,7 @@
 // The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms.rs.
 
 #import constants
+#import shared/matter
 #import shared/not_inlined
 #requires var frame: Frame
 
@@ -36,8 +37,6 @@ struct Frame {
     // Strength, delay of light of the reference time (M), then ln r inside which it fades out (-1e30:
     // nowhere), of Turbulence in src/emit/turbulence.rs; 0.
     turbulence: vec4<f32>,
-    // Radius, brightness, absorption of Haze in src/emit/haze.rs, 0.
-    haze: vec4<f32>,
     // Sine and cosine of the critical angle, whether the capture margin tells the level, of CurveLevel in
     // src/physics/lens/critical.rs; 0.
     critical: vec4<f32>,
@@ -73,6 +72,12 @@ struct Frame {
     plunge: vec4<f32>,
     // Bands of the turbulence: age, time from birth to birth (f32), number of the youngest generation; 0.
     bands: array<vec4<u32>, MOST_BANDS>,
+    // 1/r, outer end first, outside which no matter with depth is; how many volumes and spots there are; delay of light
+    // of the reference time (M), of When in src/emit/turbulence.rs.
+    depth_u: vec2<f32>,
+    matter_count: u32,
+    matter_delay: f32,
+    matter: array<Matter, MOST_MATTER>,
 }
 
 const RAIN_CLOCK: u32 = 2u;

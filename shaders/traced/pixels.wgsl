@@ -18,6 +18,8 @@
 @group(0) @binding(2) var record_sky: texture_storage_2d<rgba32float, write>;
 @group(0) @binding(3) var record_meta: texture_storage_2d<rgba32uint, write>;
 @group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
+// As in shade/shade.wgsl: matter with depth reads blackbodies there.
+@group(0) @binding(5) var light_tables: texture_2d<f32>;
 
 // Whether shading needs to know where on the disk a crossing is.
 override AZIMUTH: bool = true;
@@ -28,6 +30,10 @@ var<private> frequency_ratio: f32;
 var<private> disk_orders: u32;
 var<private> beside_orders: u32;
 var<private> plane_u: f32;
+
+fn light_table(i: u32) -> vec4<f32> {
+    return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
+}
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if crossing.order == 0u {
@@ -54,8 +60,8 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     }
 }
 
-fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {
-    add_part(c, from_state, begin, end, frequency_ratio);
+fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
+    add_part(c, observer, from_state, to_state, h, begin, end, frequency_ratio);
 }
 
 // Leaves the medium since the crossing before.

@@ -14,7 +14,6 @@ pub mod crossing;
 pub mod disk;
 pub mod effects;
 pub mod glow;
-pub mod haze;
 pub mod hot_spot;
 pub mod medium;
 pub mod shape;
@@ -29,7 +28,6 @@ pub use crossing::{Crossing, Emission, EmissionPoint, Shift};
 use crate::error::Result;
 use crate::physics::trace::Part;
 use disk::EmissionLaw;
-use haze::Haze;
 use medium::Medium;
 use thin_disk::{DiskLight, ThinDisk};
 use volumes::{Seen, Volumes};
@@ -55,7 +53,6 @@ pub struct Needs {
 pub struct Emitters {
     /// `None`: the scene has no disk, or all of it lies where no matter shines.
     pub disk: Option<ThinDisk>,
-    pub haze: Option<Haze>,
     pub volumes: Volumes,
 }
 
@@ -66,7 +63,7 @@ impl Emitters {
             places: turbulence.is_some(),
             delays: turbulence.is_some_and(|turbulence| turbulence.needs_delay) || self.volumes.needs_delay(),
             angles: self.disk.is_some_and(|disk| disk.disk.emission_law != EmissionLaw::Isotropic),
-            parts: self.haze.is_some() || !self.volumes.is_empty(),
+            parts: !self.volumes.is_empty(),
             headings: self.disk.is_some_and(|disk| disk.least_profile.is_some()),
         }
     }
@@ -105,9 +102,6 @@ impl Emitters {
 
     /// Adds the matter along a part of a ray to the medium between two crossings.
     pub fn along(&self, part: &Part<'_>, seen: &Seen, medium: &mut Medium) {
-        if let Some(haze) = &self.haze {
-            haze.along(part, seen.frequency_ratio, medium);
-        }
         self.volumes.along(part, seen, medium);
     }
 

@@ -24,19 +24,19 @@ use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
 
 /// The greatest changes over a piece: of ln r, and of the angle about the hole, rad.
-const PIECE_LN_R: f64 = 0.25;
-const PIECE_ANGLE: f64 = 0.25;
+pub(crate) const PIECE_LN_R: f64 = 0.25;
+pub(crate) const PIECE_ANGLE: f64 = 0.25;
 /// The most pieces of a part, cells of a piece, and cells that one of too great an optical depth is cut into.
-const MOST_PIECES: f64 = 96.0;
-const MOST_CELLS: f64 = 256.0;
-const MOST_CUTS: f64 = 16.0;
+pub(crate) const MOST_PIECES: f64 = 96.0;
+pub(crate) const MOST_CELLS: f64 = 256.0;
+pub(crate) const MOST_CUTS: f64 = 16.0;
 /// Pieces bend: 1/r and cos th may be off the straight line between their ends by so much, 1/r relatively.
-const MARGIN_U: f64 = 0.02;
-const MARGIN_COS: f64 = 0.015;
+pub(crate) const MARGIN_U: f64 = 0.02;
+pub(crate) const MARGIN_COS: f64 = 0.015;
 /// Within a step 1/r may become larger than at its ends by this factor.
-const MARGIN_STEP: f64 = 1.1;
+pub(crate) const MARGIN_STEP: f64 = 1.1;
 /// The sine of theta below which cells are no finer.
-const NEAR_AXIS: f64 = 0.01;
+pub(crate) const NEAR_AXIS: f64 = 0.01;
 
 /// The radii at which a volume may bend, and the most between two places: those of all volumes.
 const BENDS: usize = 6;
@@ -117,7 +117,7 @@ pub struct Volumes {
     pub volumes: ArrayVec<VolumeMatter, { Volume::MOST }>,
     pub hot_spots: ArrayVec<SpotMatter, { HotSpot::MOST }>,
     effects: Effects,
-    when: When,
+    pub when: When,
     accuracy: Accuracy,
 }
 
@@ -163,7 +163,7 @@ impl VolumeMatter {
     }
 
     /// The number of cells that a stretch should be cut into.
-    fn cells(&self, stretch: &Stretch) -> f64 {
+    pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
         let [a, b] = stretch.cos;
         let sin2 = 1.0 - (a * a).max(b * b);
         // Velocities by angular momentum go as sqrt(R), which bends without end towards the axis.
@@ -232,7 +232,7 @@ impl SpotMatter {
     }
 
     /// The number of cells that a stretch should be cut into.
-    fn cells(&self, stretch: &Stretch) -> f64 {
+    pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
         let [a, b] = stretch.u;
         let across = stretch.swept / a.min(b).max(1e-30);
         (1.0 / a - 1.0 / b).hypot(across) / self.size
@@ -240,7 +240,7 @@ impl SpotMatter {
 }
 
 /// The share of a stretch, of which the straight lines between its ends lie within a reach.
-fn clip(reach: &Reach, stretch: &Stretch) -> Option<[f64; 2]> {
+pub(crate) fn clip(reach: &Reach, stretch: &Stretch) -> Option<[f64; 2]> {
     let u = [reach.u[0] * (1.0 - MARGIN_U), reach.u[1] * (1.0 + MARGIN_U)];
     let cos = reach.cos * (1.0 + MARGIN_U) + MARGIN_COS;
     let mut share = [0.0_f64, 1.0];

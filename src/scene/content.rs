@@ -9,7 +9,6 @@ use super::sky::Sky;
 use crate::emit::Emitters;
 use crate::emit::disk::Disk;
 use crate::emit::effects::Effects;
-use crate::emit::haze::Haze;
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::thin_disk::ThinDisk;
 use crate::emit::turbulence::{Turbulence, When};
@@ -83,9 +82,6 @@ pub struct Scene {
     pub time: f64,
     pub quality: Quality,
     pub view: View,
-    /// A haze about the hole: for tests.
-    #[doc(hidden)]
-    pub haze: Option<Haze>,
     /// Stars instead of the sky's: for tests.
     #[doc(hidden)]
     pub given_stars: Option<Arc<StarIndex>>,
@@ -106,7 +102,6 @@ impl Default for Scene {
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
-            haze: None,
             given_stars: None,
         }
     }
@@ -126,7 +121,7 @@ impl Scene {
             true => self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW }),
             false => Volumes::default(),
         };
-        Emitters { disk, haze: self.haze.filter(|_| light), volumes }
+        Emitters { disk, volumes }
     }
 
     /// The matter with depth as it is at a time.

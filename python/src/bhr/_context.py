@@ -222,7 +222,7 @@ class Context:
 
     @property
     def volumes(self) -> tuple[Volume, ...]:
-        """Matter with depth, at most four volumes; none by default. So far Backend.CPU alone draws them."""
+        """Matter with depth, at most four volumes; none by default."""
         found, count = ffi.new("BhrVolume[]", lib.BHR_MAX_VOLUMES), ffi.new("uint32_t *")
         with self._gate as context:
             check(lib.bhr_get_volumes(context, found, ffi.sizeof("BhrVolume"), len(found), count))
@@ -236,7 +236,7 @@ class Context:
 
     @property
     def hot_spots(self) -> tuple[HotSpot, ...]:
-        """Blobs on circular orbits, at most eight; none by default. So far Backend.CPU alone draws them."""
+        """Blobs on circular orbits, at most eight; none by default."""
         found, count = ffi.new("BhrHotSpot[]", lib.BHR_MAX_HOT_SPOTS), ffi.new("uint32_t *")
         with self._gate as context:
             check(lib.bhr_get_hot_spots(context, found, ffi.sizeof("BhrHotSpot"), len(found), count))

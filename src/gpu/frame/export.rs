@@ -4,6 +4,7 @@
 use super::buffers::Size;
 use super::stages::RecordConsumer;
 use super::submission::pass_of;
+use super::tables::Tables;
 use super::tracer::GpuTracer;
 use crate::allocate::collected;
 use crate::emit::medium::Media;
@@ -89,7 +90,10 @@ impl GpuTracer {
             .ok_or_else(|| Error::internal("a frame without buffers"))?;
         let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
         let (common, exported) = ([frame.clone(), pass.clone()], [sized.packed.as_entire_binding()]);
-        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum: fixed.step_sum.as_entire_binding() };
+        let tables = Tables::prepare(&mut self.tables, device, scene, setup.variants.shade.map_sampler)?;
+        let [light_tables, ..] = tables.resources();
+        let step_sum = fixed.step_sum.as_entire_binding();
+        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables };
         let records = buffers.record_store.stages(device, &self.kernels, &setup.record_setup, &shared)?;
         let group = buffers.record_store.group(setup.record_setup.source)?;
         let take = |kernels: &Kernels, source| {

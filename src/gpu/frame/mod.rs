@@ -7,6 +7,7 @@ pub(in crate::gpu) mod buffers;
 pub(in crate::gpu) mod configure;
 pub(in crate::gpu) mod export;
 pub(in crate::gpu) mod kernels;
+pub(in crate::gpu) mod matter;
 pub(in crate::gpu) mod rays;
 pub(in crate::gpu) mod refine;
 pub(in crate::gpu) mod render;

@@ -32,7 +32,7 @@ pub(in crate::gpu) fn variant(scene: &Scene, settings: &Settings, inside_horizon
         delay: settings.delay,
         step_limit: spinning || settings.delay || inside_horizon,
         azimuth: false,
-        parts: false,
+        matter: None,
         projection: Some(Projection::Perspective),
     }
 }

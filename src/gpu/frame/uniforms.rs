@@ -2,9 +2,11 @@
 //! A scene in the layout of the shaders' uniforms: `Frame` and `Pass` of shared/frame.wgsl and shared/pass.wgsl, field
 //! by field. The only place where f64 becomes f32 on its way to the GPU.
 
+use super::matter::{MatterUniform, uniforms_of};
 use crate::emit::thin_disk::SoftEdges;
 use crate::emit::turbulence::{MOST_BANDS, Turbulence};
 use crate::error::Result;
+use crate::gpu::kernel::sizes::MOST_MATTER;
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::geodesic::Clock;
 use crate::physics::lens::critical::CurveLevel;
@@ -37,7 +39,6 @@ pub struct FrameUniform {
     disk: Vec4,
     size: Vec4,
     turbulence: Vec4,
-    haze: Vec4,
     critical: Vec4,
     disk_u: [f32; 2],
     opaque_u: [f32; 2],
@@ -58,6 +59,10 @@ pub struct FrameUniform {
     shown_edges: Vec4,
     plunge: Vec4,
     bands: [[u32; 4]; MOST_BANDS],
+    depth_u: [f32; 2],
+    matter_count: u32,
+    matter_delay: f32,
+    matter: [MatterUniform; MOST_MATTER],
 }
 
 #[repr(C)]
@@ -78,9 +83,9 @@ pub struct PassUniform {
 pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     use crate::gpu::kernel::layout::layout;
     let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
-        sky_x, sky_y, sky_z, disk, size, turbulence, haze, critical, disk_u, opaque_u, capture_u, max_steps,
+        sky_x, sky_y, sky_z, disk, size, turbulence, critical, disk_u, opaque_u, capture_u, max_steps,
         max_crossings, rain, effects, view, pattern, map_sizes, projection,
-        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands);
+        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands, depth_u, matter_count, matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
     [frame, pass]
 }
@@ -131,6 +136,7 @@ impl FrameUniform {
         let turbulence = emitters.disk.and_then(|disk| disk.turbulence);
         let [hottest, least] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
         let edges = DiskEdges::new(emitters.disk_u().unwrap_or_default(), emitters.fading_u());
+        let (matter, matter_count) = uniforms_of(&emitters.volumes);
         let u = 1.0 / frame.r;
         let CurveLevel { critical: [sin, cos], by_margin, .. } = CurveLevel::new(frame);
         Ok(Self {
@@ -156,7 +162,6 @@ impl FrameUniform {
             size: four(lens.mapping.width, lens.mapping.height, settings.step, settings.tolerance),
             turbulence: turbulence
                 .map_or(Vec4::ZERO, |t| four(t.strength, t.reference_delay, t.fades_inside.unwrap_or(-1e30), 0.0)),
-            haze: emitters.haze.map_or(Vec4::ZERO, |h| four(h.radius, h.brightness, h.absorption, 0.0)),
             critical: four(sin, cos, f64::from(u8::from(by_margin)), 0.0),
             disk_u: range(emitters.disk_u()),
             opaque_u: range(settings.opaque_u),
@@ -179,6 +184,10 @@ impl FrameUniform {
             shown_edges: four(edges.least[0], edges.least[1], 0.0, 0.0),
             plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
             bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t)),
+            depth_u: range(emitters.depth_u()),
+            matter_count,
+            matter_delay: emitters.volumes.when.reference_delay as f32,
+            matter,
         })
     }
 }

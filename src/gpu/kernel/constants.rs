@@ -3,8 +3,10 @@
 //! that neither side can change alone. What each one means stands where Rust declares it.
 
 use super::sizes;
-use super::variant::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
-use crate::emit::{medium, streaks, turbulence};
+use super::variant::{FROM_UNIFORM, MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
+use crate::emit::hot_spot::HotSpot;
+use crate::emit::volume::Shape;
+use crate::emit::{glow, medium, shape, streaks, turbulence, volumes};
 use crate::film::bloom::BEAM_SHARES;
 use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
@@ -27,6 +29,9 @@ macro_rules! wgsl {
     };
     (f32 $value:expr) => {
         format!("f32 = {:?}", $value as f32)
+    };
+    (vec2 $value:expr) => {
+        format!("vec2<f32> = vec2<f32>({})", list($value.map(|v| v as f32)))
     };
     (vec3 $value:expr) => {
         format!("vec3<f32> = vec3<f32>({})", list($value.map(|v| v as f32)))
@@ -96,6 +101,8 @@ fn all() -> Vec<(&'static str, String)> {
         VIEW_DEFLECTION: u32 = View::Deflection;
         VIEW_STEPS: u32 = View::Steps;
         VIEW_METRIC: u32 = View::Metric;
+        VIEW_OPTICAL_DEPTH: u32 = View::OpticalDepth;
+        VIEW_INTENSITY: u32 = View::Intensity;
         EFFECT_DOPPLER_SHIFT: u32 = Effects::DOPPLER_SHIFT;
         EFFECT_GRAVITY_SHIFT: u32 = Effects::GRAVITY_SHIFT;
         EFFECT_BEAMING: u32 = Effects::BEAMING;
@@ -148,8 +155,36 @@ fn all() -> Vec<(&'static str, String)> {
         PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
         GENERATION_FADE: f32 = turbulence::GENERATION_FADE;
         MOST_BANDS: u32 = turbulence::MOST_BANDS;
-        MOST_PIECES: u32 = medium::MOST_PIECES;
-        PIECE: f32 = medium::PIECE;
+        THICK: f32 = medium::THICK;
+        GAUSS_NODES: vec3 = medium::GAUSS_NODES;
+        GAUSS_WEIGHTS: vec3 = medium::GAUSS_WEIGHTS;
+        GAUSS_BEFORE_0: vec3 = medium::GAUSS_BEFORE[0];
+        GAUSS_BEFORE_1: vec3 = medium::GAUSS_BEFORE[1];
+        GAUSS_BEFORE_2: vec3 = medium::GAUSS_BEFORE[2];
+        PIECE_LN_R: f32 = volumes::PIECE_LN_R;
+        PIECE_ANGLE: f32 = volumes::PIECE_ANGLE;
+        MOST_PIECES: f32 = volumes::MOST_PIECES;
+        MOST_CELLS: f32 = volumes::MOST_CELLS;
+        MOST_CUTS: f32 = volumes::MOST_CUTS;
+        MARGIN_U: f32 = volumes::MARGIN_U;
+        MARGIN_COS: f32 = volumes::MARGIN_COS;
+        MARGIN_STEP: f32 = volumes::MARGIN_STEP;
+        NEAR_AXIS: f32 = volumes::NEAR_AXIS;
+        DARK: f32 = volumes::Accuracy::VIEW.dark;
+        ABSORPTION_INDEX: f32 = glow::ABSORPTION_INDEX;
+        INNER_FADE: vec2 = shape::INNER_FADE;
+        OUTER_FADE: vec2 = shape::OUTER_FADE;
+        SPOT_CUT: f32 = HotSpot::CUT;
+        SHAPE_DISK: u32 = Shape::Disk;
+        SHAPE_TORUS: u32 = Shape::Torus;
+        SHAPE_HALO: u32 = Shape::Halo;
+        SHAPE_JET: u32 = Shape::Jet;
+        SHAPE_SPOT: u32 = SHAPE_SPOT;
+        MOTION_KEPLERIAN: u32 = MotionCode::Keplerian;
+        MOTION_ANGULAR_MOMENTUM: u32 = MotionCode::AngularMomentum;
+        MOTION_OUTFLOW: u32 = MotionCode::Outflow;
+        MOTION_RIGID: u32 = MotionCode::Rigid;
+        MOST_MATTER: u32 = sizes::MOST_MATTER;
 
         TABLE_WIDTH: u32 = sizes::TABLE_WIDTH;
         MEAN_SKY_TABLES: u32 = index::MEAN_SKY_TABLES;

@@ -3,9 +3,11 @@
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TRACED, edge_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, shade_slots, sum_slots,
 };
-use super::variant::{FROM_UNIFORM, FilmVariant, GROUP, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
+use super::variant::{
+    FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant,
+};
 use super::wgsl;
 use crate::error::Result;
 use crate::scene::Projection;
@@ -106,7 +108,7 @@ impl KernelKey {
         let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
         let [rows, columns] = [LENS_ROWS, LENS_COLUMNS].map(Slot::TextureWrite);
         match self {
-            Self::Pixels(_) => vec![vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk]],
+            Self::Pixels(_) => vec![vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])]],
             Self::Count => vec![vec![Slot::UniformPart, Slot::Texture(TRACED[1]), Slot::Write]],
             Self::Rays(_) => vec![vec![Slot::Uniform, Slot::Read, Slot::Write]],
             Self::ShadeSample(source, _) => vec![shade_slots(), source.slots(), sum_slots(), edge_slots()],
@@ -160,7 +162,9 @@ impl KernelKey {
         match self {
             Self::Pixels(variant) => {
                 let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
-                [trace_constants(variant), pixels].concat()
+                let matter = variant.matter.unwrap_or_default();
+                let effects = vec![("ALL_EFFECTS", flag(matter.all_effects))];
+                [trace_constants(variant), matter_constants(matter), pixels, effects].concat()
             }
             Self::Rays(variant) => trace_constants(variant),
             Self::ShadeSample(source, shade) => [source.constants(), shade_constants(shade)].concat(),
@@ -169,7 +173,10 @@ impl KernelKey {
             }
             Self::Refine(refined, shade, film) => {
                 let traced = match refined.source {
-                    RecordSource::Traced => trace_constants(refined.variant),
+                    RecordSource::Traced => {
+                        let matter = refined.variant.matter.unwrap_or_default();
+                        [trace_constants(refined.variant), matter_constants(matter)].concat()
+                    }
                     _ => refined.source.constants(),
                 };
                 let film = film.map_or_else(Vec::new, film_constants);
@@ -222,7 +229,17 @@ fn trace_constants(variant: TraceVariant) -> Vec<(&'static str, f64)> {
         ("SPINNING", flag(variant.spinning)),
         ("DELAY", flag(variant.delay)),
         ("STEP_LIMIT", flag(variant.step_limit)),
-        ("PARTS", flag(variant.parts)),
+        ("PARTS", flag(variant.matter.is_some())),
+    ]
+}
+
+fn matter_constants(matter: MatterVariant) -> Vec<(&'static str, f64)> {
+    vec![
+        ("SHAPES", matter.shapes.into()),
+        ("MOTIONS", matter.motions.into()),
+        ("THERMAL", flag(matter.thermal)),
+        ("POWER_LAW", flag(matter.power_law)),
+        ("SHOWS_DEPTH", flag(matter.shows_depth)),
     ]
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Sizes that kernels share with those who make their tables and dispatch them.
 
+use crate::emit::hot_spot::HotSpot;
+use crate::emit::volume::Volume;
 use crate::physics::lens::critical::CRITICAL_NODES;
 
 /// Nodes of a spin-0 lens: per octave of the distance from the critical direction; octaves of them; and in a row. The
@@ -23,3 +25,6 @@ pub const TABLE_WIDTH: usize = 2048;
 /// Crossings of a ray record that records/export.wgsl writes, and vectors of four numbers of a record.
 pub const EXPORT_CROSSINGS: usize = 4;
 pub const EXPORT_VECTORS: usize = 4 + 3 * EXPORT_CROSSINGS;
+
+/// Volumes and hot spots of a frame at most.
+pub const MOST_MATTER: usize = Volume::MOST + HotSpot::MOST;

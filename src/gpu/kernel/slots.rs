@@ -44,7 +44,7 @@ pub const LENS_COLUMNS: TextureKind =
 pub const LENS_FLAGS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 };
 /// `light_tables` and `star_cells` of shade/shade.wgsl.
-const TABLES: [TextureKind; 2] = [
+pub(super) const TABLES: [TextureKind; 2] = [
     TextureKind { format: wgpu::TextureFormat::Rgba32Float, dimension: wgpu::TextureViewDimension::D2 },
     TextureKind { format: wgpu::TextureFormat::R32Uint, dimension: wgpu::TextureViewDimension::D2 },
 ];

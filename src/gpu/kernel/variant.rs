@@ -21,10 +21,38 @@ pub struct TraceVariant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
-    /// Whether emitters with depth are asked along the parts of a pixel's ray.
-    pub parts: bool,
+    /// The matter with depth that is asked along the parts of a pixel's ray. `None`: there is none.
+    pub matter: Option<MatterVariant>,
     /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
     pub projection: Option<Projection>,
+}
+
+/// The matter with depth that tracing kernels are compiled for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct MatterVariant {
+    /// Bits of `SHAPE_*` and `MOTION_*`.
+    pub shapes: u32,
+    pub motions: u32,
+    /// Some of it is a blackbody, and some has a power law.
+    pub thermal: bool,
+    pub power_law: bool,
+    /// No effect on light is switched off.
+    pub all_effects: bool,
+    /// The view shows what there is, not light.
+    pub shows_depth: bool,
+}
+
+/// `SHAPE_SPOT` of emit/shape.wgsl, for which volumes have no shape.
+pub const SHAPE_SPOT: u32 = 4;
+
+/// `MOTION_*` of emit/flow.wgsl.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum MotionCode {
+    Keplerian = 0,
+    AngularMomentum = 1,
+    Rigid = 2,
+    Outflow = 3,
 }
 
 /// Everything that decides how shading is compiled.

@@ -48,7 +48,7 @@ pub enum RecordStages {
 impl RecordSetup {
     /// The layers in which traced records keep crossings and, behind those, the media before each and behind the last.
     fn layers(&self) -> u32 {
-        self.crossings + if self.variant.parts { self.crossings + 1 } else { 0 }
+        self.crossings + if self.variant.matter.is_some() { self.crossings + 1 } else { 0 }
     }
 
     /// Bytes of a tile's pixel on the device.
@@ -186,6 +186,8 @@ pub struct Shared<'a> {
     /// The `PassUniform` that the dispatch's offset chooses.
     pub pass: wgpu::BindingResource<'a>,
     pub step_sum: wgpu::BindingResource<'a>,
+    /// `light_tables` of shade/shade.wgsl.
+    pub light_tables: wgpu::BindingResource<'a>,
 }
 
 /// The stages that make the records of a tile before they are shaded.
@@ -232,11 +234,11 @@ impl TracedRecords {
         shared: &Shared<'_>,
     ) -> Result<TraceStages> {
         let [sky, meta, disk] = self.resources()?;
-        let Shared { frame, pass, step_sum } = shared.clone();
+        let Shared { frame, pass, step_sum, light_tables } = shared.clone();
         Ok(TraceStages {
             trace: kernels
                 .get(KernelKey::Pixels(variant))?
-                .stage(device, &[&[frame, pass.clone(), sky, meta.clone(), disk]])?,
+                .stage(device, &[&[frame, pass.clone(), sky, meta.clone(), disk, light_tables]])?,
             count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
         })
     }

@@ -38,8 +38,8 @@ const BLOOM: Why = Tested(
 );
 const VOLUMES: Why = Tested(
     "tests/tracers/volumes.rs",
-    "radial_light_and_depth_are_integrals_over_proper_length",
-    "light and depth of the haze along whole rays of both tracers",
+    "the_tracers_agree",
+    "matter of every kind along the rays of whole pictures, one tracer against the other",
 );
 const NO_VOLUMES: Why = Plumbing("a hook that does nothing where no emitter with depth is");
 const ENTRY: Why = Plumbing("a kernel: it hands what others compute from one to the next");
@@ -56,15 +56,14 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("bloom/upsample", "between upsample", BLOOM),
     ("emit/disk", "disk_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
-    ("emit/volumes", "matter_at", HOOK),
-    ("emit/volumes", "add_part", VOLUMES),
+    ("emit/volumes", "step_course add_part cells_between add_piece is_dark coefficients_at", VOLUMES),
     ("geodesic/rays", "on_part", NO_VOLUMES),
     ("lens/kerr_nodes", "on_part", NO_VOLUMES),
     ("lens/kerr_pixel", "medium_before", NO_VOLUMES),
     ("lens/kerr_deferred", "on_part medium_before", NO_VOLUMES),
     ("lens/schwarzschild_record", "medium_before", NO_VOLUMES),
     ("refine/integrated", "on_part medium_before", VOLUMES),
-    ("traced/pixels", "on_part keep_medium", VOLUMES),
+    ("traced/pixels", "on_part keep_medium light_table", VOLUMES),
     ("traced/record", "medium_before", VOLUMES),
     ("film/develop", "develop_tile", ENTRY),
     ("film/develop_rows", "develop_tile", ENTRY),

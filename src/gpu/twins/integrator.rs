@@ -17,7 +17,7 @@ const HEAD: &str = "
 #import geodesic/trace
 var<private> first: PlaneCrossing;
 var<private> crossing_count: u32;
-fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {}
+fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {}
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
     if crossing_count == 0u {
         first = crossing;

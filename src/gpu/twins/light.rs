@@ -4,20 +4,17 @@
 use super::inputs::{Inputs, Outputs};
 use super::run::{Image, Table};
 use super::scenes::{self, FRAME, FRAMES, Kind, view};
-use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
+use super::{Group, ROUNDING, SAME, twin};
 pub use crate::emit::EmissionPoint;
-use crate::emit::medium::{Medium, pieces};
 use crate::emit::streaks::{STREAK_COLUMNS, STREAK_LAST, STREAK_ROWS, Streaks};
 use crate::emit::thin_disk::{emission_law, profile_row};
 use crate::emit::turbulence::Turbulence;
 use crate::gpu::kernel::slots::STREAKS;
 use crate::physics::blackbody::{BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE, into_gamut};
 use crate::physics::disk_flux::TemperatureProfile;
-use crate::physics::geodesic::{Constants, State};
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::zamo_frequency;
 use crate::random::mix;
-use crate::scene::Scene;
 use crate::sky::StarIndex;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -183,63 +180,6 @@ pub fn group() -> Group {
             1e-5,
         ),
         twin(
-            "emit/haze",
-            "haze_matter",
-            "enter_scene(); var c: Constants; c.energy = in1(2u); c.angular_momentum = in1(3u); c.nu_local = in1(4u);
-             var s: State; s.u = in1(1u); s.n = in3(6u); out4(haze_matter(c, s, in1(5u)));",
-            |i| {
-                disk_place(i);
-                i.even(0.5, 1.5);
-                i.even(-2.0, 2.0);
-                i.even(0.5, 1.5);
-                i.even(0.5, 2.0);
-                i.direction();
-            },
-            |i, o| {
-                let Scene { hole, haze, .. } = &view(i).scene;
-                let c = Constants::new(hole.spin, i.x(2), i.x(3), 0.0, i.x(4), 0.1);
-                let nothing = State { u: i.x(1), du: 0.0, n: i.v3(6), dn: DVec3::ZERO, drag: 0.0, delay: 0.0 };
-                let (emission, absorption) = haze.expect("haze").matter(&c, &nothing, i.x(5));
-                o.all(emission, 1e-6);
-                o.near(absorption, 1e-6);
-            },
-            // The fifth power of what zamo_frequency gives.
-            6e-5,
-        ),
-        twin(
-            "emit/medium",
-            "medium_with",
-            "out4(medium_with(in4(0u), in3(4u), in1(7u)));",
-            |i| {
-                i.evens(8, 0.0, 1.0);
-                // Thin, even, and thick.
-                let depth = i.random.log(1e-9, 50.0);
-                i.truncate(7);
-                i.push(depth);
-            },
-            |i, o| {
-                let mut medium = Medium { light: i.v3(0).to_array(), through: i.x(3), ..Medium::default() };
-                medium.add(i.v3(4).to_array(), i.x(7));
-                o.all(medium.light, 0.0);
-                o.put(medium.through);
-            },
-            TRANSCENDENTAL,
-        ),
-        twin(
-            "emit/volumes",
-            "pieces",
-            "out1(f32(pieces(in1(0u), in1(1u))));",
-            |i| {
-                i.log(1e-6, 0.5);
-                let ratio = i.random.log(1e-3, 1e3);
-                let sign = if i.random.below(8) == 0 { -1.0 } else { 1.0 };
-                i.push(sign * ratio * i.x(0));
-            },
-            // Where the quotient is all but whole one more or less is as good.
-            |i, o| o.near(f64::from(pieces(i.x(0), i.x(1))), 1.0),
-            SAME,
-        ),
-        twin(
             disk,
             "disk_covers",
             "enter_scene(); out1(disk_covers(in1(1u)));",
@@ -375,7 +315,7 @@ pub fn group() -> Group {
         ),
     ];
     let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\
-                   fn on_part(c: Constants, from_state: State, begin: f32, end: f32) {}\n\
+                   fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {}\n\
                    fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n";
     Group {
         name: "light",

@@ -16,6 +16,7 @@ mod integrator;
 mod kerr;
 mod lens;
 mod light;
+mod matter;
 mod records;
 mod refine;
 mod run;
@@ -107,6 +108,7 @@ const TABLES: &[fn() -> Group] = &[
     kerr::group,
     kerr::nodes,
     light::group,
+    matter::group,
     sky::group,
     shade::group,
     refine::group,

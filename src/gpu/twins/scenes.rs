@@ -4,7 +4,6 @@
 use super::inputs::{Inputs, Random};
 use super::run::Table;
 use super::sky;
-use crate::emit::haze::Haze;
 use crate::gpu::frame::settings::for_f32;
 use crate::gpu::frame::uniforms::FrameUniform;
 use crate::physics::metric::chart;
@@ -116,8 +115,6 @@ fn made(kind: Kind, number: u32) -> View {
     disk.plunges = number % 6 == 4;
     disk.inner_radius = if disk.plunges { 1.3 * horizon_outer(scene.hole.spin) } else { 0.0 };
     disk.seed = random.bits();
-    scene.haze =
-        Some(Haze { radius: random.log(2.0, 50.0), brightness: random.log(0.1, 10.0), absorption: random.share() });
     scene.time = random.even(0.0, 1e4);
     scene.sky.orientation = DQuat::from_xyzw(random.share(), random.share(), random.share(), 1.0).normalize();
     scene.sky.flags = Sky::STARS | Sky::GRID | Sky::MAP;

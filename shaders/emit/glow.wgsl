@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The light that matter with depth sends and absorbs. Mirrors src/emit/glow.rs, where the formulas are.
+
+#import constants
+#import emit/shift
+#import shared/blackbody
+#import shared/matter
+
+// Whether a kernel's matter has blackbodies and power laws among it.
+override THERMAL: bool = true;
+override POWER_LAW: bool = true;
+
+// Per unit of affine length: light in linear Rec. 709, I_nu of power laws, optical depth.
+struct Coefficients {
+    light: vec3<f32>,
+    intensity: f32,
+    absorption: f32,
+}
+
+// Matter of a density at the radius r, which measures the frequency nu, that of the local frame's observer being 1.
+// `heat`: a factor on the temperature; g = nu(camera) / nu(matter), `shift`: as the effects let it show.
+fn glow_coefficients(matter: Matter, density: f32, heat: f32, r: f32, nu: f32, g: f32, shift: Shift) -> Coefficients {
+    let column = density * nu;
+    if POWER_LAW && (!THERMAL || matter.kind.z != 0u) {
+        let ln_g = log(g);
+        let index = matter.light.y;
+        let seen = column * shift.beaming * shift.beaming * shift.beaming * pow(shift.colour, index) * matter.light.z;
+        return Coefficients(matter.tint.xyz * seen, column * exp(ln_g * (3.0 + index)),
+            matter.glow.x * column * exp(ln_g * (ABSORPTION_INDEX + index)));
+    }
+    let absorption = matter.glow.x * column;
+    let temperature = heat * matter.glow.y * pow(r / matter.glow.z, -matter.glow.w);
+    let rgb = shifted_blackbody(temperature, matter.light.x, shift.colour, shift.beaming);
+    return Coefficients(rgb * (matter.light.z * absorption), 0.0, absorption);
+}

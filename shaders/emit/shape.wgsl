@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The densities of matter with depth, and the lengths over which they change. Mirrors src/emit/shape.rs and the spots
+// of src/emit/volumes.rs, where the formulas are. Knows no light and no motion.
+
+#import constants
+#import shared/matter
+
+// The shapes that a kernel's matter has, as bits of SHAPE_*: others are left out when it is compiled.
+override SHAPES: u32 = 31u;
+
+fn gaussian(x: f32) -> f32 {
+    // Beyond, e^-x is no number that shows, and x^2 might be none at all.
+    let cut = min(abs(x), 15.0);
+    return exp(-0.5 * cut * cut);
+}
+
+// 0 below `low`, 1 above `high`.
+fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
+    let t = clamp((x - low) / (high - low), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+fn faded(r: f32, inner: f32, outer: f32) -> f32 {
+    return smooth_step(INNER_FADE.x, INNER_FADE.y, r / inner) * (1.0 - smooth_step(OUTER_FADE.x, OUTER_FADE.y, r / outer));
+}
+
+fn disk_density(r: f32, cosine: f32, inner: f32, outer: f32, slope: f32, thickness: f32) -> f32 {
+    return faded(r, inner, outer) * pow(r / inner, -slope) * gaussian(cosine / thickness);
+}
+
+fn torus_density(r: f32, cosine: f32, radius: f32, width: f32, thickness: f32) -> f32 {
+    let sine = sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0));
+    return gaussian((r * sine - radius) / width) * gaussian(r * cosine / (thickness * radius));
+}
+
+fn halo_density(r: f32, cosine: f32, radius: f32, thickness: f32) -> f32 {
+    return gaussian(r / radius) * gaussian(cosine / thickness);
+}
+
+fn jet_density(r: f32, cosine: f32, matter: Matter) -> f32 {
+    let radius = matter.radii.z;
+    let wall = cos(min(matter.form.y * sqrt(radius / r), 1.5707964));
+    return faded(r, matter.radii.x, matter.radii.y) * pow(r / radius, -matter.form.z)
+        * gaussian((abs(cosine) - wall) / matter.form.x);
+}
+
+// `later`: the time at which the light left, less the frame's.
+fn spot_density(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> f32 {
+    let radius = matter.radii.x;
+    let axis = r * sqrt(max((1.0 - cosine) * (1.0 + cosine), 0.0));
+    let half_turn = sin(0.5 * (azimuth - matter.radii.z - matter.radii.w * later));
+    let across = axis - radius;
+    let height = r * cosine;
+    let widths = sqrt(across * across + 4.0 * axis * radius * half_turn * half_turn + height * height) / matter.radii.y;
+    return select(0.0, gaussian(widths), widths < SPOT_CUT);
+}
+
+// The density of matter at a place.
+fn density_at(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> f32 {
+    let radii = matter.radii;
+    let form = matter.form;
+    let shape = matter.kind.x;
+    var density = 0.0;
+    if (SHAPES & (1u << SHAPE_DISK)) != 0u && shape == SHAPE_DISK {
+        density = disk_density(r, cosine, radii.x, radii.y, form.z, form.x);
+    }
+    if (SHAPES & (1u << SHAPE_TORUS)) != 0u && shape == SHAPE_TORUS {
+        density = torus_density(r, cosine, radii.z, radii.w, form.x);
+    }
+    if (SHAPES & (1u << SHAPE_HALO)) != 0u && shape == SHAPE_HALO {
+        density = halo_density(r, cosine, radii.z, form.x);
+    }
+    if (SHAPES & (1u << SHAPE_JET)) != 0u && shape == SHAPE_JET {
+        density = jet_density(r, cosine, matter);
+    }
+    if (SHAPES & (1u << SHAPE_SPOT)) != 0u && shape == SHAPE_SPOT {
+        return spot_density(r, cosine, azimuth, later, matter);
+    }
+    return select(density, 0.0, r > radii.y);
+}
+
+// The number of cells that a stretch should be cut into: u and cos theta at its ends, and the angle that it sweeps.
+fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32 {
+    let near = 1.0 / u.x;
+    let far = 1.0 / u.y;
+    if (SHAPES & (1u << SHAPE_SPOT)) != 0u && matter.kind.x == SHAPE_SPOT {
+        let run = near - far;
+        let across = swept / max(min(u.x, u.y), 1e-30);
+        return sqrt(run * run + across * across) / matter.radii.y;
+    }
+    let thickness = matter.form.x;
+    let change = abs(cosines.y - cosines.x);
+    var cells = abs(log(u.x / u.y)) / 0.35 + swept / 0.6;
+    if matter.kind.y == MOTION_ANGULAR_MOMENTUM {
+        // Velocities by angular momentum bend without end towards the axis.
+        let most = max(abs(cosines.x), abs(cosines.y));
+        cells += 0.5 * swept / sqrt(max(1.0 - most * most, NEAR_AXIS * NEAR_AXIS));
+    }
+    if (SHAPES & (1u << SHAPE_TORUS)) != 0u && matter.kind.x == SHAPE_TORUS {
+        let sines = sqrt(max(1.0 - cosines * cosines, vec2<f32>(0.0)));
+        return cells + abs(sines.y * far - sines.x * near) / (1.5 * matter.radii.w)
+            + abs(cosines.y * far - cosines.x * near) / (1.5 * thickness * matter.radii.z);
+    }
+    if (SHAPES & (1u << SHAPE_HALO)) != 0u && matter.kind.x == SHAPE_HALO {
+        cells += abs(near - far) / (1.5 * matter.radii.z);
+    }
+    return cells + change / (1.5 * thickness);
+}
