@@ -9,9 +9,6 @@
 // The laws of motion that a kernel's matter has, as bits of MOTION_*: others are left out when it is compiled.
 override MOTIONS: u32 = 15u;
 
-// Squares of sin theta below this are taken for it.
-const LEAST_SIN2: f32 = 1e-20;
-
 // The metric at a place outside the horizon.
 struct Place {
     r: f32,

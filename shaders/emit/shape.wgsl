@@ -4,6 +4,7 @@
 
 #import constants
 #import shared/matter
+#import shared/math
 
 // The shapes that a kernel's matter has, as bits of SHAPE_*: others are left out when it is compiled.
 override SHAPES: u32 = 31u;
@@ -21,7 +22,8 @@ fn smooth_step(low: f32, high: f32, x: f32) -> f32 {
 }
 
 fn faded(r: f32, inner: f32, outer: f32) -> f32 {
-    return smooth_step(INNER_FADE.x, INNER_FADE.y, r / inner) * (1.0 - smooth_step(OUTER_FADE.x, OUTER_FADE.y, r / outer));
+    let begun = smooth_step(INNER_FADE.x, INNER_FADE.y, r / inner);
+    return begun * (1.0 - smooth_step(OUTER_FADE.x, OUTER_FADE.y, r / outer));
 }
 
 fn disk_density(r: f32, cosine: f32, inner: f32, outer: f32, slope: f32, thickness: f32) -> f32 {
@@ -38,10 +40,12 @@ fn halo_density(r: f32, cosine: f32, radius: f32, thickness: f32) -> f32 {
 }
 
 fn jet_density(r: f32, cosine: f32, matter: Matter) -> f32 {
-    let radius = matter.radii.z;
-    let wall = cos(min(matter.form.y * sqrt(radius / r), 1.5707964));
-    return faded(r, matter.radii.x, matter.radii.y) * pow(r / radius, -matter.form.z)
-        * gaussian((abs(cosine) - wall) / matter.form.x);
+    return faded(r, matter.radii.x, matter.radii.y) * pow(r / matter.radii.z, -matter.form.z)
+        * gaussian((abs(cosine) - jet_wall(r, matter)) / matter.form.x);
+}
+
+fn jet_wall(r: f32, matter: Matter) -> f32 {
+    return cos(min(matter.form.y * sqrt(matter.radii.z / r), 0.5 * PI));
 }
 
 // `later`: the time at which the light left, less the frame's.
@@ -90,7 +94,7 @@ fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32
     }
     let thickness = matter.form.x;
     let change = abs(cosines.y - cosines.x);
-    var cells = abs(log(u.x / u.y)) / 0.35 + swept / 0.6;
+    var cells = abs(log(u.x / u.y)) / CELL_LN_R + swept / CELL_ANGLE;
     if matter.kind.y == MOTION_ANGULAR_MOMENTUM {
         // Velocities by angular momentum bend without end towards the axis.
         let most = max(abs(cosines.x), abs(cosines.y));
@@ -100,6 +104,9 @@ fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32
         let sines = sqrt(max(1.0 - cosines * cosines, vec2<f32>(0.0)));
         return cells + abs(sines.y * far - sines.x * near) / (1.5 * matter.radii.w)
             + abs(cosines.y * far - cosines.x * near) / (1.5 * thickness * matter.radii.z);
+    }
+    if (SHAPES & (1u << SHAPE_JET)) != 0u && matter.kind.x == SHAPE_JET {
+        return cells + (change + abs(jet_wall(far, matter) - jet_wall(near, matter))) / thickness;
     }
     if (SHAPES & (1u << SHAPE_HALO)) != 0u && matter.kind.x == SHAPE_HALO {
         cells += abs(near - far) / (1.5 * matter.radii.z);

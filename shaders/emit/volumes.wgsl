@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // The matter with depth, along a ray while it is traced. Mirrors src/emit/volumes.rs, where the reasons are, but for
-// this: samples come from the dense output of a step, not from steps of their own; a piece is not parted at the ISCO;
-// and the last stretch before the horizon, a millionth of its radius, is left out.
+// this: samples come from the dense output of a step, not from steps of their own; pieces are not parted where matter
+// bends, but cells are finer; and the last stretch before the horizon, a millionth of its radius, is left out.
 
 #import constants
 #import emit/flow
@@ -17,6 +17,8 @@
 
 // Whether the view shows I_nu and optical depth, not light.
 override SHOWS_DEPTH: bool = false;
+// Cells for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
+const FINENESS: f32 = 1.7;
 // Less light from behind than this share is not looked for.
 const DARKEST: f32 = 1e-6;
 
@@ -126,7 +128,7 @@ fn cells_between(u: vec2<f32>, cosines: vec2<f32>, swept: f32) -> vec3<f32> {
         }
     }
     let width = share.y - share.x;
-    return vec3<f32>(share, select(0.0, clamp(ceil(cells * width), 1.0, MOST_CELLS), width > 0.0));
+    return vec3<f32>(share, select(0.0, clamp(ceil(FINENESS * cells * width), 1.0, MOST_CELLS), width > 0.0));
 }
 
 // The share of a stretch, of which the straight lines between its ends lie within a matter's reach; (1, 0) for none.
@@ -206,7 +208,15 @@ fn is_dark() -> bool {
 
 // All matter at the share x of a step of the length `h`, as if the length `tau` of it were as it is there: light, and
 // in w the optical depth. In views of matter x of the light is I_nu.
-fn coefficients_at(c: Constants, observer: State, course: StepCourse, x: f32, h: f32, tau: f32, ratio: f32) -> vec4<f32> {
+fn coefficients_at(
+    c: Constants,
+    observer: State,
+    course: StepCourse,
+    x: f32,
+    h: f32,
+    tau: f32,
+    ratio: f32,
+) -> vec4<f32> {
     let u = quintic_at(course.u, x);
     let cosine = clamp(quintic_at(course.n_z, x), -1.0, 1.0);
     var sum = vec4<f32>(0.0);

@@ -12,7 +12,8 @@
 #requires fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32)
 
 // Whether on_part is told of every part of the ray in which it crosses no plane: a step of the length `h` in tau from
-// `from_state` to `to_state`, or what lies of it on one side of a crossing, from `begin` to `end` in tau since its begin.
+// `from_state` to `to_state`, or what lies of it on one side of a crossing, from `begin` to `end` in tau since its
+// begin.
 override PARTS: bool = false;
 
 struct Settings {

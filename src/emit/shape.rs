@@ -39,6 +39,10 @@ pub struct Stretch {
     pub swept: f64,
 }
 
+/// The greatest changes over a cell, whatever the shape: of ln r, and of the angle about the hole, rad.
+pub(crate) const CELL_LN_R: f64 = 0.5;
+pub(crate) const CELL_ANGLE: f64 = 0.8;
+
 /// 0 below `low`, 1 above `high`, 3 t^2 - 2 t^3 between.
 pub fn smooth_step([low, high]: [f64; 2], x: f64) -> f64 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
@@ -136,15 +140,16 @@ impl Cloud {
         (low < high).then_some(Reach { u: [1.0 / high, 1.0 / low], cos })
     }
 
-    /// The radii at which the density bends: the ends of the fading at its edges, and where a jet's wall leaves the
-    /// plane. 0 for none.
+    /// The radii at which the density bends or jumps: the ends of the fading at its edges, the outer radius, and where a
+    /// jet's wall leaves the plane. 0 for none.
     pub fn bends(&self) -> [f64; 5] {
         let [[begin, begun], [end, ended]] = [INNER_FADE.map(|x| x * self.inner), OUTER_FADE.map(|x| x * self.outer)];
         let wall = self.radius * (self.opening / std::f64::consts::FRAC_PI_2).powi(2);
         match self.shape {
             Shape::Disk => [begin, begun, end, ended, 0.0],
             Shape::Jet => [begin, begun, end, ended, wall],
-            Shape::Torus | Shape::Halo => [0.0; 5],
+            // Where they are cut off.
+            Shape::Torus | Shape::Halo => [0.0, 0.0, 0.0, ended, 0.0],
         }
     }
 
@@ -152,7 +157,7 @@ impl Cloud {
     /// and Doppler shift change fit into it.
     pub fn cells(&self, stretch: &Stretch) -> f64 {
         let ([u, v], [c, d]) = (stretch.u, stretch.cos);
-        let turns = (u / v).ln().abs() / 0.5 + stretch.swept / 0.8;
+        let turns = (u / v).ln().abs() / CELL_LN_R + stretch.swept / CELL_ANGLE;
         let across = (d - c).abs();
         turns
             + match self.shape {

@@ -14,7 +14,7 @@ use super::geodesic::{Constants, State};
 use super::orbit::{horizon_inner, horizon_outer, isco};
 
 /// Squares of sin th below this are taken for it: nothing is divided by 0 on the axis, where no flow turns.
-const LEAST_SIN2: f64 = 1e-24;
+pub(crate) const LEAST_SIN2: f64 = 1e-24;
 
 /// The metric at a place outside the horizon.
 #[derive(Clone, Copy, Debug)]

@@ -114,6 +114,8 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         shape: Shape::Halo,
         flow: FlowLaw::AngularMomentum,
         power_law: true,
+        // Where it ends it is nothing: a sharp edge would need finer cells than those of its own lengths.
+        outer_radius: 60.0,
         thickness: 0.3,
         absorption: 0.1,
         brightness: 0.05,
@@ -170,6 +172,7 @@ fn the_tracers_agree() {
             picture(renderer, PixelFormat::Rgba8Srgb, [128, 72], None, false)
         });
         let far = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+        println!("{name}: {far} of {}", a.len());
         assert!(far <= a.len() / 1000, "{name}: {far} of {}", a.len());
         // The matter does something.
         cpu.scene = Scene { volumes: Default::default(), hot_spots: Default::default(), ..scene };
@@ -192,6 +195,7 @@ fn the_views_of_matter_agree() {
             // Captured on one tracer and not on the other, or beside the critical curve.
             let far = a.iter().zip(&b).filter(|(a, b)| a.is_nan() != b.is_nan() || (**a - **b).abs() > 2e-3 * peak);
             let far = far.count();
+            println!("{name}, {view:?}: {far} of {}, peak {peak}", a.len());
             assert!(far <= a.len() / 500, "{name}, {view:?}: {far} of {}, peak {peak}", a.len());
         }
     }

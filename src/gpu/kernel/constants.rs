@@ -13,7 +13,7 @@ use crate::image::PixelFormat;
 use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
-use crate::physics::{blackbody, geodesic};
+use crate::physics::{blackbody, flow, geodesic};
 use crate::scene::refine::{self, Edge};
 use crate::scene::{ColourMap, Effects, MAX_CROSSINGS, Projection, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
@@ -169,6 +169,9 @@ fn all() -> Vec<(&'static str, String)> {
         MARGIN_U: f32 = volumes::MARGIN_U;
         MARGIN_COS: f32 = volumes::MARGIN_COS;
         MARGIN_STEP: f32 = volumes::MARGIN_STEP;
+        CELL_LN_R: f32 = shape::CELL_LN_R;
+        CELL_ANGLE: f32 = shape::CELL_ANGLE;
+        LEAST_SIN2: f32 = flow::LEAST_SIN2;
         NEAR_AXIS: f32 = volumes::NEAR_AXIS;
         DARK: f32 = volumes::Accuracy::VIEW.dark;
         ABSORPTION_INDEX: f32 = glow::ABSORPTION_INDEX;

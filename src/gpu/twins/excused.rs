@@ -41,6 +41,11 @@ const VOLUMES: Why = Tested(
     "the_tracers_agree",
     "matter of every kind along the rays of whole pictures, one tracer against the other",
 );
+const MATTER_VIEWS: Why = Tested(
+    "tests/tracers/volumes.rs",
+    "the_views_of_matter_agree",
+    "I_nu and optical depth of whole pictures, one tracer against the other",
+);
 const NO_VOLUMES: Why = Plumbing("a hook that does nothing where no emitter with depth is");
 const ENTRY: Why = Plumbing("a kernel: it hands what others compute from one to the next");
 const HOOK: Why = Plumbing("a hook: it calls the one function that this kernel has for it");
@@ -65,6 +70,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("refine/integrated", "on_part medium_before", VOLUMES),
     ("traced/pixels", "on_part keep_medium light_table", VOLUMES),
     ("traced/record", "medium_before", VOLUMES),
+    ("shade/shade", "seen_matter", MATTER_VIEWS),
     ("film/develop", "develop_tile", ENTRY),
     ("film/develop_rows", "develop_tile", ENTRY),
     ("film/light", "write_pixel", BLOOM),

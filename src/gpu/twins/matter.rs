@@ -288,7 +288,7 @@ fn shapes() -> Vec<super::Twin> {
         }),
         twin(
             shape,
-            "jet_density",
+            "jet_density jet_wall",
             with_shape!("out1(jet_density(in1(7u), in1(8u), m));"),
             shape_and_place,
             |i, o| o.near(jet_density(i.x(7), i.x(8), &Cloud::new(&shape_at(i, 0, Shape::Jet), 6.0)), FAINT),
