@@ -8,8 +8,9 @@ use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::job::{Job, JobRequest, Worker};
+use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
-use crate::scene::{Hit, Ray, Region, Scene, View};
+use crate::scene::{Hit, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
@@ -281,7 +282,7 @@ impl Renderer {
             }
             (View::Light, _) | (_, PixelFormat::R32F) => {}
             (view, format) if !format.is_developed() => {
-                let view = format!("{view:?}").to_uppercase();
+                let view = view.name();
                 return Err(Error::argument(format!("view {view} goes into 8-bit formats or R32F, not {format}")));
             }
             _ => {}
@@ -406,6 +407,19 @@ impl Renderer {
             Tracer::Gpu(t) => t.trace_rays(&self.scene, rays, hits),
             Tracer::Gl(t) => t.trace_rays(&self.scene, rays, hits),
         }
+    }
+
+    /// The matter with depth along `rays`, thin disk and sky left out; `found` is as long. Always in f64 on the CPU: on
+    /// the CPU tracer's threads, else on this one. A ray that is not valid becomes `Fate::Invalid`.
+    pub fn transfer_rays(&mut self, rays: &[Ray], found: &mut [Transfer]) -> Result<()> {
+        if let Tracer::Cpu(tracer) = &mut *self.tracer.lock() {
+            return tracer.transfer_rays(&self.scene, rays, found);
+        }
+        let (emitters, settings) = transfer_setup(&self.scene);
+        for (ray, found) in rays.iter().zip(found) {
+            *found = transfer_ray(&self.scene, &settings, &emitters, ray);
+        }
+        Ok(())
     }
 
     /// The curve a ray follows: x, y, z, t (scene axes and lengths; t <= 0, backward) per point, at most `capacity`

@@ -12,7 +12,7 @@ pub(crate) mod shade;
 
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::scene::{Hit, Ray, Scene};
+use crate::scene::{Hit, Ray, Scene, Transfer};
 use crate::sky::StarIndex;
 use crate::tracer::{AdapterInfo, Backend};
 use lens::LensCache;
@@ -72,6 +72,13 @@ impl CpuTracer {
     pub fn trace_rays(&mut self, scene: &Scene, rays: &[Ray], hits: &mut [Hit]) -> Result<()> {
         allocate::check_room(0, "tracing rays")?;
         self.pool.install(|| rays::trace_rays(scene, rays, hits));
+        Ok(())
+    }
+
+    /// Errors: OUT_OF_MEMORY.
+    pub fn transfer_rays(&mut self, scene: &Scene, rays: &[Ray], found: &mut [Transfer]) -> Result<()> {
+        allocate::check_room(0, "summing the matter along rays")?;
+        self.pool.install(|| rays::transfer_rays(scene, rays, found));
         Ok(())
     }
 }

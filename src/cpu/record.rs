@@ -3,6 +3,7 @@
 
 use crate::emit::along::MediaAlong;
 use crate::emit::medium::{Media, Medium};
+use crate::emit::volumes::Seen;
 use crate::emit::{Crossing, EmissionPoint, Emitters};
 use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::plunge::Matter;
@@ -39,9 +40,9 @@ impl<'a> Recorder<'a> {
         Self {
             lens,
             settings: scene.pixel_settings(),
-            emitters,
             plane_u: emitters.plane_u(),
             disk_u: emitters.disk_u(),
+            emitters,
             matter: scene.matter(),
         }
     }
@@ -63,7 +64,8 @@ impl<'a> Recorder<'a> {
         let (constants, traced, media) = if self.emitters.needs().parts {
             let (emitters, plane_u) = (&self.emitters, self.plane_u);
             let (media, medium) = (Media::new(), Medium::default());
-            let mut along = MediaAlong { emitters, frequency_ratio, plane_u, media, medium };
+            let seen = Seen { frequency_ratio, static_lapse: observer.frame.static_lapse(), fineness: 1.0 };
+            let mut along = MediaAlong { emitters, seen, plane_u, media, medium };
             let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);
             (constants, traced, along.finish())
         } else {

@@ -2,13 +2,14 @@
 //! Turns ray records into linear radiance, or a view's value, in f64. Mirrored by `shaders/shade/shade.wgsl`. Does not
 //! know how the records were made.
 
-use crate::emit::{PlaneLight, Shift};
+use crate::emit::PlaneLight;
+use crate::emit::medium::media_in_order;
 use crate::error::Result;
 use crate::physics::orbit::zamo_frequency;
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION};
-use crate::scene::{Effects, Scene, View};
+use crate::scene::{Scene, View};
 use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
 use glam::{DMat3, DVec3};
 use std::sync::Arc;
@@ -74,7 +75,8 @@ impl<'a> Shader<'a> {
             }
             let gravity = || nu_static_observer(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
             let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
-            let emission = self.plane.at_crossing(crossing, self.visible_shift(crossing.g, gravity), mu, open);
+            let emission =
+                self.plane.at_crossing(crossing, self.scene.effects.visible_shift(crossing.g, gravity), mu, open);
             (0..3).for_each(|c| light[c] += emission.light[c]);
             open *= 1.0 - emission.opacity;
         }
@@ -89,27 +91,14 @@ impl<'a> Shader<'a> {
         [light[0], light[1], light[2], 1.0 - open]
     }
 
-    /// g = g_gravity g_doppler, split at the local static observers (ZAMOs); `gravity` gives the former.
-    fn visible_shift(&self, g: f64, gravity: impl Fn() -> f64) -> Shift {
-        let effects = self.scene.effects;
-        if effects.all_light() {
-            return Shift { colour: g, beaming: g };
-        }
-        let gravity = gravity();
-        let mut colour = if effects.has(Effects::DOPPLER_SHIFT) { g } else { gravity };
-        if !effects.has(Effects::GRAVITY_SHIFT) {
-            colour /= gravity;
-        }
-        Shift { colour, beaming: if effects.has(Effects::BEAMING) { g } else { 1.0 } }
-    }
-
     /// nu(ZAMO at a place of the plane).
     fn nu_zamo_in_plane(&self, u: f64, ray: &Record) -> f64 {
         zamo_frequency(self.scene.hole.spin, u, 0.0, ray.energy, ray.angular_momentum)
     }
 
     fn sky_light(&self, here: &Record) -> [f64; 3] {
-        let shift = self.visible_shift(here.sky_redshift, || nu_static_observer(self.lens, here.energy) / here.energy);
+        let gravity = || nu_static_observer(self.lens, here.energy) / here.energy;
+        let shift = self.scene.effects.visible_shift(here.sky_redshift, gravity);
         let d = self.chart_to_sky * here.direction;
         // Differences of unit vectors leave the tangent plane where they are large; `footprint_of` of the WGSL brings
         // them back too.
@@ -154,6 +143,10 @@ impl<'a> Shader<'a> {
             (View::Steps, _) => f64::from(here.steps),
             (View::Metric, _) if here.plane_u > 0.0 => 1.0 - 2.0 * here.plane_u,
             (View::Metric, _) => f64::NAN,
+            // Matter that falls piles up before the horizon without end, so that a captured ray's depth has no value.
+            (View::OpticalDepth, Fate::Escaped) => here.media.iter().map(|medium| medium.depth).sum(),
+            (View::OpticalDepth, _) => f64::NAN,
+            (View::Intensity, _) => media_in_order(&here.media).intensity,
             // Light has no value; `pixel_light` shows it.
             (View::Light, _) => f64::NAN,
         }
@@ -163,7 +156,5 @@ impl<'a> Shader<'a> {
 /// nu(static observer or ZAMO where the camera is), for E scaled to nu_local = 1; in the rain frame inside the horizon,
 /// its own.
 fn nu_static_observer(lens: &Lens, energy: f64) -> f64 {
-    let frame = &lens.observer.frame;
-    let static_lapse = 1.0 - 2.0 / frame.r;
-    if !frame.rain || static_lapse <= 0.0 { 1.0 } else { energy / static_lapse.sqrt() }
+    lens.observer.frame.static_lapse().map_or(1.0, |lapse| energy / lapse)
 }

@@ -3,13 +3,13 @@
 
 use super::Emitters;
 use super::medium::{Media, Medium};
+use super::volumes::Seen;
 use crate::physics::trace::{Part, PlaneCrossing, Visitor};
 
 /// Gathers the media along a ray while it is traced.
 pub struct MediaAlong<'a> {
     pub emitters: &'a Emitters,
-    /// nu(camera) / nu(local frame).
-    pub frequency_ratio: f64,
+    pub seen: Seen,
     /// The interval of 1/r in which crossings are kept.
     pub plane_u: Option<[f64; 2]>,
     pub media: Media,
@@ -27,7 +27,7 @@ impl MediaAlong<'_> {
 
 impl Visitor for MediaAlong<'_> {
     fn part(&mut self, part: &Part<'_>) {
-        self.emitters.along(part, self.frequency_ratio, &mut self.medium);
+        self.emitters.along(part, &self.seen, &mut self.medium);
     }
 
     fn crossing(&mut self, crossing: &PlaneCrossing) {

@@ -12,11 +12,17 @@
 pub mod along;
 pub mod crossing;
 pub mod disk;
+pub mod effects;
+pub mod glow;
 pub mod haze;
+pub mod hot_spot;
 pub mod medium;
+pub mod shape;
 pub mod streaks;
 pub mod thin_disk;
 pub mod turbulence;
+pub mod volume;
+pub mod volumes;
 
 pub use crossing::{Crossing, Emission, EmissionPoint, Shift};
 
@@ -26,6 +32,7 @@ use disk::EmissionLaw;
 use haze::Haze;
 use medium::Medium;
 use thin_disk::{DiskLight, ThinDisk};
+use volumes::{Seen, Volumes};
 
 /// The facts about a ray that emitters ask for, beside 1/r of each crossing and its g = nu(camera) / nu(matter).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,11 +51,12 @@ pub struct Needs {
 }
 
 /// The emitters of a scene, in units of M (`Scene::emitters`).
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Emitters {
     /// `None`: the scene has no disk, or all of it lies where no matter shines.
     pub disk: Option<ThinDisk>,
     pub haze: Option<Haze>,
+    pub volumes: Volumes,
 }
 
 impl Emitters {
@@ -56,9 +64,9 @@ impl Emitters {
         let turbulence = self.disk.and_then(|disk| disk.turbulence);
         Needs {
             places: turbulence.is_some(),
-            delays: turbulence.is_some_and(|turbulence| turbulence.needs_delay),
+            delays: turbulence.is_some_and(|turbulence| turbulence.needs_delay) || self.volumes.needs_delay(),
             angles: self.disk.is_some_and(|disk| disk.disk.emission_law != EmissionLaw::Isotropic),
-            parts: self.haze.is_some(),
+            parts: self.haze.is_some() || !self.volumes.is_empty(),
             headings: self.disk.is_some_and(|disk| disk.least_profile.is_some()),
         }
     }
@@ -95,12 +103,17 @@ impl Emitters {
         f64::from(u8::from(self.disk_u().is_some_and(|[outer, inner]| u >= outer && u <= inner)))
     }
 
-    /// Adds the matter along a part of a ray to the medium between two crossings. `frequency_ratio`: nu(camera) /
-    /// nu(local frame).
-    pub fn along(&self, part: &Part<'_>, frequency_ratio: f64, medium: &mut Medium) {
+    /// Adds the matter along a part of a ray to the medium between two crossings.
+    pub fn along(&self, part: &Part<'_>, seen: &Seen, medium: &mut Medium) {
         if let Some(haze) = &self.haze {
-            haze.along(part, frequency_ratio, medium);
+            haze.along(part, seen.frequency_ratio, medium);
         }
+        self.volumes.along(part, seen, medium);
+    }
+
+    /// The range of 1/r, outer end first, in which matter with depth is. `None`: there is none.
+    pub fn depth_u(&self) -> Option<[f64; 2]> {
+        self.volumes.reach_u()
     }
 }
 

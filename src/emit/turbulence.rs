@@ -37,7 +37,7 @@ pub(crate) const PLUNGE_FADE: f64 = 0.4;
 pub(crate) const MOST_BANDS: usize = 50;
 
 /// When a frame shows its emitters. Times in M.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct When {
     /// The time at which light leaves emitters whose delay is `reference_delay`.
     pub time: f64,

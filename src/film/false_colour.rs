@@ -13,7 +13,9 @@ pub const NO_VALUE: [f32; 3] = [0.5; 3];
 /// The place of a view's value along its map, before the `ends` of the map are put to 0 and 1.
 fn scaled(view: View, value: f32) -> f32 {
     match view {
-        View::Redshift | View::Deflection | View::Steps => value.max(LEAST).log2(),
+        View::Redshift | View::Deflection | View::Steps | View::OpticalDepth | View::Intensity => {
+            value.max(LEAST).log2()
+        }
         // sqrt(2 M / r), the speed of matter that falls from rest at infinity: -g_tt crowds below 1.
         View::Metric => 1.0 - (1.0 - value.min(1.0)).sqrt(),
         View::Order | View::Light => value,
@@ -33,6 +35,10 @@ pub fn range(view: View) -> (f32, f32) {
         View::Order => (-2.0, 3.0),
         View::Deflection => (PI / 64.0, PI),
         View::Steps => (8.0, 512.0),
+        // From matter that is hardly seen to a surface.
+        View::OpticalDepth => (1.0 / 64.0, 16.0),
+        // Matter of density 1 along 64 M at rest has 64.
+        View::Intensity => (1.0 / 64.0, 64.0),
         View::Light | View::Metric => (0.0, 1.0),
     }
 }
@@ -95,7 +101,8 @@ mod tests {
         false_colour(view, ends(view), value)
     }
 
-    const VIEWS: [View; 5] = [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric];
+    const VIEWS: [View; 7] =
+        [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric, View::OpticalDepth, View::Intensity];
 
     /// CIELAB of codes 0 .. 1, by the definitions of IEC 61966-2-1 and CIE 15 and the primaries' own matrix; in f64.
     fn lab(rgb: [f32; 3]) -> [f64; 3] {

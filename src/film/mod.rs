@@ -85,6 +85,8 @@ impl FilmParams {
             3 => View::Deflection,
             4 => View::Steps,
             5 => View::Metric,
+            6 => View::OpticalDepth,
+            7 => View::Intensity,
             _ => View::Light,
         }
     }

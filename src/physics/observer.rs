@@ -109,6 +109,13 @@ impl LocalFrame {
         if self.rain && self.r <= RAIN_CLOCK_RADIUS { Clock::Rain } else { Clock::Coordinate }
     }
 
+    /// sqrt(1 - 2 / r), the lapse of the static observer at a place where the frame is that of the rain observer; `None`
+    /// where the frame is the static observer's (or the ZAMO's) own, or where no observer is at rest.
+    pub fn static_lapse(&self) -> Option<f64> {
+        let squared = 1.0 - 2.0 / self.r;
+        (self.rain && squared > 0.0).then(|| squared.sqrt())
+    }
+
     /// Components (n_r, n_th, n_ph) of a chart vector.
     pub fn components(&self, v: DVec3) -> DVec3 {
         DVec3::new(self.e_r.dot(v), self.e_theta.dot(v), self.e_phi.dot(v))

@@ -106,14 +106,54 @@ pub struct Part<'a> {
     pub constants: &'a Constants,
     /// The state at the observer.
     pub observer: &'a State,
+    /// The begin and the end of the step that the part lies in, and its length in tau.
     from: &'a State,
+    to: &'a State,
+    step: f64,
     /// Tau from `from` to the part's begin and end.
     begin: f64,
     end: f64,
+    /// It is the last part of a captured ray, from where its steps end to the horizon.
+    pub to_horizon: bool,
     settings: &'a Settings,
 }
 
+/// Dense output along a part: 1/r and N_z, each by the share of the step, of which the part is a share.
+pub struct PartCourse {
+    u: Quintic,
+    n_z: Quintic,
+    share: [f64; 2],
+}
+
+impl PartCourse {
+    /// 1/r and N_z at the share `x`, 0 .. 1, of the part: to the fifth order in the step.
+    pub fn at(&self, x: f64) -> [f64; 2] {
+        let [begin, end] = self.share;
+        let there = begin + (end - begin) * x;
+        [self.u.at(there).0, self.n_z.at(there).0]
+    }
+}
+
 impl Part<'_> {
+    /// The largest 1/r at the ends of the step that the part lies in.
+    pub fn innermost_end(&self) -> f64 {
+        self.from.u.max(self.to.u)
+    }
+
+    /// The angle about the hole that the part sweeps, rad; with spin an upper bound.
+    pub fn swept(&self) -> f64 {
+        (self.end - self.begin).abs() * self.constants.scale
+    }
+
+    pub fn course(&self) -> PartCourse {
+        let (c, h) = (self.constants, self.step);
+        PartCourse {
+            u: Quintic::of_u(c, self.from, self.to, h),
+            n_z: Quintic::of_n_z(c, self.from, self.to, h),
+            share: [self.begin / h, self.end / h],
+        }
+    }
+
     /// The state at the share `x`, 0 .. 1, of the part's Mino time. A part may reach past infinity, where u < 0.
     pub fn at(&self, x: f64) -> State {
         let tau = self.begin + (self.end - self.begin) * x;
@@ -250,7 +290,17 @@ pub fn trace_visited(
     let crossing_limit = settings.max_crossings.min(CROSSINGS_KEPT);
     let (end, steps) = follow(c, start, settings, &mut |segment| {
         last = (*segment.from, *segment.to, segment.tau, segment.h);
-        let mut part = Part { constants: c, observer: start, from: segment.from, begin: 0.0, end: segment.h, settings };
+        let mut part = Part {
+            constants: c,
+            observer: start,
+            from: segment.from,
+            to: segment.to,
+            step: segment.h,
+            begin: 0.0,
+            end: segment.h,
+            to_horizon: false,
+            settings,
+        };
         if side * segment.to.n.z < 0.0 {
             side = segment.to.n.z;
             order += 1;
@@ -286,10 +336,34 @@ pub fn trace_visited(
         }
         End::Captured => {
             result.fate = Fate::Captured;
+            visit_rest(c, start, settings, &to, visitor);
             result.swept = swept(tau + h + time_to_horizon(c, settings, &to));
         }
     }
     result
+}
+
+/// Tells `visitor` of the last part of a captured ray, from the end of its last step, `end`, to the horizon: steps stop
+/// short of it. There is none where `Settings::capture_u` ends rays farther out.
+fn visit_rest(c: &Constants, observer: &State, settings: &Settings, end: &State, visitor: &mut impl Visitor) {
+    let room = 1.0 / c.r_plus - end.u;
+    if settings.capture_u * c.r_plus < 1.0 || room <= 0.0 {
+        return;
+    }
+    // u+ = u + u' h + u'' h^2 / 2.
+    let rest = 2.0 * room / (end.du + (end.du * end.du + 2.0 * c.u_acceleration(end.u).max(0.0) * room).sqrt());
+    let at_horizon = State { u: 1.0 / c.r_plus, ..*end };
+    visitor.part(&Part {
+        constants: c,
+        observer,
+        from: end,
+        to: &at_horizon,
+        step: rest,
+        begin: 0.0,
+        end: rest,
+        to_horizon: true,
+        settings,
+    });
 }
 
 /// Mino time from the end of a captured ray to the horizon, without spin, where u and N are regular. 0 with spin, and

@@ -8,44 +8,18 @@ use super::quality::Quality;
 use super::sky::Sky;
 use crate::emit::Emitters;
 use crate::emit::disk::Disk;
+use crate::emit::effects::Effects;
 use crate::emit::haze::Haze;
+use crate::emit::hot_spot::HotSpot;
 use crate::emit::thin_disk::ThinDisk;
 use crate::emit::turbulence::{Turbulence, When};
+use crate::emit::volume::Volume;
+use crate::emit::volumes::Volumes;
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarIndex};
+use arrayvec::ArrayVec;
 use std::sync::Arc;
-
-/// The relativistic effects that colour the light: the bits of `BHR_EFFECT_*`. Unknown bits are ignored. The redshift g
-/// = g_gravity g_doppler is split at the local static observer (ZAMO) of emitter and camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Effects(pub u32);
-
-impl Effects {
-    /// Frequency shift by motion colours the light.
-    pub const DOPPLER_SHIFT: u32 = 1;
-    /// Gravitational redshift colours the light.
-    pub const GRAVITY_SHIFT: u32 = 2;
-    /// Intensity follows g^3 (I_nu), g^4 (bolometric).
-    pub const BEAMING: u32 = 4;
-    /// The moving disk is seen at its retarded time.
-    pub const LIGHT_DELAY: u32 = 8;
-    pub const ALL: u32 = u32::MAX;
-
-    /// The bits that change the colour or brightness of light, without unknown ones.
-    pub fn light(self) -> u32 {
-        self.0 & (Self::DOPPLER_SHIFT | Self::GRAVITY_SHIFT | Self::BEAMING)
-    }
-
-    /// Whether light is shown as it arrives, no effect left out.
-    pub fn all_light(self) -> bool {
-        self.light() == Self(Self::ALL).light()
-    }
-
-    pub fn has(self, bit: u32) -> bool {
-        self.0 & bit != 0
-    }
-}
 
 /// The quantity that a pixel shows (`BHR_VIEW_*`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +36,31 @@ pub enum View {
     Steps = 4,
     /// -g_tt at the first crossing of the equatorial plane; NaN without one.
     Metric = 5,
+    /// The optical depth of all matter with depth along the ray; NaN unless escaped.
+    OpticalDepth = 6,
+    /// I_nu of power laws, the camera's frequency being that at which they send 1 per M (`emit::glow`).
+    Intensity = 7,
+}
+
+impl View {
+    /// The part of the C constant's name after `BHR_VIEW_`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "LIGHT",
+            Self::Redshift => "REDSHIFT",
+            Self::Order => "ORDER",
+            Self::Deflection => "DEFLECTION",
+            Self::Steps => "STEPS",
+            Self::Metric => "METRIC",
+            Self::OpticalDepth => "OPTICAL_DEPTH",
+            Self::Intensity => "INTENSITY",
+        }
+    }
+
+    /// Whether it shows matter with depth, and not the thin disk.
+    pub fn shows_depth_only(self) -> bool {
+        matches!(self, Self::OpticalDepth | Self::Intensity)
+    }
 }
 
 /// Everything a frame depends on, but its size.
@@ -71,6 +70,9 @@ pub struct Scene {
     pub camera: Camera,
     /// `None`: no disk.
     pub disk: Option<Disk>,
+    /// Matter with depth, and hot spots.
+    pub volumes: ArrayVec<Volume, { Volume::MOST }>,
+    pub hot_spots: ArrayVec<HotSpot, { HotSpot::MOST }>,
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
@@ -95,6 +97,8 @@ impl Default for Scene {
             hole: Hole::default(),
             camera: Camera::default(),
             disk: Some(Disk::default()),
+            volumes: ArrayVec::new(),
+            hot_spots: ArrayVec::new(),
             sky: Sky::default(),
             sky_map: None,
             film: Film::default(),
@@ -112,11 +116,27 @@ impl Scene {
     /// The matter that shines and absorbs near the hole, as the scene's view shows it.
     pub fn emitters(&self) -> Emitters {
         let light = self.view == View::Light;
-        let disk = self.disk.and_then(|disk| ThinDisk::new(&disk, self.hole.spin)).map(|disk| ThinDisk {
-            turbulence: Turbulence::new(&disk.disk, disk.u, disk.matter_spin, &self.when()).filter(|_| light),
-            ..disk
-        });
-        Emitters { disk, haze: self.haze.filter(|_| light) }
+        let depth = self.view.shows_depth_only();
+        let disk =
+            self.disk.filter(|_| !depth).and_then(|disk| ThinDisk::new(&disk, self.hole.spin)).map(|disk| ThinDisk {
+                turbulence: Turbulence::new(&disk.disk, disk.u, disk.matter_spin, &self.when()).filter(|_| light),
+                ..disk
+            });
+        let volumes = if light || depth { self.volumes_at(self.when()) } else { Volumes::default() };
+        Emitters { disk, haze: self.haze.filter(|_| light), volumes }
+    }
+
+    /// The matter with depth as it is at a time.
+    fn volumes_at(&self, when: When) -> Volumes {
+        Volumes::new(&self.volumes, &self.hot_spots, self.hole.spin, self.effects, when)
+    }
+
+    /// The matter with depth as observers see it who are at rest, or fall inside the horizon, and whose clocks show the
+    /// scene's time: host's rays begin at such.
+    pub fn volumes_now(&self) -> Volumes {
+        let delayed = self.effects.has(Effects::LIGHT_DELAY);
+        let time = (self.time / self.hole.mass).clamp(f64::MIN, f64::MAX);
+        self.volumes_at(When { time, reference_delay: 0.0, delayed })
     }
 
     /// When the frame shows its emitters.

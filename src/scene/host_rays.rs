@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Rays that a host asks for, traced in f64: where each ends, and the curve that it follows.
 
-use super::{Fate, Hit, Ray, Scene};
+use super::{Fate, Hit, Ray, Scene, Transfer};
 use crate::allocate::collected;
+use crate::emit::Emitters;
+use crate::emit::along::MediaAlong;
+use crate::emit::medium::{Media, Medium};
+use crate::emit::volumes::Seen;
 use crate::error::{Error, Result};
-use crate::physics::trace::{Settings, path, trace};
+use crate::physics::trace::{Settings, path, trace, trace_visited};
 
 /// Traces `ray`.
 pub fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
@@ -14,6 +18,30 @@ pub fn trace_ray(scene: &Scene, settings: &Settings, ray: &Ray) -> Hit {
     };
     let traced = trace(&constants, &state, settings);
     scene.hit(ray, &frame, Some(&constants), &traced)
+}
+
+/// The matter with depth of `emitters` along `ray`; thin disk and sky left out.
+pub fn transfer_ray(scene: &Scene, settings: &Settings, emitters: &Emitters, ray: &Ray) -> Transfer {
+    let nothing = Transfer { fate: Fate::Invalid, intensity: f64::NAN, optical_depth: f64::NAN, light: [f64::NAN; 3] };
+    let Some((frame, start)) = scene.start(ray) else { return nothing };
+    let Some((constants, state)) = start else {
+        return Transfer { fate: Fate::Captured, intensity: 0.0, light: [0.0; 3], ..nothing };
+    };
+    let seen = Seen { frequency_ratio: ray.frequency_ratio, static_lapse: frame.static_lapse(), fineness: Seen::EXACT };
+    let (media, medium) = (Media::new(), Medium::default());
+    let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium };
+    let traced = trace_visited(&constants, &state, settings, &mut along);
+    let Medium { light, depth, intensity, .. } = along.medium;
+    let fate = scene.hit(ray, &frame, Some(&constants), &traced).fate;
+    Transfer { fate, intensity, light, optical_depth: if fate == Fate::Escaped { depth } else { f64::NAN } }
+}
+
+/// The emitters of `transfer_ray`, and its settings: crossings of the plane do not matter.
+pub fn transfer_setup(scene: &Scene) -> (Emitters, Settings) {
+    let emitters = Emitters { volumes: scene.volumes_now(), ..Emitters::default() };
+    let settings =
+        Settings { delay: emitters.needs().delays, max_crossings: 0, ..scene.quality.ray_settings(scene.hole.spin) };
+    (emitters, settings)
 }
 
 /// Most points of a path: more than any plot shows, and bounded memory.

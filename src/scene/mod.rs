@@ -21,13 +21,16 @@ pub mod sky;
 pub mod trace;
 
 pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};
+pub use crate::emit::effects::Effects;
+pub use crate::emit::hot_spot::HotSpot;
+pub use crate::emit::volume::{FlowLaw, Shape, Volume};
 pub use camera::{Camera, Motion, Projection};
-pub use content::{Effects, Scene, View};
+pub use content::{Scene, View};
 pub use film::{ColourMap, Film, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;
 pub use lensing::{KerrThreshold, Lensing};
 pub use preset::Preset;
 pub use quality::{LensTables, Method, Quality};
-pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
+pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray, Transfer};
 pub use sky::Sky;

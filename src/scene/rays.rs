@@ -43,6 +43,19 @@ pub struct Crossing {
     pub delay: f64,
 }
 
+/// The matter with depth along a ray.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Transfer {
+    pub fate: Fate,
+    /// I_nu at the camera's frequency, power laws sending 1 per M at density 1 at that frequency; NaN of a ray that is
+    /// not valid.
+    pub intensity: f64,
+    /// NaN unless escaped.
+    pub optical_depth: f64,
+    /// Linear Rec. 709; NaN of a ray that is not valid.
+    pub light: [f64; 3],
+}
+
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hit {
     pub fate: Fate,

@@ -5,6 +5,7 @@
 use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 use super::{Method, Quality, Scene};
+use crate::emit::Emitters;
 use crate::physics::geodesic::{Constants, State};
 use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
@@ -52,7 +53,7 @@ impl Scene {
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
         let emitters = self.emitters();
         settings.delay = emitters.needs().delays;
-        settings.capture_u = self.pixel_capture_u(emitters.plane_u());
+        settings.capture_u = self.pixel_capture_u(&emitters);
         settings.opaque_u = emitters.opaque_u().filter(|_| self.view == super::View::Light);
         settings
     }
@@ -101,15 +102,16 @@ impl Scene {
     }
 
     /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde
-    /// photon orbit; only METRIC and plunging matter, which shines down to `plane_u`, look deeper.
-    fn pixel_capture_u(&self, plane_u: Option<[f64; 2]>) -> f64 {
+    /// photon orbit; only METRIC, plunging matter, which shines down to `plane_u`, and matter with depth look deeper.
+    fn pixel_capture_u(&self, emitters: &Emitters) -> f64 {
         let spin = self.hole.spin;
         if self.view == super::View::Metric {
             return 1.0 / horizon_outer(spin);
         }
         // The margin is 1 %: an observer on the photon orbit itself still sees its rays leave.
         let turning = 1.0 / (0.99 * photon_orbit(spin.abs())).max(horizon_outer(spin));
-        plane_u.map_or(turning, |[_, inner]| inner.max(turning))
+        let innermost = |u: Option<[f64; 2]>| u.map_or(turning, |[_, inner]| inner.max(turning));
+        innermost(emitters.plane_u()).max(innermost(emitters.depth_u())).min(1.0 / horizon_outer(spin))
     }
 
     /// The start of a host's ray; `None` when it is not valid. The inner `None`: captured at once

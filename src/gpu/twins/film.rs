@@ -96,8 +96,8 @@ fn put3(o: &mut Outputs, rgb: [f32; 3]) {
 }
 
 fn push_value(i: &mut Inputs) {
-    let views = [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric];
-    let view = views[i.random.below(5) as usize];
+    let views = [View::Redshift, View::Order, View::Deflection, View::Steps, View::Metric, View::Intensity];
+    let view = views[i.random.below(6) as usize];
     push_film(i, view, PixelFormat::Rgba8Srgb);
     let value = match view {
         View::Order => f64::from(i.random.below(8)) - 2.0,

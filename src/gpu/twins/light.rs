@@ -218,7 +218,7 @@ pub fn group() -> Group {
                 i.push(depth);
             },
             |i, o| {
-                let mut medium = Medium { light: i.v3(0).to_array(), through: i.x(3) };
+                let mut medium = Medium { light: i.v3(0).to_array(), through: i.x(3), ..Medium::default() };
                 medium.add(i.v3(4).to_array(), i.x(7));
                 o.all(medium.light, 0.0);
                 o.put(medium.through);

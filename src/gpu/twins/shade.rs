@@ -153,7 +153,7 @@ fn record(i: &Inputs) -> Record {
             share: 1.0,
         });
     }
-    let medium = |k: usize| Medium { light: i.v3(k).to_array(), through: i.x(k + 3) };
+    let medium = |k: usize| Medium { light: i.v3(k).to_array(), through: i.x(k + 3), ..Medium::default() };
     record.media.extend([medium(28)]);
     if i.x(16) > 0.0 {
         record.media.push(medium(32));
