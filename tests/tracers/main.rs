@@ -21,4 +21,5 @@ mod rings;
 mod sky;
 mod stars;
 mod supersampling;
+mod transfer;
 mod volumes;

@@ -5,7 +5,7 @@ use super::settings::{for_f32, variant};
 use super::setup::{Setup, ShadingVariants};
 use super::tracer::GpuTracer;
 use super::uniforms::FrameUniform;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, RecordSource, ShadeVariant, TraceVariant};
@@ -40,6 +40,7 @@ impl GpuTracer {
     pub(in crate::gpu) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let emitters = scene.emitters();
+        check_depth(scene)?;
         let settings = for_f32(scene.pixel_settings());
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
@@ -124,4 +125,15 @@ impl GpuTracer {
             },
         }
     }
+}
+
+/// The one place where this tracer refuses matter with depth: whoever writes its WGSL removes this function. Errors:
+/// UNSUPPORTED for a scene that has any, and for the views of it.
+fn check_depth(scene: &Scene) -> Result<()> {
+    if scene.emitters().volumes.is_empty() && !scene.view.shows_depth_only() {
+        return Ok(());
+    }
+    Err(Error::unsupported(
+        "volumes, hot spots and the views OPTICAL_DEPTH and INTENSITY are drawn by BHR_BACKEND_CPU only so far",
+    ))
 }
