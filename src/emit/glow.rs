@@ -49,7 +49,7 @@ impl Sample {
         self.absorption += other.absorption;
     }
 
-    /// What lies along a stretch of the affine length `length`.
+    /// The sum along a stretch of the affine length `length`.
     pub fn along(self, length: f64) -> Self {
         Self {
             light: self.light.map(|v| v * length),

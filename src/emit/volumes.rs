@@ -19,7 +19,7 @@ use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::flow::{Flow, Motion, Place, ZamoLight};
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::orbit::horizon_outer;
-use crate::physics::trace::Part;
+use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
 
 /// The greatest changes over a piece: of ln r, and of the angle about the hole, rad.
@@ -34,9 +34,11 @@ const MARGIN_U: f64 = 0.02;
 const MARGIN_COS: f64 = 0.01;
 /// Within a step 1/r may become larger than at its ends by this factor.
 const MARGIN_STEP: f64 = 1.1;
+/// The sine of theta below which cells are no finer.
+const NEAR_AXIS: f64 = 0.01;
 /// Thinner matter is left out.
 const LEAST_DENSITY: f64 = 1e-13;
-/// What lies behind so great an optical depth is not seen.
+/// Matter behind so great an optical depth is not seen.
 const DARK: f64 = 300.0;
 
 /// How an observer sees the matter along a ray.
@@ -125,6 +127,16 @@ impl VolumeMatter {
         })
     }
 
+    /// The number of cells that a stretch should be cut into.
+    fn cells(&self, stretch: &Stretch) -> f64 {
+        let [a, b] = stretch.cos;
+        let sin2 = 1.0 - (a * a).max(b * b);
+        // Velocities by angular momentum go as sqrt(R), which bends without end towards the axis.
+        let bends = matches!(self.flow.motion, Motion::AngularMomentum { .. });
+        let beside_axis = if bends { 0.5 * stretch.swept / sin2.max(NEAR_AXIS * NEAR_AXIS).sqrt() } else { 0.0 };
+        self.cloud.cells(stretch) + beside_axis
+    }
+
     /// Density, and the factor on the temperature, at a place.
     fn density(&self, there: &State, r: f64, cos: f64) -> (f64, f64) {
         let density = self.cloud.density(r, cos);
@@ -188,7 +200,7 @@ impl SpotMatter {
     fn cells(&self, stretch: &Stretch) -> f64 {
         let [a, b] = stretch.u;
         let across = stretch.swept / a.min(b).max(1e-30);
-        (1.0 / a - 1.0 / b).hypot(across) / (1.5 * self.size)
+        (1.0 / a - 1.0 / b).hypot(across) / self.size
     }
 }
 
@@ -254,27 +266,37 @@ impl Volumes {
         }
         let sum = Sum { volumes: self, part, seen };
         let course = part.course();
-        let [mut before, last] = [0.0, 1.0].map(|x| course.at(x));
-        let pieces = Pieces::new([before[0], last[0]], part.swept(), outer * (1.0 - MARGIN_U));
-        for k in 0..pieces.count {
-            let [begin, end] = [k, k + 1].map(|k| pieces.border(k));
-            if k == 0 {
-                before = course.at(begin);
+        let [first, last] = [0.0, 1.0].map(|x| course.at(x)[0]);
+        let pieces = Pieces::new([first, last], part.swept(), outer * (1.0 - MARGIN_U));
+        let mut at = pieces.border(0);
+        let mut before = course.at(at);
+        for k in 1..=pieces.count {
+            let end = pieces.border(k);
+            let last = course.at(end);
+            for bend in self.bends_between(before[0], last[0]) {
+                let there = course_reaches(&course, [at, end], bend);
+                let after = course.at(there);
+                sum.stretch([at, there], [before, after], medium);
+                (at, before) = (there, after);
             }
-            let after = course.at(end);
-            let stretch =
-                Stretch { u: [before[0], after[0]], cos: [before[1], after[1]], swept: part.swept() * (end - begin) };
-            before = after;
-            if let Some(([low, high], cells)) = self.cells(&stretch) {
-                let at = |share: f64| begin + (end - begin) * share;
-                sum.piece([at(low), at(high)], (cells * seen.fineness).ceil().clamp(1.0, MOST_CELLS), medium);
-            }
+            sum.stretch([at, end], [before, last], medium);
+            (at, before) = (end, last);
         }
+    }
+
+    /// 1/r of the ISCOs between two places, in their order: there matter begins to fall, as (r_I - r)^(3/2), and cells
+    /// that reach across lose an order or more.
+    fn bends_between(&self, from: f64, to: f64) -> ArrayVec<f64, { Volume::MOST }> {
+        let falls = |flow: &Flow| matches!(flow.motion, Motion::Keplerian { .. });
+        let bends = self.volumes.iter().filter(|v| falls(&v.flow)).map(|v| 1.0 / v.flow.isco);
+        let mut between = bends.filter(|u| (u - from) * (u - to) < 0.0).collect::<ArrayVec<_, { Volume::MOST }>>();
+        between.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
+        between
     }
 
     /// The share of a stretch that has matter, and the number of cells that it should be cut into.
     fn cells(&self, stretch: &Stretch) -> Option<([f64; 2], f64)> {
-        let volumes = self.volumes.iter().filter_map(|v| Some((clip(&v.reach, stretch)?, v.cloud.cells(stretch))));
+        let volumes = self.volumes.iter().filter_map(|v| Some((clip(&v.reach, stretch)?, v.cells(stretch))));
         let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch))));
         let all = volumes.chain(spots);
         let (share, cells) = all.reduce(|([a, b], m), ([c, d], n)| ([a.min(c), b.max(d)], m.max(n)))?;
@@ -323,7 +345,35 @@ impl Volumes {
     }
 }
 
+/// The share of a part at which 1/r is `u`, between two shares on either side of it: the secant, four times.
+fn course_reaches(course: &PartCourse, [mut low, mut high]: [f64; 2], u: f64) -> f64 {
+    let over = |x: f64| course.at(x)[0] - u;
+    let (mut below, mut above) = (over(low), over(high));
+    for _ in 0..4 {
+        let x = low + (high - low) * (below / (below - above)).clamp(0.0, 1.0);
+        let here = over(x);
+        if here * below > 0.0 {
+            (low, below) = (x, here);
+        } else if here * above > 0.0 {
+            (high, above) = (x, here);
+        } else {
+            return x;
+        }
+    }
+    if below.abs() < above.abs() { low } else { high }
+}
+
 impl Sum<'_, '_> {
+    /// Adds the stretch between two shares of the part, at which (1/r, cos th) are `ends`.
+    fn stretch(&self, [begin, end]: [f64; 2], ends: [[f64; 2]; 2], medium: &mut Medium) {
+        let [[u, c], [v, d]] = ends;
+        let stretch = Stretch { u: [u, v], cos: [c, d], swept: self.part.swept() * (end - begin) };
+        if let Some(([low, high], cells)) = self.volumes.cells(&stretch) {
+            let at = |share: f64| begin + (end - begin) * share;
+            self.piece([at(low), at(high)], (cells * self.seen.fineness).ceil().clamp(1.0, MOST_CELLS), medium);
+        }
+    }
+
     /// Adds a piece in cells.
     fn piece(&self, [begin, end]: [f64; 2], cells: f64, medium: &mut Medium) {
         let size = (end - begin) / cells;

@@ -109,8 +109,8 @@ impl LocalFrame {
         if self.rain && self.r <= RAIN_CLOCK_RADIUS { Clock::Rain } else { Clock::Coordinate }
     }
 
-    /// sqrt(1 - 2 / r), the lapse of the static observer at a place where the frame is that of the rain observer; `None`
-    /// where the frame is the static observer's (or the ZAMO's) own, or where no observer is at rest.
+    /// sqrt(1 - 2 / r), the lapse of the static observer at a place where the frame is that of the rain observer.
+    /// `None`: the frame is the static observer's (or the ZAMO's) own, or no observer is at rest there.
     pub fn static_lapse(&self) -> Option<f64> {
         let squared = 1.0 - 2.0 / self.r;
         (self.rain && squared > 0.0).then(|| squared.sqrt())
