@@ -274,6 +274,23 @@ class Context {
         return present != 0 ? std::optional<Disk>(*disk) : std::optional<Disk>();
     }
 
+    /// bhr_set_volumes: all of them; an empty list for none.
+    Result<void> set_volumes(span<const Volume> volumes) {
+        return set_list<BhrVolume>(bhr_set_volumes, volumes);
+    }
+    /// bhr_get_volumes.
+    Result<std::vector<Volume>> volumes() const {
+        return ask_list<Volume, BhrVolume, max_volumes>(bhr_get_volumes);
+    }
+    /// bhr_set_hot_spots: all of them; an empty list for none.
+    Result<void> set_hot_spots(span<const HotSpot> hot_spots) {
+        return set_list<BhrHotSpot>(bhr_set_hot_spots, hot_spots);
+    }
+    /// bhr_get_hot_spots.
+    Result<std::vector<HotSpot>> hot_spots() const {
+        return ask_list<HotSpot, BhrHotSpot, max_hot_spots>(bhr_get_hot_spots);
+    }
+
     Result<void> set_sky(const std::optional<Sky> &sky) { return set_or_none(bhr_set_sky, sky); }
     /// bhr_get_sky.
     Result<Sky> sky() const { return filled<Sky, BhrSky>(bhr_get_sky); }
@@ -441,6 +458,17 @@ class Context {
         });
     }
 
+    /// bhr_transfer_rays: the matter with depth along each ray, in the same order.
+    Result<std::vector<Transfer>> transfer(span<const Ray> rays) {
+        static_assert(sizeof(Ray) == sizeof(BhrRay) && sizeof(Transfer) == sizeof(BhrTransfer));
+        return detail::ask(std::vector<Transfer>(rays.size()), [&](std::vector<Transfer> &found) {
+            return rays.size() == 0
+                       ? BHR_OK
+                       : bhr_transfer_rays(get(), c_rays(rays.data()), sizeof(Ray), rays.size(),
+                                           reinterpret_cast<BhrTransfer *>(found.data()), sizeof(Transfer));
+        });
+    }
+
     /// bhr_trace_path: at most `capacity` points.
     Result<std::vector<PathPoint>> trace_path(const Ray &ray, std::uint32_t capacity = 4096) {
         const std::uint32_t most = capacity < 65536 ? capacity : 65536; // it never has more
@@ -458,6 +486,30 @@ class Context {
 
     static BhrRay *c_rays(Ray *rays) noexcept { return reinterpret_cast<BhrRay *>(rays); }
     static const BhrRay *c_rays(const Ray *rays) noexcept { return reinterpret_cast<const BhrRay *>(rays); }
+
+    template <class C, class T>
+    Result<void> set_list(BhrStatus (*setter)(BhrContext *, const C *, std::size_t, std::uint32_t),
+                          span<const T> list) {
+        std::vector<C> copies;
+        for (std::size_t i = 0; i < list.size(); i++) {
+            copies.push_back(list.data()[i].c());
+        }
+        return detail::call([&] {
+            return setter(get(), copies.data(), sizeof(C), static_cast<std::uint32_t>(copies.size()));
+        });
+    }
+
+    template <class T, class C, std::size_t Most, class Getter> Result<std::vector<T>> ask_list(Getter getter) const {
+        return detail::ask(std::vector<T>(), [&](std::vector<T> &list) {
+            std::array<C, Most> copies = {};
+            std::uint32_t count = 0;
+            const BhrStatus status = getter(get(), copies.data(), sizeof(C), std::uint32_t(Most), &count);
+            for (std::uint32_t i = 0; i < count; i++) {
+                detail::take(list.emplace_back(), copies[i]);
+            }
+            return status;
+        });
+    }
 
     template <class C> Result<void> set(BhrStatus (*setter)(BhrContext *, const C *), const C &value) {
         return detail::call([&] { return setter(get(), &value); });

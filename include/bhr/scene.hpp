@@ -79,6 +79,25 @@ enum class EmissionLaw : std::int32_t {
     limb_darkened = BHR_DISK_LIMB_DARKENED,
 };
 
+/// BhrVolumeShape.
+enum class VolumeShape : std::int32_t {
+    disk = BHR_VOLUME_DISK,
+    torus = BHR_VOLUME_TORUS,
+    halo = BHR_VOLUME_HALO,
+    jet = BHR_VOLUME_JET,
+};
+
+/// BhrFlow.
+enum class Flow : std::int32_t {
+    keplerian = BHR_FLOW_KEPLERIAN,
+    angular_momentum = BHR_FLOW_ANGULAR_MOMENTUM,
+    outflow = BHR_FLOW_OUTFLOW,
+};
+
+/// Most volumes, and most hot spots, of a scene.
+inline constexpr std::size_t max_volumes = BHR_MAX_VOLUMES;
+inline constexpr std::size_t max_hot_spots = BHR_MAX_HOT_SPOTS;
+
 /// BhrFormat.
 enum class Format : std::int32_t {
     rgba8_srgb = BHR_FORMAT_RGBA8_SRGB,
@@ -124,6 +143,8 @@ enum class View : std::int32_t {
     deflection = BHR_VIEW_DEFLECTION,
     steps = BHR_VIEW_STEPS,
     metric = BHR_VIEW_METRIC,
+    optical_depth = BHR_VIEW_OPTICAL_DEPTH,
+    intensity = BHR_VIEW_INTENSITY,
 };
 
 /// BhrPresentMode.
@@ -163,6 +184,20 @@ enum class DiskFlags : std::uint32_t {
     plunges = BHR_DISK_PLUNGES,
 };
 
+/// BhrVolume.flags.
+enum class VolumeFlags : std::uint32_t {
+    none = 0,
+    retrograde = BHR_VOLUME_RETROGRADE,
+    power_law = BHR_VOLUME_POWER_LAW,
+};
+
+/// BhrHotSpot.flags.
+enum class HotSpotFlags : std::uint32_t {
+    none = 0,
+    retrograde = BHR_HOT_SPOT_RETROGRADE,
+    thermal = BHR_HOT_SPOT_THERMAL,
+};
+
 /// BhrImage.flags.
 enum class ImageFlags : std::uint32_t {
     none = 0,
@@ -194,7 +229,8 @@ namespace detail {
 template <class E>
 inline constexpr bool is_bits =
     std::is_same_v<E, AdapterFlags> || std::is_same_v<E, ContextFlags> || std::is_same_v<E, DiskFlags> ||
-    std::is_same_v<E, ImageFlags> || std::is_same_v<E, SkyFlags> || std::is_same_v<E, Effects>;
+    std::is_same_v<E, ImageFlags> || std::is_same_v<E, SkyFlags> || std::is_same_v<E, Effects> ||
+    std::is_same_v<E, VolumeFlags> || std::is_same_v<E, HotSpotFlags>;
 template <class E> using Bits = std::enable_if_t<is_bits<E>, E>;
 } // namespace detail
 
@@ -308,6 +344,51 @@ struct Disk {
 
     Disk() noexcept { detail::defaults(*this, bhr_disk_init); }
     BhrDisk c() const noexcept { return detail::as_c<BhrDisk>(*this); }
+};
+
+/// BhrVolume, with the defaults of bhr_volume_init.
+struct Volume {
+    std::uint32_t struct_size;
+    VolumeFlags flags;
+    VolumeShape shape;
+    Flow flow;
+    double inner_radius;
+    double outer_radius;
+    double radius;
+    double width;
+    double thickness;
+    double opening;
+    double slope;
+    double absorption;
+    double temperature;
+    double temperature_slope;
+    double spectral_index;
+    std::array<double, 3> tint;
+    double brightness;
+    double sub_keplerian;
+    double infall;
+    double angular_momentum;
+    double speed;
+
+    Volume() noexcept { detail::defaults(*this, bhr_volume_init); }
+    BhrVolume c() const noexcept { return detail::as_c<BhrVolume>(*this); }
+};
+
+/// BhrHotSpot, with the defaults of bhr_hot_spot_init.
+struct HotSpot {
+    std::uint32_t struct_size;
+    HotSpotFlags flags;
+    double radius;
+    double size;
+    double azimuth;
+    double absorption;
+    double temperature;
+    double spectral_index;
+    std::array<double, 3> tint;
+    double brightness;
+
+    HotSpot() noexcept { detail::defaults(*this, bhr_hot_spot_init); }
+    BhrHotSpot c() const noexcept { return detail::as_c<BhrHotSpot>(*this); }
 };
 
 /// BhrSky, with the defaults of bhr_sky_init.
@@ -464,6 +545,15 @@ struct Hit {
     std::uint32_t steps = 0;
     std::uint32_t reserved = 0;
     std::array<Crossing, BHR_MAX_CROSSINGS> crossings = {};
+};
+
+/// BhrTransfer.
+struct Transfer {
+    Fate fate = Fate::invalid;
+    std::uint32_t reserved = 0;
+    double intensity = 0.0;
+    double optical_depth = 0.0;
+    std::array<double, 3> light = {};
 };
 
 /// A point of the curve that a ray follows (bhr_trace_path): place in scene axes, and time.

@@ -13,7 +13,7 @@ pub const BHR_EFFECT_DOPPLER_SHIFT: u32 = 1u32;
 pub const BHR_EFFECT_GRAVITY_SHIFT: u32 = 2u32;
 /// The intensity follows g^3 (I_nu), g^4 (bolometric).
 pub const BHR_EFFECT_BEAMING: u32 = 4u32;
-/// The moving disk is seen at its retarded time.
+/// Moving matter is seen at its retarded time.
 pub const BHR_EFFECT_LIGHT_DELAY: u32 = 8u32;
 /// All effects, as a new context has them.
 pub const BHR_EFFECT_ALL: u32 = 0xffff_ffffu32;
@@ -28,8 +28,8 @@ const _: () = assert!(
 
 /// Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL. Lensing
 /// itself cannot be switched off. The redshift g = g_gravity g_doppler is split at the local static observers (ZAMO) of
-/// emitter and camera. LIGHT_DELAY shows in a turbulent disk only, from inside a spin-0 horizon too; without it, all of
-/// the disk is seen as it is at the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
+/// emitter and camera. LIGHT_DELAY shows in a turbulent disk and in hot spots only, from inside a spin-0 horizon too;
+/// without it, all matter is seen as it is at the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_effects(context: *mut BhrContext, effects: u32) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

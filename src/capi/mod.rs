@@ -44,6 +44,8 @@ pub mod sky;
 pub mod stats;
 pub mod status;
 pub mod surface;
+pub mod transfer;
 pub mod version;
 pub mod view;
+pub mod volume;
 pub mod window;

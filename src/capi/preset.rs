@@ -10,8 +10,8 @@ use crate::scene::Preset;
 /// A named look: values for disk, sky, film and effects that setters can then change. Since 0.2.0.
 ///
 /// Each preset sets all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky. Hole, camera,
-/// time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host that shows its own map
-/// sets BHR_SKY_MAP again. An empty cell has the first column's value.
+/// volumes, hot spots, time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host
+/// that shows its own map sets BHR_SKY_MAP again. An empty cell has the first column's value.
 ///
 /// ```text
 /// field                  if empty     CINEMATIC    PHYSICAL     OBSERVATORY  TEACHING

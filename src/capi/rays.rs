@@ -198,7 +198,7 @@ pub unsafe extern "C" fn bhr_camera_ray(
 }
 
 /// The number of rays that are copied and traced at a time; it bounds the library's own memory.
-const CHUNK: usize = 65_536;
+pub(super) const CHUNK: usize = 65_536;
 
 /// A size that the structs will never reach.
 const MAX_ELEMENT: usize = 16 * 1024;
@@ -215,14 +215,14 @@ const _: () = assert!(HIT_SIZES[HIT_SIZES.len() - 1] == size_of::<BhrHit>());
 
 /// A packed array of the host's, of elements that may be longer than ours.
 #[derive(Clone, Copy)]
-struct Array {
+pub(super) struct Array {
     begin: *mut u8,
     element: usize,
 }
 
 impl Array {
     /// Errors: NULL unless `count` is 0; an element shorter than `first`; more bytes than memory has.
-    fn new(begin: *mut u8, element: usize, first: usize, count: usize, names: [&str; 2]) -> Result<Self> {
+    pub(super) fn new(begin: *mut u8, element: usize, first: usize, count: usize, names: [&str; 2]) -> Result<Self> {
         let [name, size_name] = names;
         if !(first..=MAX_ELEMENT).contains(&element) {
             return Err(Error::argument(format!("{size_name} is {element}; it must lie in [{first}, {MAX_ELEMENT}]")));
@@ -238,7 +238,7 @@ impl Array {
 
     /// # Safety
     /// `index` is less than the count, and the host's array is readable.
-    unsafe fn read_ray(self, index: usize) -> Result<Ray> {
+    pub(super) unsafe fn read_ray(self, index: usize) -> Result<Ray> {
         let known = size_of::<BhrRay>();
         // SAFETY: this function's contract; `element >= known` by `new`.
         unsafe {
@@ -249,6 +249,15 @@ impl Array {
                 )));
             }
             Ok(at.cast::<BhrRay>().read_unaligned().into())
+        }
+    }
+
+    /// # Safety
+    /// The host's array is writable and has `count` elements.
+    pub(super) unsafe fn clear(self, count: usize) {
+        if count > 0 {
+            // SAFETY: this function's contract; NULL goes with a count of 0.
+            unsafe { self.begin.write_bytes(0, count * self.element) }
         }
     }
 
@@ -263,7 +272,7 @@ impl Array {
 
     /// # Safety
     /// `index` is less than the count, and the host's array is writable.
-    unsafe fn write(self, index: usize, value: &[u8]) {
+    pub(super) unsafe fn write(self, index: usize, value: &[u8]) {
         let known = value.len().min(self.element);
         // SAFETY: this function's contract; `known` is no longer than the element or the value.
         unsafe {
@@ -321,7 +330,7 @@ pub unsafe extern "C" fn bhr_trace_rays(
             let to = Array::new(out_hits.cast(), hit_size, FIRST_HIT, count, ["out_hits", "hit_size"])?;
             let result = trace_all(&mut state.renderer, from, to, count);
             if result.is_err() {
-                to.begin.write_bytes(0, count * hit_size);
+                to.clear(count);
             }
             result
         })

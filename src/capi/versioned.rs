@@ -50,7 +50,7 @@ const fn first_size<T: Versioned>() -> usize {
     sizes[0]
 }
 
-fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
+pub(super) fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
     let first = const { first_size::<T>() };
     if size < first {
         return Err(Error::argument(format!(
@@ -162,9 +162,11 @@ pub(super) unsafe fn init<T: Versioned>(pointer: *mut T, name: &str, size: usize
     Ok(())
 }
 
+/// Fills `size` bytes of the host's, `struct_size` among them.
+///
 /// # Safety
 /// `pointer` points to `size` writable bytes; `size` went through `check_size`.
-unsafe fn fill<T: Versioned>(pointer: *mut T, size: usize, value: &T) {
+pub(super) unsafe fn fill<T: Versioned>(pointer: *mut T, size: usize, value: &T) {
     let known = size.min(size_of::<T>());
     // SAFETY: `known <= size` writable bytes, and as many readable ones in `value`; `size` fits a u32 by MAX_SIZE.
     unsafe {
@@ -340,6 +342,8 @@ mod tests {
         hosts_of_the_first_release_go_on::<crate::capi::region::BhrRegion>();
         hosts_of_the_first_release_go_on::<crate::capi::sky::BhrSky>();
         hosts_of_the_first_release_go_on::<crate::capi::stats::BhrFrameStats>();
+        hosts_of_the_first_release_go_on::<crate::capi::volume::BhrHotSpot>();
+        hosts_of_the_first_release_go_on::<crate::capi::volume::BhrVolume>();
         hosts_of_the_first_release_go_on::<crate::capi::window::BhrWindow>();
     }
 

@@ -36,6 +36,14 @@ pub const BHR_VIEW_STEPS: BhrView = 4;
 /// -g_tt = 1 - 2 M / r at the first crossing of the equatorial plane; NaN without one. Sequential map, s = 1 - sqrt(1 -
 /// value): 0, the static limit, and less are its dark end; 1, infinity, its light one.
 pub const BHR_VIEW_METRIC: BhrView = 5;
+/// The optical depth of all volumes and hot spots along the ray, at the camera's frequency, as in BhrTransfer; NaN
+/// where the ray is captured. The thin disk does not count. Sequential map, s = (log2(value) + 6) / 10: 1/64 .. 16.
+/// Since 0.2.0.
+pub const BHR_VIEW_OPTICAL_DEPTH: BhrView = 6;
+/// The intensity at the camera's frequency of volumes and hot spots with a power law, where they send 1 per M at
+/// density 1, as in BhrTransfer. It is what Gold et al. 2020 sum to a flux. The thin disk does not count. Sequential
+/// map, s = (log2(value) + 6) / 12: 1/64 .. 64. Since 0.2.0.
+pub const BHR_VIEW_INTENSITY: BhrView = 7;
 
 /// Sets the view. Default BHR_VIEW_LIGHT. Errors: INVALID_ARGUMENT for an unknown view.
 #[unsafe(no_mangle)]
@@ -50,7 +58,9 @@ pub unsafe extern "C" fn bhr_set_view(context: *mut BhrContext, view: BhrView) -
                 BHR_VIEW_DEFLECTION => View::Deflection,
                 BHR_VIEW_STEPS => View::Steps,
                 BHR_VIEW_METRIC => View::Metric,
-                _ => return unknown(view, "view", "BHR_VIEW_LIGHT (0) to BHR_VIEW_METRIC (5)"),
+                BHR_VIEW_OPTICAL_DEPTH => View::OpticalDepth,
+                BHR_VIEW_INTENSITY => View::Intensity,
+                _ => return unknown(view, "view", "BHR_VIEW_LIGHT (0) to BHR_VIEW_INTENSITY (7)"),
             };
             Ok(())
         })

@@ -194,6 +194,9 @@ void watch_begin(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_get_hole(context, &watch->mass, &watch->spin, watch->axis));
     CHECK_OK(bhr_get_camera(context, &watch->camera));
     CHECK_OK(bhr_get_disk(context, &watch->disk, &watch->disk_present));
+    CHECK_OK(bhr_get_volumes(context, watch->volumes, sizeof watch->volumes[0], BHR_MAX_VOLUMES, &watch->volume_count));
+    CHECK_OK(bhr_get_hot_spots(context, watch->hot_spots, sizeof watch->hot_spots[0], BHR_MAX_HOT_SPOTS,
+                               &watch->hot_spot_count));
     CHECK_OK(bhr_get_sky(context, &watch->sky));
     CHECK_OK(bhr_get_film(context, &watch->film));
     CHECK_OK(bhr_get_quality(context, &watch->quality));
@@ -212,6 +215,12 @@ int check_unchanged(const Watch *watch, const char *file, int line, const char *
         wrong = "camera";
     } else if (now.disk_present != watch->disk_present || memcmp(&now.disk, &watch->disk, sizeof now.disk) != 0) {
         wrong = "disk";
+    } else if (now.volume_count != watch->volume_count ||
+               memcmp(now.volumes, watch->volumes, sizeof now.volumes) != 0) {
+        wrong = "volumes";
+    } else if (now.hot_spot_count != watch->hot_spot_count ||
+               memcmp(now.hot_spots, watch->hot_spots, sizeof now.hot_spots) != 0) {
+        wrong = "hot spots";
     } else if (memcmp(&now.sky, &watch->sky, sizeof now.sky) != 0) {
         wrong = "sky";
     } else if (memcmp(&now.film, &watch->film, sizeof now.film) != 0) {

@@ -55,6 +55,10 @@ typedef struct Watch {
     BhrCamera     camera;
     BhrDisk       disk;
     int32_t       disk_present;
+    BhrVolume     volumes[BHR_MAX_VOLUMES];
+    uint32_t      volume_count;
+    BhrHotSpot    hot_spots[BHR_MAX_HOT_SPOTS];
+    uint32_t      hot_spot_count;
     BhrSky        sky;
     BhrFilm       film;
     BhrQuality    quality;
@@ -72,11 +76,14 @@ enum {
     FIRST_DISK = 64,
     FIRST_FILM = 24,
     FIRST_HIT = 184,
+    FIRST_HOT_SPOT = 88,
     FIRST_IMAGE = 48,
     FIRST_QUALITY = 48,
     FIRST_RAY = 56,
     FIRST_REGION = 24,
     FIRST_SKY = 64,
+    FIRST_TRANSFER = 48,
+    FIRST_VOLUME = 168,
     FIRST_WINDOW = 56
 };
 

@@ -112,6 +112,24 @@ static void scene() {
     EXPECT(disk.flags == bhr::DiskFlags::retrograde);
     EXPECT(context.set_disk(std::nullopt) && !context.disk().value().has_value());
 
+    bhr::Volume volume;
+    EXPECT(volume.outer_radius == 17.0 && volume.tint[2] == 1.0 && volume.shape == bhr::VolumeShape::disk);
+    volume.shape = bhr::VolumeShape::halo;
+    volume.flow = bhr::Flow::angular_momentum;
+    volume.flags = bhr::VolumeFlags::power_law;
+    const bhr::Volume two[] = {volume, bhr::Volume()};
+    EXPECT(context.volumes().value().empty() && context.set_volumes(two));
+    EXPECT(context.volumes().value().size() == 2 && context.volumes().value()[0].flow == volume.flow);
+    EXPECT(!context.set_volumes(std::vector<bhr::Volume>(bhr::max_volumes + 1)));
+    bhr::HotSpot spot;
+    spot.flags = bhr::HotSpotFlags::thermal | bhr::HotSpotFlags::retrograde;
+    EXPECT(context.set_hot_spots(std::vector<bhr::HotSpot>(bhr::max_hot_spots, spot)));
+    EXPECT(context.hot_spots().value().size() == 8 && context.hot_spots().value()[7].flags == spot.flags);
+    EXPECT(context.set_volumes(bhr::span<const bhr::Volume>(two, 1)) && context.set_hot_spots({}));
+    const std::vector<bhr::Transfer> seen = context.transfer(context.camera_rays(2, 2).value()).value();
+    EXPECT(seen.size() == 4 && seen[0].intensity > 0.0 && seen[0].fate != bhr::Fate::invalid);
+    EXPECT(context.set_volumes({}) && context.volumes().value().empty());
+
     bhr::Sky sky;
     EXPECT(sky.flags == (bhr::SkyFlags::stars | bhr::SkyFlags::milky_way));
     sky.flags = bhr::SkyFlags::grid;

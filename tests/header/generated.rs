@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 22] = [
+const SECTIONS: [(&str, &str); 24] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -18,6 +18,7 @@ const SECTIONS: [(&str, &str); 22] = [
     ("hole", "the black hole"),
     ("camera", "the camera: an observer with a lens"),
     ("disk", "accretion disk"),
+    ("volume", "matter with depth: volumes and hot spots"),
     ("image", "images in the host's memory"),
     ("sky", "sky"),
     ("film", "film"),
@@ -30,6 +31,7 @@ const SECTIONS: [(&str, &str); 22] = [
     ("job", "rendering in the background"),
     ("surface", "rendering into windows"),
     ("rays", "rays: the same tracer, asked directly"),
+    ("transfer", "the matter with depth along rays"),
     ("stats", "numbers about the last finished frame"),
 ];
 

@@ -105,6 +105,15 @@ fn layouts_hold_in_rust() {
             struct_size, flags, inner_radius, outer_radius, temperature, opacity, brightness, turbulence, seed,
             reference, emission_law, edge_softness
         }
+        volume::BhrVolume {
+            struct_size, flags, shape, flow, inner_radius, outer_radius, radius, width, thickness, opening, slope,
+            absorption, temperature, temperature_slope, spectral_index, tint, brightness, sub_keplerian, infall,
+            angular_momentum, speed
+        }
+        volume::BhrHotSpot {
+            struct_size, flags, radius, size, azimuth, absorption, temperature, spectral_index, tint, brightness
+        }
+        transfer::BhrTransfer { fate, reserved, intensity, optical_depth, light }
         image::BhrImage { struct_size, format, width, height, pixels, row_stride, byte_size, flags, reserved }
         sky::BhrSky { struct_size, flags, stars_brightness, map_brightness, orientation, seed }
         film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, reserved }

@@ -1,0 +1,467 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! BhrVolume, BhrHotSpot: matter with depth.
+
+use super::call::on_context;
+use super::context::BhrContext;
+use super::entry::anywhere;
+use super::pointer::{Out, check_flags, is_null, unknown};
+use super::status::BhrStatus;
+use super::versioned::{self, Versioned, check_size};
+use crate::error::{Error, Result};
+use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
+use arrayvec::ArrayVec;
+
+/// Where the matter of a volume is: its density n, at most about 1, with c = cos th, R = r sin th, z = r c, and
+/// lengths in M. At a soft edge n fades in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of
+/// it, by 3 t^2 - 2 t^3. Since 0.2.0.
+pub type BhrVolumeShape = i32;
+/// About the equatorial plane: n = (r / inner_radius)^-slope e^(-(c / thickness)^2 / 2), with soft edges. Since 0.2.0.
+pub const BHR_VOLUME_DISK: BhrVolumeShape = 0;
+/// A ring about the axis: n = e^(-((R - radius) / width)^2 / 2 - (z / (thickness radius))^2 / 2). Since 0.2.0.
+pub const BHR_VOLUME_TORUS: BhrVolumeShape = 1;
+/// About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), a sphere with the thickness 1e6. It is the
+/// model of Gold et al. 2020 (ApJ 897, 148) with thickness = 1 / h. Since 0.2.0.
+pub const BHR_VOLUME_HALO: BhrVolumeShape = 2;
+/// Two hollow cones that close up with distance, as parabolas do, R^2 ~ r: n = (r / radius)^-slope e^(-((|c| - cos
+/// psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. Its flow is not
+/// BHR_FLOW_OUTFLOW by itself. Since 0.2.0.
+pub const BHR_VOLUME_JET: BhrVolumeShape = 3;
+
+/// How the matter of a volume moves, by what the local ZAMO measures. Every flow is slower than light everywhere.
+/// Since 0.2.0.
+pub type BhrFlow = i32;
+/// On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there (Cunningham 1975,
+/// ApJ 202, 788); off the plane with the angular and the radial velocity of the plane at the same r. sub_keplerian is
+/// the share of the circular orbit's angular momentum that the matter has. infall mixes in matter that falls from rest
+/// at infinity: dph/dt and dr/d(tau) are (1 - infall) times those of this flow and infall times those of the other.
+/// Since 0.2.0.
+pub const BHR_FLOW_KEPLERIAN: BhrFlow = 0;
+/// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020. Since 0.2.0.
+pub const BHR_FLOW_ANGULAR_MOMENTUM: BhrFlow = 1;
+/// Outwards from rest at r = inner_radius = s, inwards inside it: v_r = speed (r^2 - s^2) / (r^2 + s^2). It turns with
+/// the hole, whatever BHR_VOLUME_RETROGRADE: v_ph = sqrt(1 - v_r^2) x / (1 + x^2), x = Omega sqrt(g_phph), with the
+/// angular velocity of the field lines of Blandford and Znajek (1977), Omega = a / (4 r+). A model. Since 0.2.0.
+pub const BHR_FLOW_OUTFLOW: BhrFlow = 2;
+
+/// BhrVolume.flags: the matter moves towards -ph. Since 0.2.0.
+pub const BHR_VOLUME_RETROGRADE: u32 = 1u32;
+/// BhrVolume.flags: the light is a power law of the frequency, not a blackbody's. Since 0.2.0.
+pub const BHR_VOLUME_POWER_LAW: u32 = 2u32;
+
+/// Matter with depth, which shines and absorbs by the equation of transfer; nothing is scattered. Radii are in units
+/// of M, as those of BhrDisk are. Fields that shape and flow do not use are checked all the same.
+///
+/// Thermal matter absorbs alike at all frequencies and is exact under every redshift g: its opaque light is a
+/// blackbody's of g times its temperature. Without absorption it does not shine. A power law sends j = n (nu /
+/// nu_camera)^-spectral_index per M and absorbs absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being
+/// the frequency that the matter measures: all at the one frequency of the camera, whatever its colour. Lengths are
+/// the matter's own. No matter is inside the horizon. Since 0.2.0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrVolume {
+    /// sizeof(BhrVolume).
+    pub struct_size: u32,
+    /// Any of BHR_VOLUME_RETROGRADE | BHR_VOLUME_POWER_LAW. Default 0.
+    pub flags: u32,
+    /// BHR_VOLUME_DISK (default), _TORUS, _HALO, _JET.
+    pub shape: BhrVolumeShape,
+    /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
+    pub flow: BhrFlow,
+    /// In M, 0 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter that
+    /// moves as flags say.
+    pub inner_radius: f64,
+    /// In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape. Default 17.
+    pub outer_radius: f64,
+    /// In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8.
+    pub radius: f64,
+    /// In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2.
+    pub width: f64,
+    /// 0.01 .. 1e6: the Gaussian width in c; TORUS: in z, over radius. Default 0.05, a soft disk; 0.14 is a thick one.
+    pub thickness: f64,
+    /// JET: radians, 0.01 .. 1.5. Default 0.3.
+    pub opening: f64,
+    /// DISK, JET: 0 .. 4. Default 0.7.
+    pub slope: f64,
+    /// Per M at density 1, 0 .. 1e6. Default 3; less than 0.5 is mist, more than 5 a surface.
+    pub absorption: f64,
+    /// Kelvin, 500 .. 1e9, at inner_radius (DISK, JET) or at radius (TORUS, HALO). Default 4800.
+    pub temperature: f64,
+    /// 0 .. 2: the temperature goes as r^-temperature_slope. Default 0.35; 0.75 is like a thin disk.
+    pub temperature_slope: f64,
+    /// POWER_LAW: -4 .. 4. Default 1.
+    pub spectral_index: f64,
+    /// POWER_LAW: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1.
+    pub tint: [f64; 3],
+    /// 0 .. 1e6: the luminance of opaque matter of `temperature` at rest, as BhrDisk has it; of a power law, that of
+    /// 1 M of density 1 at rest. Default 1.
+    pub brightness: f64,
+    /// KEPLERIAN: 0 .. 1. Default 1.
+    pub sub_keplerian: f64,
+    /// KEPLERIAN: 0 circular (default) .. 1 free fall.
+    pub infall: f64,
+    /// ANGULAR_MOMENTUM: 0 .. 1. Default 1.
+    pub angular_momentum: f64,
+    /// OUTFLOW: far away, in units of c, 0 .. 0.995. Default 0.9.
+    pub speed: f64,
+}
+
+/// Most volumes of a scene. Since 0.2.0.
+pub const BHR_MAX_VOLUMES: usize = 4;
+
+const _: () = assert!(BHR_MAX_VOLUMES == Volume::MOST);
+
+// SAFETY: repr(C), size first, no padding, numbers only.
+unsafe impl Versioned for BhrVolume {
+    const NAME: &'static str = "BhrVolume";
+    const SIZES: &'static [usize] = &[168];
+    fn defaults() -> Self {
+        Volume::default().into()
+    }
+}
+
+impl From<Volume> for BhrVolume {
+    fn from(volume: Volume) -> Self {
+        Self {
+            struct_size: 0,
+            flags: if volume.retrograde { BHR_VOLUME_RETROGRADE } else { 0 }
+                | if volume.power_law { BHR_VOLUME_POWER_LAW } else { 0 },
+            shape: volume.shape as BhrVolumeShape,
+            flow: volume.flow as BhrFlow,
+            inner_radius: volume.inner_radius,
+            outer_radius: volume.outer_radius,
+            radius: volume.radius,
+            width: volume.width,
+            thickness: volume.thickness,
+            opening: volume.opening,
+            slope: volume.slope,
+            absorption: volume.absorption,
+            temperature: volume.temperature,
+            temperature_slope: volume.temperature_slope,
+            spectral_index: volume.spectral_index,
+            tint: volume.tint,
+            brightness: volume.brightness,
+            sub_keplerian: volume.sub_keplerian,
+            infall: volume.infall,
+            angular_momentum: volume.angular_momentum,
+            speed: volume.speed,
+        }
+    }
+}
+
+impl TryFrom<BhrVolume> for Volume {
+    type Error = Error;
+
+    fn try_from(given: BhrVolume) -> Result<Self> {
+        let flags = check_flags(given.flags, BHR_VOLUME_RETROGRADE | BHR_VOLUME_POWER_LAW, "volume flags")?;
+        let shape = match given.shape {
+            BHR_VOLUME_DISK => Shape::Disk,
+            BHR_VOLUME_TORUS => Shape::Torus,
+            BHR_VOLUME_HALO => Shape::Halo,
+            BHR_VOLUME_JET => Shape::Jet,
+            value => return unknown(value, "volume shape", "BHR_VOLUME_DISK (0) to BHR_VOLUME_JET (3)"),
+        };
+        let flow = match given.flow {
+            BHR_FLOW_KEPLERIAN => FlowLaw::Keplerian,
+            BHR_FLOW_ANGULAR_MOMENTUM => FlowLaw::AngularMomentum,
+            BHR_FLOW_OUTFLOW => FlowLaw::Outflow,
+            value => return unknown(value, "volume flow", "BHR_FLOW_KEPLERIAN (0) to BHR_FLOW_OUTFLOW (2)"),
+        };
+        let volume = Self {
+            retrograde: flags & BHR_VOLUME_RETROGRADE != 0,
+            power_law: flags & BHR_VOLUME_POWER_LAW != 0,
+            shape,
+            flow,
+            inner_radius: given.inner_radius,
+            outer_radius: given.outer_radius,
+            radius: given.radius,
+            width: given.width,
+            thickness: given.thickness,
+            opening: given.opening,
+            slope: given.slope,
+            absorption: given.absorption,
+            temperature: given.temperature,
+            temperature_slope: given.temperature_slope,
+            spectral_index: given.spectral_index,
+            tint: given.tint,
+            brightness: given.brightness,
+            sub_keplerian: given.sub_keplerian,
+            infall: given.infall,
+            angular_momentum: given.angular_momentum,
+            speed: given.speed,
+            ..Self::default()
+        };
+        volume.check()?;
+        Ok(volume)
+    }
+}
+
+/// BhrHotSpot.flags: the spot moves towards -ph. Since 0.2.0.
+pub const BHR_HOT_SPOT_RETROGRADE: u32 = 1u32;
+/// BhrHotSpot.flags: the light is a blackbody's, not a power law of the frequency; without absorption there is none.
+/// Since 0.2.0.
+pub const BHR_HOT_SPOT_THERMAL: u32 = 2u32;
+
+/// A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
+/// being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at dph/dt
+/// = 1 / (radius^(3/2) + a) per M, so that it keeps its shape. It shines and absorbs as BhrVolume says. With
+/// BHR_EFFECT_LIGHT_DELAY each part of it is seen where it was when its light left, which for a moving blob is not a
+/// detail: from 60 degrees above, the flux of one at 7 M goes through 1 : 22.1 in an orbit, without it through 1 :
+/// 8.9. Since 0.2.0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrHotSpot {
+    /// sizeof(BhrHotSpot).
+    pub struct_size: u32,
+    /// Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL. Default 0.
+    pub flags: u32,
+    /// In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8.
+    pub radius: f64,
+    /// In M, 0.05 .. radius / 4. Default 0.8.
+    pub size: f64,
+    /// The centre at scene time 0, radians within +-1e6. Default 0.
+    pub azimuth: f64,
+    /// Per M at the centre, 0 .. 1e6. Default 0.
+    pub absorption: f64,
+    /// Kelvin, 500 .. 1e9. Default 10000.
+    pub temperature: f64,
+    /// Without THERMAL: -4 .. 4. Default 1.
+    pub spectral_index: f64,
+    /// Without THERMAL: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1.
+    pub tint: [f64; 3],
+    /// 0 .. 1e6, as BhrVolume.brightness. Default 1.
+    pub brightness: f64,
+}
+
+/// Most hot spots of a scene. Since 0.2.0.
+pub const BHR_MAX_HOT_SPOTS: usize = 8;
+
+const _: () = assert!(BHR_MAX_HOT_SPOTS == HotSpot::MOST);
+
+// SAFETY: repr(C), size first, no padding, numbers only.
+unsafe impl Versioned for BhrHotSpot {
+    const NAME: &'static str = "BhrHotSpot";
+    const SIZES: &'static [usize] = &[88];
+    fn defaults() -> Self {
+        HotSpot::default().into()
+    }
+}
+
+impl From<HotSpot> for BhrHotSpot {
+    fn from(spot: HotSpot) -> Self {
+        Self {
+            struct_size: 0,
+            flags: if spot.retrograde { BHR_HOT_SPOT_RETROGRADE } else { 0 }
+                | if spot.thermal { BHR_HOT_SPOT_THERMAL } else { 0 },
+            radius: spot.radius,
+            size: spot.size,
+            azimuth: spot.azimuth,
+            absorption: spot.absorption,
+            temperature: spot.temperature,
+            spectral_index: spot.spectral_index,
+            tint: spot.tint,
+            brightness: spot.brightness,
+        }
+    }
+}
+
+impl TryFrom<BhrHotSpot> for HotSpot {
+    type Error = Error;
+
+    fn try_from(given: BhrHotSpot) -> Result<Self> {
+        let flags = check_flags(given.flags, BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL, "hot spot flags")?;
+        let spot = Self {
+            retrograde: flags & BHR_HOT_SPOT_RETROGRADE != 0,
+            thermal: flags & BHR_HOT_SPOT_THERMAL != 0,
+            radius: given.radius,
+            size: given.size,
+            azimuth: given.azimuth,
+            absorption: given.absorption,
+            temperature: given.temperature,
+            spectral_index: given.spectral_index,
+            tint: given.tint,
+            brightness: given.brightness,
+        };
+        spot.check()?;
+        Ok(spot)
+    }
+}
+
+/// The names of an array of structs in messages: of the array, of its elements' size, and of a number of them.
+struct Names {
+    array: &'static str,
+    size: &'static str,
+    count: &'static str,
+}
+
+const VOLUMES: Names = Names { array: "volumes", size: "volume_size", count: "volume count" };
+const HOT_SPOTS: Names = Names { array: "hot_spots", size: "hot_spot_size", count: "hot spot count" };
+
+/// Reads the `count` structs, `size` bytes apart, of the host's. Errors: NULL unless `count` is 0; too many; a size
+/// that is none of `C`; whatever is wrong with one, which the message numbers.
+///
+/// # Safety
+/// `begin` is NULL or points to `count` structs of `size` readable bytes.
+unsafe fn read_array<C: Versioned, T: TryFrom<C, Error = Error>, const MOST: usize>(
+    begin: *const C,
+    size: usize,
+    count: u32,
+    names: &Names,
+) -> Result<ArrayVec<T, MOST>> {
+    let Names { array, size: size_name, count: count_name } = names;
+    if count as usize > MOST {
+        return Err(Error::argument(format!("{count_name} is {count}; it must be at most {MOST}")));
+    }
+    let mut read = ArrayVec::new();
+    if count == 0 {
+        return Ok(read);
+    }
+    if begin.is_null() {
+        return Err(is_null(array));
+    }
+    check_size::<C>(size, size_name)?;
+    for index in 0..count as usize {
+        let numbered = |error: Error| Error { message: format!("{array}[{index}]: {}", error.message), ..error };
+        // SAFETY: the element lies within the array by this function's contract.
+        let element = unsafe { begin.byte_add(index * size) };
+        // SAFETY: `struct_size` is within the element's `size` bytes.
+        let stated = unsafe { versioned::caller_size(element, "its") }.map_err(numbered)?;
+        if stated > size {
+            let message = format!("its struct_size is {stated}; it must be at most {size_name}, {size}");
+            return Err(numbered(Error::argument(message)));
+        }
+        // SAFETY: `stated` bytes are readable.
+        let value = unsafe { versioned::read(element, "its") }.and_then(T::try_from).map_err(numbered)?;
+        // There is room for `MOST`.
+        let _ = read.try_push(value);
+    }
+    Ok(read)
+}
+
+/// Writes as many of `values` as `capacity` structs of the host's hold, `size` bytes apart, and states that size in
+/// each.
+///
+/// # Safety
+/// `begin` is NULL or points to `capacity` structs of `size` writable bytes.
+unsafe fn write_array<C: Versioned>(
+    begin: *mut C,
+    size: usize,
+    capacity: u32,
+    values: impl Iterator<Item = C>,
+    names: &Names,
+) -> Result<()> {
+    if capacity == 0 {
+        return Ok(());
+    }
+    if begin.is_null() {
+        return Err(is_null(names.array));
+    }
+    check_size::<C>(size, names.size)?;
+    for (index, value) in values.take(capacity as usize).enumerate() {
+        // SAFETY: the element lies within the array by this function's contract; `fill` needs no `struct_size` there.
+        unsafe { versioned::fill(begin.byte_add(index * size), size, &value) };
+    }
+    Ok(())
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_volume_init(volume: *mut BhrVolume, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_volume_init", || unsafe { versioned::init(volume, "volume", struct_size) })
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_hot_spot_init(hot_spot: *mut BhrHotSpot, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_hot_spot_init", || unsafe { versioned::init(hot_spot, "hot spot", struct_size) })
+}
+
+/// Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it,
+/// and then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size
+/// = sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger. Frames that are being
+/// rendered keep the volumes that they began with. So far BHR_BACKEND_CPU alone draws volumes: with others rendering a
+/// scene that has any is UNSUPPORTED. Errors: INVALID_ARGUMENT for NULL, a count, a size or a number outside its
+/// range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_volumes(
+    context: *mut BhrContext,
+    volumes: *const BhrVolume,
+    volume_size: usize,
+    count: u32,
+) -> BhrStatus {
+    // SAFETY: NULL or count elements, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_volumes", context, |state| {
+            state.renderer.scene.volumes = read_array(volumes, volume_size, count, &VOLUMES)?;
+            Ok(())
+        })
+    }
+}
+
+/// Reads the volumes as they are set: *out_count becomes their number, and the first `capacity` of them are written,
+/// packed, each with volume_size as its struct_size. With capacity 0 volumes may be NULL. Errors: INVALID_ARGUMENT for
+/// NULL or a wrong volume_size. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_volumes(
+    context: *const BhrContext,
+    volumes: *mut BhrVolume,
+    volume_size: usize,
+    capacity: u32,
+    out_count: *mut u32,
+) -> BhrStatus {
+    // SAFETY: NULL or capacity elements, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_count);
+        on_context("bhr_get_volumes", context, |state| {
+            out.required("out_count")?;
+            let set = &state.renderer.scene.volumes;
+            write_array(volumes, volume_size, capacity, set.iter().map(|v| BhrVolume::from(*v)), &VOLUMES)?;
+            out.set(set.len() as u32);
+            Ok(())
+        })
+    }
+}
+
+/// Sets all hot spots of the scene: count of them, packed, at most BHR_MAX_HOT_SPOTS; 0: none, as a new context has
+/// it, and then hot_spots may be NULL. Otherwise as bhr_set_volumes. Errors: INVALID_ARGUMENT as there. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_hot_spots(
+    context: *mut BhrContext,
+    hot_spots: *const BhrHotSpot,
+    hot_spot_size: usize,
+    count: u32,
+) -> BhrStatus {
+    // SAFETY: NULL or count elements, by the header's conventions.
+    unsafe {
+        on_context("bhr_set_hot_spots", context, |state| {
+            state.renderer.scene.hot_spots = read_array(hot_spots, hot_spot_size, count, &HOT_SPOTS)?;
+            Ok(())
+        })
+    }
+}
+
+/// Reads the hot spots as they are set, as bhr_get_volumes does the volumes. Errors: INVALID_ARGUMENT for NULL or a
+/// wrong hot_spot_size. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_get_hot_spots(
+    context: *const BhrContext,
+    hot_spots: *mut BhrHotSpot,
+    hot_spot_size: usize,
+    capacity: u32,
+    out_count: *mut u32,
+) -> BhrStatus {
+    // SAFETY: NULL or capacity elements, by the header's conventions.
+    unsafe {
+        let out = Out::cleared(out_count);
+        on_context("bhr_get_hot_spots", context, |state| {
+            out.required("out_count")?;
+            let set = &state.renderer.scene.hot_spots;
+            write_array(hot_spots, hot_spot_size, capacity, set.iter().map(|s| BhrHotSpot::from(*s)), &HOT_SPOTS)?;
+            out.set(set.len() as u32);
+            Ok(())
+        })
+    }
+}
