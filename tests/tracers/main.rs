@@ -12,6 +12,7 @@ mod jobs;
 mod kernels;
 mod lens;
 mod light;
+mod matter;
 mod observers;
 mod pictures;
 mod pixels;
