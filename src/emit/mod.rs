@@ -10,9 +10,12 @@
 //! To add an emitter, follow "Where to change what" in ARCHITECTURE.md.
 
 pub mod along;
+pub mod bands;
+pub mod clouds;
 pub mod crossing;
 pub mod disk;
 pub mod effects;
+pub mod filaments;
 pub mod glow;
 pub mod haze;
 pub mod hot_spot;

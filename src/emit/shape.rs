@@ -12,6 +12,11 @@ pub const REACH: f64 = 7.7;
 pub const INNER_FADE: [f64; 2] = [0.9, 1.25];
 pub const OUTER_FADE: [f64; 2] = [0.5, 1.0];
 
+/// The greatest width in c over which structure changes.
+pub const WIDEST: f64 = 0.35;
+/// The heights in a jet and in its counterjet differ by twice this, so that they are not alike.
+pub const OPPOSITE: f64 = 0.7;
+
 /// A shape with its radii.
 #[derive(Clone, Copy, Debug)]
 pub struct Cloud {
@@ -74,8 +79,7 @@ pub fn halo_density(r: f64, cos: f64, radius: f64, thickness: f64) -> f64 {
 /// a parabola, R^2 ~ r: psi = opening sqrt(radius / r), but at most a right angle.
 pub fn jet_density(r: f64, cos: f64, cloud: &Cloud) -> f64 {
     let fade = smooth_step(INNER_FADE, r / cloud.inner) * (1.0 - smooth_step(OUTER_FADE, r / cloud.outer));
-    let wall = (cloud.opening * (cloud.radius / r).sqrt()).min(std::f64::consts::FRAC_PI_2).cos();
-    fade * (r / cloud.radius).powf(-cloud.slope) * gaussian((cos.abs() - wall) / cloud.thickness)
+    fade * (r / cloud.radius).powf(-cloud.slope) * gaussian((cos.abs() - cloud.wall(r)) / cloud.thickness)
 }
 
 impl Cloud {
@@ -102,6 +106,22 @@ impl Cloud {
             Shape::Halo => halo_density(r, cos, self.radius, self.thickness),
             Shape::Jet => jet_density(r, cos, self),
         }
+    }
+
+    /// A coordinate across the shape that matter keeps while it moves, and its change with c: the distance from the
+    /// plane, or from a jet's wall, in thicknesses, of which those of a shape that fills all latitudes are no wider than
+    /// `WIDEST`.
+    pub fn height(&self, r: f64, cos: f64) -> [f64; 2] {
+        let thickness = self.thickness.min(WIDEST);
+        match self.shape {
+            Shape::Disk | Shape::Torus | Shape::Halo => [cos / thickness, 1.0 / thickness],
+            Shape::Jet => [(cos.abs() - self.wall(r)) / thickness + OPPOSITE.copysign(cos), 1.0 / thickness],
+        }
+    }
+
+    /// cos psi of a jet's walls, those of a parabola.
+    fn wall(&self, r: f64) -> f64 {
+        (self.opening * (self.radius / r).sqrt()).min(std::f64::consts::FRAC_PI_2).cos()
     }
 
     /// The radius at which the temperature is the stated one.

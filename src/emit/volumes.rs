@@ -8,15 +8,18 @@
 //! cut into cells, as many as lengths of it fit in. A cell has three samples, each a step of the integrator; if its
 //! optical depth is more than 1, it is cut again.
 
+use super::bands::When;
+use super::clouds::{Blur, CloudPlace, Clouds, Structure, footprint};
 use super::effects::Effects;
+use super::filaments::Filaments;
 use super::glow::{Glow, Sample};
 use super::hot_spot::HotSpot;
 use super::medium::{GAUSS_NODES, GAUSS_WEIGHTS, Medium};
 use super::shape::{Cloud, Reach, Stretch, gaussian};
-use super::turbulence::When;
 use super::volume::{FlowLaw, Volume};
+use crate::error::Result;
 use crate::physics::blackbody::BlackbodyTable;
-use crate::physics::flow::{Flow, Motion, Place, ZamoLight};
+use crate::physics::flow::{Flow, Motion, Place, Velocity, ZamoLight};
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::orbit::horizon_outer;
 use crate::physics::trace::{Part, PartCourse};
@@ -50,12 +53,28 @@ pub struct Seen {
     pub static_lapse: Option<f64>,
     /// Cells for every cell that a picture needs.
     pub fineness: f64,
+    /// The angle of a pixel, in the local frame: finer structure is left out. 0: none is.
+    pub pixel_angle: f64,
+    /// The angle about the hole that the ray has swept so far.
+    pub swept: f64,
 }
 
 impl Seen {
     /// Cells of rays whose numbers count, for each of a pixel's.
     pub const EXACT: f64 = 4.0;
+
+    /// The width of a pixel at a place of the ray, M: by the distance in the chart, which frame-dragging does not change.
+    fn footprint(&self, observer: &State, there: &State) -> f64 {
+        if self.pixel_angle <= 0.0 {
+            return 0.0;
+        }
+        let place = |state: &State| state.n.normalize() / state.u;
+        footprint(self.pixel_angle, place(observer).distance(place(there)), self.swept)
+    }
 }
+
+/// Texels of the structure of each volume.
+pub type Passed = ArrayVec<f64, { Volume::MOST }>;
 
 /// A volume of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -64,11 +83,8 @@ pub struct VolumeMatter {
     pub reach: Reach,
     pub flow: Flow,
     pub glow: Glow,
-    /// 0 .. 1: how much structure it has.
-    pub turbulence: f64,
-    pub clumping: f64,
-    pub heating: f64,
-    pub seed: u64,
+    /// `None`: it is even.
+    pub clouds: Option<Clouds>,
 }
 
 /// A hot spot of a frame.
@@ -95,7 +111,7 @@ pub struct Volumes {
 
 impl VolumeMatter {
     /// About a hole of spin `spin`. `None`: all of it lies inside the horizon, or nothing of it would be seen.
-    pub fn new(volume: &Volume, spin: f64) -> Option<Self> {
+    pub fn new(volume: &Volume, spin: f64, when: &When) -> Option<Self> {
         // The ISCO does not depend on the law of motion.
         let circular = Motion::Keplerian { sub_keplerian: volume.sub_keplerian, infall: volume.infall };
         let flow = Flow::new(spin, volume.retrograde, circular);
@@ -105,10 +121,11 @@ impl VolumeMatter {
             FlowLaw::AngularMomentum => Motion::AngularMomentum { l0: volume.angular_momentum },
             FlowLaw::Outflow => Motion::Outflow { speed: volume.speed, base: cloud.inner },
         };
+        let (reach, flow) = (cloud.reach(spin)?, Flow { motion, ..flow });
         Some(Self {
             cloud,
-            reach: cloud.reach(spin)?,
-            flow: Flow { motion, ..flow },
+            reach,
+            flow,
             glow: Glow {
                 power_law: volume.power_law,
                 absorption: volume.absorption,
@@ -120,10 +137,7 @@ impl VolumeMatter {
                 tint: volume.tint,
                 brightness: volume.brightness,
             },
-            turbulence: volume.turbulence,
-            clumping: volume.clumping,
-            heating: volume.heating,
-            seed: volume.seed,
+            clouds: Clouds::new(volume, &cloud, &reach, &flow, spin, when),
         })
     }
 
@@ -135,22 +149,6 @@ impl VolumeMatter {
         let bends = matches!(self.flow.motion, Motion::AngularMomentum { .. });
         let beside_axis = if bends { 0.5 * stretch.swept / sin2.max(NEAR_AXIS * NEAR_AXIS).sqrt() } else { 0.0 };
         self.cloud.cells(stretch) + beside_axis
-    }
-
-    /// Density, and the factor on the temperature, at a place.
-    fn density(&self, there: &State, r: f64, cos: f64) -> (f64, f64) {
-        let density = self.cloud.density(r, cos);
-        if self.turbulence <= 0.0 || density < LEAST_DENSITY {
-            return (density, 1.0);
-        }
-        let pattern = self.pattern(there);
-        (density * pattern.powf(self.clumping), pattern.powf(self.heating))
-    }
-
-    /// The structure of the matter at a place, a factor of mean 1: this is where turbulence enters. Matter is even so
-    /// far.
-    fn pattern(&self, _: &State) -> f64 {
-        1.0
     }
 }
 
@@ -233,7 +231,7 @@ struct Sum<'a, 'b> {
 impl Volumes {
     pub fn new(volumes: &[Volume], hot_spots: &[HotSpot], spin: f64, effects: Effects, when: When) -> Self {
         Self {
-            volumes: volumes.iter().filter_map(|v| VolumeMatter::new(v, spin)).take(Volume::MOST).collect(),
+            volumes: volumes.iter().filter_map(|v| VolumeMatter::new(v, spin, &when)).take(Volume::MOST).collect(),
             hot_spots: hot_spots.iter().filter_map(|s| SpotMatter::new(s, spin, &when)).take(HotSpot::MOST).collect(),
             effects,
             when,
@@ -246,7 +244,7 @@ impl Volumes {
 
     /// Whether the delays of the light must be known.
     pub fn needs_delay(&self) -> bool {
-        self.when.delayed && !self.hot_spots.is_empty()
+        self.when.delayed && self.changes()
     }
 
     fn reaches(&self) -> impl Iterator<Item = &Reach> {
@@ -294,17 +292,28 @@ impl Volumes {
         between
     }
 
-    /// The share of a stretch that has matter, and the number of cells that it should be cut into.
-    fn cells(&self, stretch: &Stretch) -> Option<([f64; 2], f64)> {
-        let volumes = self.volumes.iter().filter_map(|v| Some((clip(&v.reach, stretch)?, v.cells(stretch))));
+    /// The share of a stretch that has matter, and the number of cells that it should be cut into. `footprint`: how
+    /// wide a pixel is there; `passed`: the texels that it passes of each volume's structure.
+    fn cells(&self, stretch: &Stretch, footprint: f64, passed: &Passed) -> Option<([f64; 2], f64)> {
+        let r = 2.0 / (stretch.u[0] + stretch.u[1]);
+        let volumes = self.volumes.iter().zip(passed).filter_map(|(v, passed)| {
+            let structure = v.clouds.map_or(0.0, |clouds| clouds.cells(&v.cloud, *passed, r, footprint));
+            Some((clip(&v.reach, stretch)?, v.cells(stretch).max(structure)))
+        });
         let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch))));
         let all = volumes.chain(spots);
         let (share, cells) = all.reduce(|([a, b], m), ([c, d], n)| ([a.min(c), b.max(d)], m.max(n)))?;
         Some((share, cells * (share[1] - share[0])))
     }
 
-    /// The matter at a state of a ray, per unit of affine length.
-    pub fn sample(&self, c: &Constants, observer: &State, there: &State, seen: &Seen) -> Sample {
+    /// Whether matter that moves, and is not the same all around, is seen as it was when its light left.
+    fn changes(&self) -> bool {
+        !self.hot_spots.is_empty() || self.volumes.iter().any(|v| v.clouds.is_some())
+    }
+
+    /// The matter at a state of a ray, per unit of affine length. `passed`: texels of each volume's structure from sample
+    /// to sample.
+    pub fn sample(&self, c: &Constants, observer: &State, there: &State, seen: &Seen, passed: &Passed) -> Sample {
         // None is past infinity, where the last step of a ray may end, nor within the horizon.
         if !(there.u > 0.0 && there.u * c.r_plus < 1.0 - 1e-12) {
             return Sample::default();
@@ -312,15 +321,21 @@ impl Volumes {
         let (r, cos) = (1.0 / there.u, there.n.z / there.n.length());
         let mut sum = Sample::default();
         let mut measured = None;
-        let mut add = |flow: &Flow, glow: &Glow, density: f64, heat: f64| {
-            if density < LEAST_DENSITY {
-                return;
-            }
-            let (at, light) = measured.get_or_insert_with(|| {
+        let mut moment = None;
+        let mut moment = || {
+            *moment.get_or_insert_with(|| {
+                let delay = if self.when.delayed { c.retardation(observer, there) } else { 0.0 };
+                (there.n.y.atan2(there.n.x) + there.drag, self.when.reference_delay - delay)
+            })
+        };
+        let mut measure = || {
+            *measured.get_or_insert_with(|| {
                 let at = Place::new(c.a, there.u, cos);
                 (at, ZamoLight::new(c, &at, there.du))
-            });
-            let nu = flow.frequency(c, at, light) / c.nu_local;
+            })
+        };
+        let mut add = |light: &ZamoLight, velocity: Velocity, glow: &Glow, density: f64, heat: f64| {
+            let nu = light.measured_by(velocity) / c.nu_local;
             // Nothing can move so where this fails, NaN among it.
             if nu > 0.0 && nu.is_finite() {
                 let g = seen.frequency_ratio / nu;
@@ -329,19 +344,38 @@ impl Volumes {
                 sum.add(glow.sample(density, heat, r, nu, g, shift));
             }
         };
-        for volume in &self.volumes {
-            let (density, heat) = volume.density(there, r, cos);
-            add(&volume.flow, &volume.glow, density, heat);
+        for (volume, passed) in self.volumes.iter().zip(passed) {
+            let even = volume.cloud.density(r, cos);
+            if even < LEAST_DENSITY {
+                continue;
+            }
+            let (at, light) = measure();
+            let velocity = volume.flow.velocity(c.a, &at);
+            let structure = match (volume.clouds, Filaments::shared()) {
+                (Some(clouds), Ok(filaments)) => {
+                    let (azimuth, later) = moment();
+                    let omega = velocity.angular_velocity(c.a, &at);
+                    let blur = Blur { footprint: seen.footprint(observer, there), spacing: *passed };
+                    clouds.structure(filaments, &volume.cloud, &CloudPlace { r, cos, azimuth, later }, omega, blur)
+                }
+                _ => Structure::NONE,
+            };
+            add(&light, velocity, &volume.glow, even * structure.density, structure.heat);
         }
-        if !self.hot_spots.is_empty() {
-            let azimuth = there.n.y.atan2(there.n.x) + there.drag;
-            let delay = if self.when.delayed { c.retardation(observer, there) } else { 0.0 };
-            for spot in &self.hot_spots {
-                let density = spot.density(r, cos, azimuth, self.when.reference_delay - delay);
-                add(&spot.flow, &spot.glow, density, 1.0);
+        for spot in &self.hot_spots {
+            let (azimuth, later) = moment();
+            let density = spot.density(r, cos, azimuth, later);
+            if density >= LEAST_DENSITY {
+                let (at, light) = measure();
+                add(&light, spot.flow.velocity(c.a, &at), &spot.glow, density, 1.0);
             }
         }
         sum
+    }
+
+    /// Makes the structure of the matter, if there is any, so that `along` has it. Errors: OUT_OF_MEMORY.
+    pub fn prepare(&self) -> Result<()> {
+        if self.volumes.iter().any(|v| v.clouds.is_some()) { Filaments::shared().map(|_| ()) } else { Ok(()) }
     }
 }
 
@@ -368,18 +402,27 @@ impl Sum<'_, '_> {
     fn stretch(&self, [begin, end]: [f64; 2], ends: [[f64; 2]; 2], medium: &mut Medium) {
         let [[u, c], [v, d]] = ends;
         let stretch = Stretch { u: [u, v], cos: [c, d], swept: self.part.swept() * (end - begin) };
-        if let Some(([low, high], cells)) = self.volumes.cells(&stretch) {
+        let of_volume = |v: &VolumeMatter| v.clouds.map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
+        let passed = self.volumes.volumes.iter().map(of_volume).collect::<Passed>();
+        let footprint = if passed.iter().any(|passed| *passed > 0.0) {
+            self.seen.footprint(self.part.observer, &self.part.at(0.5 * (begin + end)))
+        } else {
+            0.0
+        };
+        if let Some(([low, high], cells)) = self.volumes.cells(&stretch, footprint, &passed) {
             let at = |share: f64| begin + (end - begin) * share;
-            self.piece([at(low), at(high)], (cells * self.seen.fineness).ceil().clamp(1.0, MOST_CELLS), medium);
+            let cells = (cells * self.seen.fineness).ceil().clamp(1.0, MOST_CELLS);
+            let apart = passed.iter().map(|passed| passed * (high - low) / (3.0 * cells)).collect();
+            self.piece([at(low), at(high)], cells, &apart, medium);
         }
     }
 
-    /// Adds a piece in cells.
-    fn piece(&self, [begin, end]: [f64; 2], cells: f64, medium: &mut Medium) {
+    /// Adds a piece in cells; `passed`: texels of each volume's structure from sample to sample.
+    fn piece(&self, [begin, end]: [f64; 2], cells: f64, passed: &Passed, medium: &mut Medium) {
         let size = (end - begin) / cells;
         for i in 0..cells as u32 {
             let cell = [begin + size * f64::from(i), begin + size * f64::from(i + 1)];
-            let nodes = self.nodes(cell);
+            let nodes = self.nodes(cell, passed);
             let depth: f64 = nodes.iter().zip(GAUSS_WEIGHTS).map(|(node, weight)| node.absorption * weight).sum();
             if depth <= 1.0 || medium.depth > DARK {
                 medium.add_nodes(&nodes);
@@ -389,13 +432,13 @@ impl Sum<'_, '_> {
             let size = size / cuts;
             for k in 0..cuts as u32 {
                 let [begin, end] = [k, k + 1].map(|k| cell[0] + size * f64::from(k));
-                medium.add_nodes(&self.nodes([begin, end]));
+                medium.add_nodes(&self.nodes([begin, end], passed));
             }
         }
     }
 
     /// The samples of the cell between two shares of the part, each as if all of the cell were as it is there.
-    fn nodes(&self, [begin, end]: [f64; 2]) -> [Sample; 3] {
+    fn nodes(&self, [begin, end]: [f64; 2], passed: &Passed) -> [Sample; 3] {
         let part = self.part;
         GAUSS_NODES.map(|node| {
             let x = begin + (end - begin) * node;
@@ -403,7 +446,7 @@ impl Sum<'_, '_> {
             // even in the square root.
             let (x, slope) = if part.to_horizon { (x * (2.0 - x), 2.0 * (1.0 - x)) } else { (x, 1.0) };
             let there = part.at(x);
-            let sample = self.volumes.sample(part.constants, part.observer, &there, self.seen);
+            let sample = self.volumes.sample(part.constants, part.observer, &there, self.seen, passed);
             if sample == Sample::default() {
                 return sample;
             }

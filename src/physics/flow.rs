@@ -118,6 +118,19 @@ pub struct Velocity {
     pub radial: f64,
 }
 
+impl Velocity {
+    /// dph/dt of matter that moves so, about the hole of spin `a`.
+    pub fn angular_velocity(self, a: f64, at: &Place) -> f64 {
+        at.omega(a) + at.lapse * self.around / at.around
+    }
+
+    /// dr/dt of it.
+    pub fn radial_velocity(self, at: &Place) -> f64 {
+        let gamma = ((1.0 + self.radial * self.radial) / (1.0 - self.around * self.around)).sqrt();
+        at.lapse * self.radial / gamma * (at.delta / at.sigma).sqrt()
+    }
+}
+
 /// The laws of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {

@@ -4,7 +4,7 @@
 
 use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
-use crate::emit::{medium, streaks, turbulence};
+use crate::emit::{bands, medium, streaks, turbulence};
 use crate::film::bloom::BEAM_SHARES;
 use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
@@ -143,11 +143,11 @@ fn all() -> Vec<(&'static str, String)> {
         STREAK_TAPS: f32 = streaks::STREAK_TAPS;
         STREAK_TEXEL: f32 = streaks::STREAK_TEXEL;
         STREAK_WHOLE: f32 = streaks::STREAK_WHOLE;
-        BAND: f32 = turbulence::BAND;
-        BAND_FADE: f32 = turbulence::BAND_FADE;
+        BAND: f32 = bands::BAND;
+        BAND_FADE: f32 = bands::BAND_FADE;
         PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
-        GENERATION_FADE: f32 = turbulence::GENERATION_FADE;
-        MOST_BANDS: u32 = turbulence::MOST_BANDS;
+        GENERATION_FADE: f32 = bands::GENERATION_FADE;
+        MOST_BANDS: u32 = bands::MOST_BANDS;
         MOST_PIECES: u32 = medium::MOST_PIECES;
         PIECE: f32 = medium::PIECE;
 
