@@ -66,6 +66,24 @@ pub struct Bands {
     pub bands: [Band; MOST_BANDS],
 }
 
+/// The bands that show at a radius: the number of the first, how many, and the weights of the first and the next.
+#[derive(Clone, Copy, Debug)]
+pub struct BandsAt {
+    pub first: i32,
+    pub count: usize,
+    pub shares: [f64; 2],
+}
+
+/// The generations of a band that live at a time: the age and the number of the youngest, how many there are, and the
+/// weights of the youngest and the one before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Generations {
+    pub young: f64,
+    pub youngest: u32,
+    pub count: usize,
+    pub weights: [f64; 2],
+}
+
 /// A generation that shows at a place.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown {
@@ -73,7 +91,7 @@ pub struct Shown {
     /// M.
     pub age: f64,
     pub drift: f64,
-    /// Bits from which the generation has its part of the pattern.
+    /// `generation_key`.
     pub key: u32,
 }
 
@@ -100,23 +118,18 @@ impl Bands {
     /// The generations that show at ln r, `later` than the reference time: those of one band or two.
     pub fn shown(&self, ln_r: f64, later: f64) -> ArrayVec<Shown, 4> {
         let mut all = ArrayVec::new();
-        let (border, first, shares, count) = bands_at(ln_r);
-        for k in 0..count {
-            let number = border + first + k;
+        let BandsAt { first, count, shares } = bands_at(ln_r);
+        for (k, number) in (first..).take(count).enumerate() {
             let band = self.band(number);
-            let since = band.age + later;
-            let births = (since / band.spacing).floor();
-            let young = since - births * band.spacing;
-            let generation = band.generation.wrapping_add(births as i32 as u32);
-            let grown = (young / (GENERATION_FADE * band.spacing)).min(1.0);
-            let alive = if grown < 1.0 { 2 } else { 1 };
-            for old in 0..alive {
-                let faded = if alive == 2 { FRAC_PI_2 * (grown + f64::from(old)) } else { FRAC_PI_2 };
-                let weight = shares[k as usize] * faded.sin();
-                let age = young + f64::from(old) * band.spacing;
-                let key = mix((number as u32).wrapping_add(mix(generation.wrapping_sub(old).wrapping_add(self.seed))));
+            let Generations { young, youngest, count, weights } = band.generations(later);
+            for (old, weight) in (0..).zip(weights).take(count) {
                 // There is room for two generations of two bands.
-                let _ = all.try_push(Shown { weight, age, drift: band.drift, key });
+                let _ = all.try_push(Shown {
+                    weight: shares[k] * weight,
+                    age: young + f64::from(old) * band.spacing,
+                    drift: band.drift,
+                    key: generation_key(number, youngest.wrapping_sub(old), self.seed),
+                });
             }
         }
         all
@@ -129,21 +142,40 @@ impl Bands {
     }
 }
 
-/// The bands that show at ln r: the border of two bands that is nearest, as the number of the outer one; the first that
-/// shows, -1 or 0 from there; the shares of it and the next; how many show.
-fn bands_at(ln_r: f64) -> (i32, i32, [f64; 2], i32) {
+impl Band {
+    /// The generations that live `later` than the reference time: one, or two while one follows the other.
+    pub fn generations(&self, later: f64) -> Generations {
+        let since = self.age + later;
+        let births = (since / self.spacing).floor();
+        let young = since - births * self.spacing;
+        let youngest = self.generation.wrapping_add(births as i32 as u32);
+        let grown = young / (GENERATION_FADE * self.spacing);
+        if grown < 1.0 {
+            let (new, old) = (FRAC_PI_2 * grown).sin_cos();
+            Generations { young, youngest, count: 2, weights: [new, old] }
+        } else {
+            Generations { young, youngest, count: 1, weights: [1.0, 0.0] }
+        }
+    }
+}
+
+/// The bands that show at ln r: one, or two about their border.
+pub fn bands_at(ln_r: f64) -> BandsAt {
     let place = ln_r / BAND;
     let border = (place + 0.5).floor();
     let across = (place - border) * (2.0 / BAND_FADE);
     let border = border.clamp(-1e6, 1e6) as i32;
-    match () {
-        () if across <= -1.0 => (border, -1, [1.0, 0.0], 1),
-        () if across >= 1.0 => (border, 0, [1.0, 0.0], 1),
-        () => {
-            let (outer, inner) = (FRAC_PI_4 * (across + 1.0)).sin_cos();
-            (border, -1, [inner, outer], 2)
-        }
+    if across.abs() < 1.0 {
+        let (outer, inner) = (FRAC_PI_4 * (across + 1.0)).sin_cos();
+        BandsAt { first: border - 1, count: 2, shares: [inner, outer] }
+    } else {
+        BandsAt { first: if across >= 1.0 { border } else { border - 1 }, count: 1, shares: [1.0, 0.0] }
     }
+}
+
+/// The bits of a generation of a band, from which it has its part of the pattern.
+pub fn generation_key(band: i32, generation: u32, seed: u32) -> u32 {
+    mix((band as u32).wrapping_add(mix(generation.wrapping_add(seed))))
 }
 
 #[cfg(test)]
@@ -178,7 +210,7 @@ mod tests {
             let ln_r = 0.6 + 0.009 * f64::from(i);
             let [mut a, mut b] = [early.shown(ln_r, 40.0), late.shown(ln_r, 0.0)];
             // At the very end of its life one may be left out by a rounding.
-            [&mut a, &mut b].map(|shown| shown.retain(|s| s.weight > 1e-6));
+            [&mut a, &mut b].into_iter().for_each(|shown| shown.retain(|s| s.weight > 1e-6));
             assert_eq!(a.len(), b.len(), "{ln_r}");
             for (a, b) in a.iter().zip(&b) {
                 assert!((a.age - b.age).abs() < 1e-9 && (a.weight - b.weight).abs() < 1e-9, "{ln_r}: {a:?} {b:?}");

@@ -20,10 +20,12 @@ use crate::random::mix;
 use std::f64::consts::{PI, TAU};
 
 /// The standard deviation of ln P at `Volume::turbulence` 1.
-pub(crate) const CLOUD_DEVIATION: f64 = 0.8;
+pub(crate) const CLOUD_DEVIATION: f64 = 1.0;
 /// Orbits that a generation lives, at the middle of its band; if the matter moves inwards or outwards, no longer than it
 /// takes to an e-fold of the radius.
 const LIFETIME: f64 = 1.0;
+/// The shear of a generation half as old as it grows, rad an e-fold of the radius.
+pub(crate) const HALF_SHEARED: f64 = SHEAR * PI * LIFETIME;
 /// The least rate of renewal, in orbital frequencies r^-1.5: turbulence of matter that stands still goes on.
 const LEAST_RATE: f64 = 0.25;
 /// Structure of jets is so much longer along the radius.
@@ -34,7 +36,7 @@ pub(crate) const SHEAR: f64 = 1.5;
 pub(crate) const CLOUD_SHARP: f64 = 0.7;
 pub(crate) const CLOUD_SPACED: f64 = 0.7;
 /// Texels that samples of a picture lie apart.
-const SPACING: f64 = 1.4;
+pub(crate) const CLOUD_SPACING: f64 = 1.4;
 
 /// Where and when matter is asked for.
 #[derive(Clone, Copy, Debug)]
@@ -104,14 +106,7 @@ impl Clouds {
     }
 
     /// The structure at a place of matter of the shape `cloud`, with the angular velocity `omega` there.
-    pub fn structure(
-        &self,
-        filaments: &Filaments,
-        cloud: &Cloud,
-        at: &CloudPlace,
-        omega: f64,
-        blur: Blur,
-    ) -> Structure {
+    pub fn pattern(&self, filaments: &Filaments, cloud: &Cloud, at: &CloudPlace, omega: f64, blur: Blur) -> Structure {
         let (ln_r, sin) = (at.r.ln(), ((1.0 - at.cos) * (1.0 + at.cos)).max(1e-12).sqrt());
         let [height, steepness] = cloud.height(at.r, at.cos);
         let [columns, rows, layers] = self.texels();
@@ -141,7 +136,7 @@ impl Clouds {
     }
 
     /// Texels of the finest level per rad of azimuth, per e-fold of the radius and per thickness.
-    fn texels(&self) -> [f64; 3] {
+    pub fn texels(&self) -> [f64; 3] {
         let [columns, rows, layers] = FILAMENT_SIDES.map(|side| side as f64);
         [columns / TAU, rows / self.period, layers / FILAMENT_HEIGHT]
     }
@@ -151,24 +146,19 @@ impl Clouds {
         let ([u, v], [c, d]) = (stretch.u, stretch.cos);
         let [columns, rows, layers] = self.texels();
         let [height, steepness] = cloud.height(1.0 / u, c);
-        let climb = match cloud.shape {
-            Shape::Jet => cloud.height(1.0 / v, d)[0] - height,
-            _ => (d - c) * steepness,
-        };
-        // Half as old as they grow, generations are sheared by so much.
-        let sheared = columns * SHEAR * PI * LIFETIME;
+        let climb = cloud.height(1.0 / v, d)[0] - height;
         let sin = (1.0 - (c * c).max(d * d)).max(0.0).sqrt();
         // Near the axis azimuths change without end, but structure is no finer there.
         let around = stretch.swept * (columns / sin.max(0.05)).min(rows.max(layers * steepness * sin));
-        ((u / v).ln() * rows.hypot(sheared)).hypot(climb * layers).hypot(around)
+        ((u / v).ln() * rows.hypot(columns * HALF_SHEARED)).hypot(climb * layers).hypot(around)
     }
 
-    /// The number of cells of three samples each that the texels of a stretch should be cut into, where structure finer
-    /// than `footprint` at the radius r does not show.
-    pub fn cells(&self, cloud: &Cloud, passed: f64, r: f64, footprint: f64) -> f64 {
+    /// The number of samples that the texels `passed` at the radius r want, where structure finer than `footprint` does
+    /// not show.
+    pub fn samples(&self, cloud: &Cloud, passed: f64, r: f64, footprint: f64) -> f64 {
         let [columns, rows, layers] = self.texels();
-        let finest = rows.hypot(columns * SHEAR * PI * LIFETIME).max(layers * cloud.height(r, 0.0)[1]);
-        passed / (3.0 * SPACING * (CLOUD_SHARP * footprint / r * finest).max(1.0))
+        let finest = rows.hypot(columns * HALF_SHEARED).max(layers * cloud.height(r, 0.0)[1]);
+        passed / (CLOUD_SPACING * (CLOUD_SHARP * footprint / r * finest).max(1.0))
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) const FILAMENT_CUMULANTS: [f64; 2] = [-0.035_05, -0.004_85];
 /// Cells of each octave in the block.
 const CELLS: [[usize; 3]; 5] = [[4, 2, 2], [8, 4, 4], [16, 8, 8], [32, 16, 16], [64, 32, 16]];
 /// The amplitude of an octave over that of the one before.
-const FAINTER: f32 = 0.8;
+const FAINTER: f32 = 0.9;
 /// How far noise is displaced along the radius and the height, in periods, at noise 1.
 const DISPLACED: [f32; 2] = [0.25, 0.25];
 /// The share of creases in the octaves that have them; the factor and the offset give |n| the variance and mean of n.
@@ -286,6 +286,11 @@ pub fn filament_variance(level: f64) -> f64 {
     left * left * (rest * rest * FILAMENT_VARIANCES[whole] + share * (2.0 - share) * coarse)
 }
 
+/// The variances of the levels as shaders have them: by fours, and 0 beyond the last one.
+pub(crate) fn level_variances() -> [[f64; 4]; 2] {
+    [0, 4].map(|first| std::array::from_fn(|i| FILAMENT_VARIANCES.get(first + i).copied().unwrap_or(0.0)))
+}
+
 /// ln of the mean of e^(k g) over a level whose values have the `variance`: half of k^2 times that if g were normally
 /// distributed; the other terms are measured.
 pub fn filament_log_mean(k: f64, variance: f64) -> f64 {
@@ -309,26 +314,96 @@ mod tests {
         sum / count
     }
 
-    fn level(number: usize) -> impl Iterator<Item = f64> {
+    /// Values of a level at places all over the block, as low-discrepancy sequences have them (Roberts 2018).
+    fn values(level: f64) -> Vec<f64> {
         let filaments = Filaments::shared().unwrap();
-        let level = filaments.levels[number];
-        filaments.texels[level.begin..level.begin + level.count()].iter().map(|g| f64::from(*g) / f64::from(STEPS))
+        let place = |i: u32| [0.819_172_513, 0.671_043_607, 0.549_700_478].map(|step| f64::from(i) * step);
+        (0..400_000).map(|i| filaments.value(place(i), level)).collect()
     }
 
     #[test]
     fn numbers_are_those_of_the_block() {
-        let before = std::time::Instant::now();
-        let drawn = drawn().unwrap();
-        println!("drawn in {:?}", before.elapsed());
-        println!("moments {:?}", [3, 4].map(|k| mean(level(0).map(|g| g.powi(k)))));
-        println!("range {:?}", drawn.iter().fold([0.0_f32; 2], |[a, b], g| [a.min(*g), b.max(*g)]));
-        for k in [0.5, 1.0, 2.0] {
-            println!("e^({k} g): {}", mean(level(0).map(|g| (k * g).exp())) / (0.5 * k * k).exp());
+        let finest = values(0.0);
+        let power = |k: i32| mean(finest.iter().map(|g| g.powi(k)));
+        println!("moments {:?}", [1, 2, 3, 4].map(power));
+        let variances = [0, 1, 2, 3, 4, 5, 6].map(|level| mean(values(f64::from(level)).iter().map(|g| g * g)));
+        let lost = |k: f64| mean(finest.iter().map(|g| (k * g).exp())).ln();
+        // x^2 (1 / 2 + c0 x + c1 x^2) at k = 1 and 2.
+        let [x, y] = [1.0, 2.0].map(|k| k * variances[0].sqrt());
+        let [a, b] = [(lost(1.0) / (x * x) - 0.5) / x, (lost(2.0) / (y * y) - 0.5) / y];
+        let c1 = (b - a) / (y - x);
+        println!("variances {variances:.4?}, cumulants {:.5} {c1:.5}", a - c1 * x);
+        for (found, stated) in variances.into_iter().zip(FILAMENT_VARIANCES) {
+            assert!((found - stated).abs() < 2e-3, "{found}, not {stated}");
         }
-        let found = [0, 1, 2, 3, 4, 5, 6].map(|number| mean(level(number).map(|g| g * g)));
-        println!("variances {found:?}");
-        for (found, stated) in found.into_iter().zip(FILAMENT_VARIANCES) {
-            assert!((found - stated).abs() < 1e-3, "{found}, not {stated}");
+        for k in [0.3, 0.5, 1.0, 1.5, 2.0, 2.5] {
+            let error = lost(k) - filament_log_mean(k, filament_variance(0.0));
+            assert!(error.abs() < 0.01 * k * k, "at {k}: {error}");
         }
+        // Between levels, and beyond the last one.
+        for level in [0.5, 1.3, 2.5, 3.7, 4.5, 5.5, 6.5, 7.0, 90.0] {
+            let seen = values(level);
+            let [found, stated] = [mean(seen.iter().map(|g| g * g)), filament_variance(level)];
+            assert!((found - stated).abs() < 0.03, "at level {level}: {found}, not {stated}");
+            let found = mean(seen.iter().map(|g| (1.3 * g).exp())).ln() - filament_log_mean(1.3, stated);
+            assert!(found.abs() < 0.05, "at level {level}: {found}");
+        }
+    }
+
+    /// The same on every machine: the sum of all texels, each with bits that its place moves.
+    #[test]
+    fn texels_are_always_the_same() {
+        let again = Filaments::new(drawn().unwrap()).unwrap();
+        let shared = Filaments::shared().unwrap();
+        assert!(again.texels == shared.texels);
+        let sum = shared.texels.iter().zip(0_u32..).fold(0_u32, |sum, (g, i)| sum.wrapping_add(mix(i ^ *g as u32)));
+        assert_eq!(sum, 0, "{sum:#x}");
+    }
+
+    #[test]
+    fn columns_around_the_axis_are_no_rings() {
+        let shared = Filaments::shared().unwrap();
+        let rings = shared.texels[..FILAMENT_SIDES.iter().product()].chunks(FILAMENT_SIDES[0]);
+        let worst = rings.map(|ring| mean(ring.iter().map(|g| f64::from(*g))).abs()).fold(0.0, f64::max);
+        assert!(worst < 0.2, "{worst} steps");
+    }
+
+    /// The block goes around along all sides, without a seam: no step from place to place is larger there.
+    #[test]
+    fn sides_meet() {
+        let shared = Filaments::shared().unwrap();
+        for (side, level) in [0, 1, 2].into_iter().flat_map(|side| [(side, 0.0), (side, 3.4), (side, 6.0)]) {
+            let mut most = [0.0_f64; 2];
+            for i in 0..4000 {
+                let mut place = [0.618, 0.755, 0.57].map(|step| f64::from(i) * step);
+                for (most, at) in most.iter_mut().zip([-0.5e-4, 0.3 + 0.7 * f64::from(i) / 4000.0]) {
+                    let mut value = |at: f64| {
+                        place[side] = at;
+                        shared.value(place, level)
+                    };
+                    *most = most.max((value(at + 1e-4) - value(at)).abs());
+                }
+            }
+            assert!(most[0] < 1.1 * most[1] && most[0] > 0.0, "side {side}, level {level}: {most:?}");
+            let place = [0.3, -0.2, 4.1];
+            let mut around = place;
+            around[side] += 5.0;
+            assert!((shared.value(place, level) - shared.value(around, level)).abs() < 1e-6);
+        }
+    }
+
+    /// What graphics cards get is exactly what the CPU reads.
+    #[test]
+    fn levels_are_exact() {
+        let shared = Filaments::shared().unwrap();
+        let mut all = shared.texels.iter();
+        let mut bytes = 0;
+        for (number, level) in shared.levels().enumerate() {
+            let (sides, texels) = level.unwrap();
+            assert_eq!(sides.map(|side| side as usize), FILAMENT_SIDES.map(|side| side >> number));
+            bytes += 2 * texels.len();
+            assert!(texels.iter().all(|half| half.to_f32() * STEPS == f32::from(*all.next().unwrap())));
+        }
+        assert!(all.next().is_none() && bytes < 5 << 20, "{bytes} bytes");
     }
 }

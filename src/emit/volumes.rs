@@ -297,7 +297,7 @@ impl Volumes {
     fn cells(&self, stretch: &Stretch, footprint: f64, passed: &Passed) -> Option<([f64; 2], f64)> {
         let r = 2.0 / (stretch.u[0] + stretch.u[1]);
         let volumes = self.volumes.iter().zip(passed).filter_map(|(v, passed)| {
-            let structure = v.clouds.map_or(0.0, |clouds| clouds.cells(&v.cloud, *passed, r, footprint));
+            let structure = v.clouds.map_or(0.0, |clouds| clouds.samples(&v.cloud, *passed, r, footprint) / 3.0);
             Some((clip(&v.reach, stretch)?, v.cells(stretch).max(structure)))
         });
         let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch))));
@@ -356,7 +356,7 @@ impl Volumes {
                     let (azimuth, later) = moment();
                     let omega = velocity.angular_velocity(c.a, &at);
                     let blur = Blur { footprint: seen.footprint(observer, there), spacing: *passed };
-                    clouds.structure(filaments, &volume.cloud, &CloudPlace { r, cos, azimuth, later }, omega, blur)
+                    clouds.pattern(filaments, &volume.cloud, &CloudPlace { r, cos, azimuth, later }, omega, blur)
                 }
                 _ => Structure::NONE,
             };

@@ -4,6 +4,7 @@
 
 use crate::frames::{cpu, floats, picture};
 use crate::random::runs_all;
+use bhr::emit::bands::When;
 use bhr::emit::glow::Sample;
 use bhr::emit::medium::Medium;
 use bhr::emit::volumes::VolumeMatter;
@@ -218,7 +219,7 @@ fn thermal_light_is_that_of_shifted_blackbodies() {
     let volume = volume(&image["medium"]);
     renderer.scene = scene(image, &[volume], &[]);
     let scene = renderer.scene.clone();
-    let matter = VolumeMatter::new(&volume, scene.hole.spin).unwrap();
+    let matter = VolumeMatter::new(&volume, scene.hole.spin, &When::default()).unwrap();
     let rays = camera_rays(&scene, 32);
     let found = transfer(&mut renderer, &rays);
     let (mut worst, mut brightest) = ([0.0_f64; 5], 0.0_f64);

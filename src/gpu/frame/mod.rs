@@ -4,6 +4,9 @@
 pub(in crate::gpu) mod begun;
 pub(in crate::gpu) mod bloom;
 pub(in crate::gpu) mod buffers;
+/// For tests only, until a kernel binds it.
+#[cfg(test)]
+pub(in crate::gpu) mod clouds;
 pub(in crate::gpu) mod configure;
 pub(in crate::gpu) mod export;
 pub(in crate::gpu) mod kernels;

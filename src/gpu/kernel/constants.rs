@@ -4,7 +4,8 @@
 
 use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, PixelKind, ROWS_GROUP};
-use crate::emit::{bands, medium, streaks, turbulence};
+use crate::emit::volume::Volume;
+use crate::emit::{bands, clouds, filaments, medium, shape, streaks, turbulence};
 use crate::film::bloom::BEAM_SHARES;
 use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
@@ -148,6 +149,22 @@ fn all() -> Vec<(&'static str, String)> {
         PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
         GENERATION_FADE: f32 = bands::GENERATION_FADE;
         MOST_BANDS: u32 = bands::MOST_BANDS;
+        FILAMENT_COLUMNS: f32 = filaments::FILAMENT_SIDES[0];
+        FILAMENT_ROWS: f32 = filaments::FILAMENT_SIDES[1];
+        FILAMENT_LAYERS: f32 = filaments::FILAMENT_SIDES[2];
+        FILAMENT_HEIGHT: f32 = filaments::FILAMENT_HEIGHT;
+        FILAMENT_LAST: u32 = filaments::FILAMENT_LAST;
+        FILAMENT_FINE: vec4 = filaments::level_variances()[0];
+        FILAMENT_COARSE: vec4 = filaments::level_variances()[1];
+        FILAMENT_SKEW: f32 = filaments::FILAMENT_CUMULANTS[0];
+        FILAMENT_KURTOSIS: f32 = filaments::FILAMENT_CUMULANTS[1];
+        CLOUD_SHARP: f32 = clouds::CLOUD_SHARP;
+        CLOUD_SPACED: f32 = clouds::CLOUD_SPACED;
+        CLOUD_SPACING: f32 = clouds::CLOUD_SPACING;
+        SHEAR: f32 = clouds::SHEAR;
+        HALF_SHEARED: f32 = clouds::HALF_SHEARED;
+        OPPOSITE: f32 = shape::OPPOSITE;
+        MOST_VOLUMES: u32 = Volume::MOST;
         MOST_PIECES: u32 = medium::MOST_PIECES;
         PIECE: f32 = medium::PIECE;
 

@@ -38,12 +38,16 @@ mod tests {
     use wgpu::naga::front::wgsl;
     use wgpu::naga::valid::{Capabilities, ValidationFlags, Validator};
 
+    /// Files that no kernel binds yet: their twins run them.
+    const UNBOUND: [&str; 2] = ["emit/clouds", "emit/filaments"];
+
     #[test]
     fn every_file_is_part_of_some_shader() {
         let sources = crate::gpu::shader_sources().expect("WGSL that can be joined");
         for (name, _) in FILES {
             let begin = format!("// {name}.wgsl\n");
-            assert!(sources.iter().any(|(_, source)| source.contains(&begin)), "{name} is part of no shader");
+            let is_part = sources.iter().any(|(_, source)| source.contains(&begin));
+            assert!(is_part != UNBOUND.contains(name), "{name} is part of no shader, or of one and yet in UNBOUND");
         }
     }
 

@@ -16,7 +16,6 @@ use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::geodesic::{Constants, State};
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::zamo_frequency;
-use crate::random::mix;
 use crate::scene::Scene;
 use crate::sky::StarIndex;
 use glam::DVec3;
@@ -97,6 +96,7 @@ pub fn streaks_image() -> Image {
         format: STREAKS.format,
         size: [STREAK_COLUMNS as u32, STREAK_ROWS as u32, 0],
         levels: STREAK_LAST as u32 + 1,
+        solid: false,
         bytes: bytemuck::cast_slice(&texels).to_vec(),
     }
 }
@@ -362,16 +362,6 @@ pub fn group() -> Group {
                 o.near(patch.exponent(i.x(0)), 1.0);
             },
             4e-3,
-        ),
-        twin(
-            turbulent,
-            "mix_bits",
-            "out_word(mix_bits(word(0u)));",
-            |i| {
-                i.bits();
-            },
-            |i, o| o.word(mix(i.word(0))),
-            SAME,
         ),
     ];
     let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The structure of matter with depth. Mirrors src/emit/clouds.rs, where the reasons are; the uniform is `CloudUniform`
+// of src/gpu/frame/clouds.rs. Knows no light and no ray.
+//
+// A kernel declares `clouds`, a uniform with one `Cloud` for each volume of the scene, and `filament_texel` of
+// emit/filaments. For each sample in matter of volume k, whose angular velocity dph/dt there is `omega`:
+//
+//     let seen = cloud_pattern(k, CloudPlace(r, c, azimuth, later), omega, Blur(footprint, spacing));
+//     density *= seen.x; temperature *= seen.y;
+//
+// c = cos th; the azimuth is that of the chart, with the drag; `later` is the frame's reference delay less the delay of
+// the sample's light; `footprint` is what `cloud_footprint` gives; `spacing` is cloud_passed(...) over the number of
+// samples of a stretch, which is to have cloud_samples(...) of them or more. Volumes without structure give (1, 1).
+
+#import constants
+#import emit/bands
+#import emit/filaments
+#import shared/math
+#requires var clouds: Clouds
+
+struct Cloud {
+    // The standard deviation of ln P, which is 0 without structure; clumping, heating; the period in ln r.
+    structure: vec4<f32>,
+    // 1 over the thickness; JET: opening, radius, and 1; else 0.
+    shape: vec4<f32>,
+    // Seed, number of the first band (i32), 0, 0.
+    pattern: vec4<u32>,
+    // Age, time from birth to birth (f32), number of the youngest generation, drift (f32).
+    bands: array<vec4<u32>, MOST_BANDS>,
+}
+
+struct Clouds {
+    volumes: array<Cloud, MOST_VOLUMES>,
+}
+
+// Where and when matter is asked for: r, cos th, azimuth, M after the reference time.
+struct CloudPlace {
+    r: f32,
+    cos: f32,
+    azimuth: f32,
+    later: f32,
+}
+
+// How far apart places must be to be told from each other: across the ray, M; along it, texels of the pattern.
+struct Blur {
+    footprint: f32,
+    spacing: f32,
+}
+
+// The factors on density and temperature.
+fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32> {
+    let structure = clouds.volumes[index].structure;
+    if structure.x <= 0.0 {
+        return vec2<f32>(1.0);
+    }
+    let ln_r = log(at.r);
+    let sin = sqrt(max((1.0 - at.cos) * (1.0 + at.cos), 1e-12));
+    let height = cloud_height(index, at.r, at.cos);
+    let texels = cloud_texels(index);
+    // Texels per rad: around, along the radius, and across the shape.
+    let around = texels.x / sin;
+    let across = texels.z * height.y * sin;
+    let least = max(CLOUD_SPACED * blur.spacing, around / max(texels.y, across));
+    let widest = CLOUD_SHARP * blur.footprint / at.r;
+
+    let shown = bands_at(ln_r);
+    var sum = 0.0;
+    var lost = vec2<f32>(0.0);
+    for (var k = 0u; k < shown.count; k += 1u) {
+        let number = shown.first + i32(k);
+        let pattern = clouds.volumes[index].pattern;
+        let band = clouds.volumes[index].bands[band_index(number, bitcast<i32>(pattern.y))];
+        let alive = generations(band, at.later);
+        for (var old = 0u; old < alive.count; old += 1u) {
+            let weight = select(shown.shares.x, shown.shares.y, k == 1u)
+                * select(alive.weights.x, alive.weights.y, old == 1u);
+            let age = alive.young + f32(old) * bitcast<f32>(band.y);
+            let key = generation_key(number, alive.youngest - old, pattern.x);
+            let sheared = texels.x * SHEAR * omega * age;
+            let outwards = sqrt(texels.y * texels.y + sheared * sheared);
+            let level = max(log2(max(widest * max(max(outwards, across), around), least)), 0.0);
+            let from_seed = vec3<f32>(vec3<u32>(key & 0xffffu, key >> 16u, mix_bits(key) & 0xffffu)) / 65536.0;
+            let place = from_seed + vec3<f32>(
+                (at.azimuth - omega * age) / TAU,
+                (ln_r - bitcast<f32>(band.w) * age) / structure.w,
+                height.x / FILAMENT_HEIGHT,
+            );
+            let s = structure.x * weight;
+            sum += s * filament_value(place, level);
+            let variance = filament_variance(level);
+            lost += vec2<f32>(filament_log_mean(structure.y * s, variance), filament_log_mean(s, variance));
+        }
+    }
+    return exp(vec2<f32>(structure.y * sum - lost.x, structure.z * (sum - lost.y)));
+}
+
+// A coordinate across the shape that matter keeps while it moves, and its change with cos th.
+fn cloud_height(index: u32, r: f32, c: f32) -> vec2<f32> {
+    let shape = clouds.volumes[index].shape;
+    if shape.w == 0.0 {
+        return vec2<f32>(c * shape.x, shape.x);
+    }
+    let wall = sincos(min(shape.y * sqrt(shape.z / r), 0.5 * PI)).y;
+    return vec2<f32>((abs(c) - wall) * shape.x + select(OPPOSITE, -OPPOSITE, c < 0.0), shape.x);
+}
+
+// Texels of the finest level per rad of azimuth, per e-fold of the radius and per thickness.
+fn cloud_texels(index: u32) -> vec3<f32> {
+    return vec3<f32>(FILAMENT_COLUMNS / TAU, FILAMENT_ROWS / clouds.volumes[index].structure.w,
+        FILAMENT_LAYERS / FILAMENT_HEIGHT);
+}
+
+// The most texels of the finest level that a stretch of a ray passes, along which 1/r goes from u.x to u.y, cos th from
+// c.x to c.y, and which sweeps the angle `swept`. 0 without structure.
+fn cloud_passed(index: u32, u: vec2<f32>, c: vec2<f32>, swept: f32) -> f32 {
+    if clouds.volumes[index].structure.x <= 0.0 {
+        return 0.0;
+    }
+    let texels = cloud_texels(index);
+    let height = cloud_height(index, 1.0 / u.x, c.x);
+    let climb = cloud_height(index, 1.0 / u.y, c.y).x - height.x;
+    let sheared = texels.x * HALF_SHEARED;
+    let sin = sqrt(max(1.0 - max(c.x * c.x, c.y * c.y), 0.0));
+    let around = swept * min(texels.x / max(sin, 0.05), max(texels.y, texels.z * height.y * sin));
+    let outwards = log(u.x / u.y) * sqrt(texels.y * texels.y + sheared * sheared);
+    let across = climb * texels.z;
+    return sqrt(outwards * outwards + across * across + around * around);
+}
+
+// The number of samples that the texels `passed` at the radius r want, where a pixel is `footprint` wide.
+fn cloud_samples(index: u32, passed: f32, r: f32, footprint: f32) -> f32 {
+    let texels = cloud_texels(index);
+    let sheared = texels.x * HALF_SHEARED;
+    let finest = max(sqrt(texels.y * texels.y + sheared * sheared), texels.z * clouds.volumes[index].shape.x);
+    return passed / (CLOUD_SPACING * max(CLOUD_SHARP * footprint / r * finest, 1.0));
+}
+
+// The width that a pixel sees of matter at a distance, M; `swept`: the angle about the hole that the ray has swept.
+fn cloud_footprint(pixel_angle: f32, distance: f32, swept: f32) -> f32 {
+    return pixel_angle * distance * exp(max(swept - PI, 0.0));
+}
