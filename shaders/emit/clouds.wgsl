@@ -9,8 +9,14 @@
 //     density *= seen.x; temperature *= seen.y;
 //
 // c = cos th; the azimuth is that of the chart, with the drag; `later` is the frame's reference delay less the delay of
-// the sample's light; `footprint` is what `cloud_footprint` gives; `spacing` is cloud_passed(...) over the number of
-// samples of a stretch, which is to have cloud_samples(...) of them or more. Volumes without structure give (1, 1).
+// the sample's light; `spacing` is cloud_passed(...) over the number of samples of a stretch, which is to have
+// cloud_samples(...) of them or more. Volumes without structure give (1, 1). With b = sqrt(K) / |E|, the angle about the
+// hole that N has turned by so far, sqrt(K) per tau, and r of the observer,
+//
+//     footprint = cloud_footprint(pixel_angle, distance, b, r_observer, r, cloud_bend(swept, b, r_observer, r, passed))
+//
+// where `distance` is that of the places N / u of the observer and of the sample, and `passed` is true if the ray set
+// out inwards and now goes outwards (Seen::footprint of src/emit/volumes.rs).
 
 #import constants
 #import emit/bands
@@ -132,10 +138,19 @@ fn cloud_samples(index: u32, passed: f32, r: f32, footprint: f32) -> f32 {
     let texels = cloud_texels(index);
     let sheared = texels.x * HALF_SHEARED;
     let finest = max(sqrt(texels.y * texels.y + sheared * sheared), texels.z * clouds.volumes[index].shape.x);
-    return passed / (CLOUD_SPACING * max(CLOUD_SHARP * footprint / r * finest, 1.0));
+    return passed / (CLOUD_SPACING * max(CLOUD_COARSE * footprint / r * finest, 1.0));
 }
 
-// The width that a pixel sees of matter at a distance, M; `swept`: the angle about the hole that the ray has swept.
-fn cloud_footprint(pixel_angle: f32, distance: f32, swept: f32) -> f32 {
-    return pixel_angle * distance * exp(max(swept - PI, 0.0));
+// The angle by which a ray with the impact parameter `b` has been bent between two radii, of which `swept` is that about
+// the hole. `passed`: it came closer to the hole in between.
+fn cloud_bend(swept: f32, b: f32, begin: f32, end: f32, passed: bool) -> f32 {
+    let x = arctan2(sqrt(max(begin * begin - b * b, 0.0)), b);
+    let y = arctan2(sqrt(max(end * end - b * b, 0.0)), b);
+    return max(swept - select(abs(x - y), x + y, passed), 0.0);
+}
+
+// The width that a pixel sees of matter at r = `end`, from r = `begin` at a distance, M.
+fn cloud_footprint(pixel_angle: f32, distance: f32, b: f32, begin: f32, end: f32, bend: f32) -> f32 {
+    let parted = begin * end / max(b, LEAST_B) * max(exp(bend + 0.4) - 1.5 - 0.5 * bend, 0.0);
+    return pixel_angle * sqrt(distance * (distance + parted));
 }

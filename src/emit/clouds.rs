@@ -35,6 +35,11 @@ pub(crate) const SHEAR: f64 = 1.5;
 /// The share of a footprint, and of a spacing of samples, that a texel may be.
 pub(crate) const CLOUD_SHARP: f64 = 0.7;
 pub(crate) const CLOUD_SPACED: f64 = 0.7;
+/// Smaller impact parameters are taken for it: rays that go round the hole have none.
+pub(crate) const LEAST_B: f64 = 2.0;
+/// The share of a footprint that samples may be coarser by: levels have structure of about a texel, of which the finest
+/// has none.
+pub(crate) const CLOUD_COARSE: f64 = 0.35;
 /// Texels that samples of a picture lie apart.
 pub(crate) const CLOUD_SPACING: f64 = 1.4;
 
@@ -158,12 +163,23 @@ impl Clouds {
     pub fn samples(&self, cloud: &Cloud, passed: f64, r: f64, footprint: f64) -> f64 {
         let [columns, rows, layers] = self.texels();
         let finest = rows.hypot(columns * HALF_SHEARED).max(layers * cloud.height(r, 0.0)[1]);
-        passed / (CLOUD_SPACING * (CLOUD_SHARP * footprint / r * finest).max(1.0))
+        passed / (CLOUD_SPACING * (CLOUD_COARSE * footprint / r * finest).max(1.0))
     }
 }
 
-/// The width that a pixel sees of matter at a distance, M. Rays part by e^pi for every half turn about the hole, and so
-/// after the first one the widths grow (Ohanian 1987, Am. J. Phys. 55, 428; Luminet 1979).
-pub fn footprint(pixel_angle: f64, distance: f64, swept: f64) -> f64 {
-    pixel_angle * distance * (swept - PI).max(0.0).exp()
+/// The angle by which a ray with the impact parameter `b` has been bent so far, of which `swept` is that about the hole:
+/// a straight one from r = `from` to r = `to` would have swept less. `passed`: it came closer to the hole in between.
+pub fn bend(swept: f64, b: f64, from: f64, to: f64, passed: bool) -> f64 {
+    let [from, to] = [from, to].map(|r| (b / r).min(1.0).acos());
+    (swept - if passed { from + to } else { (from - to).abs() }).max(0.0)
+}
+
+/// The width that a pixel sees of matter at r = `to`, from r = `from` at a distance, M: the side of a square as large as
+/// what it sees. Where rays have been bent, they part in the plane that they lie in: the angle changes by d alpha = F db
+/// / b, F being e^(alpha + 0.40) for rays that go round the hole (Darwin 1959, Proc. R. Soc. A 249, 180: alpha = -ln(b /
+/// b_c - 1) - 0.40) and alpha for others (alpha = 4 M / b). e^(alpha + 0.40) - 1.5 - alpha / 2 is near to both, which is
+/// enough to tell how fine structure may be.
+pub fn footprint(pixel_angle: f64, distance: f64, b: f64, from: f64, to: f64, bend: f64) -> f64 {
+    let parted = from * to / b.max(LEAST_B) * ((bend + 0.4).exp() - 1.5 - 0.5 * bend).max(0.0);
+    pixel_angle * (distance * (distance + parted)).sqrt()
 }

@@ -28,10 +28,10 @@ pub(crate) const FILAMENT_HEIGHT: f64 = 5.0;
 pub(crate) const FILAMENT_LAST: usize = FILAMENT_SIDES[2].ilog2() as usize;
 const LEVELS: usize = FILAMENT_LAST + 1;
 /// The variance of each level.
-pub(crate) const FILAMENT_VARIANCES: [f64; LEVELS] = [1.0, 0.9375, 0.8175, 0.6681, 0.4703, 0.2239, 0.0800];
+pub(crate) const FILAMENT_VARIANCES: [f64; LEVELS] = [0.9312, 0.7714, 0.5889, 0.4129, 0.2257, 0.0729, 0.0153];
 
 /// ln of the mean of e^(x g) is x^2 (1 / 2 + c0 x + c1 x^2): right at x = 1 and 2.
-pub(crate) const FILAMENT_CUMULANTS: [f64; 2] = [-0.035_05, -0.004_85];
+pub(crate) const FILAMENT_CUMULANTS: [f64; 2] = [-0.037_24, -0.004_25];
 
 /// Cells of each octave in the block.
 const CELLS: [[usize; 3]; 5] = [[4, 2, 2], [8, 4, 4], [16, 8, 8], [32, 16, 16], [64, 32, 16]];
@@ -372,7 +372,7 @@ mod tests {
     #[test]
     fn sides_meet() {
         let shared = Filaments::shared().unwrap();
-        for (side, level) in [0, 1, 2].into_iter().flat_map(|side| [(side, 0.0), (side, 3.4), (side, 6.0)]) {
+        for (side, level) in [0, 1, 2].into_iter().flat_map(|side| [(side, 0.0), (side, 3.4), (side, 5.0)]) {
             let mut most = [0.0_f64; 2];
             for i in 0..4000 {
                 let mut place = [0.618, 0.755, 0.57].map(|step| f64::from(i) * step);

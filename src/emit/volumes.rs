@@ -9,7 +9,7 @@
 //! optical depth is more than 1, it is cut again.
 
 use super::bands::When;
-use super::clouds::{Blur, CloudPlace, Clouds, Structure, footprint};
+use super::clouds::{Blur, CloudPlace, Clouds, Structure, bend, footprint};
 use super::effects::Effects;
 use super::filaments::Filaments;
 use super::glow::{Glow, Sample};
@@ -64,12 +64,21 @@ impl Seen {
     pub const EXACT: f64 = 4.0;
 
     /// The width of a pixel at a place of the ray, M: by the distance in the chart, which frame-dragging does not change.
-    fn footprint(&self, observer: &State, there: &State) -> f64 {
+    fn footprint(&self, c: &Constants, observer: &State, there: &State) -> f64 {
         if self.pixel_angle <= 0.0 {
             return 0.0;
         }
         let place = |state: &State| state.n.normalize() / state.u;
-        footprint(self.pixel_angle, place(observer).distance(place(there)), self.swept)
+        let (b, passed) = (c.k.max(0.0).sqrt() / c.energy.abs().max(1e-3), observer.du > 0.0 && there.du < 0.0);
+        let (from, to) = (1.0 / observer.u, 1.0 / there.u);
+        let bend = bend(self.swept, b, from, to, passed);
+        footprint(self.pixel_angle, place(observer).distance(place(there)), b, from, to, bend)
+    }
+
+    /// The same `share` of a part farther along the ray. N turns by sqrt(K) per tau.
+    pub fn after(&self, part: &Part<'_>, share: f64) -> Self {
+        let turned = part.swept() * (part.constants.k.max(0.0).sqrt() / part.constants.scale).min(1.0);
+        Self { swept: self.swept + share * turned, ..*self }
     }
 }
 
@@ -355,7 +364,7 @@ impl Volumes {
                 (Some(clouds), Ok(filaments)) => {
                     let (azimuth, later) = moment();
                     let omega = velocity.angular_velocity(c.a, &at);
-                    let blur = Blur { footprint: seen.footprint(observer, there), spacing: *passed };
+                    let blur = Blur { footprint: seen.footprint(c, observer, there), spacing: *passed };
                     clouds.pattern(filaments, &volume.cloud, &CloudPlace { r, cos, azimuth, later }, omega, blur)
                 }
                 _ => Structure::NONE,
@@ -405,7 +414,9 @@ impl Sum<'_, '_> {
         let of_volume = |v: &VolumeMatter| v.clouds.map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
         let passed = self.volumes.volumes.iter().map(of_volume).collect::<Passed>();
         let footprint = if passed.iter().any(|passed| *passed > 0.0) {
-            self.seen.footprint(self.part.observer, &self.part.at(0.5 * (begin + end)))
+            let middle = 0.5 * (begin + end);
+            let seen = self.seen.after(self.part, middle);
+            seen.footprint(self.part.constants, self.part.observer, &self.part.at(middle))
         } else {
             0.0
         };
@@ -446,7 +457,8 @@ impl Sum<'_, '_> {
             // even in the square root.
             let (x, slope) = if part.to_horizon { (x * (2.0 - x), 2.0 * (1.0 - x)) } else { (x, 1.0) };
             let there = part.at(x);
-            let sample = self.volumes.sample(part.constants, part.observer, &there, self.seen, passed);
+            let seen = self.seen.after(part, x);
+            let sample = self.volumes.sample(part.constants, part.observer, &there, &seen, passed);
             if sample == Sample::default() {
                 return sample;
             }

@@ -159,10 +159,12 @@ fn all() -> Vec<(&'static str, String)> {
         FILAMENT_SKEW: f32 = filaments::FILAMENT_CUMULANTS[0];
         FILAMENT_KURTOSIS: f32 = filaments::FILAMENT_CUMULANTS[1];
         CLOUD_SHARP: f32 = clouds::CLOUD_SHARP;
+        CLOUD_COARSE: f32 = clouds::CLOUD_COARSE;
         CLOUD_SPACED: f32 = clouds::CLOUD_SPACED;
         CLOUD_SPACING: f32 = clouds::CLOUD_SPACING;
         SHEAR: f32 = clouds::SHEAR;
         HALF_SHEARED: f32 = clouds::HALF_SHEARED;
+        LEAST_B: f32 = clouds::LEAST_B;
         OPPOSITE: f32 = shape::OPPOSITE;
         MOST_VOLUMES: u32 = Volume::MOST;
         MOST_PIECES: u32 = medium::MOST_PIECES;

@@ -6,7 +6,7 @@ use super::run::{Image, Table};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 use crate::emit::bands::When;
 use crate::emit::bands::{Generations, bands_at, generation_key};
-use crate::emit::clouds::{Blur, CloudPlace, Clouds, Structure, footprint};
+use crate::emit::clouds::{Blur, CloudPlace, Clouds, Structure, bend, footprint};
 use crate::emit::effects::Effects;
 use crate::emit::filaments::{FILAMENT_LAST, FILAMENT_SIDES, Filaments, filament_log_mean, filament_variance};
 use crate::emit::shape::{Cloud, Stretch};
@@ -271,14 +271,31 @@ pub fn group() -> Group {
         ),
         twin(
             clouds,
+            "cloud_bend",
+            "out1(cloud_bend(in1(0u), in1(1u), in1(2u), in1(3u), word(4u) == 1u));",
+            |i| {
+                i.even(0.0, 10.0);
+                i.log(1e-3, 50.0);
+                i.log(2.0, 1e3);
+                i.log(1.1, 60.0);
+                i.pick(2);
+            },
+            |i, o| o.near(bend(i.x(0), i.x(1), i.x(2), i.x(3), i.word(4) == 1), 6.0),
+            TRANSCENDENTAL,
+        ),
+        twin(
+            clouds,
             "cloud_footprint",
-            "out1(cloud_footprint(in1(0u), in1(1u), in1(2u)));",
+            "out1(cloud_footprint(in1(0u), in1(1u), in1(2u), in1(3u), in1(4u), in1(5u)));",
             |i| {
                 i.log(1e-5, 0.1);
                 i.log(0.1, 1e3);
+                i.log(1e-3, 50.0);
+                i.log(2.0, 1e3);
+                i.log(1.1, 60.0);
                 i.even(0.0, 20.0);
             },
-            |i, o| o.put(footprint(i.x(0), i.x(1), i.x(2))),
+            |i, o| o.put(footprint(i.x(0), i.x(1), i.x(2), i.x(3), i.x(4), i.x(5))),
             // The exponential of a number as large.
             2e-5,
         ),
