@@ -777,6 +777,19 @@ typedef struct BhrVolume {
     double infall;           /**< KEPLERIAN: 0 circular (default) .. 1 free fall. */
     double angular_momentum; /**< ANGULAR_MOMENTUM: 0 .. 1. Default 1. */
     double speed;            /**< OUTFLOW: far away, in units of c, 0 .. 0.995. Default 0.9. */
+    /**
+     * 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit.
+     * Seen with its delay where effects have BHR_EFFECT_LIGHT_DELAY. Default 1; 0 is even matter.
+     */
+    double turbulence;
+    /**
+     * 0.5 .. 3: density goes as pattern^clumping, its mean staying what it is without; a larger number draws the
+     * matter together into filaments. Default 1.8.
+     */
+    double clumping;
+    /** 0 .. 0.5: the temperature goes as pattern^heating, so that dense matter is hotter. Default 0.15. */
+    double heating;
+    uint64_t seed; /**< Selects the structure: the same seed always gives the same one. Any number. Default 0. */
 } BhrVolume;
 
 /** Most volumes of a scene. Since 0.2.0. */
@@ -1302,10 +1315,10 @@ BHR_NODISCARD BhrStatus bhr_get_quality(const BhrContext *context, BhrQuality *q
  *
  * For a host's legend, the colours of values: s goes from 0 to 1 over the range that each view states, and stays at 0
  * and 1 beyond it. The sequential map is CIELAB L = 15 + 76 s, a = 11 + 56 cos w, b = 21 + 56 sin w, w = 4.76 + 3.78
- * s: from dark blue over purple, red and orange to light yellow. The diverging map, with m = |2 s - 1|, is L = 95 -
- * 57 m and (a, b) = (52.00, 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, with light grey between
- * them. The white is that of Rec. 709, and colours are encoded as sRGB. Equal steps of s are equal steps of colour
- * and of lightness. NaN is grey, (128, 128, 128).
+ * s: from dark blue over purple, red and orange to light yellow. The diverging map, with m = |2 s - 1|, is L = 95 - 57
+ * m and (a, b) = (52.00, 33.77) m below s = 1/2, red, (21.21, -58.26) m above it, blue, with light grey between them.
+ * The white is that of Rec. 709, and colours are encoded as sRGB. Equal steps of s are equal steps of colour and of
+ * lightness. NaN is grey, (128, 128, 128).
  */
 typedef int32_t BhrView;
 
@@ -1332,14 +1345,14 @@ typedef int32_t BhrView;
 #define BHR_VIEW_DEFLECTION 3
 
 /**
- * The integration steps of the pixel's ray; 0 where it was looked up (BHR_METHOD_AUTO). Sequential map, s =
- * log2(steps / 8) / 6: 8 .. 512 steps.
+ * The integration steps of the pixel's ray; 0 where it was looked up (BHR_METHOD_AUTO). Sequential map, s = log2(steps
+ * / 8) / 6: 8 .. 512 steps.
  */
 #define BHR_VIEW_STEPS 4
 
 /**
- * -g_tt = 1 - 2 M / r at the first crossing of the equatorial plane; NaN without one. Sequential map, s = 1 - sqrt(1
- * - value): 0, the static limit, and less are its dark end; 1, infinity, its light one.
+ * -g_tt = 1 - 2 M / r at the first crossing of the equatorial plane; NaN without one. Sequential map, s = 1 - sqrt(1 -
+ * value): 0, the static limit, and less are its dark end; 1, infinity, its light one.
  */
 #define BHR_VIEW_METRIC 5
 

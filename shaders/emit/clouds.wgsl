@@ -13,7 +13,8 @@
 // cloud_samples(...) of them or more. Volumes without structure give (1, 1). With b = sqrt(K) / |E|, the angle about the
 // hole that N has turned by so far, sqrt(K) per tau, and r of the observer,
 //
-//     footprint = cloud_footprint(pixel_angle, distance, b, r_observer, r, cloud_bend(swept, b, r_observer, r, passed))
+//     bend = cloud_bend(swept, b, r_observer, r, passed)
+//     footprint = cloud_footprint(pixel_angle, distance, b, r_observer, r, bend)
 //
 // where `distance` is that of the places N / u of the observer and of the sample, and `passed` is true if the ray set
 // out inwards and now goes outwards (Seen::footprint of src/emit/volumes.rs).

@@ -72,8 +72,7 @@ pub struct Volume {
     pub angular_momentum: f64,
     /// OUTFLOW: far away, in c. Default 0.9.
     pub speed: f64,
-    /// The contrast of the structure that moves along, 0 (default): none. The host cannot choose this or the next three
-    /// yet.
+    /// The contrast of the structure that moves along (`emit::clouds`), 0: none. Default 1.
     pub turbulence: f64,
     /// Density ~ pattern^clumping. Default 1.8.
     pub clumping: f64,
@@ -106,7 +105,7 @@ impl Default for Volume {
             infall: 0.0,
             angular_momentum: 1.0,
             speed: 0.9,
-            turbulence: 0.0,
+            turbulence: 1.0,
             clumping: 1.8,
             heating: 0.15,
             seed: 0,

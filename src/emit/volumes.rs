@@ -302,14 +302,15 @@ impl Volumes {
     }
 
     /// The share of a stretch that has matter, and the number of cells that it should be cut into. `footprint`: how
-    /// wide a pixel is there; `passed`: the texels that it passes of each volume's structure.
-    fn cells(&self, stretch: &Stretch, footprint: f64, passed: &Passed) -> Option<([f64; 2], f64)> {
+    /// wide a pixel is there; `passed`: the texels that it passes of each volume's structure; `fineness`: of `Seen`.
+    fn cells(&self, stretch: &Stretch, footprint: f64, passed: &Passed, fineness: f64) -> Option<([f64; 2], f64)> {
         let r = 2.0 / (stretch.u[0] + stretch.u[1]);
         let volumes = self.volumes.iter().zip(passed).filter_map(|(v, passed)| {
-            let structure = v.clouds.map_or(0.0, |clouds| clouds.samples(&v.cloud, *passed, r, footprint) / 3.0);
-            Some((clip(&v.reach, stretch)?, v.cells(stretch).max(structure)))
+            // Three samples a cell. Structure is rough: finer cells gain less there than the sixth order in them.
+            let samples = v.clouds.map_or(0.0, |clouds| clouds.samples(&v.cloud, *passed, r, footprint));
+            Some((clip(&v.reach, stretch)?, (v.cells(stretch) * fineness).max(samples / 3.0 * fineness.sqrt())))
         });
-        let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch))));
+        let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch) * fineness)));
         let all = volumes.chain(spots);
         let (share, cells) = all.reduce(|([a, b], m), ([c, d], n)| ([a.min(c), b.max(d)], m.max(n)))?;
         Some((share, cells * (share[1] - share[0])))
@@ -420,9 +421,9 @@ impl Sum<'_, '_> {
         } else {
             0.0
         };
-        if let Some(([low, high], cells)) = self.volumes.cells(&stretch, footprint, &passed) {
+        if let Some(([low, high], cells)) = self.volumes.cells(&stretch, footprint, &passed, self.seen.fineness) {
             let at = |share: f64| begin + (end - begin) * share;
-            let cells = (cells * self.seen.fineness).ceil().clamp(1.0, MOST_CELLS);
+            let cells = cells.ceil().clamp(1.0, MOST_CELLS);
             let apart = passed.iter().map(|passed| passed * (high - low) / (3.0 * cells)).collect();
             self.piece([at(low), at(high)], cells, &apart, medium);
         }

@@ -38,16 +38,18 @@ pub fn transfer_ray(scene: &Scene, settings: &Settings, emitters: &Emitters, ray
 }
 
 /// The emitters of `transfer_ray`, and its settings: crossings of the plane do not matter. Where delays do, steps are
-/// half as long, which takes the error of a hot spot's light, seen from 1000 M, from 8e-8 of its peak to 8e-9.
-pub fn transfer_setup(scene: &Scene) -> (Emitters, Settings) {
+/// half as long, which takes the error of a hot spot's light, seen from 1000 M, from 8e-8 of its peak to 8e-9. Errors:
+/// OUT_OF_MEMORY.
+pub fn transfer_setup(scene: &Scene) -> Result<(Emitters, Settings)> {
     let emitters = Emitters { volumes: scene.volumes_now(), ..Emitters::default() };
+    emitters.volumes.prepare()?;
     let mut settings = scene.quality.ray_settings(scene.hole.spin);
     settings.delay = emitters.needs().delays;
     settings.max_crossings = 0;
     if settings.delay && scene.quality.method == Method::Auto {
         settings.step *= 0.5;
     }
-    (emitters, settings)
+    Ok((emitters, settings))
 }
 
 /// Most points of a path: more than any plot shows, and bounded memory.

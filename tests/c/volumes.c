@@ -36,6 +36,9 @@ static const Limits VOLUME[] = {
     {offsetof(BhrVolume, infall), 0.0, 1.0, "infall"},
     {offsetof(BhrVolume, angular_momentum), 0.0, 1.0, "angular_momentum"},
     {offsetof(BhrVolume, speed), 0.0, 0.995, "speed"},
+    {offsetof(BhrVolume, turbulence), 0.0, 1.0, "turbulence"},
+    {offsetof(BhrVolume, clumping), 0.5, 3.0, "clumping"},
+    {offsetof(BhrVolume, heating), 0.0, 0.5, "heating"},
 };
 
 static const Limits HOT_SPOT[] = {
@@ -176,6 +179,7 @@ static void arrays(Watch *watch, BhrContext *context) {
     for (size_t i = 0; i < COUNT_OF(volumes); i++) {
         volumes[i] = a_volume();
         volumes[i].temperature = 1000.0 + (double)i;
+        volumes[i].seed = UINT64_MAX - i;
     }
     for (size_t i = 0; i < COUNT_OF(spots); i++) {
         spots[i] = a_spot();

@@ -50,6 +50,7 @@ fn volume(medium: &Value) -> Volume {
         sub_keplerian: medium["subk"].as_f64().unwrap_or(1.0),
         infall: number("infall"),
         angular_momentum: number("l0"),
+        turbulence: 0.0,
         ..Volume::default()
     }
 }
