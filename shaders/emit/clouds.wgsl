@@ -10,8 +10,8 @@
 //
 // c = cos th; the azimuth is that of the chart, with the drag; `later` is the frame's reference delay less the delay of
 // the sample's light; `spacing` is cloud_passed(...) over the number of samples of a stretch, which is to have
-// cloud_samples(...) of them or more. Volumes without structure give (1, 1). With b = sqrt(K) / |E|, the angle about the
-// hole that N has turned by so far, sqrt(K) per tau, and r of the observer,
+// cloud_samples(...) of them or more. Volumes without structure give (1, 1). With b = sqrt(K) / |E|, the angle about
+// the hole that N has turned by so far, sqrt(K) per tau, and r of the observer,
 //
 //     bend = cloud_bend(swept, b, r_observer, r, passed)
 //     footprint = cloud_footprint(pixel_angle, distance, b, r_observer, r, bend)
@@ -30,7 +30,8 @@ struct Cloud {
     structure: vec4<f32>,
     // 1 over the thickness; JET: opening, radius, and 1; else 0.
     shape: vec4<f32>,
-    // Seed, number of the first band (i32), 0, 0.
+    // Seed, number of the first band (i32), 1 if the angular velocity changes with the distance from the axis, else 0;
+    // 0.
     pattern: vec4<u32>,
     // Age, time from birth to birth (f32), number of the youngest generation, drift (f32).
     bands: array<vec4<u32>, MOST_BANDS>,
@@ -64,18 +65,19 @@ fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32
     let sin = sqrt(max((1.0 - at.cos) * (1.0 + at.cos), 1e-12));
     let height = cloud_height(index, at.r, at.cos);
     let texels = cloud_texels(index);
-    // Texels per rad: around, along the radius, and across the shape.
+    let pattern = clouds.volumes[index].pattern;
+    // Texels per rad: around, and across the shape.
     let around = texels.x / sin;
     let across = texels.z * height.y * sin;
     let least = max(CLOUD_SPACED * blur.spacing, around / max(texels.y, across));
     let widest = CLOUD_SHARP * blur.footprint / at.r;
+    let lean = select(0.0, abs(at.cos) / sin, pattern.z == 1u);
 
     let shown = bands_at(ln_r);
     var sum = 0.0;
     var lost = vec2<f32>(0.0);
     for (var k = 0u; k < shown.count; k += 1u) {
         let number = shown.first + i32(k);
-        let pattern = clouds.volumes[index].pattern;
         let band = clouds.volumes[index].bands[band_index(number, bitcast<i32>(pattern.y))];
         let alive = generations(band, at.later);
         for (var old = 0u; old < alive.count; old += 1u) {
@@ -83,9 +85,12 @@ fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32
                 * select(alive.weights.x, alive.weights.y, old == 1u);
             let age = alive.young + f32(old) * bitcast<f32>(band.y);
             let key = generation_key(number, alive.youngest - old, pattern.x);
-            let sheared = texels.x * SHEAR * omega * age;
-            let outwards = sqrt(texels.y * texels.y + sheared * sheared);
-            let level = max(log2(max(widest * max(max(outwards, across), around), least)), 0.0);
+            let wound = texels.x * SHEAR * abs(omega) * age;
+            let leaning = wound * lean;
+            let outwards = sqrt(texels.y * texels.y + wound * wound);
+            let upwards = sqrt(across * across + leaning * leaning);
+            let seen = max(widest * max(max(outwards, upwards), around), max(wound, leaning) / (WOUND * texels.y));
+            let level = max(log2(max(seen, least)), 0.0);
             let from_seed = vec3<f32>(vec3<u32>(key & 0xffffu, key >> 16u, mix_bits(key) & 0xffffu)) / 65536.0;
             let place = from_seed + vec3<f32>(
                 (at.azimuth - omega * age) / TAU,
@@ -142,8 +147,8 @@ fn cloud_samples(index: u32, passed: f32, r: f32, footprint: f32) -> f32 {
     return passed / (CLOUD_SPACING * max(CLOUD_COARSE * footprint / r * finest, 1.0));
 }
 
-// The angle by which a ray with the impact parameter `b` has been bent between two radii, of which `swept` is that about
-// the hole. `passed`: it came closer to the hole in between.
+// The angle by which a ray with the impact parameter `b` has been bent between two radii, of which `swept` is that
+// about the hole. `passed`: it came closer to the hole in between.
 fn cloud_bend(swept: f32, b: f32, begin: f32, end: f32, passed: bool) -> f32 {
     let x = arctan2(sqrt(max(begin * begin - b * b, 0.0)), b);
     let y = arctan2(sqrt(max(end * end - b * b, 0.0)), b);

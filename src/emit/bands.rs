@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The bands of radius in which structure is renewed, and the generations that follow each other there: which of them
-//! show at a place and a time, how old they are and how strongly they show. Mirrored by `shaders/emit/bands.wgsl`. Knows
-//! no pattern and no law of motion but the rates that it is given.
+//! show at a place and a time, how old they are and how strongly they show. Mirrored by `shaders/emit/bands.wgsl`.
+//! Knows no pattern and no law of motion but the rates that it is given.
 //!
 //! Matter at radius r turns by its angular velocity times its age. Were age counted from one instant, differential
 //! rotation would wind a pattern up without end. So space is split into bands, equally wide in ln r, in each of which

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The structure of matter with depth: the factors by which turbulence changes its density and its temperature at a
-//! place and a time. `filaments` has the pattern, `bands` its generations; how matter carries it, and how fine it may be
-//! where it is seen, is here. Mirrored by `shaders/emit/clouds.wgsl`. Knows no light and no ray.
+//! place and a time. `filaments` has the pattern, `bands` its generations; how matter carries it, and how fine it may
+//! be where it is seen, is here. Mirrored by `shaders/emit/clouds.wgsl`. Knows no light and no ray.
 //!
 //! A generation is carried by the matter as it grows old: around the axis by the angular velocity at its very place,
 //! which shears it, and along the radius by that of its band's middle. The pattern is P = e^(s G) over its mean, with G
-//! the weighted sum of the generations' noise, of variance 1. Density goes as P^clumping, divided by its mean, so that a
-//! mean optical depth stays the stated one; the temperature as P^heating.
+//! the weighted sum of the generations' noise, of variance 1. Density goes as P^clumping, divided by its mean, so that
+//! a mean optical depth stays the stated one; the temperature as P^heating.
 
 use super::bands::{Bands, Life, Shown, When};
 use super::filaments::{
@@ -14,15 +14,15 @@ use super::filaments::{
 };
 use super::shape::{Cloud, Reach, Stretch};
 use super::volume::{Shape, Volume};
-use crate::physics::flow::{Flow, Place};
+use crate::physics::flow::{Flow, Motion, Place};
 use crate::physics::orbit::horizon_outer;
 use crate::random::mix;
 use std::f64::consts::{PI, TAU};
 
 /// The standard deviation of ln P at `Volume::turbulence` 1.
 pub(crate) const CLOUD_DEVIATION: f64 = 1.0;
-/// Orbits that a generation lives, at the middle of its band; if the matter moves inwards or outwards, no longer than it
-/// takes to an e-fold of the radius.
+/// Orbits that a generation lives, at the middle of its band; if the matter moves inwards or outwards, no longer than
+/// it takes to an e-fold of the radius.
 const LIFETIME: f64 = 1.0;
 /// The shear of a generation half as old as it grows, rad an e-fold of the radius.
 pub(crate) const HALF_SHEARED: f64 = SHEAR * PI * LIFETIME;
@@ -35,6 +35,9 @@ pub(crate) const SHEAR: f64 = 1.5;
 /// The share of a footprint, and of a spacing of samples, that a texel may be.
 pub(crate) const CLOUD_SHARP: f64 = 0.7;
 pub(crate) const CLOUD_SPACED: f64 = 0.7;
+/// Shear may make structure so many times finer. Keplerian orbits stay below that; near the axis some flows turn many
+/// times while a generation lives.
+pub(crate) const WOUND: f64 = 4.0;
 /// Smaller impact parameters are taken for it: rays that go round the hole have none.
 pub(crate) const LEAST_B: f64 = 2.0;
 /// The share of a footprint that samples may be coarser by: levels have structure of about a texel, of which the finest
@@ -82,6 +85,8 @@ pub struct Clouds {
     pub heating: f64,
     /// The range of ln r after which the pattern repeats.
     pub period: f64,
+    /// The angular velocity changes with the distance from the axis, not from the hole.
+    pub leans: bool,
     pub bands: Bands,
 }
 
@@ -106,6 +111,7 @@ impl Clouds {
             clumping: volume.clumping,
             heating: volume.heating,
             period: FILAMENT_PERIOD * if cloud.shape == Shape::Jet { JET_STRETCH } else { 1.0 },
+            leans: matches!(flow.motion, Motion::AngularMomentum { .. }),
             bands: Bands::new([inner, outer], volume.seed, when.time, life),
         })
     }
@@ -115,15 +121,17 @@ impl Clouds {
         let (ln_r, sin) = (at.r.ln(), ((1.0 - at.cos) * (1.0 + at.cos)).max(1e-12).sqrt());
         let [height, steepness] = cloud.height(at.r, at.cos);
         let [columns, rows, layers] = self.texels();
-        // Texels per rad of the directions: around, outwards, and across the shape.
+        // Texels per rad of the directions: around, and across the shape.
         let (around, across) = (columns / sin, layers * steepness * sin);
+        // Near the axis nothing is to be finer around than it is along or across.
+        let (pinched, lean) = (around / rows.max(across), if self.leans { at.cos.abs() / sin } else { 0.0 });
         let (mut sum, mut cumulants) = (0.0, [0.0; 2]);
         for Shown { weight, age, drift, key } in self.bands.shown(ln_r, at.later) {
-            let outwards = rows.hypot(columns * SHEAR * omega * age);
-            let finest = outwards.max(across);
-            // Near the axis nothing is to be finer around than it is along or across.
-            let seen = (CLOUD_SHARP * blur.footprint / at.r * finest.max(around)).max(CLOUD_SPACED * blur.spacing);
-            let level = seen.max(around / rows.max(across)).log2().max(0.0);
+            let wound = columns * SHEAR * omega.abs() * age;
+            let leaning = wound * lean;
+            let finest = rows.hypot(wound).max(across.hypot(leaning)).max(around);
+            let seen = (CLOUD_SHARP * blur.footprint / at.r * finest).max(CLOUD_SPACED * blur.spacing);
+            let level = seen.max(pinched).max(wound.max(leaning) / (WOUND * rows)).log2().max(0.0);
             let place = [
                 (at.azimuth - omega * age) / TAU + f64::from(key & 0xffff) / 65536.0,
                 (ln_r - drift * age) / self.period + f64::from(key >> 16) / 65536.0,
@@ -167,18 +175,19 @@ impl Clouds {
     }
 }
 
-/// The angle by which a ray with the impact parameter `b` has been bent so far, of which `swept` is that about the hole:
-/// a straight one from r = `from` to r = `to` would have swept less. `passed`: it came closer to the hole in between.
+/// The angle by which a ray with the impact parameter `b` has been bent so far, of which `swept` is that about the
+/// hole: a straight one from r = `from` to r = `to` would have swept less. `passed`: it came closer to the hole in
+/// between.
 pub fn bend(swept: f64, b: f64, from: f64, to: f64, passed: bool) -> f64 {
     let [from, to] = [from, to].map(|r| (b / r).min(1.0).acos());
     (swept - if passed { from + to } else { (from - to).abs() }).max(0.0)
 }
 
-/// The width that a pixel sees of matter at r = `to`, from r = `from` at a distance, M: the side of a square as large as
-/// what it sees. Where rays have been bent, they part in the plane that they lie in: the angle changes by d alpha = F db
-/// / b, F being e^(alpha + 0.40) for rays that go round the hole (Darwin 1959, Proc. R. Soc. A 249, 180: alpha = -ln(b /
-/// b_c - 1) - 0.40) and alpha for others (alpha = 4 M / b). e^(alpha + 0.40) - 1.5 - alpha / 2 is near to both, which is
-/// enough to tell how fine structure may be.
+/// The width that a pixel sees of matter at r = `to`, from r = `from` at a distance, M: the side of a square as large
+/// as what it sees. Where rays have been bent, they part in the plane that they lie in: the angle changes by d alpha =
+/// F db / b, F being e^(alpha + 0.40) for rays that go round the hole (Darwin 1959, Proc. R. Soc. A 249, 180: alpha =
+/// -ln(b / b_c - 1) - 0.40) and alpha for others (alpha = 4 M / b). e^(alpha + 0.40) - 1.5 - alpha / 2 is near to both,
+/// which is enough to tell how fine structure may be.
 pub fn footprint(pixel_angle: f64, distance: f64, b: f64, from: f64, to: f64, bend: f64) -> f64 {
     let parted = from * to / b.max(LEAST_B) * ((bend + 0.4).exp() - 1.5 - 0.5 * bend).max(0.0);
     pixel_angle * (distance * (distance + parted)).sqrt()
@@ -187,7 +196,6 @@ pub fn footprint(pixel_angle: f64, distance: f64, b: f64, from: f64, to: f64, be
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::flow::Motion;
     use crate::physics::orbit::circular_orbit;
 
     const SPIN: f64 = 0.7;

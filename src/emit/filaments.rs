@@ -392,7 +392,7 @@ mod tests {
         }
     }
 
-    /// What graphics cards get is exactly what the CPU reads.
+    /// Graphics cards get exactly the texels that the CPU reads.
     #[test]
     fn levels_are_exact() {
         let shared = Filaments::shared().unwrap();

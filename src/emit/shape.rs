@@ -109,8 +109,8 @@ impl Cloud {
     }
 
     /// A coordinate across the shape that matter keeps while it moves, and its change with c: the distance from the
-    /// plane, or from a jet's wall, in thicknesses, of which those of a shape that fills all latitudes are no wider than
-    /// `WIDEST`.
+    /// plane, or from a jet's wall, in thicknesses, of which those of a shape that fills all latitudes are no wider
+    /// than `WIDEST`.
     pub fn height(&self, r: f64, cos: f64) -> [f64; 2] {
         let thickness = self.thickness.min(WIDEST);
         match self.shape {

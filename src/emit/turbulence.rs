@@ -7,9 +7,9 @@
 //! They live for a fixed number of the band's orbits: hence streaks have the same pitch at every radius. Each shows
 //! another part of the picture of `streaks`, by a seed of its own.
 //!
-//! The factor is e^G over its mean, with G the weighted sum of the patterns, so that its variance is the same everywhere
-//! and at any time; its distribution is about log-normal, as is that of the light of accreting black holes (Uttley,
-//! McHardy & Vaughan 2005).
+//! The factor is e^G over its mean, with G the weighted sum of the patterns, so that its variance is the same
+//! everywhere and at any time; its distribution is about log-normal, as is that of the light of accreting black holes
+//! (Uttley, McHardy & Vaughan 2005).
 
 use super::bands::{Bands, Life, Shown, When};
 use super::crossing::EmissionPoint;
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 /// The lifetime of a generation, in orbits at the middle of its band. Half-way through it, shear has displaced the
 /// pattern by 1.5 pi rad an e-fold of the radius. A longer one would wind it up, of a shorter one little would be seen
 /// to go round.
-pub(crate) const LIFETIME: f64 = 1.0;
+const LIFETIME: f64 = 1.0;
 /// Plunging matter loses its structure over so much in ln r inside the ISCO: it falls faster than patterns that live
 /// for an orbit could show, and is drawn out.
 pub(crate) const PLUNGE_FADE: f64 = 0.4;

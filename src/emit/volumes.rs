@@ -63,7 +63,8 @@ impl Seen {
     /// Cells of rays whose numbers count, for each of a pixel's.
     pub const EXACT: f64 = 4.0;
 
-    /// The width of a pixel at a place of the ray, M: by the distance in the chart, which frame-dragging does not change.
+    /// The width of a pixel at a place of the ray, M: by the distance in the chart, which frame-dragging does not
+    /// change.
     fn footprint(&self, c: &Constants, observer: &State, there: &State) -> f64 {
         if self.pixel_angle <= 0.0 {
             return 0.0;
@@ -321,8 +322,8 @@ impl Volumes {
         !self.hot_spots.is_empty() || self.volumes.iter().any(|v| v.clouds.is_some())
     }
 
-    /// The matter at a state of a ray, per unit of affine length. `passed`: texels of each volume's structure from sample
-    /// to sample.
+    /// The matter at a state of a ray, per unit of affine length. `passed`: texels of each volume's structure from
+    /// sample to sample.
     pub fn sample(&self, c: &Constants, observer: &State, there: &State, seen: &Seen, passed: &Passed) -> Sample {
         // None is past infinity, where the last step of a ray may end, nor within the horizon.
         if !(there.u > 0.0 && there.u * c.r_plus < 1.0 - 1e-12) {

@@ -53,7 +53,7 @@ impl CloudsUniform {
                 *uniform = CloudUniform {
                     structure: four([clouds.strength, clouds.clumping, clouds.heating, clouds.period]),
                     shape: shape(&volume.cloud),
-                    pattern: [clouds.bands.seed, clouds.bands.first as u32, 0, 0],
+                    pattern: [clouds.bands.seed, clouds.bands.first as u32, u32::from(clouds.leans), 0],
                     bands: bands(&clouds.bands),
                 };
             }

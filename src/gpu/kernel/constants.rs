@@ -164,6 +164,7 @@ fn all() -> Vec<(&'static str, String)> {
         CLOUD_SPACING: f32 = clouds::CLOUD_SPACING;
         SHEAR: f32 = clouds::SHEAR;
         HALF_SHEARED: f32 = clouds::HALF_SHEARED;
+        WOUND: f32 = clouds::WOUND;
         LEAST_B: f32 = clouds::LEAST_B;
         OPPOSITE: f32 = shape::OPPOSITE;
         MOST_VOLUMES: u32 = Volume::MOST;
