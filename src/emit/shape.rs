@@ -140,8 +140,8 @@ impl Cloud {
         (low < high).then_some(Reach { u: [1.0 / high, 1.0 / low], cos })
     }
 
-    /// The radii at which the density bends or jumps: the ends of the fading at its edges, the outer radius, and where a
-    /// jet's wall leaves the plane. 0 for none.
+    /// The radii at which the density bends or jumps: the ends of the fading at its edges, the outer radius, and where
+    /// a jet's wall leaves the plane. 0 for none.
     pub fn bends(&self) -> [f64; 5] {
         let [[begin, begun], [end, ended]] = [INNER_FADE.map(|x| x * self.inner), OUTER_FADE.map(|x| x * self.outer)];
         let wall = self.radius * (self.opening / std::f64::consts::FRAC_PI_2).powi(2);

@@ -85,7 +85,8 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
         sky_x, sky_y, sky_z, disk, size, turbulence, critical, disk_u, opaque_u, capture_u, max_steps,
         max_crossings, rain, effects, view, pattern, map_sizes, projection,
-        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands, depth_u, matter_count, matter_delay, matter);
+        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands, depth_u, matter_count,
+        matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
     [frame, pass]
 }

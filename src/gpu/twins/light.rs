@@ -315,7 +315,8 @@ pub fn group() -> Group {
         ),
     ];
     let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\
-                   fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {}\n\
+                   fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32,
+                   end: f32) {}\n\
                    fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n";
     Group {
         name: "light",

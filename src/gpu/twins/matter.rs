@@ -126,7 +126,8 @@ fn flows() -> Vec<super::Twin> {
             flow,
             "zamo_light",
             at_place!(
-                "let l = zamo_light(c, p, ray_state(13u).du); out4(vec4<f32>(l.frequency, l.radial, l.azimuthal, l.across2));"
+                "let l = zamo_light(c, p, ray_state(13u).du);
+                 out4(vec4<f32>(l.frequency, l.radial, l.azimuthal, l.across2));"
             ),
             |i| {
                 place(i);
@@ -382,7 +383,8 @@ pub fn group() -> Group {
         twin(
             "emit/glow",
             "glow_coefficients",
-            "var m: Matter; m.kind.z = word(0u); m.glow = in4(1u); m.light = vec4<f32>(in3(5u), 0.0); m.tint = vec4<f32>(in3(8u), 0.0);
+            "var m: Matter; m.kind.z = word(0u); m.glow = in4(1u); m.light = vec4<f32>(in3(5u), 0.0);
+             m.tint = vec4<f32>(in3(8u), 0.0);
              let s = glow_coefficients(m, in1(11u), in1(12u), in1(13u), in1(14u), in1(15u), Shift(in1(16u), in1(17u)));
              out3(s.light); out2(vec2<f32>(s.intensity, s.absorption));",
             |i| {
@@ -449,7 +451,8 @@ pub fn group() -> Group {
         twin(
             "emit/volumes",
             "clip clip_between",
-            "var m: Matter; m.reach = vec4<f32>(in3(0u), 1.0); let s = clip(m, in2(3u), in2(5u)); out2(select(vec2<f32>(0.0), s, s.x < s.y));",
+            "var m: Matter; m.reach = vec4<f32>(in3(0u), 1.0); let s = clip(m, in2(3u), in2(5u));
+             out2(select(vec2<f32>(0.0), s, s.x < s.y));",
             |i| {
                 let outer = i.log(0.01, 0.1);
                 let ratio = i.random.log(1.5, 10.0);
@@ -485,7 +488,8 @@ pub fn group() -> Group {
                 // Hermite's basis (Abramowitz & Stegun 1964, 25.2.71 has it for one variable).
                 let x = i.x(6);
                 let (a, b) = ((1.0 - x) * (1.0 - x), x * x);
-                let cubic = i.x(0) * a * (1.0 + 2.0 * x) + i.x(1) * a * x + i.x(2) * b * (3.0 - 2.0 * x) - i.x(3) * b * (1.0 - x);
+                let low = i.x(0) * a * (1.0 + 2.0 * x) + i.x(1) * a * x;
+                let cubic = low + i.x(2) * b * (3.0 - 2.0 * x) - i.x(3) * b * (1.0 - x);
                 o.near(cubic, 1.0);
             },
             1e-5,
@@ -499,7 +503,8 @@ pub fn group() -> Group {
             RAYS,
             HOOKS,
             "fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n\
-             fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {}\n",
+             fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32,
+             end: f32) {}\n",
         ]
         .concat(),
         twins,
