@@ -138,7 +138,7 @@ const TURBULENCE: Because = Because("it counts bands or generations, 2 at most, 
 const PIECES: Because = Because("it counts the pieces of a part of a ray, of which there are 96 at most");
 const MATTER: Because = Because("it counts volumes and hot spots, of which there are 12 at most");
 const CELLS: Because = Because(
-    "a turn that goes on leaves `cuts` above 1, and every other one adds to `cut` or `cell`: 16 times 256 turns at most",
+    "a turn that goes on leaves `cuts` above 1; every other one adds to `cut` or `cell`: 16 times 256 turns at most",
 );
 const LISTED: Because = Because("it counts by 1 or more to the length of a list of pixels, which is below 2^31");
 const BITS: Because = Because("it goes over the bits of a word, which loses one in every turn");
