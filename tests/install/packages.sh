@@ -50,7 +50,8 @@ man_pages() {
     mkdir -p -- "$scratch/unpacked" && dpkg-deb -x "$scratch"/debs/bhr-tools_*.deb "$scratch/unpacked" &&
         dpkg-deb -x "$scratch"/debs/libbhr-dev_*.deb "$scratch/unpacked" || return 1
     for page in "$scratch"/unpacked/usr/share/man/man?/*.gz; do
-        zcat "$page" | man --warnings -l -Tutf8 - 2>"$scratch/warnings" >"$scratch/page" || return 1
+        # Letters that are printed twice, for bold type, count once.
+        zcat "$page" | man --warnings -l -Tutf8 - 2>"$scratch/warnings" | sed 's/.\x08//g' >"$scratch/page" || return 1
         [ ! -s "$scratch/warnings" ] || { cat "$scratch/warnings" && return 1; }
         [[ $page == *.3.gz ]] || grep -q -e '--help' "$scratch/page" || return 1
     done
