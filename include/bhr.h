@@ -670,9 +670,9 @@ BHR_NODISCARD BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, i
 /* ---- matter with depth: volumes and hot spots ---- */
 
 /**
- * Where the matter of a volume is: its density n, at most about 1, with c = cos th, R = r sin th, z = r c, and
- * lengths in M. At a soft edge n fades in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of
- * it, by 3 t^2 - 2 t^3. Since 0.2.0.
+ * Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1 at
+ * inner_radius (DISK), at radius (JET; farther in it is larger) or in the middle (TORUS, HALO). At a soft edge n fades
+ * in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
  */
 typedef int32_t BhrVolumeShape;
 
@@ -685,15 +685,15 @@ typedef int32_t BhrVolumeShape;
 #define BHR_VOLUME_TORUS 1
 
 /**
- * About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), a sphere with the thickness 1e6. It is the
+ * About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), with thickness = 1e6 a sphere. It is the
  * model of Gold et al. 2020 (ApJ 897, 148) with thickness = 1 / h. Since 0.2.0.
  */
 #define BHR_VOLUME_HALO 2
 
 /**
  * Two hollow cones that close up with distance, as parabolas do, R^2 ~ r: n = (r / radius)^-slope e^(-((|c| - cos
- * psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. Its flow is not
- * BHR_FLOW_OUTFLOW by itself. Since 0.2.0.
+ * psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. For a jet that
+ * flows outwards set flow = BHR_FLOW_OUTFLOW as well: the default is KEPLERIAN. Since 0.2.0.
  */
 #define BHR_VOLUME_JET 3
 
@@ -737,8 +737,8 @@ typedef int32_t BhrFlow;
  * Thermal matter absorbs alike at all frequencies and is exact under every redshift g: its opaque light is a
  * blackbody's of g times its temperature. Without absorption it does not shine. A power law sends j = n (nu /
  * nu_camera)^-spectral_index per M and absorbs absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being
- * the frequency that the matter measures: all at the one frequency of the camera, whatever its colour. Lengths are
- * the matter's own. No matter is inside the horizon. Since 0.2.0.
+ * the frequency that the matter measures: a picture shows its light at the one frequency nu_camera, in the colour
+ * tint. Lengths are the matter's own. No matter is inside the horizon. Since 0.2.0.
  */
 typedef struct BhrVolume {
     uint32_t struct_size; /**< sizeof(BhrVolume). */
@@ -794,17 +794,18 @@ typedef struct BhrVolume {
 /**
  * A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
  * being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at dph/dt
- * = 1 / (radius^(3/2) + a) per M, so that it keeps its shape. It shines and absorbs as BhrVolume says. With
+ * = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M, so that it keeps its shape; parts that
+ * would have to be faster than light, beside the hole, are left out. It shines and absorbs as BhrVolume says. With
  * BHR_EFFECT_LIGHT_DELAY each part of it is seen where it was when its light left, which for a moving blob is not a
- * detail: from 60 degrees above, the flux of one at 7 M goes through 1 : 22.1 in an orbit, without it through 1 :
- * 8.9. Since 0.2.0.
+ * detail: without spin, seen 60 degrees from the axis, the flux of one of radius 7 and size 0.7 changes by a factor
+ * of 22.1 in an orbit, without the delay by one of 8.9. Since 0.2.0.
  */
 typedef struct BhrHotSpot {
     uint32_t struct_size; /**< sizeof(BhrHotSpot). */
     uint32_t flags;       /**< Any of BHR_HOT_SPOT_RETROGRADE | BHR_HOT_SPOT_THERMAL. Default 0. */
     /** In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8. */
     double radius;
-    double size;           /**< In M, 0.05 .. radius / 4. Default 0.8. */
+    double size;           /**< In M, 0.05 .. radius / 4, and at least radius / 200. Default 0.8. */
     double azimuth;        /**< The centre at scene time 0, radians within +-1e6. Default 0. */
     double absorption;     /**< Per M at the centre, 0 .. 1e6. Default 0. */
     double temperature;    /**< Kelvin, 500 .. 1e9. Default 10000. */
@@ -829,11 +830,11 @@ BHR_NODISCARD BhrStatus bhr_volume_init(BhrVolume *volume, size_t struct_size);
 BHR_NODISCARD BhrStatus bhr_hot_spot_init(BhrHotSpot *hot_spot, size_t struct_size);
 
 /**
- * Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it,
- * and then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size
- * = sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger. Frames that are being
- * rendered keep the volumes that they began with. Errors: INVALID_ARGUMENT for NULL, a count, a size or a number
- * outside its range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
+ * Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it, and
+ * then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size =
+ * sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger than volume_size. Frames that
+ * are being rendered keep the volumes that they began with. Errors: INVALID_ARGUMENT for NULL, a count, a size or a
+ * number outside its range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_volumes(BhrContext *context,
                                         const BhrVolume *volumes,
@@ -1246,7 +1247,7 @@ BHR_NODISCARD BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
  * | ... of a turbulent disk      | 15                           | 3; beyond 1e4 M 2                            |
  *
  * Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays,
- * BHR_VIEW_METRIC and disks with BHR_DISK_PLUNGES.
+ * BHR_VIEW_METRIC, disks with BHR_DISK_PLUNGES, and scenes with volumes or hot spots.
  */
 typedef int32_t BhrMethod;
 
@@ -1344,7 +1345,7 @@ typedef int32_t BhrView;
 
 /**
  * The optical depth of all volumes and hot spots along the ray, at the camera's frequency, as in BhrTransfer; NaN
- * where the ray is captured. The thin disk does not count. Sequential map, s = (log2(value) + 6) / 10: 1/64 .. 16.
+ * unless the ray escapes. The thin disk does not count. Sequential map, s = (log2(value) + 6) / 10: 1/64 .. 16.
  * Since 0.2.0.
  */
 #define BHR_VIEW_OPTICAL_DEPTH 6
@@ -1670,8 +1671,8 @@ typedef struct BhrTransfer {
      */
     double intensity;
     /**
-     * That of all volumes and hot spots, at the camera's frequency. NaN unless escaped: matter that falls piles up
-     * before the horizon without end, as far as light that comes from there can tell.
+     * That of all volumes and hot spots, at the camera's frequency; above 300 only that it is more. NaN unless
+     * escaped: matter that falls piles up before the horizon without end, as far as light from there can tell.
      */
     double optical_depth;
     /**

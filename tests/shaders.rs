@@ -154,7 +154,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("emit/turbulence", "turbulent_brightness", "for (var old = 0u; old < alive; old += 1u)", TURBULENCE),
     ("emit/volumes", "add_part", "for (var k = 1u; k <= count; k += 1u)", PIECES),
     ("emit/volumes", "cells_between", "for (var k = 0u; k < frame.matter_count; k += 1u)", MATTER),
-    ("emit/volumes", "add_piece", "while cell < u32(cells) && !is_dark()", CELLS),
+    ("emit/volumes", "add_piece", "while cell < count && !is_dark()", CELLS),
     ("emit/volumes", "add_piece", "for (var node = 0u; node < 3u; node += 1u)", CONSTANT),
     ("emit/volumes", "coefficients_at", "for (var k = 0u; k < frame.matter_count; k += 1u)", MATTER),
     ("film/packed_rows", "write_rows", "for (var k = 0u; k < pixel_words(); k += 1u)", WORDS),

@@ -115,8 +115,8 @@ fn with_angular_momentum(a: f32, at: Place, l0: f32) -> vec2<f32> {
 }
 
 fn outflow(c: Constants, a: f32, at: Place, speed: f32, base: f32) -> vec2<f32> {
-    let share = (at.r / base) * (at.r / base);
-    let outwards = speed * (share - 1.0) / (share + 1.0);
+    let share = (base / at.r) * (base / at.r);
+    let outwards = speed * (1.0 - share) / (1.0 + share);
     let x = a / (4.0 * c.r_plus) * at.around;
     let around = sqrt((1.0 - outwards) * (1.0 + outwards)) * x / (1.0 + x * x);
     return vec2<f32>(around, outwards * inverseSqrt(1.0 - outwards * outwards - around * around));

@@ -10,6 +10,9 @@
 override THERMAL: bool = true;
 override POWER_LAW: bool = true;
 
+// Coefficients are no larger: what is behind an opaque cell is taken times 0, which must not meet infinity.
+const LARGEST_COEFFICIENT: f32 = 1e24;
+
 // Per unit of affine length: light in linear Rec. 709, I_nu of power laws, optical depth.
 struct Coefficients {
     light: vec3<f32>,
@@ -25,11 +28,12 @@ fn glow_coefficients(matter: Matter, density: f32, heat: f32, r: f32, nu: f32, g
         let ln_g = log(g);
         let index = matter.light.y;
         let seen = column * shift.beaming * shift.beaming * shift.beaming * pow(shift.colour, index) * matter.light.z;
-        return Coefficients(matter.tint.xyz * seen, column * exp(ln_g * (3.0 + index)),
-            matter.glow.x * column * exp(ln_g * (ABSORPTION_INDEX + index)));
+        return Coefficients(matter.tint.xyz * min(seen, LARGEST_COEFFICIENT),
+            min(column * exp(ln_g * (3.0 + index)), LARGEST_COEFFICIENT),
+            min(matter.glow.x * column * exp(ln_g * (ABSORPTION_INDEX + index)), LARGEST_COEFFICIENT));
     }
-    let absorption = matter.glow.x * column;
+    let absorption = min(matter.glow.x * column, LARGEST_COEFFICIENT);
     let temperature = heat * matter.glow.y * pow(r / matter.glow.z, -matter.glow.w);
     let rgb = shifted_blackbody(temperature, matter.light.x, shift.colour, shift.beaming);
-    return Coefficients(rgb * (matter.light.z * absorption), 0.0, absorption);
+    return Coefficients(min(rgb * (matter.light.z * absorption), vec3<f32>(LARGEST_COEFFICIENT)), 0.0, absorption);
 }

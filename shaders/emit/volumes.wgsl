@@ -164,7 +164,9 @@ fn add_piece(
     var cell = 0u;
     var cut = 0u;
     var cuts = 1u;
-    while cell < u32(cells) && !is_dark() {
+    // u32 of NaN may be any number.
+    let count = clamp(u32(cells), 1u, u32(MOST_CELLS));
+    while cell < count && !is_dark() {
         let part = size / f32(cuts);
         let low = begin + size * f32(cell) + part * f32(cut);
         var light = array<vec3<f32>, 3>();
@@ -233,14 +235,17 @@ fn coefficients_at(
                 later = frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
             }
         }
-        let at = place_at(c, u, cosine);
-        let light = zamo_light(c, at, du);
         for (var k = 0u; k < frame.matter_count; k += 1u) {
             let matter = frame.matter[k];
             let density = density_at(r, cosine, azimuth, later, matter);
+            if !(density >= matter.light.w) {
+                continue;
+            }
+            let at = place_at(c, u, cosine);
+            let light = zamo_light(c, at, du);
             let nu = measured_by(light, flow_velocity(c, at, matter)) / c.nu_local;
             // Nothing can move so where this fails, NaN among it.
-            if density >= matter.light.w && nu > 0.0 && nu < 1e30 {
+            if nu > 0.0 && nu < 1e30 {
                 let g = ratio / nu;
                 var shift = Shift(g, g);
                 if !ALL_EFFECTS {
@@ -255,7 +260,8 @@ fn coefficients_at(
             }
         }
         // d lambda / d tau = Sigma (`Part::length`).
-        sum *= tau * c.nu_local * at.sigma;
+        let a_cosine = c.a * cosine;
+        sum *= tau * c.nu_local * (r * r + a_cosine * a_cosine);
     }
     return sum;
 }

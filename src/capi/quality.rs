@@ -35,7 +35,7 @@ use crate::scene::{LensTables, Method, Quality};
 /// | ... of a turbulent disk      | 15                           | 3; beyond 1e4 M 2                            |
 ///
 /// Elsewhere AUTO integrates every ray in fixed steps of fifth order, as it always does for bhr_trace_rays,
-/// BHR_VIEW_METRIC and disks with BHR_DISK_PLUNGES.
+/// BHR_VIEW_METRIC, disks with BHR_DISK_PLUNGES, and scenes with volumes or hot spots.
 pub type BhrMethod = i32;
 /// Looked up in tables where that pays, else integrated. The fastest.
 pub const BHR_METHOD_AUTO: BhrMethod = 0;

@@ -23,8 +23,8 @@ pub struct BhrTransfer {
     /// I_nu at the camera's frequency, where matter with a power law sends 1 per M at density 1, whatever its
     /// brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid.
     pub intensity: f64,
-    /// That of all volumes and hot spots, at the camera's frequency. NaN unless escaped: matter that falls piles up
-    /// before the horizon without end, as far as light that comes from there can tell.
+    /// That of all volumes and hot spots, at the camera's frequency; above 300 only that it is more. NaN unless
+    /// escaped: matter that falls piles up before the horizon without end, as far as light from there can tell.
     pub optical_depth: f64,
     /// The light of all volumes and hot spots, linear Rec. 709, with the effects that are set. NaN for a ray that is
     /// not valid.

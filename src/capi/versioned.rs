@@ -51,16 +51,18 @@ const fn first_size<T: Versioned>() -> usize {
 }
 
 pub(super) fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
+    check_named_size::<T>(size, &format!("{name} struct_size"))
+}
+
+/// The same of a size whose whole name is `name`.
+pub(super) fn check_named_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
     let first = const { first_size::<T>() };
     if size < first {
-        return Err(Error::argument(format!(
-            "{name} struct_size is {size}; it must be sizeof({}), at least {first}",
-            T::NAME
-        )));
+        return Err(Error::argument(format!("{name} is {size}; it must be sizeof({}), at least {first}", T::NAME)));
     }
     if size > MAX_SIZE {
         return Err(Error::argument(format!(
-            "{name} struct_size is {size}, more than any struct has ({MAX_SIZE}): was it initialised?"
+            "{name} is {size}, more than any struct has ({MAX_SIZE}): was it initialised?"
         )));
     }
     Ok(size)

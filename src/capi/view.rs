@@ -37,7 +37,7 @@ pub const BHR_VIEW_STEPS: BhrView = 4;
 /// value): 0, the static limit, and less are its dark end; 1, infinity, its light one.
 pub const BHR_VIEW_METRIC: BhrView = 5;
 /// The optical depth of all volumes and hot spots along the ray, at the camera's frequency, as in BhrTransfer; NaN
-/// where the ray is captured. The thin disk does not count. Sequential map, s = (log2(value) + 6) / 10: 1/64 .. 16.
+/// unless the ray escapes. The thin disk does not count. Sequential map, s = (log2(value) + 6) / 10: 1/64 .. 16.
 /// Since 0.2.0.
 pub const BHR_VIEW_OPTICAL_DEPTH: BhrView = 6;
 /// The intensity at the camera's frequency of volumes and hot spots with a power law, where they send 1 per M at

@@ -6,25 +6,25 @@ use super::context::BhrContext;
 use super::entry::anywhere;
 use super::pointer::{Out, check_flags, is_null, unknown};
 use super::status::BhrStatus;
-use super::versioned::{self, Versioned, check_size};
+use super::versioned::{self, Versioned, check_named_size};
 use crate::error::{Error, Result};
 use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
 use arrayvec::ArrayVec;
 
-/// Where the matter of a volume is: its density n, at most about 1, with c = cos th, R = r sin th, z = r c, and
-/// lengths in M. At a soft edge n fades in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of
-/// it, by 3 t^2 - 2 t^3. Since 0.2.0.
+/// Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1 at
+/// inner_radius (DISK), at radius (JET; farther in it is larger) or in the middle (TORUS, HALO). At a soft edge n fades
+/// in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
 pub type BhrVolumeShape = i32;
 /// About the equatorial plane: n = (r / inner_radius)^-slope e^(-(c / thickness)^2 / 2), with soft edges. Since 0.2.0.
 pub const BHR_VOLUME_DISK: BhrVolumeShape = 0;
 /// A ring about the axis: n = e^(-((R - radius) / width)^2 / 2 - (z / (thickness radius))^2 / 2). Since 0.2.0.
 pub const BHR_VOLUME_TORUS: BhrVolumeShape = 1;
-/// About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), a sphere with the thickness 1e6. It is the
+/// About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), with thickness = 1e6 a sphere. It is the
 /// model of Gold et al. 2020 (ApJ 897, 148) with thickness = 1 / h. Since 0.2.0.
 pub const BHR_VOLUME_HALO: BhrVolumeShape = 2;
 /// Two hollow cones that close up with distance, as parabolas do, R^2 ~ r: n = (r / radius)^-slope e^(-((|c| - cos
-/// psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. Its flow is not
-/// BHR_FLOW_OUTFLOW by itself. Since 0.2.0.
+/// psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. For a jet that
+/// flows outwards set flow = BHR_FLOW_OUTFLOW as well: the default is KEPLERIAN. Since 0.2.0.
 pub const BHR_VOLUME_JET: BhrVolumeShape = 3;
 
 /// How the matter of a volume moves, by what the local ZAMO measures. Every flow is slower than light everywhere.
@@ -54,8 +54,8 @@ pub const BHR_VOLUME_POWER_LAW: u32 = 2u32;
 /// Thermal matter absorbs alike at all frequencies and is exact under every redshift g: its opaque light is a
 /// blackbody's of g times its temperature. Without absorption it does not shine. A power law sends j = n (nu /
 /// nu_camera)^-spectral_index per M and absorbs absorption n (nu / nu_camera)^-(2.5 + spectral_index) per M, nu being
-/// the frequency that the matter measures: all at the one frequency of the camera, whatever its colour. Lengths are
-/// the matter's own. No matter is inside the horizon. Since 0.2.0.
+/// the frequency that the matter measures: a picture shows its light at the one frequency nu_camera, in the colour
+/// tint. Lengths are the matter's own. No matter is inside the horizon. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrVolume {
@@ -203,10 +203,11 @@ pub const BHR_HOT_SPOT_THERMAL: u32 = 2u32;
 
 /// A glowing blob on a circular geodesic in the equatorial plane: n = e^(-(d / size)^2 / 2), cut off at 7 sizes, d
 /// being the distance from its centre in chart coordinates. It is rigid: all of it turns as its centre does, at dph/dt
-/// = 1 / (radius^(3/2) + a) per M, so that it keeps its shape. It shines and absorbs as BhrVolume says. With
+/// = 1 / (radius^(3/2) + a), with RETROGRADE -1 / (radius^(3/2) - a), per M, so that it keeps its shape; parts that
+/// would have to be faster than light, beside the hole, are left out. It shines and absorbs as BhrVolume says. With
 /// BHR_EFFECT_LIGHT_DELAY each part of it is seen where it was when its light left, which for a moving blob is not a
-/// detail: from 60 degrees above, the flux of one at 7 M goes through 1 : 22.1 in an orbit, without it through 1 :
-/// 8.9. Since 0.2.0.
+/// detail: without spin, seen 60 degrees from the axis, the flux of one of radius 7 and size 0.7 changes by a factor
+/// of 22.1 in an orbit, without the delay by one of 8.9. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrHotSpot {
@@ -216,7 +217,7 @@ pub struct BhrHotSpot {
     pub flags: u32,
     /// In M, 1 .. 1000. Inside the ISCO no orbit is stable: there the spot is taken to be at the ISCO. Default 8.
     pub radius: f64,
-    /// In M, 0.05 .. radius / 4. Default 0.8.
+    /// In M, 0.05 .. radius / 4, and at least radius / 200. Default 0.8.
     pub size: f64,
     /// The centre at scene time 0, radians within +-1e6. Default 0.
     pub azimuth: f64,
@@ -318,7 +319,7 @@ unsafe fn read_array<C: Versioned, T: TryFrom<C, Error = Error>, const MOST: usi
     if begin.is_null() {
         return Err(is_null(array));
     }
-    check_size::<C>(size, size_name)?;
+    check_named_size::<C>(size, size_name)?;
     for index in 0..count as usize {
         let numbered = |error: Error| Error { message: format!("{array}[{index}]: {}", error.message), ..error };
         // SAFETY: the element lies within the array by this function's contract.
@@ -355,7 +356,7 @@ unsafe fn write_array<C: Versioned>(
     if begin.is_null() {
         return Err(is_null(names.array));
     }
-    check_size::<C>(size, names.size)?;
+    check_named_size::<C>(size, names.size)?;
     for (index, value) in values.take(capacity as usize).enumerate() {
         // SAFETY: the element lies within the array by this function's contract; `fill` needs no `struct_size` there.
         unsafe { versioned::fill(begin.byte_add(index * size), size, &value) };
@@ -379,11 +380,11 @@ pub unsafe extern "C" fn bhr_hot_spot_init(hot_spot: *mut BhrHotSpot, struct_siz
     anywhere("bhr_hot_spot_init", || unsafe { versioned::init(hot_spot, "hot spot", struct_size) })
 }
 
-/// Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it,
-/// and then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size
-/// = sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger. Frames that are being
-/// rendered keep the volumes that they began with. Errors: INVALID_ARGUMENT for NULL, a count, a size or a number
-/// outside its range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
+/// Sets all volumes of the scene: count of them, packed, at most BHR_MAX_VOLUMES; 0: none, as a new context has it, and
+/// then volumes may be NULL. They are copied, and may overlap each other, the thin disk and hot spots. volume_size =
+/// sizeof(BhrVolume) as the caller was compiled; no volume's struct_size may be larger than volume_size. Frames that
+/// are being rendered keep the volumes that they began with. Errors: INVALID_ARGUMENT for NULL, a count, a size or a
+/// number outside its range, or an unknown flag, shape or flow; the scene then stays as it was. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_volumes(
     context: *mut BhrContext,

@@ -13,6 +13,9 @@ use crate::physics::blackbody::BlackbodyTable;
 /// synchrotron light in the model of Gold et al. 2020 (ApJ 897, 148).
 pub const ABSORPTION_INDEX: f64 = 2.5;
 
+/// Coefficients are no larger: what is behind an opaque cell is taken times 0, which must not meet infinity.
+const MOST: f64 = 1e100;
+
 /// How matter shines and absorbs.
 #[derive(Clone, Copy, Debug)]
 pub struct Glow {
@@ -75,22 +78,23 @@ impl Glow {
     /// j = alpha B(T): the opaque light of matter is a blackbody's of g T. Its absorption is the same at every
     /// frequency.
     fn thermal(&self, column: f64, temperature: f64, shift: Shift) -> Coefficients {
-        let absorption = self.absorption * column;
+        let absorption = (self.absorption * column).min(MOST);
         let rgb =
             BlackbodyTable::shared().shifted_blackbody(temperature, self.log_reference, shift.colour, shift.beaming);
-        Coefficients { light: rgb.map(|v| v * self.brightness * absorption), intensity: 0.0, absorption }
+        Coefficients { light: rgb.map(|v| (v * self.brightness * absorption).min(MOST)), intensity: 0.0, absorption }
     }
 
     /// j = (nu / nu_camera)^-alpha, absorption = A (nu / nu_camera)^-(2.5 + alpha): all of it at the one frequency of
     /// the camera, whatever the colour that stands for it.
     fn power_law(&self, column: f64, g: f64, shift: Shift) -> Coefficients {
         let log = g.ln();
-        let intensity = column * (log * (3.0 + self.spectral_index)).exp();
+        let intensity = (column * (log * (3.0 + self.spectral_index)).exp()).min(MOST);
         let seen = column * shift.beaming.powi(3) * shift.colour.powf(self.spectral_index) * self.brightness;
+        let seen = seen.min(MOST);
         Coefficients {
             light: self.tint.map(|v| v * seen),
             intensity,
-            absorption: self.absorption * column * (log * (ABSORPTION_INDEX + self.spectral_index)).exp(),
+            absorption: (self.absorption * column * (log * (ABSORPTION_INDEX + self.spectral_index)).exp()).min(MOST),
         }
     }
 }

@@ -54,8 +54,11 @@ impl HotSpot {
     pub const CUT: f64 = 7.0;
     /// Largest size, over the radius.
     pub const LARGEST: f64 = 0.25;
+    /// Smallest size, over the radius: smaller spots would need more samples than a ray takes.
+    pub const SMALLEST: f64 = 0.005;
 
-    /// Errors: a number not finite or outside its range, a size of more than a quarter of the radius.
+    /// Errors: a number not finite or outside its range, a size of more than a quarter of the radius, or of
+    /// less than a two-hundredth.
     pub fn check(&self) -> Result<()> {
         let check = |name: &str, value: f64, limits: [f64; 2]| range("hot spot", name, value, limits);
         check("radius", self.radius, [1.0, 1e3])?;
@@ -65,6 +68,14 @@ impl HotSpot {
                 "hot spot size is {}; it must be at most {} of radius, {}",
                 Number(self.size),
                 Self::LARGEST,
+                Number(self.radius)
+            )));
+        }
+        if self.size < Self::SMALLEST * self.radius {
+            return Err(Error::argument(format!(
+                "hot spot size is {}; it must be at least {} of radius, {}",
+                Number(self.size),
+                Self::SMALLEST,
                 Number(self.radius)
             )));
         }

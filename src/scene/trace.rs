@@ -90,7 +90,7 @@ impl Scene {
         self.view == super::View::Light && self.quality.refines && shows
     }
 
-    /// Steps a ray of a pixel takes on average, for planning: sigma runs to about 6.
+    /// Steps a ray of a pixel takes on average, for planning, or what takes as long: sigma runs to about 6.
     pub fn expected_steps(&self) -> u64 {
         let settings = self.pixel_settings();
         let steps = match self.quality.method {
@@ -98,7 +98,10 @@ impl Scene {
             Method::Adaptive => 60,
             _ => (6.0 / settings.step).ceil() as u64,
         };
-        steps.clamp(1, settings.max_steps.into())
+        // Each volume or spot costs as much as some sixty steps more.
+        let emitters = self.emitters();
+        let matter = emitters.volumes.volumes.len() + emitters.volumes.hot_spots.len();
+        steps.clamp(1, settings.max_steps.into()) + 60 * matter as u64
     }
 
     /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde

@@ -134,6 +134,9 @@ static void numbers(Watch *watch, BhrContext *context) {
     BhrHotSpot spot = a_spot();
     spot.size = 0.2501 * spot.radius;
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "size", bhr_set_hot_spots(context, &spot, sizeof spot, 1));
+    spot.radius = 100.0, spot.size = 0.499;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "at least 0.005 of radius",
+                  bhr_set_hot_spots(context, &spot, sizeof spot, 1));
 }
 
 static void flags_and_kinds(Watch *watch, BhrContext *context) {

@@ -305,7 +305,7 @@ fn any_spot(random: &mut Random) -> HotSpot {
         retrograde: random.next() < 0.5,
         thermal: random.next() < 0.5,
         radius,
-        size: random.log_range(0.05, f64::max(0.05, HotSpot::LARGEST * radius)),
+        size: random.log_range(f64::max(0.05, 0.0051 * radius), f64::max(0.05, HotSpot::LARGEST * radius)),
         azimuth: random.range(-1e6, 1e6),
         absorption: random.pick(&[0.0, 1.0, 1e6]),
         temperature: random.log_range(500.0, 1e9),
