@@ -105,7 +105,7 @@ static void numbers(Watch *watch, BhrContext *context) {
         const Limits *limits = &HOT_SPOT[i];
         for (size_t k = 0; k < 2 + COUNT_OF(no_number); k++) {
             BhrHotSpot spot = a_spot();
-            spot.radius = 1e3; /* so that any size within its limits goes with it */
+            spot.radius = 1e3, spot.size = 100.0; /* which go together */
             put(&spot, limits->offset,
                 k == 0 ? outside(limits->least, -1) : k == 1 ? outside(limits->most, 1) : no_number[k - 2]);
             CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, limits->name,
@@ -113,8 +113,9 @@ static void numbers(Watch *watch, BhrContext *context) {
         }
         for (size_t k = 0; k < 2; k++) {
             BhrHotSpot spot = a_spot();
-            spot.radius = limits->offset == offsetof(BhrHotSpot, radius) ? spot.radius : 1e3;
-            spot.size = 0.1;
+            /* A size and a radius that go together, whichever of them is at its limit. */
+            spot.radius = limits->offset == offsetof(BhrHotSpot, size) && k == 0 ? 8.0 : 1e3;
+            spot.size = limits->offset == offsetof(BhrHotSpot, radius) && k == 0 ? 0.1 : 100.0;
             spot.flags = k == 0 ? BHR_HOT_SPOT_THERMAL : BHR_HOT_SPOT_RETROGRADE;
             put(&spot, limits->offset, k == 0 ? limits->least : limits->most);
             CHECK_OK(bhr_set_hot_spots(context, &spot, sizeof spot, 1));
