@@ -5,6 +5,7 @@
 
 use super::pointer::is_null;
 use crate::error::{Error, Result};
+use std::fmt::Display;
 use std::mem::size_of;
 
 /// Larger than any struct will ever be: a greater `struct_size` is memory that nobody initialised.
@@ -51,11 +52,12 @@ const fn first_size<T: Versioned>() -> usize {
 }
 
 pub(super) fn check_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
-    check_named_size::<T>(size, &format!("{name} struct_size"))
+    // Without allocating: there may be no memory left, and nothing may be wrong.
+    check_named_size::<T>(size, format_args!("{name} struct_size"))
 }
 
 /// The same of a size whose whole name is `name`.
-pub(super) fn check_named_size<T: Versioned>(size: usize, name: &str) -> Result<usize> {
+pub(super) fn check_named_size<T: Versioned>(size: usize, name: impl Display) -> Result<usize> {
     let first = const { first_size::<T>() };
     if size < first {
         return Err(Error::argument(format!("{name} is {size}; it must be sizeof({}), at least {first}", T::NAME)));
