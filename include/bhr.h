@@ -844,7 +844,7 @@ BHR_NODISCARD BhrStatus bhr_set_volumes(BhrContext *context,
 /**
  * Reads the volumes as they are set: *out_count becomes their number, and the first `capacity` of them are written,
  * packed, each with volume_size as its struct_size. With capacity 0 volumes may be NULL. Errors: INVALID_ARGUMENT for
- * NULL or a wrong volume_size. Since 0.2.0.
+ * NULL or a wrong volume_size; volumes are then as they were. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_get_volumes(const BhrContext *context,
                                         BhrVolume *volumes,
@@ -1147,10 +1147,10 @@ BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
 
 /**
- * Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera,
- * which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time
- * T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that
- * falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+ * Sets the scene's time in scene lengths, finite; it turns disk and spots. Default 0. It is the chart's t at the
+ * camera, which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand)
+ * time T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock
+ * that falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
  */
 BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 
@@ -1667,7 +1667,8 @@ typedef struct BhrTransfer {
     uint32_t reserved; /**< Reserved: 0. */
     /**
      * I_nu at the camera's frequency, where matter with a power law sends 1 per M at density 1, whatever its
-     * brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid.
+     * brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid; of a ray that
+     * is BHR_FATE_UNRESOLVED it is the part as far as it was followed, and so is the light.
      */
     double intensity;
     /**

@@ -251,7 +251,7 @@ fn coefficients_at(
                 if !ALL_EFFECTS {
                     shift = visible_shift(g, nu_static_observer(c.energy / c.nu_local) * c.nu_local / light.frequency);
                 }
-                let found = glow_coefficients(matter, density, 1.0, r, nu, g, shift);
+                let found = glow_coefficients(matter, density, r, nu, g, shift);
                 if SHOWS_DEPTH {
                     sum += vec4<f32>(found.intensity, 0.0, 0.0, found.absorption);
                 } else {

@@ -55,10 +55,10 @@ pub unsafe extern "C" fn bhr_get_effects(context: *const BhrContext, out_effects
     }
 }
 
-/// Sets the scene's time in scene lengths, finite; it turns the disk. Default 0. It is the chart's t at the camera,
-/// which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand) time
-/// T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock that
-/// falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+/// Sets the scene's time in scene lengths, finite; it turns disk and spots. Default 0. It is the chart's t at the
+/// camera, which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand)
+/// time T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock
+/// that falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_time(context: *mut BhrContext, time: f64) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -21,7 +21,8 @@ pub struct BhrTransfer {
     /// Reserved: 0.
     pub reserved: u32,
     /// I_nu at the camera's frequency, where matter with a power law sends 1 per M at density 1, whatever its
-    /// brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid.
+    /// brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid; of a ray that
+    /// is BHR_FATE_UNRESOLVED it is the part as far as it was followed, and so is the light.
     pub intensity: f64,
     /// That of all volumes and hot spots, at the camera's frequency; above 300 only that it is more. NaN unless
     /// escaped: matter that falls piles up before the horizon without end, as far as light from there can tell.

@@ -188,7 +188,6 @@ impl TryFrom<BhrVolume> for Volume {
             infall: given.infall,
             angular_momentum: given.angular_momentum,
             speed: given.speed,
-            ..Self::default()
         };
         volume.check()?;
         Ok(volume)
@@ -403,7 +402,7 @@ pub unsafe extern "C" fn bhr_set_volumes(
 
 /// Reads the volumes as they are set: *out_count becomes their number, and the first `capacity` of them are written,
 /// packed, each with volume_size as its struct_size. With capacity 0 volumes may be NULL. Errors: INVALID_ARGUMENT for
-/// NULL or a wrong volume_size. Since 0.2.0.
+/// NULL or a wrong volume_size; volumes are then as they were. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_get_volumes(
     context: *const BhrContext,

@@ -91,11 +91,6 @@ pub struct VolumeMatter {
     pub bends: [f64; BENDS],
     /// Thinner matter is left out.
     pub least: f64,
-    /// 0 .. 1: how much structure it has.
-    pub turbulence: f64,
-    pub clumping: f64,
-    pub heating: f64,
-    pub seed: u64,
 }
 
 /// A hot spot of a frame.
@@ -155,10 +150,6 @@ impl VolumeMatter {
                 [a, b, c, d, e, falls].map(|r| 1.0 / r)
             },
             least,
-            turbulence: volume.turbulence,
-            clumping: volume.clumping,
-            heating: volume.heating,
-            seed: volume.seed,
         })
     }
 
@@ -170,22 +161,6 @@ impl VolumeMatter {
         let bends = matches!(self.flow.motion, Motion::AngularMomentum { .. });
         let beside_axis = if bends { 0.5 * stretch.swept / sin2.max(NEAR_AXIS * NEAR_AXIS).sqrt() } else { 0.0 };
         self.cloud.cells(stretch) + beside_axis
-    }
-
-    /// Density, and the factor on the temperature, at a place.
-    fn density(&self, there: &State, r: f64, cos: f64) -> (f64, f64) {
-        let density = self.cloud.density(r, cos);
-        if self.turbulence <= 0.0 || density < self.least {
-            return (density, 1.0);
-        }
-        let pattern = self.pattern(there);
-        (density * pattern.powf(self.clumping), pattern.powf(self.heating))
-    }
-
-    /// The structure of the matter at a place, a factor of mean 1: this is where turbulence enters. Matter is even so
-    /// far.
-    fn pattern(&self, _: &State) -> f64 {
-        1.0
     }
 }
 
@@ -357,7 +332,7 @@ impl Volumes {
         let (r, cos) = (1.0 / there.u, there.n.z / there.n.length());
         let mut sum = Coefficients::default();
         let mut measured = None;
-        let mut add = |flow: &Flow, glow: &Glow, density: f64, heat: f64| {
+        let mut add = |flow: &Flow, glow: &Glow, density: f64| {
             let (at, light) = measured.get_or_insert_with(|| {
                 let at = Place::on_ray(c, there.u, cos);
                 (at, ZamoLight::new(c, &at, there.du))
@@ -368,13 +343,13 @@ impl Volumes {
                 let g = seen.frequency_ratio / nu;
                 let camera = seen.static_lapse.map_or(c.nu_local, |lapse| c.energy / lapse);
                 let shift = self.effects.visible_shift(g, || camera / light.frequency);
-                sum.add(glow.coefficients(density, heat, r, nu, g, shift));
+                sum.add(glow.coefficients(density, r, nu, g, shift));
             }
         };
         for volume in &self.volumes {
-            let (density, heat) = volume.density(there, r, cos);
+            let density = volume.cloud.density(r, cos);
             if density >= volume.least {
-                add(&volume.flow, &volume.glow, density, heat);
+                add(&volume.flow, &volume.glow, density);
             }
         }
         if !self.hot_spots.is_empty() {
@@ -383,7 +358,7 @@ impl Volumes {
             for spot in &self.hot_spots {
                 let density = spot.density(r, cos, azimuth, self.when.reference_delay - delay);
                 if density > 0.0 {
-                    add(&spot.flow, &spot.glow, density, 1.0);
+                    add(&spot.flow, &spot.glow, density);
                 }
             }
         }

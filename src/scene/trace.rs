@@ -99,8 +99,7 @@ impl Scene {
             _ => (6.0 / settings.step).ceil() as u64,
         };
         // Each volume or spot costs as much as some sixty steps more.
-        let emitters = self.emitters();
-        let matter = emitters.volumes.volumes.len() + emitters.volumes.hot_spots.len();
+        let matter = self.volumes.len() + self.hot_spots.len();
         steps.clamp(1, settings.max_steps.into()) + 60 * matter as u64
     }
 

@@ -108,7 +108,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         scene.camera = outside(distance, elevation);
         scene
     };
-    let disk = Volume { turbulence: 0.0, ..Volume::default() };
+    let disk = Volume::default();
     let torus = Volume { shape: Shape::Torus, thickness: 0.2, absorption: 0.3, temperature: 6000.0, ..disk };
     let halo = Volume {
         shape: Shape::Halo,

@@ -204,7 +204,7 @@ fn flows() -> Vec<super::Twin> {
             |i| {
                 place(i);
                 i.even(0.0, 0.98);
-                i.log(1.0, 10.0);
+                i.log(1e-25, 10.0);
             },
             |i, o| {
                 let (a, p) = place_of(i);
@@ -385,7 +385,7 @@ pub fn group() -> Group {
             "glow_coefficients",
             "var m: Matter; m.kind.z = word(0u); m.glow = in4(1u); m.light = vec4<f32>(in3(5u), 0.0);
              m.tint = vec4<f32>(in3(8u), 0.0);
-             let s = glow_coefficients(m, in1(11u), in1(12u), in1(13u), in1(14u), in1(15u), Shift(in1(16u), in1(17u)));
+             let s = glow_coefficients(m, in1(11u), in1(12u), in1(13u), in1(14u), Shift(in1(15u), in1(16u)));
              out3(s.light); out2(vec2<f32>(s.intensity, s.absorption));",
             |i| {
                 i.pick(2);
@@ -398,7 +398,6 @@ pub fn group() -> Group {
                 i.log(0.1, 10.0);
                 i.evens(3, 0.0, 1.0);
                 i.log(1e-3, 1.0);
-                i.even(0.8, 1.3);
                 i.log(2.0, 10.0);
                 i.log(0.5, 2.0);
                 i.log(0.4, 2.0);
@@ -417,8 +416,8 @@ pub fn group() -> Group {
                     brightness: i.x(7),
                     tint: i.v3(8).to_array(),
                 };
-                let shift = Shift { colour: i.x(16), beaming: i.x(17) };
-                let sample = glow.coefficients(i.x(11), i.x(12), i.x(13), i.x(14), i.x(15), shift);
+                let shift = Shift { colour: i.x(15), beaming: i.x(16) };
+                let sample = glow.coefficients(i.x(11), i.x(12), i.x(13), i.x(14), shift);
                 let peak = sample.light.into_iter().fold(0.0, f64::max);
                 o.all(sample.light, peak);
                 o.put(sample.intensity);
