@@ -4,11 +4,13 @@
 
 use super::CpuTracer;
 use super::delivery::Delivery;
+use super::half::Blocks;
 use super::lens::{LensCache, LensLookup};
 use super::record::{Neighbours, Recorder};
 use super::refine::Refiner;
 use super::shade::Shader;
 use crate::allocate::{self, collected, filled};
+use crate::emit::half::Evenness;
 use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::film::{FilmParams, develop_row};
@@ -26,6 +28,8 @@ use std::sync::Arc;
 /// prompt progress, large enough to keep every core busy.
 const TILE_STEPS: u64 = 20 << 15;
 const TILE_WIDTH: u32 = 1024;
+/// The same with matter at half resolution: nearer to a square, as more blocks are traced than the tile has.
+const TILE_WIDTH_HALF: u32 = 160;
 
 /// The maker of a frame's records.
 pub enum RecordSource<'a> {
@@ -38,6 +42,8 @@ pub struct Frame<'a> {
     lens: &'a Lens,
     source: RecordSource<'a>,
     shader: Shader<'a>,
+    /// How pixels get their matter with depth from blocks; `None`: each sums its own.
+    half: Option<Evenness>,
     /// Refines pixels with edges; `None` where values of views are shown, which are not to be averaged.
     refiner: Option<Refiner<'a>>,
     pub film: FilmParams,
@@ -56,7 +62,8 @@ impl CpuTracer {
     ) -> Result<FrameStats> {
         allocate::check_room(0, "a frame")?;
         self.with_frame(scene, request, |pool, frame| {
-            let tiles = tiles(request, frame.expected_steps(scene))?;
+            let widest = if frame.half.is_some() { TILE_WIDTH_HALF } else { TILE_WIDTH };
+            let tiles = tiles(request, frame.expected_steps(scene), widest)?;
             let mut delivery = Delivery::new(pool, frame, sink, progress);
             match Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())? {
                 None => delivery.plain(&tiles)?,
@@ -90,21 +97,20 @@ impl CpuTracer {
     /// The records of a frame, row by row. Errors: as `Scene::lens`; OUT_OF_MEMORY.
     pub fn ray_records(&mut self, scene: &Scene, request: &FrameRequest) -> Result<Vec<Record>> {
         let tile = Tile { x: 0, y: 0, width: request.width, height: request.height };
-        let origin = [f64::from(request.region.x) + 0.5, f64::from(request.region.y) + 0.5];
         let count = request.width as usize * request.height as usize;
         let mut records = filled(count, Record::captured(), "the records of a frame's rays")?;
         let keep = |record: &Record, _: f64, _: f64, out: &mut Record| *out = record.clone();
         self.with_frame(scene, request, |pool, frame| {
-            pool.install(|| frame.with_records(tile, origin, &mut records, keep))
+            pool.install(|| frame.with_records(tile, [0.5; 2], &mut records, keep))
         })?;
         Ok(records)
     }
 }
 
 /// Row by row from the top left. Errors: OUT_OF_MEMORY.
-fn tiles(request: &FrameRequest, steps: u64) -> Result<Vec<Tile>> {
+fn tiles(request: &FrameRequest, steps: u64, widest: u32) -> Result<Vec<Tile>> {
     let pixels = (TILE_STEPS / steps).clamp(256, 1 << 15) as u32;
-    let w = request.width.clamp(1, TILE_WIDTH.min(pixels / 4));
+    let w = request.width.clamp(1, widest.min(pixels / 4));
     let h = pixels / w;
     let columns = (0..request.width).step_by(w as usize);
     let rows = (0..request.height).step_by(h as usize);
@@ -139,6 +145,7 @@ impl<'a> Frame<'a> {
         Ok(Self {
             lens,
             source: source(Recorder::new(scene, lens)),
+            half: scene.half_resolution(),
             refiner: scene
                 .refines(request.transparent)
                 .then(|| Refiner::new(scene, lens, source(Recorder::whole_plane(scene, lens)))),
@@ -160,11 +167,9 @@ impl<'a> Frame<'a> {
     /// Finds and shades one sample of every pixel of `tile` and adds it to `sum`; the steps of all rays. Errors:
     /// OUT_OF_MEMORY.
     pub fn add_sample(&self, tile: Tile, sample: u32, sum: &mut [[f64; 4]]) -> Result<u64> {
-        let region = self.request.region;
         let offset = sample_offset(sample, self.samples, self.lens.mapping.projection);
-        let origin = [f64::from(region.x + tile.x) + offset[0], f64::from(region.y + tile.y) + offset[1]];
         let weight = 1.0 / f64::from(self.samples);
-        self.with_records(tile, origin, sum, |record, x, y, pixel| {
+        self.with_records(tile, offset, sum, |record, x, y, pixel| {
             let refiner = self.refiner.as_ref().filter(|_| self.lens.mapping.has_look_direction(x, y));
             let refined = refiner.and_then(|r| r.light(&self.shader, record, [x, y]));
             let value = refined.unwrap_or_else(|| self.shader.shade_record(record, x, y));
@@ -172,17 +177,20 @@ impl<'a> Frame<'a> {
         })
     }
 
-    /// Calls `take` with the record of each pixel of `tile` (the first one's ray passing through `origin` of the full
-    /// frame), its place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
+    /// Calls `take` with the record of each pixel of `tile` (its ray passing through the place `offset`, 0 .. 1, of
+    /// the pixel), its place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
     fn with_records<T: Send>(
         &self,
         tile: Tile,
-        origin: [f64; 2],
+        offset: [f64; 2],
         out: &mut [T],
         take: impl Fn(&Record, f64, f64, &mut T) + Sync,
     ) -> Result<u64> {
+        let region = self.request.region;
+        let tile = Tile { x: region.x + tile.x, y: region.y + tile.y, ..tile };
+        let origin = [f64::from(tile.x) + offset[0], f64::from(tile.y) + offset[1]];
         match &self.source {
-            RecordSource::Traced(recorder) => trace_records(recorder, tile, origin, out, take),
+            RecordSource::Traced(recorder) => trace_records((recorder, self.half), tile, offset, out, take),
             RecordSource::LensLookup(lookup) => Ok(look_records_up(lookup, tile, origin, out, take)),
         }
     }
@@ -200,15 +208,21 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Does the work of `Frame::with_records` by tracing.
+/// Does the work of `Frame::with_records` by tracing; `tile`: its place in the full frame.
 fn trace_records<T: Send>(
-    recorder: &Recorder<'_>,
+    (recorder, half): (&Recorder<'_>, Option<Evenness>),
     tile: Tile,
-    origin: [f64; 2],
+    offset: [f64; 2],
     out: &mut [T],
     take: impl Fn(&Record, f64, f64, &mut T) + Sync,
 ) -> Result<u64> {
-    let place = |column: u32, row: u32| (origin[0] - 1.0 + f64::from(column), origin[1] - 1.0 + f64::from(row));
+    let begin = [tile.x as i32, tile.y as i32];
+    let place = |column: u32, row: u32| {
+        let at = |begin: i32, past: u32, offset: f64| f64::from(begin) + offset - 1.0 + f64::from(past);
+        (at(begin[0], column, offset[0]), at(begin[1], row, offset[1]))
+    };
+    let blocks = |evenness| Blocks::new(recorder, evenness, begin, [tile.width, tile.height], offset);
+    let blocks = half.map(blocks).transpose()?;
     // One pixel more on each side, for the derivatives.
     let (width, height) = (tile.width + 2, tile.height + 2);
     let stride = width as usize;
@@ -217,7 +231,7 @@ fn trace_records<T: Send>(
     records.par_chunks_mut(stride).zip(0..height).for_each(|(records, row)| {
         for (record, column) in records.iter_mut().zip(0..) {
             let (x, y) = place(column, row);
-            *record = recorder.trace(x, y);
+            *record = if blocks.is_some() { recorder.trace_bare(x, y) } else { recorder.trace(x, y) };
         }
     });
     let rows =
@@ -229,7 +243,12 @@ fn trace_records<T: Send>(
                 let [left, here, right] = across else { continue };
                 let (x, y) = place(column, row);
                 let neighbours = Neighbours::of(&recorder.lens.mapping, x, [left, right, above, below]);
-                take(&neighbours.complete(here), x, y, item);
+                let mut record = neighbours.complete(here);
+                if let Some(blocks) = &blocks {
+                    let pixel = [begin[0] + column as i32 - 1, begin[1] + row as i32 - 1];
+                    record.media = blocks.media(pixel, here).0;
+                }
+                take(&record, x, y, item);
             }
         },
     );

@@ -4,6 +4,7 @@
 
 mod delivery;
 mod frame;
+mod half;
 mod lens;
 mod rays;
 mod record;

@@ -59,9 +59,18 @@ impl<'a> Recorder<'a> {
 
     /// The record of position (x, y) of the full frame, without footprints.
     pub fn trace(&self, x: f64, y: f64) -> Record {
+        self.trace_with(x, y, self.emitters.needs().parts)
+    }
+
+    /// The same without the matter along the ray.
+    pub fn trace_bare(&self, x: f64, y: f64) -> Record {
+        self.trace_with(x, y, false)
+    }
+
+    fn trace_with(&self, x: f64, y: f64, parts: bool) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.aberrate(self.lens.look_direction(x, y));
-        let (constants, traced, media) = if self.emitters.needs().parts {
+        let (constants, traced, media) = if parts {
             let (emitters, plane_u) = (&self.emitters, self.plane_u);
             let (media, medium) = (Media::new(), Medium::default());
             let seen = Seen { frequency_ratio, static_lapse: observer.frame.static_lapse() };
@@ -144,11 +153,10 @@ impl<'a> Neighbours<'a> {
 /// Neighbours' rays that meet other things, or the same inside the disk's edge and not outside: two that miss a thin
 /// ring, each on its side, differ, too.
 fn edge_between(here: &Record, there: &Record) -> Edge {
-    let orders = |record: &Record| record.crossings.iter().fold(0u32, |bits, c| bits | 1 << (c.order & 31));
     if here.fate != there.fate && here.fate != Fate::Hidden && there.fate != Fate::Hidden {
         return Edge::Curve;
     }
-    let alike = here.fate == there.fate && here.beside_disk == there.beside_disk && orders(here) == orders(there);
+    let alike = here.fate == there.fate && here.beside_disk == there.beside_disk && here.orders() == there.orders();
     if alike { Edge::None } else { Edge::Disk }
 }
 

@@ -14,6 +14,7 @@ pub mod crossing;
 pub mod disk;
 pub mod effects;
 pub mod glow;
+pub mod half;
 pub mod hot_spot;
 pub mod medium;
 pub mod shape;

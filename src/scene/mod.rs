@@ -31,6 +31,6 @@ pub use frame::Region;
 pub use hole::Hole;
 pub use lensing::{KerrThreshold, Lensing};
 pub use preset::Preset;
-pub use quality::{LensTables, Method, Quality};
+pub use quality::{LensTables, Method, Quality, VolumeResolution};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray, Transfer};
 pub use sky::Sky;

@@ -25,6 +25,16 @@ pub enum Method {
     Adaptive = 2,
 }
 
+/// The rays that matter with depth is summed along (`BHR_VOLUME_RESOLUTION_*`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum VolumeResolution {
+    /// Those of all pixels.
+    Full = 0,
+    /// One of each block of 2 x 2 pixels, and those of pixels that blocks do not tell (`emit::half`).
+    Half = 1,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
     pub method: Method,
@@ -40,6 +50,8 @@ pub struct Quality {
     pub max_disk_order: u32,
     /// Windows: traced size / window size, 0.1 .. 1. Default 1.
     pub render_scale: f64,
+    /// Default `Full`.
+    pub volume_resolution: VolumeResolution,
     /// Whether AUTO looks rays up. The host cannot choose this.
     #[doc(hidden)]
     pub lens_tables: LensTables,
@@ -77,6 +89,7 @@ impl Default for Quality {
             tolerance: 0.0,
             max_disk_order: 3,
             render_scale: 1.0,
+            volume_resolution: VolumeResolution::Full,
             lens_tables: LensTables::Auto,
             mapped_pixels: None,
             shares_kernels: None,

@@ -60,6 +60,11 @@ impl Record {
         }
     }
 
+    /// The orders of the crossings, a bit each.
+    pub fn orders(&self) -> u32 {
+        self.crossings.iter().fold(0, |bits, c| bits | 1 << (c.order & 31))
+    }
+
     /// Makes it `captured`, in place.
     pub fn clear(&mut self) {
         self.crossings.clear();

@@ -4,8 +4,9 @@
 
 use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
-use super::{Method, Quality, Scene};
+use super::{Method, Quality, Scene, VolumeResolution};
 use crate::emit::Emitters;
+use crate::emit::half::{Evenness, LEAST_LIGHT};
 use crate::physics::geodesic::{Constants, State};
 use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
@@ -90,6 +91,14 @@ impl Scene {
         self.view == super::View::Light && self.quality.refines && shows
     }
 
+    /// The rule by which pixels get their matter with depth from blocks. `None`: each sums its own.
+    pub fn half_resolution(&self) -> Option<Evenness> {
+        let half = self.quality.volume_resolution == VolumeResolution::Half && self.emitters().needs().parts;
+        // Light that the film shows as white is 1 after exposure.
+        let light = Evenness::Light { least: LEAST_LIGHT * (-self.film.exposure_ev).exp2() };
+        half.then_some(if self.view == super::View::Light { light } else { Evenness::Depth })
+    }
+
     /// Steps a ray of a pixel takes on average, for planning, or what takes as long: sigma runs to about 6.
     pub fn expected_steps(&self) -> u64 {
         let settings = self.pixel_settings();
@@ -99,8 +108,13 @@ impl Scene {
             _ => (6.0 / settings.step).ceil() as u64,
         };
         // Each volume or spot costs as much as some sixty steps more.
-        let matter = self.volumes.len() + self.hot_spots.len();
-        steps.clamp(1, settings.max_steps.into()) + 60 * matter as u64
+        let matter = 60 * (self.volumes.len() + self.hot_spots.len()) as u64;
+        let steps = steps.clamp(1, settings.max_steps.into());
+        match self.half_resolution() {
+            None => steps + matter,
+            // A quarter as many rays of blocks, and about as many of pixels that blocks do not tell.
+            Some(_) => steps + (steps + matter) / 2,
+        }
     }
 
     /// 1/r beyond which an inward ray of a pixel is captured. No ray turns back outside the horizon below the prograde
