@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Kernel: traces the pixels of a tile's rectangle into record textures. Does not know what shading will do with them.
+// Traces a pixel, or a block of pixels, into record textures. Does not know what shading will do with them. The kernels
+// that import it say which: traced/each.wgsl, traced/blocks.wgsl and traced/listed.wgsl.
 
 #import constants
 #import camera/observer
@@ -23,6 +24,8 @@
 
 // Whether shading needs to know where on the disk a crossing is.
 override AZIMUTH: bool = true;
+// Whether the whole record is kept, not the media only: those of a record that is there already.
+override KEEPS_RECORD: bool = true;
 
 // The ray being traced: its pixel, and what is found on its way.
 var<private> pixel: vec2<u32>;
@@ -55,7 +58,10 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
         if PARTS {
             keep_medium();
         }
-        textureStore(record_disk, pixel, countOneBits(disk_orders), vec4<f32>(crossing.u, g, azimuth, crossing.delay));
+        if KEEPS_RECORD {
+            let kept = vec4<f32>(crossing.u, g, azimuth, crossing.delay);
+            textureStore(record_disk, pixel, countOneBits(disk_orders), kept);
+        }
         disk_orders |= 1u << crossing.order;
     }
 }
@@ -70,14 +76,18 @@ fn keep_medium() {
     medium = NO_MEDIUM;
 }
 
-@compute @workgroup_size(8, 16)
-fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
-    unknown_zero = id.z;
-    if id.x >= pass_.size.x || id.y >= pass_.size.y {
-        return;
+// After a pixel has been traced anew: its record may hold a crossing more than are found now, by rounding, and a medium
+// before it.
+fn keep_nothing_more() {
+    // As many crossings are kept at most.
+    for (var k = countOneBits(disk_orders) + 1u; k <= not_inlined(frame.medium_layer); k += 1u) {
+        textureStore(record_disk, pixel, frame.medium_layer + k, NO_MEDIUM);
     }
-    pixel = id.xy;
-    let place = vec2<f32>(pass_.origin + vec2<i32>(pixel)) + pass_.offset;
+}
+
+// Traces the ray through `place` of the full frame and leaves its record at the texel `at`.
+fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
+    pixel = at;
     let begin = begin_ray(look_direction(place.x, place.y));
     let c = begin.c;
     frequency_ratio = begin.frequency_ratio;
@@ -101,6 +111,9 @@ fn trace_pixels(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     if PARTS {
         keep_medium();
+    }
+    if !KEEPS_RECORD {
+        return;
     }
     textureStore(record_sky, pixel, sky);
     m.orders = disk_orders;

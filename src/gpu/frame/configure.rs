@@ -114,6 +114,7 @@ impl GpuTracer {
                 projection,
                 ..variant(scene, settings, inside)
             },
+            half: source == RecordSource::Traced && scene.half_resolution().is_some(),
             // wgpu makes no array texture of one layer on GL.
             crossings: if self.adapter.info.backend == Backend::Gl { crossings.max(2) } else { crossings },
             observer,

@@ -16,7 +16,7 @@ impl Setup {
     pub fn kernels(&self) -> Vec<KernelKey> {
         let (record_setup, variants) = (&self.record_setup, &self.variants);
         let mut keys = match record_setup.source {
-            RecordSource::Traced => vec![KernelKey::Pixels(record_setup.variant), KernelKey::Count],
+            RecordSource::Traced => record_setup.trace_keys(),
             RecordSource::Schwarzschild { delay, .. } => {
                 vec![KernelKey::SchwarzschildEnds, KernelKey::SchwarzschildColumns { delay }]
             }

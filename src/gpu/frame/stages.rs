@@ -114,7 +114,7 @@ impl FrameBuffers {
         let frame = fixed.frame.buffer.as_entire_binding();
         let step_sum = fixed.step_sum.as_entire_binding();
         let [light_tables, ..] = tables.resources();
-        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables };
+        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables, software };
         let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
         let records = self.record_store.group(setup.record_setup.source)?;
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));

@@ -3,6 +3,7 @@
 //! by field. The only place where f64 becomes f32 on its way to the GPU.
 
 use super::matter::{MatterUniform, uniforms_of};
+use crate::emit::half::Evenness;
 use crate::emit::thin_disk::SoftEdges;
 use crate::emit::turbulence::{MOST_BANDS, Turbulence};
 use crate::error::Result;
@@ -125,6 +126,14 @@ fn bands(turbulence: &Turbulence) -> [[u32; 4]; MOST_BANDS] {
     })
 }
 
+/// Light that need not be told exactly at half resolution; 0 where none is.
+fn least_light(scene: &Scene) -> f64 {
+    match scene.half_resolution() {
+        Some(Evenness::Light { least }) => least,
+        Some(Evenness::Depth) | None => 0.0,
+    }
+}
+
 impl FrameUniform {
     /// `settings`: those of f32 pixels; `crossings`: most that a traced record holds. Errors: as `Scene::lens`.
     pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
@@ -182,7 +191,7 @@ impl FrameUniform {
                 four(outer[0], outer[1], inner[0], inner[1])
             }),
             surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
-            shown_edges: four(edges.least[0], edges.least[1], 0.0, 0.0),
+            shown_edges: four(edges.least[0], edges.least[1], least_light(scene), 0.0),
             plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
             bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t)),
             depth_u: range(emitters.depth_u()),

@@ -6,7 +6,7 @@ use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::Shape;
-use crate::emit::{glow, medium, shape, streaks, turbulence, volumes};
+use crate::emit::{glow, half, medium, shape, streaks, turbulence, volumes};
 use crate::film::bloom::BEAM_SHARES;
 use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
@@ -161,6 +161,12 @@ fn all() -> Vec<(&'static str, String)> {
         GAUSS_BEFORE_0: vec3 = medium::GAUSS_BEFORE[0];
         GAUSS_BEFORE_1: vec3 = medium::GAUSS_BEFORE[1];
         GAUSS_BEFORE_2: vec3 = medium::GAUSS_BEFORE[2];
+        BLOCK: i32 = half::BLOCK;
+        HALF_TOLERANCE: f32 = half::TOLERANCE;
+        HALF_LEAST_SHARE: f32 = half::LEAST_SHARE;
+        HALF_LEAST_DEPTH: f32 = half::LEAST_DEPTH;
+        HALF_CUBIC: vec4 = half::CUBIC;
+        OFF_LINE: f32 = half::OFF_LINE;
         PIECE_LN_R: f32 = volumes::PIECE_LN_R;
         PIECE_ANGLE: f32 = volumes::PIECE_ANGLE;
         MOST_PIECES: f32 = volumes::MOST_PIECES;
@@ -308,9 +314,10 @@ mod tests {
 
     /// Constants that shaders have for themselves although Rust has one of the same name without the first word, here
     /// the second. The reason, and what was measured, stands beside the shader's.
-    const OTHERWISE: [(&str, &str); 8] = [
+    const OTHERWISE: [(&str, &str); 9] = [
         ("HORIZON_ROOM", "ROOM"),
         ("DEFERRED_GROUP", "GROUP"),
+        ("OWN_GROUP", "GROUP"),
         ("KERR_RADIUS_TOLERANCE", "TOLERANCE"),
         ("KERR_PATTERN_TOLERANCE", "PATTERN_TOLERANCE"),
         ("KERR_STEP", "STEP"),

@@ -3,7 +3,7 @@
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TRACED, edge_slots, pixel_slots, shade_slots, sum_slots,
 };
 use super::variant::{
     FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant,
@@ -15,6 +15,11 @@ use crate::scene::Projection;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum KernelKey {
     Pixels(TraceVariant),
+    /// The blocks of half resolution, the pixels that they do not tell, and what fills the others in.
+    Blocks(TraceVariant),
+    Listed(TraceVariant),
+    /// Whether media are I_nu and optical depth.
+    Fill(bool, Option<Projection>),
     Rays(TraceVariant),
     Count,
     ShadeSample(RecordSource, ShadeVariant),
@@ -65,6 +70,9 @@ impl KernelKey {
     pub fn entry_point(self) -> &'static str {
         match self {
             Self::Pixels(_) => "trace_pixels",
+            Self::Blocks(_) => "trace_blocks",
+            Self::Listed(_) => "trace_listed",
+            Self::Fill(..) => "fill_media",
             Self::Rays(_) => "trace_rays",
             Self::Count => "count_steps",
             Self::ShadeSample(source, _) | Self::Export(source, ..) => source.driver(None).0,
@@ -84,7 +92,10 @@ impl KernelKey {
     /// The WGSL that declares the entry point. Errors: as [`wgsl::kernel`].
     pub fn wgsl(self) -> Result<String> {
         match self {
-            Self::Pixels(_) => wgsl::kernel("traced/pixels"),
+            Self::Pixels(_) => wgsl::kernel("traced/each"),
+            Self::Blocks(_) => wgsl::kernel("traced/blocks"),
+            Self::Listed(_) => wgsl::kernel("traced/listed"),
+            Self::Fill(..) => wgsl::kernel("traced/fill"),
             Self::Rays(_) => wgsl::kernel("geodesic/rays"),
             Self::Count => wgsl::kernel("traced/count"),
             Self::ShadeSample(source, _) => wgsl::shade_sample(source),
@@ -105,10 +116,15 @@ impl KernelKey {
 
     /// The kernel's groups of bindings, those for the caller to set among them.
     pub fn groups(self) -> Vec<Vec<Slot>> {
-        let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
+        let disk = Slot::TextureWrite(TRACED[2]);
         let [rows, columns] = [LENS_ROWS, LENS_COLUMNS].map(Slot::TextureWrite);
         match self {
-            Self::Pixels(_) => vec![vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])]],
+            Self::Pixels(_) | Self::Blocks(_) => vec![pixel_slots()],
+            Self::Listed(_) => vec![pixel_slots(), vec![Slot::Write]],
+            Self::Fill(..) => {
+                let [pixels, blocks, media] = [TRACED[1], TRACED[1], TRACED[2]].map(Slot::Texture);
+                vec![vec![Slot::Uniform, Slot::UniformPart, pixels, blocks, media, disk], vec![Slot::Write]]
+            }
             Self::Count => vec![vec![Slot::UniformPart, Slot::Texture(TRACED[1]), Slot::Write]],
             Self::Rays(_) => vec![vec![Slot::Uniform, Slot::Read, Slot::Write]],
             Self::ShadeSample(source, _) => vec![shade_slots(), source.slots(), sum_slots(), edge_slots()],
@@ -160,12 +176,9 @@ impl KernelKey {
     /// Values of the `override` constants that the kernel's source declares.
     pub fn constants(self) -> Vec<(&'static str, f64)> {
         match self {
-            Self::Pixels(variant) => {
-                let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
-                let matter = variant.matter.unwrap_or_default();
-                let effects = vec![("ALL_EFFECTS", flag(matter.all_effects))];
-                [trace_constants(variant), matter_constants(matter), pixels, effects].concat()
-            }
+            Self::Pixels(variant) | Self::Blocks(variant) => pixel_constants(variant),
+            Self::Listed(variant) => [pixel_constants(variant), vec![("KEEPS_RECORD", 0.0)]].concat(),
+            Self::Fill(depth, projection) => vec![("SHOWS_DEPTH", flag(depth)), projection_constant(projection)],
             Self::Rays(variant) => trace_constants(variant),
             Self::ShadeSample(source, shade) => [source.constants(), shade_constants(shade)].concat(),
             Self::ShadeOnly(source, shade, film) => {
@@ -231,6 +244,14 @@ fn trace_constants(variant: TraceVariant) -> Vec<(&'static str, f64)> {
         ("STEP_LIMIT", flag(variant.step_limit)),
         ("PARTS", flag(variant.matter.is_some())),
     ]
+}
+
+/// The constants of traced/pixels.wgsl.
+fn pixel_constants(variant: TraceVariant) -> Vec<(&'static str, f64)> {
+    let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
+    let matter = variant.matter.unwrap_or_default();
+    let effects = vec![("ALL_EFFECTS", flag(matter.all_effects))];
+    [trace_constants(variant), matter_constants(matter), pixels, effects].concat()
 }
 
 fn matter_constants(matter: MatterVariant) -> Vec<(&'static str, f64)> {

@@ -119,6 +119,12 @@ impl RecordSource {
     }
 }
 
+/// Group 0 of traced/pixels.wgsl.
+pub fn pixel_slots() -> Vec<Slot> {
+    let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
+    vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])]
+}
+
 /// Group 0 of shade/shade.wgsl and emit/streaks.wgsl.
 pub fn shade_slots() -> Vec<Slot> {
     let ([light, cells], map, streaks) = (TABLES.map(Slot::Texture), Slot::Filtered(SKY_MAP), Slot::Filtered(STREAKS));

@@ -21,7 +21,7 @@ pub struct TraceVariant {
     pub step_limit: bool,
     /// Whether pixels keep where on the disk a crossing is; given rays always do.
     pub azimuth: bool,
-    /// The matter with depth that is asked along the parts of a pixel's ray. `None`: there is none.
+    /// The matter with depth that is asked along the parts of a pixel's ray. `None`: there is none, or it is not asked.
     pub matter: Option<MatterVariant>,
     /// The projection of pixels; given rays have none. `None`: any, which the kernel asks while it runs.
     pub projection: Option<Projection>,

@@ -109,7 +109,10 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
     });
     let others = [
         ("rays", kernel("geodesic/rays")),
-        ("pixels", kernel("traced/pixels")),
+        ("pixels", kernel("traced/each")),
+        ("blocks", kernel("traced/blocks")),
+        ("listed pixels", kernel("traced/listed")),
+        ("media from blocks", kernel("traced/fill")),
         ("count", kernel("traced/count")),
         ("present", kernel("window/present")),
         ("develop", develop(film(PixelTarget::Packed), false)),

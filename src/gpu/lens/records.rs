@@ -2,6 +2,7 @@
 //! Where a frame's ray records come from: traced pixel by pixel into textures, or looked up in the tables of a lens.
 //! Gives shading its group 1 and knows nothing else of it.
 
+use super::half::{self, HalfBlocks, HalfStages};
 use super::kerr::{KerrContents, KerrStages, KerrTables};
 use super::schwarzschild::{SchwarzschildStages, SchwarzschildTables};
 use crate::error::{Error, Result};
@@ -23,6 +24,8 @@ pub struct RecordSetup {
     pub source: RecordSource,
     /// How rays are traced.
     pub variant: TraceVariant,
+    /// Whether matter with depth is summed along the rays of blocks, and `variant` is theirs.
+    pub half: bool,
     /// Crossings that a record holds at most.
     pub crossings: u32,
     pub observer: LocalFrame,
@@ -33,6 +36,7 @@ pub struct RecordSetup {
 #[derive(Default)]
 pub struct RecordStore {
     traced: TracedRecords,
+    half: HalfBlocks,
     schwarzschild: SchwarzschildTables,
     kerr: KerrTables,
 }
@@ -54,10 +58,27 @@ impl RecordSetup {
     /// Bytes of a tile's pixel on the device.
     pub fn bytes_per_pixel(&self) -> u64 {
         match self.source {
-            RecordSource::Traced => TEXEL * (2 + u64::from(self.layers())),
+            RecordSource::Traced => {
+                let texels = TEXEL * (2 + u64::from(self.layers()));
+                if self.half { texels + texels.div_ceil(4) + HalfBlocks::BYTES_PER_PIXEL } else { texels }
+            }
             RecordSource::Schwarzschild { .. } => 0,
             RecordSource::Kerr { .. } => KerrTables::BYTES_PER_PIXEL,
         }
+    }
+
+    /// How the rays of pixels are traced before shading.
+    pub fn pixel_variant(&self) -> TraceVariant {
+        TraceVariant { matter: self.variant.matter.filter(|_| !self.half), ..self.variant }
+    }
+
+    /// The kernels that make traced records.
+    pub fn trace_keys(&self) -> Vec<KernelKey> {
+        let mut keys = vec![KernelKey::Pixels(self.pixel_variant()), KernelKey::Count];
+        if self.half {
+            keys.extend(half::keys(self.variant));
+        }
+        keys
     }
 
     /// The source of the records of those pixels that this one leaves pending.
@@ -75,7 +96,10 @@ impl RecordStore {
     /// Makes room for a tile.
     pub fn prepare(&mut self, device: &Device, record_setup: &RecordSetup, tile: [u32; 2]) -> Result<()> {
         match record_setup.source {
-            RecordSource::Traced => self.traced.prepare(device, tile, record_setup.layers()),
+            RecordSource::Traced => {
+                self.traced.prepare(device, tile.map(|side| side + 2), record_setup.layers())?;
+                if record_setup.half { self.half.prepare(device, tile, record_setup.layers()) } else { Ok(()) }
+            }
             RecordSource::Schwarzschild { .. } => Ok(()),
             RecordSource::Kerr { .. } => self.kerr.prepare(device, tile),
         }
@@ -92,7 +116,11 @@ impl RecordStore {
         let frame = shared.frame.clone();
         Ok(match record_setup.source {
             RecordSource::Traced => {
-                RecordStages::Traced(self.traced.stages(device, kernels, record_setup.variant, shared)?)
+                let pixels = self.traced.resources()?;
+                let half = || self.half.stages(device, kernels, record_setup.variant, &pixels, shared);
+                let half = if record_setup.half { Some(half()?) } else { None };
+                let trace = trace_stages(device, kernels, record_setup.pixel_variant(), &pixels, shared)?;
+                RecordStages::Traced(TraceStages { half, ..trace })
             }
             // Only one lens is kept: both together could take 48 MB.
             RecordSource::Schwarzschild { delay, .. } => {
@@ -138,6 +166,7 @@ impl RecordStore {
         match source {
             RecordSource::Traced => {
                 encoder.clear_buffer(step_sum, 0, None);
+                self.half.reset(encoder);
                 Some(step_sum)
             }
             RecordSource::Schwarzschild { .. } => None,
@@ -167,9 +196,9 @@ impl RecordStages {
     }
 }
 
-/// Records of traced pixels, of a tile and one pixel around it; they grow and stay.
+/// Records of traced pixels, of a tile and one pixel around it, or of blocks; they grow and stay.
 #[derive(Default)]
-struct TracedRecords {
+pub struct TracedRecords {
     resources: Option<RecordTextures>,
 }
 
@@ -188,18 +217,20 @@ pub struct Shared<'a> {
     pub step_sum: wgpu::BindingResource<'a>,
     /// `light_tables` of shade/shade.wgsl.
     pub light_tables: wgpu::BindingResource<'a>,
+    /// Whether the driver is software.
+    pub software: bool,
 }
 
 /// The stages that make the records of a tile before they are shaded.
 pub struct TraceStages {
     trace: Stage,
     count: Stage,
+    half: Option<HalfStages>,
 }
 
 impl TracedRecords {
-    /// Makes room for tiles of `tile` pixels with so many layers.
-    fn prepare(&mut self, device: &Device, tile: [u32; 2], layers: u32) -> Result<()> {
-        let size = tile.map(|side| side + 2);
+    /// Makes room for rectangles of `size` with so many layers.
+    pub fn prepare(&mut self, device: &Device, size: [u32; 2], layers: u32) -> Result<()> {
         let serves = |m: &RecordTextures| (0..2).all(|i| m.size[i] >= size[i]) && m.layers >= layers;
         if self.resources.as_ref().is_some_and(serves) {
             return Ok(());
@@ -216,7 +247,7 @@ impl TracedRecords {
         Ok(())
     }
 
-    fn resources(&self) -> Result<[wgpu::BindingResource<'_>; 3]> {
+    pub fn resources(&self) -> Result<[wgpu::BindingResource<'_>; 3]> {
         let resources = self.resources.as_ref().ok_or_else(|| Error::internal("records without textures"))?;
         Ok(resources.textures.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view)))
     }
@@ -225,23 +256,33 @@ impl TracedRecords {
     fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
         Ok(self.resources()?.into())
     }
+}
 
-    fn stages(
-        &self,
-        device: &Device,
-        kernels: &Kernels,
-        variant: TraceVariant,
-        shared: &Shared<'_>,
-    ) -> Result<TraceStages> {
-        let [sky, meta, disk] = self.resources()?;
-        let Shared { frame, pass, step_sum, light_tables } = shared.clone();
-        Ok(TraceStages {
-            trace: kernels
-                .get(KernelKey::Pixels(variant))?
-                .stage(device, &[&[frame, pass.clone(), sky, meta.clone(), disk, light_tables]])?,
-            count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
-        })
-    }
+/// Group 0 of traced/pixels.wgsl, which leaves records in `textures`.
+pub fn pixel_group<'a>(
+    textures: &[wgpu::BindingResource<'a>; 3],
+    shared: &Shared<'a>,
+) -> Vec<wgpu::BindingResource<'a>> {
+    let Shared { frame, pass, light_tables, .. } = shared.clone();
+    let [sky, meta, disk] = textures.clone();
+    vec![frame, pass, sky, meta, disk, light_tables]
+}
+
+/// The stages that trace pixels into `textures`.
+fn trace_stages(
+    device: &Device,
+    kernels: &Kernels,
+    variant: TraceVariant,
+    textures: &[wgpu::BindingResource<'_>; 3],
+    shared: &Shared<'_>,
+) -> Result<TraceStages> {
+    let [_, meta, _] = textures.clone();
+    let Shared { pass, step_sum, .. } = shared.clone();
+    Ok(TraceStages {
+        trace: kernels.get(KernelKey::Pixels(variant))?.stage(device, &[&pixel_group(textures, shared)])?,
+        count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
+        half: None,
+    })
 }
 
 impl TraceStages {
@@ -249,6 +290,9 @@ impl TraceStages {
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, [width, height]: [u32; 2]) {
         self.trace.dispatch(pass, offset, [width + 2, height + 2]);
         self.count.dispatch(pass, offset, [(width + 2).div_ceil(COUNT_RUN), height + 2]);
+        if let Some(half) = &self.half {
+            half.encode(pass, offset, [width, height]);
+        }
     }
 }
 

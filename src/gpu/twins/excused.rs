@@ -46,6 +46,11 @@ const MATTER_VIEWS: Why = Tested(
     "the_views_of_matter_agree",
     "I_nu and optical depth of whole pictures, one tracer against the other",
 );
+const HALF: Why = Tested(
+    "tests/tracers/half.rs",
+    "the_tracers_agree",
+    "media of pixels from blocks, in whole pictures, one tracer against the other",
+);
 const NO_VOLUMES: Why = Plumbing("a hook that does nothing where no emitter with depth is");
 const ENTRY: Why = Plumbing("a kernel: it hands what others compute from one to the next");
 const HOOK: Why = Plumbing("a hook: it calls the one function that this kernel has for it");
@@ -69,6 +74,12 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("lens/schwarzschild_record", "medium_before", NO_VOLUMES),
     ("refine/integrated", "on_part medium_before", VOLUMES),
     ("traced/pixels", "on_part keep_medium light_table", VOLUMES),
+    ("traced/pixels", "keep_nothing_more", HALF),
+    ("traced/fill", "fill_media corner_of block_key interpolate", HALF),
+    ("traced/blocks", "trace_blocks", HALF),
+    ("traced/listed", "trace_listed", ENTRY),
+    ("traced/each", "trace_pixels", ENTRY),
+    ("traced/own_rays", "note_own_ray own_ray_count own_ray", LIST),
     ("traced/record", "medium_before", VOLUMES),
     ("shade/shade", "seen_matter", MATTER_VIEWS),
     ("film/develop", "develop_tile", ENTRY),
@@ -126,7 +137,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
         Plumbing("it finds a record in textures"),
     ),
     ("traced/footprints", "sky_footprint derivative_of_direction derivative_of_place", PICTURES),
-    ("traced/pixels", "on_crossing trace_pixels", PICTURES),
+    ("traced/pixels", "on_crossing trace_pixel", PICTURES),
     (
         "traced/record",
         "ray_record with_sky next_crossing more_crossings is_steep edge_between edges_of_pixel",

@@ -11,6 +11,7 @@ mod camera;
 mod excused;
 mod film;
 mod geodesic;
+mod half;
 mod inputs;
 mod integrator;
 mod kerr;
@@ -109,6 +110,7 @@ const TABLES: &[fn() -> Group] = &[
     kerr::nodes,
     light::group,
     matter::group,
+    half::group,
     sky::group,
     shade::group,
     refine::group,

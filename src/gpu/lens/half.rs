@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Matter with depth at half resolution on the GPU: the records of blocks, the list of pixels that they do not tell,
+//! and the kernels that make and use them (`emit::half` has the rule). Knows no scene and no light.
+
+use super::records::{Shared, TracedRecords, pixel_group};
+use crate::emit::half::{BLOCK, STENCIL};
+use crate::error::{Error, Result};
+use crate::gpu::device::buffer::Buffer;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::variant::TraceVariant;
+use wgpu::BufferUsages as Usage;
+
+/// Bytes of `OwnRays` of traced/own_rays.wgsl before the pixels.
+const HEAD: u64 = 16 * 4;
+
+/// Workgroups that share the list: as those of frame/refine.rs.
+const GROUPS: u32 = 2048;
+const GROUPS_SOFTWARE: u32 = 16;
+
+/// The records of blocks and the list of pixels; they grow and stay.
+#[derive(Default)]
+pub struct HalfBlocks {
+    records: TracedRecords,
+    list: Option<Buffer>,
+}
+
+/// The kernels that give the pixels of a tile their media, once they are traced without.
+pub struct HalfStages {
+    blocks: Stage,
+    fill: Stage,
+    listed: Stage,
+    groups: u32,
+}
+
+/// The keys of these kernels; `variant`: how rays are traced that matter is summed along.
+pub fn keys(variant: TraceVariant) -> [KernelKey; 3] {
+    let depth = variant.matter.is_some_and(|matter| matter.shows_depth);
+    [KernelKey::Blocks(variant), KernelKey::Fill(depth, variant.projection), KernelKey::Listed(variant)]
+}
+
+/// The most blocks along a side of a tile of so many pixels, wherever it begins.
+fn most_blocks(pixels: u32) -> u32 {
+    pixels / BLOCK as u32 + STENCIL as u32
+}
+
+impl HalfBlocks {
+    /// Bytes of a tile's pixel in the list.
+    pub const BYTES_PER_PIXEL: u64 = 4;
+
+    /// Makes room for the blocks of a tile with so many layers.
+    pub fn prepare(&mut self, device: &Device, tile: [u32; 2], layers: u32) -> Result<()> {
+        self.records.prepare(device, tile.map(most_blocks), layers)?;
+        let size = HEAD + u64::from(tile[0]) * u64::from(tile[1]) * Self::BYTES_PER_PIXEL;
+        if self.list.as_ref().is_none_or(|list| list.size() < size) {
+            self.list = None;
+            self.list = Some(device.buffer("rays of their own", size, Usage::STORAGE | Usage::COPY_DST)?);
+        }
+        Ok(())
+    }
+
+    /// Empties the list.
+    pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
+        if let Some(list) = &self.list {
+            encoder.clear_buffer(list, 0, Some(HEAD));
+        }
+    }
+
+    /// `pixels`: the textures of the pixels' own records.
+    pub fn stages(
+        &self,
+        device: &Device,
+        kernels: &Kernels,
+        variant: TraceVariant,
+        pixels: &[wgpu::BindingResource<'_>; 3],
+        shared: &Shared<'_>,
+    ) -> Result<HalfStages> {
+        let blocks = self.records.resources()?;
+        let list = self.list.as_ref().ok_or_else(|| Error::internal("blocks of pixels without a list"))?;
+        let list = [list.as_entire_binding()];
+        let ([_, meta, disk], [_, block_meta, block_disk]) = (pixels.clone(), blocks.clone());
+        let fills = [shared.frame.clone(), shared.pass.clone(), meta, block_meta, block_disk, disk];
+        let [trace_blocks, fill, listed] = keys(variant);
+        Ok(HalfStages {
+            blocks: kernels.get(trace_blocks)?.stage(device, &[&pixel_group(&blocks, shared)])?,
+            fill: kernels.get(fill)?.stage(device, &[&fills, &list])?,
+            listed: kernels.get(listed)?.stage(device, &[&pixel_group(pixels, shared), &list])?,
+            groups: if shared.software { GROUPS_SOFTWARE } else { GROUPS },
+        })
+    }
+}
+
+impl HalfStages {
+    /// For a tile of so many pixels.
+    pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, offset: u32, tile: [u32; 2]) {
+        self.blocks.dispatch(pass, offset, tile.map(most_blocks));
+        // Quads of pixels, of which the first and the last may lie half outside.
+        self.fill.dispatch(pass, offset, tile.map(|pixels| pixels / 2 + 1));
+        self.listed.run(pass, Some(offset), [self.groups, 1]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::emit::half::blocks_of;
+
+    #[test]
+    fn there_is_room_for_all_blocks() {
+        for (begin, pixels) in (-2..3).flat_map(|begin| (1..40).map(move |pixels| (begin, pixels))) {
+            let (_, blocks) = blocks_of(begin, pixels);
+            assert!(blocks <= most_blocks(pixels) && blocks + 1 >= most_blocks(pixels), "{begin} {pixels}");
+        }
+    }
+}
