@@ -30,6 +30,8 @@ const Choice BACKENDS[] = {{"auto", BHR_BACKEND_AUTO},   {"cpu", BHR_BACKEND_CPU
                            {NULL, 0}};
 const Choice METHODS[] = {
     {"auto", BHR_METHOD_AUTO}, {"rk4", BHR_METHOD_RK4}, {"adaptive", BHR_METHOD_ADAPTIVE}, {NULL, 0}};
+const Choice VOLUME_RESOLUTIONS[] = {
+    {"full", BHR_VOLUME_RESOLUTION_FULL}, {"half", BHR_VOLUME_RESOLUTION_HALF}, {NULL, 0}};
 const Choice MOTIONS[] = {{"static", BHR_MOTION_STATIC},
                           {"freefall", BHR_MOTION_FREE_FALL},
                           {"orbit", BHR_MOTION_ORBIT},

@@ -111,6 +111,8 @@ static const SceneOption TABLE[] = {
      "the step of --method rk4", NULL},
     {"--tolerance", SCENE_QUALITY, OPTION_DOUBLE, AT(scene.quality.tolerance), "X", "1e-14 to 1e-3; 0: the library's",
      "of --method adaptive", NULL},
+    {"--volume-resolution", SCENE_QUALITY, OPTION_CHOICE, AT(scene.quality.volume_resolution), NULL, NULL,
+     "of matter with depth", VOLUME_RESOLUTIONS},
 };
 
 void options_add(Options *options, const Option *list, size_t count) {

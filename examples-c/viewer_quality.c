@@ -4,7 +4,10 @@
  * A frame's cost goes with its pixels, so with the square of the scale. Where the GPU tells its time, the load is known
  * also while vsync makes every frame last a period: the scale follows it. Where it does not, a frame that is in time
  * says nothing about how much room there is; then a slightly larger scale is tried now and then, and after a failure
- * the next try waits twice as long, so that the picture does not pump. */
+ * the next try waits twice as long, so that the picture does not pump.
+ *
+ * Matter with depth at half resolution is the first thing to be given up, and the last to be had back, because it shows
+ * least. Where a scene has none, that changes nothing, and the scale falls three late frames later. */
 #include "viewer_quality.h"
 
 #include <math.h>
@@ -13,6 +16,7 @@
 #define LOAD_TOO_HIGH 1.08 /* above: the scale falls */
 #define LOAD_EASY 0.65     /* below: the scale can rise; between the two nothing changes, or a little more is tried */
 #define LOAD_AIMED_AT 0.85
+#define LOAD_HALVED 0.4 /* of a frame at half resolution, below which one at full resolution is in time */
 #define SMOOTHING 0.25
 #define RAISE 1.1
 #define BOLD_RAISE 1.3    /* as long as that is not known to be too much */
@@ -45,6 +49,9 @@ void governor_choose(const Governor *governor, int moving, BhrQuality *quality) 
     if (moving) {
         quality->render_scale = governor->scale;
         quality->samples_per_pixel = 1;
+        if (governor->half) {
+            quality->volume_resolution = BHR_VOLUME_RESOLUTION_HALF;
+        }
         return;
     }
     quality->render_scale = 1.0;
@@ -69,6 +76,7 @@ static void set_scale(Governor *governor, double scale) {
 
 static void raise(Governor *governor, double factor) {
     governor->before_raise = governor->scale;
+    governor->before_half = governor->half;
     governor->just_raised = 2 * PATIENCE_LEAST;
     set_scale(governor, governor->scale * factor);
 }
@@ -80,10 +88,16 @@ static void forget_ceiling(Governor *governor) {
 
 static void lower(Governor *governor, double load) {
     if (governor->just_raised > 0) { /* that was too much: back, and not so soon again */
-        governor->ceiling = governor->scale;
+        if (governor->half == governor->before_half) {
+            governor->ceiling = governor->scale;
+        }
         governor->patience = governor->patience < PATIENCE_MOST / 2 ? 2 * governor->patience : PATIENCE_MOST;
+        governor->half = governor->before_half;
         set_scale(governor, governor->before_raise);
-    } else { /* the scene has become dearer */
+    } else if (!governor->half) { /* the scene has become dearer, perhaps by its matter */
+        governor->half = 1;
+        set_scale(governor, governor->scale);
+    } else {
         forget_ceiling(governor);
         set_scale(governor, governor->scale * fmax(MOST_LOWERING, sqrt(LOAD_AIMED_AT / load)));
     }
@@ -94,7 +108,8 @@ static void lower(Governor *governor, double load) {
 static void hear_late(Governor *governor, double load) {
     governor->easy_frames = 0;
     governor->least_late = governor->late_frames == 0 ? load : fmin(governor->least_late, load);
-    if (++governor->late_frames >= LATE_FRAMES && governor->scale > SMALLEST_SCALE) {
+    const int can_fall = governor->scale > SMALLEST_SCALE || !governor->half;
+    if (++governor->late_frames >= LATE_FRAMES && can_fall) {
         lower(governor, governor->least_late);
     }
 }
@@ -106,8 +121,16 @@ static void hear_in_time(Governor *governor, double load, int measured) {
         forget_ceiling(governor); /* it held */
     }
     const int room = governor->load < LOAD_EASY; /* for certain: even vsync did not lengthen these frames */
-    if (governor->scale >= 1.0 || (!room && measured)) {
+    const int whole = governor->scale >= 1.0, halved = governor->load < LOAD_HALVED;
+    if ((whole && !governor->half) || (whole ? !halved && measured : !room && measured)) {
         governor->easy_frames = 0;
+        return;
+    }
+    if (whole) {
+        if (++governor->easy_frames >= (halved ? PATIENCE_LEAST : governor->patience)) {
+            raise(governor, 1.0);
+            governor->half = 0;
+        }
         return;
     }
     const double blind = governor->scale * BOLD_RAISE < SAME * governor->ceiling ? BOLD_RAISE : RAISE;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* viewer_quality.h -- adaptive quality: fewer traced pixels while the picture moves, so that the display's rate is
- * held, and a finer and finer picture when it rests. Decides only; knows no window and renders nothing. */
+/* viewer_quality.h -- adaptive quality: matter with depth at half resolution and then fewer traced pixels while the
+ * picture moves, so that the display's rate is held, and a finer and finer picture when it rests. Decides only; knows no
+ * window and renders nothing. */
 #ifndef EXAMPLES_VIEWER_QUALITY_H
 #define EXAMPLES_VIEWER_QUALITY_H
 
@@ -10,6 +11,7 @@ typedef struct Governor {
     int      enabled;
     double   period;       /* seconds between frames that it holds */
     double   scale;        /* BhrQuality.render_scale while moving */
+    int      half;         /* whether BhrQuality.volume_resolution is HALF while moving */
     double   load;         /* cost of a moving frame in time / period, smoothed */
     int      late_frames;  /* in a row */
     double   least_late;   /* their least load */
@@ -17,6 +19,7 @@ typedef struct Governor {
     double   ceiling;      /* the scale that was too large when it was tried last */
     int      patience;     /* easy frames to wait for before it is tried again */
     double   before_raise; /* the scale before the last raise */
+    int      before_half;  /* whether matter was at half resolution then */
     int      just_raised;  /* frames until a raise counts as a success */
     unsigned refinement;   /* of the resting picture: 0 none, 1 whole scale, 2 .. more samples */
     double   resting_cost; /* seconds of a frame with one sample at whole scale; 0: not known */
@@ -25,7 +28,7 @@ typedef struct Governor {
 /* `rate` in frames per second; `scale` to begin with, 0.1 .. 1. */
 void governor_init(Governor *governor, double rate, double scale);
 
-/* Lays scale and samples for the next frame over the user's quality. */
+/* Lays scale, samples and the resolution of matter for the next frame over the user's quality. */
 void governor_choose(const Governor *governor, int moving, BhrQuality *quality);
 
 /* The same for a picture that is saved. */

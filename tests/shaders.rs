@@ -197,7 +197,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("traced/fill", "fill_media", "for (var k = 0u; k <= countOneBits(key >> 16u) && told != 0u; k += 1u)", CROSSINGS),
     ("traced/fill", "fill_media", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("traced/fill", "fill_media", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
-    ("traced/fill", "block_key", "for (var i = 1u; i < 16u; i += 1u)", CONSTANT),
+    ("traced/fill", "block_key", "for (var i = 1u; i < 15u; i += 1u)", CONSTANT),
     ("traced/fill", "interpolate", "for (var row = 0u; row < 4u; row += 1u)", CONSTANT),
     ("traced/fill", "interpolate", "for (var i = 0u; i < 4u; i += 1u)", CONSTANT),
     ("traced/listed", "trace_listed", "for (var i = id.x; i < count; i += groups.x * OWN_GROUP)", LISTED),

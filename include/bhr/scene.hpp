@@ -135,6 +135,12 @@ enum class Method : std::int32_t {
     adaptive = BHR_METHOD_ADAPTIVE,
 };
 
+/// BhrVolumeResolution.
+enum class VolumeResolution : std::int32_t {
+    full = BHR_VOLUME_RESOLUTION_FULL,
+    half = BHR_VOLUME_RESOLUTION_HALF,
+};
+
 /// BhrView.
 enum class View : std::int32_t {
     light = BHR_VIEW_LIGHT,
@@ -429,6 +435,8 @@ struct Quality {
     std::uint32_t max_disk_order;
     std::uint32_t reserved;
     double render_scale;
+    VolumeResolution volume_resolution;
+    std::uint32_t reserved2;
 
     Quality() noexcept { detail::defaults(*this, bhr_quality_init); }
     BhrQuality c() const noexcept { return detail::as_c<BhrQuality>(*this); }

@@ -30,6 +30,7 @@ ENUMS = {
     "BHR_EFFECT_": bhr.Effects,
     "BHR_PRESET_": bhr.Preset,
     "BHR_METHOD_": bhr.Method,
+    "BHR_VOLUME_RESOLUTION_": bhr.VolumeResolution,
     "BHR_VIEW_": bhr.View,
     "BHR_FATE_": bhr.Fate,
     "BHR_FLOW_": bhr.Flow,
@@ -102,7 +103,7 @@ def test_every_constant_has_a_member():
 
 @pytest.mark.parametrize("struct", STRUCTS, ids=lambda struct: struct.__name__)
 def test_every_field_is_there(struct):
-    fields = {name for name, _ in ffi.typeof(struct.c_name).fields} - {"struct_size", "reserved"}
+    fields = {name for name, _ in ffi.typeof(struct.c_name).fields} - {"struct_size", "reserved", "reserved2"}
     assert fields == {field.name for field in dataclasses.fields(struct)}
     for name, kind in struct.c_enums.items():
         assert name in fields and issubclass(kind, enum.Enum)

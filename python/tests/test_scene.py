@@ -37,7 +37,7 @@ CHANGED = {
     ),
     "sky": bhr.Sky(bhr.SkyFlags.GRID | bhr.SkyFlags.MAP, 2.0, 3.0, (0.0, 1.0, 0.0, 0.0), 5),
     "film": bhr.Film(bhr.ToneMap.AGX, -1.5, 0.5, 0.25, bhr.ColourMap.AFMHOT),
-    "quality": bhr.Quality(bhr.Method.RK4, 4, 500, 0.05, 1e-9, 5, 0.5),
+    "quality": bhr.Quality(bhr.Method.RK4, 4, 500, 0.05, 1e-9, 5, 0.5, bhr.VolumeResolution.HALF),
     "effects": bhr.Effects.BEAMING | bhr.Effects.LIGHT_DELAY,
     "time": -3.5,
     "view": bhr.View.ORDER,

@@ -77,11 +77,14 @@ fn corner_of(i: u32) -> vec2<u32> {
 // The bits that all of the quad's blocks have, of which `first` is the first; no bits of any ray where they differ, or
 // where a border lies among them.
 fn block_key(first: vec2<i32>) -> u32 {
-    let key = textureLoad(block_meta, first_texel, 0).x & MEDIA_BITS;
+    let key = textureLoad(block_meta, first_texel + 1u, 0).x & MEDIA_BITS;
     var alike = true;
-    for (var i = 1u; i < 16u; i += 1u) {
-        let there = textureLoad(block_meta, first_texel + vec2<u32>(i & 3u, i >> 2u), 0).x;
-        alike = alike && (there & MEDIA_BITS) == key;
+    for (var i = 1u; i < 15u; i += 1u) {
+        // All but the corners.
+        if ((0x6ff6u >> i) & 1u) != 0u {
+            let there = textureLoad(block_meta, first_texel + vec2<u32>(i & 3u, i >> 2u), 0).x;
+            alike = alike && (there & MEDIA_BITS) == key;
+        }
     }
     // A fisheye's circle and the faces of a cube are convex.
     let low = vec2<f32>(block_place(first.x, pass_.offset.x), block_place(first.y, pass_.offset.y));
@@ -105,12 +108,15 @@ fn interpolate(layer: u32) -> bool {
         let b = textureLoad(block_disk, at + vec2<u32>(1u, 0u), layer, 0);
         let c = textureLoad(block_disk, at + vec2<u32>(2u, 0u), layer, 0);
         let d = textureLoad(block_disk, at + vec2<u32>(3u, 0u), layer, 0);
-        let left = a * HALF_CUBIC.x + b * HALF_CUBIC.y + c * HALF_CUBIC.z + d * HALF_CUBIC.w;
-        let right = a * HALF_CUBIC.w + b * HALF_CUBIC.z + c * HALF_CUBIC.y + d * HALF_CUBIC.x;
-        found[0] += HALF_CUBIC[row] * left;
-        found[1] += HALF_CUBIC[row] * right;
-        found[2] += HALF_CUBIC[3u - row] * left;
-        found[3] += HALF_CUBIC[3u - row] * right;
+        // On the line between the nearest, and what the cubic adds to that.
+        let left = b * HALF_LINE.y + c * HALF_LINE.z;
+        let right = b * HALF_LINE.z + c * HALF_LINE.y;
+        let left_more = a * HALF_CUBIC.x + b * HALF_CUBIC.y + c * HALF_CUBIC.z + d * HALF_CUBIC.w - left;
+        let right_more = a * HALF_CUBIC.w + b * HALF_CUBIC.z + c * HALF_CUBIC.y + d * HALF_CUBIC.x - right;
+        found[0] += HALF_CUBIC[row] * left + HALF_LINE[row] * left_more;
+        found[1] += HALF_CUBIC[row] * right + HALF_LINE[row] * right_more;
+        found[2] += HALF_CUBIC[3u - row] * left + HALF_LINE[3u - row] * left_more;
+        found[3] += HALF_CUBIC[3u - row] * right + HALF_LINE[3u - row] * right_more;
         columns[2u * row] = b;
         columns[2u * row + 1u] = c;
         if row == 1u || row == 2u {

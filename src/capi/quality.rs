@@ -48,14 +48,15 @@ pub const BHR_METHOD_ADAPTIVE: BhrMethod = 2;
 pub type BhrVolumeResolution = i32;
 /// Those of all pixels. Since 0.2.0.
 pub const BHR_VOLUME_RESOLUTION_FULL: BhrVolumeResolution = 0;
-/// One ray of each block of 2 x 2 pixels, counted from the frame's top-left corner; a pixel's matter is found from 4 x 4
-/// blocks by cubic interpolation. Everything else of a pixel, and the rays of pixels that an edge runs through, are as
-/// with FULL. Where a block's ray had another fate than the pixel's or met the disk in other images, or where linear
-/// interpolation gives another light or another share of light from behind by more than 1/32 of it (of the brightest
-/// colour), the pixel's own ray is summed. Linear interpolation is off by about that difference, and the cubic, which
-/// is shown, by less; but light below 0.004 of white, and a share that passes below 0.05, are told as exactly as light
-/// and a share of that size, and matter that is narrower than a block may lie between the rays of blocks. The same
-/// scene gives the same bytes, whole or in parts, on either tracer. Since 0.2.0.
+/// One ray of each block of 2 x 2 pixels, counted from the frame's top-left corner: a pixel's matter is found from the
+/// twelve blocks about it by cubic interpolation. The pixel's own ray is summed instead where one of their rays had
+/// another fate than the pixel's or met other images of the disk; and where linear interpolation, which is one order
+/// less exact than what is shown, may be off by more than 1/64 of the light (of its brightest colour), of the share of
+/// light from behind that passes, or of the view's value. Light below 0.004 of white counts as 0.004, a share below
+/// 0.05 as 0.05, an optical depth below 0.001 as 0.001. The rest of a pixel, and the rays of pixels that an edge runs
+/// through, are as with FULL. An image of matter that is narrower than a block may lie between the rays and be missed.
+/// The same scene gives the same bytes, whole or in parts; both tracers do so. BhrFrameStats counts the steps of the
+/// pixels' rays only. Since 0.2.0.
 pub const BHR_VOLUME_RESOLUTION_HALF: BhrVolumeResolution = 1;
 
 /// How exactly to trace.

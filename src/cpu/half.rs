@@ -4,7 +4,7 @@
 
 use super::record::Recorder;
 use crate::allocate::filled;
-use crate::emit::half::{Evenness, STENCIL, block_place, blocks_of, first_block};
+use crate::emit::half::{Evenness, STENCIL, block_place, blocks_of, counts, first_block};
 use crate::emit::medium::{Media, Medium};
 use crate::error::Result;
 use crate::scene::record::Record;
@@ -67,7 +67,7 @@ impl<'a> Blocks<'a> {
             let there = block_place(left + across as i32, self.offset[0]);
             let below = block_place(top + down as i32, self.offset[1]);
             *block = self.records.get(begin + down * self.stride + across)?;
-            let alike = block.fate == record.fate && block.orders() == record.orders();
+            let alike = !counts(i) || (block.fate == record.fate && block.orders() == record.orders());
             if !(alike && mapping.has_look_direction(there, below) && mapping.same_face(x, there)) {
                 return None;
             }

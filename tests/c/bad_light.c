@@ -280,7 +280,11 @@ static void quality(Watch *watch, BhrContext *context) {
         {offsetof(BhrQuality, max_steps), 0xFFFFFFFFu, "max_steps"},
         {offsetof(BhrQuality, max_disk_order), 16, "max_disk_order"},
         {offsetof(BhrQuality, max_disk_order), 0xFFFFFFFFu, "max_disk_order"},
-        {offsetof(BhrQuality, reserved), 1, "reserved"},
+        {offsetof(BhrQuality, reserved), 1, "reserved is 1"},
+        {offsetof(BhrQuality, volume_resolution), 2, "volume_resolution is 2"},
+        {offsetof(BhrQuality, volume_resolution), 0xFFFFFFFFu, "volume_resolution is -1"},
+        {offsetof(BhrQuality, reserved2), 1, "reserved2 is 1"},
+        {offsetof(BhrQuality, reserved2), 0xFFFFFFFFu, "reserved2 is 4294967295"},
     };
     BhrQuality value;
     CHECK_BAD_NUMBERS(watch, value, bad, bhr_quality_init(&value, sizeof value), bhr_set_quality(context, &value));
@@ -311,6 +315,23 @@ static void quality(Watch *watch, BhrContext *context) {
         CHECK_OK(bhr_set_quality(context, &value));
         finite_frame(context, "quality", i);
     }
+    /* A struct of 0.1.0 says nothing of volumes, which are then at full resolution. */
+    CHECK_OK(bhr_quality_init(&value, sizeof value));
+    CHECK(value.volume_resolution == BHR_VOLUME_RESOLUTION_FULL, "the default resolution is %d",
+          value.volume_resolution);
+    value.volume_resolution = BHR_VOLUME_RESOLUTION_HALF;
+    CHECK_OK(bhr_set_quality(context, &value));
+    finite_frame(context, "quality", COUNT_OF(limits));
+    CHECK_OK(bhr_quality_init(&value, sizeof value));
+    CHECK_OK(bhr_get_quality(context, &value));
+    CHECK(value.volume_resolution == BHR_VOLUME_RESOLUTION_HALF, "the resolution that was set is %d",
+          value.volume_resolution);
+    value.struct_size = FIRST_QUALITY;
+    CHECK_OK(bhr_set_quality(context, &value));
+    value.struct_size = sizeof value;
+    CHECK_OK(bhr_get_quality(context, &value));
+    CHECK(value.volume_resolution == BHR_VOLUME_RESOLUTION_FULL, "a struct of 0.1.0 sets the resolution %d",
+          value.volume_resolution);
     CHECK_OK(bhr_quality_init(&value, sizeof value));
     CHECK_OK(bhr_set_quality(context, &value));
     check_unchanged(watch, __FILE__, __LINE__, "the quality set back");

@@ -144,7 +144,9 @@ static void scene() {
     EXPECT(context.set_time(12.5));
     bhr::Quality quality;
     quality.method = bhr::Method::rk4;
+    quality.volume_resolution = bhr::VolumeResolution::half;
     EXPECT(context.set_quality(quality) && context.quality().value().method == bhr::Method::rk4);
+    EXPECT(context.quality().value().volume_resolution == bhr::VolumeResolution::half);
     EXPECT(context.set_preset(bhr::Preset::teaching) && context.film().value().tone_map == bhr::ToneMap::none);
     EXPECT(context.set_sky(std::nullopt) && context.sky().value().flags == bhr::SkyFlags::none);
     const bhr::Result<void> refused = context.set_preset(static_cast<bhr::Preset>(99));

@@ -290,6 +290,7 @@ static void set_quality(BhrContext *context) {
     quality.tolerance = mostly(0, 1) == 0 ? 0.0 : number();
     quality.max_disk_order = byte() % 18;
     quality.render_scale = mostly(1, 0) != 0 ? 1.0 : number();
+    quality.volume_resolution = constant(BHR_VOLUME_RESOLUTION_HALF);
     check(bhr_set_quality(context, &quality));
 }
 

@@ -118,7 +118,8 @@ fn layouts_hold_in_rust() {
         sky::BhrSky { struct_size, flags, stars_brightness, map_brightness, orientation, seed }
         film::BhrFilm { struct_size, tone_map, exposure_ev, bloom, beam_fwhm, colour_map, reserved }
         quality::BhrQuality {
-            struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale
+            struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale,
+            volume_resolution, reserved2
         }
         region::BhrRegion { struct_size, full_width, full_height, x, y, reserved }
         rays::BhrRay { position, direction, frequency_ratio }

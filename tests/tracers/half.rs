@@ -97,8 +97,7 @@ fn errors(exact: &[f32], found: &[f32]) -> Vec<f32> {
     errors
 }
 
-/// Without a sky, whose stars would hide them, errors are within the tolerance but for one pixel in a thousand, where
-/// an image of the matter is narrower than a block; and there they are a few times as large.
+/// Without a sky, whose stars would hide them, errors are within the tolerance, and nearly all far within it.
 #[test]
 fn half_is_as_full_within_its_bound() {
     let mut renderer = cpu();
@@ -113,7 +112,7 @@ fn half_is_as_full_within_its_bound() {
         let [most, nearly_all, many] = [1.0, 0.999, 0.9].map(at);
         println!("{name}: 90 % within {many:.5}, 99.9 % within {nearly_all:.5}, all within {most:.5}");
         assert!(most > 0.0, "{name} is not at half resolution");
-        assert!(nearly_all <= TOLERANCE && most <= 6.0 * TOLERANCE && many < 0.1 * TOLERANCE, "{name}");
+        assert!(nearly_all <= 0.5 * TOLERANCE && most <= TOLERANCE && many < 0.1 * TOLERANCE, "{name}");
     }
 }
 
@@ -123,7 +122,7 @@ fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
     for (name, scene) in scenes() {
         let size = [160, 90];
-        let mut shown = |renderer: &mut Lent, scene: Scene| {
+        let shown = |renderer: &mut Lent, scene: Scene| {
             renderer.scene = scene;
             picture(renderer, PixelFormat::Rgba8Srgb, size, None, false)
         };
@@ -209,22 +208,22 @@ fn faces_of_a_cube_are_apart() {
 fn timing() {
     for (name, mut renderer) in both() {
         let scene = scenes().remove(0).1;
-        for (what, scene, refines) in [
+        let kinds = [
             ("full", scene.clone(), true),
             ("half", half(&scene), true),
             ("full, unrefined", scene.clone(), false),
             ("half, unrefined", half(&scene), false),
-            ("bare", Scene { volumes: Default::default(), ..scene.clone() }, false),
-        ] {
-            renderer.scene = scene;
-            renderer.scene.quality.refines = refines;
-            let mut best = 1e9_f64;
-            for _ in 0..4 {
+        ];
+        let mut best = [1e9_f64; 4];
+        for _ in 0..6 {
+            for (best, (_, scene, refines)) in best.iter_mut().zip(&kinds) {
+                renderer.scene = scene.clone();
+                renderer.scene.quality.refines = *refines;
                 let t = std::time::Instant::now();
                 let _ = picture(&mut renderer, PixelFormat::Rgba8Srgb, [640, 360], None, false);
-                best = best.min(t.elapsed().as_secs_f64());
+                *best = best.min(t.elapsed().as_secs_f64());
             }
-            println!("{name} {what}: {best:.3} s");
         }
+        kinds.iter().zip(best).for_each(|((what, ..), best)| println!("{name} {what}: {best:.3} s"));
     }
 }

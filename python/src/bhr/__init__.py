@@ -34,6 +34,7 @@ from ._constants import (
     ToneMap,
     View,
     VolumeFlags,
+    VolumeResolution,
     VolumeShape,
 )
 from ._context import Context
@@ -105,6 +106,7 @@ __all__ = [
     "View",
     "Volume",
     "VolumeFlags",
+    "VolumeResolution",
     "VolumeShape",
     "adapters",
     "load",

@@ -168,6 +168,13 @@ class Preset(enum.IntEnum):
     TEACHING = 3
 
 
+class VolumeResolution(enum.IntEnum):
+    """The rays that matter with depth is summed along."""
+
+    FULL = 0
+    HALF = 1
+
+
 class Method(enum.IntEnum):
     """How light is followed."""
 

@@ -166,6 +166,7 @@ fn all() -> Vec<(&'static str, String)> {
         HALF_LEAST_SHARE: f32 = half::LEAST_SHARE;
         HALF_LEAST_DEPTH: f32 = half::LEAST_DEPTH;
         HALF_CUBIC: vec4 = half::CUBIC;
+        HALF_LINE: vec4 = half::LINE;
         OFF_LINE: f32 = half::OFF_LINE;
         PIECE_LN_R: f32 = volumes::PIECE_LN_R;
         PIECE_ANGLE: f32 = volumes::PIECE_ANGLE;
