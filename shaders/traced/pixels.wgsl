@@ -112,14 +112,13 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     if PARTS {
         keep_medium();
     }
-    if !KEEPS_RECORD {
-        return;
+    if KEEPS_RECORD {
+        textureStore(record_sky, pixel, sky);
+        m.orders = disk_orders;
+        m.beside_disk = beside_orders;
+        if frame.view == VIEW_METRIC {
+            m.energy = plane_u;
+        }
+        textureStore(record_meta, pixel, pack_meta(m));
     }
-    textureStore(record_sky, pixel, sky);
-    m.orders = disk_orders;
-    m.beside_disk = beside_orders;
-    if frame.view == VIEW_METRIC {
-        m.energy = plane_u;
-    }
-    textureStore(record_meta, pixel, pack_meta(m));
 }

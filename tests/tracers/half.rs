@@ -2,7 +2,7 @@
 //! Matter with depth at half resolution, on both tracers: within its bound of full resolution, the same on both, and
 //! the same bytes whole or in parts.
 
-use crate::frames::{Lent, both, cpu, floats, gpu, picture, tiled};
+use crate::frames::{Lent, both, cpu, differing, floats, gpu, picture, tiled};
 use bhr::image::PixelFormat;
 use bhr::scene::{Camera, Disk, FlowLaw, HotSpot, Projection, Scene, Shape, Sky, View, Volume, VolumeResolution};
 use glam::DVec3;
@@ -180,6 +180,22 @@ fn parts_have_the_bytes_of_the_whole() {
         });
         assert!(full == found, "{tracer}: a scene without matter");
     }
+}
+
+/// A frame in which some thousand pixels are listed for rays of their own, several for each thread of a software
+/// driver: the next one has the same bytes, at half resolution as at full, and both are alike.
+#[test]
+fn long_lists_are_seen_through() {
+    let mut gpu = gpu();
+    let (_, scene) = scenes().remove(1);
+    let frames = [scene.clone(), half(&scene)].map(|scene| {
+        gpu.scene = scene;
+        let [first, next] = [(); 2].map(|()| picture(&mut gpu, PixelFormat::Rgba8Srgb, [640, 360], None, false));
+        assert!(first == next, "two frames of one scene differ by {} pixels", differing(&first, &next));
+        first
+    });
+    let far = frames[0].iter().zip(&frames[1]).filter(|(a, b)| a.abs_diff(**b) > 2).count();
+    assert!(far <= frames[0].len() / 50_000, "{far} of {}", frames[0].len());
 }
 
 /// Every face of a cube has blocks of its own, also where its side is odd.

@@ -6,17 +6,13 @@ use super::tiles::MAX_BATCH;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::kernels::{Kernels, Stage, list_groups};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{FilmVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
 use wgpu::BufferUsages as Usage;
 
 /// `Edges` of records/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
-
-/// Workgroups that share the list: as `DEFERRED_GROUPS` of stages.rs.
-const GROUPS: u32 = 2048;
-const GROUPS_SOFTWARE: u32 = 16;
 
 /// The list; it grows and stays.
 #[derive(Default)]
@@ -56,7 +52,9 @@ impl EdgeList {
 /// The kernel over the list.
 pub struct RefineStage {
     stage: Stage,
-    groups: u32,
+    software: bool,
+    /// Matter is summed along the rays.
+    sums: bool,
 }
 
 impl RefineStage {
@@ -71,15 +69,15 @@ impl RefineStage {
     ) -> Result<Self> {
         let stage =
             kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
-        Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
+        Ok(Self { stage, software, sums: variant.matter.is_some() })
     }
 
-    /// After the pixels of a tile have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of
+    /// After the pixels of `tile` have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of
     /// the `PassUniform`s with `EDGE_SAMPLES` and with `CURVE_SAMPLES`: some of the disk's edges turn out to need the
     /// critical curve's samples.
-    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2]) {
+    pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
         for offset in offsets {
-            self.stage.run(pass, Some(offset), [self.groups, 1]);
+            self.stage.run(pass, Some(offset), [list_groups(tile, self.software, self.sums), 1]);
         }
     }
 }

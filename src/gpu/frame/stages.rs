@@ -203,7 +203,7 @@ impl ShadeStages {
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
         self.consumer.dispatch(pass, offsets[0], tile);
         if let Some(refining) = &self.refining {
-            refining.dispatch(pass, offsets);
+            refining.dispatch(pass, offsets, tile);
         }
     }
 }

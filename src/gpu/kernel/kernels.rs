@@ -330,6 +330,24 @@ pub fn pixel_groups(size: [u32; 2]) -> [u32; 2] {
     groups_over(size, GROUP)
 }
 
+/// Workgroups that share a list of a tile's pixels: enough for a large GPU's few thousand, and on a software driver,
+/// where each costs its share of a loop's body however little there is to do, few.
+const LIST_GROUPS: u32 = 2048;
+const LIST_GROUPS_SOFTWARE: u32 = 16;
+/// Pixels of a tile for each workgroup of a software driver, where matter is summed along the rays: Mesa's lavapipe
+/// ends every loop of a thread once all of them together have taken 65535 turns (LP_MAX_TGSI_LOOP_ITERATIONS of its
+/// lp_limits.h), and a ray through matter takes thousands. With 16 workgroups pixels at a list's end came out black.
+const PIXELS_PER_LIST_GROUP: u32 = 128;
+
+/// The workgroups that go over a list of pixels of a tile. `sums`: matter is summed along their rays.
+pub fn list_groups(tile: [u32; 2], software: bool, sums: bool) -> u32 {
+    match (software, sums) {
+        (false, _) => LIST_GROUPS,
+        (true, false) => LIST_GROUPS_SOFTWARE,
+        (true, true) => (tile[0] * tile[1] / PIXELS_PER_LIST_GROUP).clamp(LIST_GROUPS_SOFTWARE, 1 << 15),
+    }
+}
+
 /// Errors: INTERNAL if a count of workgroups exceeds what the device takes.
 pub fn check_groups(device: &Device, groups: [u32; 2]) -> Result<()> {
     let limit = device.limits().max_compute_workgroups_per_dimension;

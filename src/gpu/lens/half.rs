@@ -7,17 +7,13 @@ use crate::emit::half::{BLOCK, STENCIL};
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::wgpu_device::Device;
-use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::kernels::{Kernels, Stage, list_groups};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::TraceVariant;
 use wgpu::BufferUsages as Usage;
 
 /// Bytes of `OwnRays` of traced/own_rays.wgsl before the pixels.
 const HEAD: u64 = 16 * 4;
-
-/// Workgroups that share the list: as those of frame/refine.rs.
-const GROUPS: u32 = 2048;
-const GROUPS_SOFTWARE: u32 = 16;
 
 /// The records of blocks and the list of pixels; they grow and stay.
 #[derive(Default)]
@@ -31,7 +27,7 @@ pub struct HalfStages {
     blocks: Stage,
     fill: Stage,
     listed: Stage,
-    groups: u32,
+    software: bool,
 }
 
 /// The keys of these kernels; `variant`: how rays are traced that matter is summed along.
@@ -86,7 +82,7 @@ impl HalfBlocks {
             blocks: kernels.get(trace_blocks)?.stage(device, &[&pixel_group(&blocks, shared)])?,
             fill: kernels.get(fill)?.stage(device, &[&fills, &list])?,
             listed: kernels.get(listed)?.stage(device, &[&pixel_group(pixels, shared), &list])?,
-            groups: if shared.software { GROUPS_SOFTWARE } else { GROUPS },
+            software: shared.software,
         })
     }
 }
@@ -97,7 +93,7 @@ impl HalfStages {
         self.blocks.dispatch(pass, offset, tile.map(most_blocks));
         // Quads of pixels, of which the first and the last may lie half outside.
         self.fill.dispatch(pass, offset, tile.map(|pixels| pixels / 2 + 1));
-        self.listed.run(pass, Some(offset), [self.groups, 1]);
+        self.listed.run(pass, Some(offset), [list_groups(tile, self.software, true), 1]);
     }
 }
 
