@@ -14,6 +14,10 @@ use wgpu::BufferUsages as Usage;
 /// `Edges` of records/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
 
+/// Pixels of a tile for each workgroup of a software driver where matter is summed (`list_groups`): edges run through
+/// 1 or 2 % of them, and a workgroup takes two or more at a time.
+const PIXELS_PER_GROUP: u32 = 512;
+
 /// The list; it grows and stays.
 #[derive(Default)]
 pub struct EdgeList {
@@ -53,8 +57,8 @@ impl EdgeList {
 pub struct RefineStage {
     stage: Stage,
     software: bool,
-    /// Matter is summed along the rays.
-    sums: bool,
+    /// `PIXELS_PER_GROUP` where matter is summed along the rays.
+    summed: Option<u32>,
 }
 
 impl RefineStage {
@@ -69,7 +73,7 @@ impl RefineStage {
     ) -> Result<Self> {
         let stage =
             kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
-        Ok(Self { stage, software, sums: variant.matter.is_some() })
+        Ok(Self { stage, software, summed: variant.matter.map(|_| PIXELS_PER_GROUP) })
     }
 
     /// After the pixels of `tile` have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of
@@ -77,7 +81,7 @@ impl RefineStage {
     /// critical curve's samples.
     pub fn dispatch(&self, pass: &mut wgpu::ComputePass<'_>, offsets: [u32; 2], tile: [u32; 2]) {
         for offset in offsets {
-            self.stage.run(pass, Some(offset), [list_groups(tile, self.software, self.sums), 1]);
+            self.stage.run(pass, Some(offset), [list_groups(tile, self.software, self.summed), 1]);
         }
     }
 }

@@ -334,17 +334,18 @@ pub fn pixel_groups(size: [u32; 2]) -> [u32; 2] {
 /// where each costs its share of a loop's body however little there is to do, few.
 const LIST_GROUPS: u32 = 2048;
 const LIST_GROUPS_SOFTWARE: u32 = 16;
-/// Pixels of a tile for each workgroup of a software driver, where matter is summed along the rays: Mesa's lavapipe
-/// ends every loop of a thread once all of them together have taken 65535 turns (LP_MAX_TGSI_LOOP_ITERATIONS of its
-/// lp_limits.h), and a ray through matter takes thousands. With 16 workgroups pixels at a list's end came out black.
-const PIXELS_PER_LIST_GROUP: u32 = 128;
 
-/// The workgroups that go over a list of pixels of a tile. `sums`: matter is summed along their rays.
-pub fn list_groups(tile: [u32; 2], software: bool, sums: bool) -> u32 {
-    match (software, sums) {
+/// The workgroups that go over a list of pixels of a tile. `summed`: where matter is summed along their rays, the
+/// pixels of the tile for each workgroup of a software driver.
+///
+/// Mesa's lavapipe leaves every loop of a thread once all of them together have taken 65535 turns
+/// (LP_MAX_TGSI_LOOP_ITERATIONS of its lp_limits.h), and a ray through matter takes thousands. With 16 workgroups the
+/// pixels at a list's end came out black.
+pub fn list_groups(tile: [u32; 2], software: bool, summed: Option<u32>) -> u32 {
+    match (software, summed) {
         (false, _) => LIST_GROUPS,
-        (true, false) => LIST_GROUPS_SOFTWARE,
-        (true, true) => (tile[0] * tile[1] / PIXELS_PER_LIST_GROUP).clamp(LIST_GROUPS_SOFTWARE, 1 << 15),
+        (true, None) => LIST_GROUPS_SOFTWARE,
+        (true, Some(pixels)) => (tile[0] * tile[1] / pixels).clamp(LIST_GROUPS_SOFTWARE, 1 << 15),
     }
 }
 

@@ -15,6 +15,10 @@ use wgpu::BufferUsages as Usage;
 /// Bytes of `OwnRays` of traced/own_rays.wgsl before the pixels.
 const HEAD: u64 = 16 * 4;
 
+/// Pixels of a tile for each workgroup of a software driver (`list_groups`): all may be listed, and a workgroup takes 64
+/// at a time.
+const PIXELS_PER_GROUP: u32 = 128;
+
 /// The records of blocks and the list of pixels; they grow and stay.
 #[derive(Default)]
 pub struct HalfBlocks {
@@ -93,7 +97,7 @@ impl HalfStages {
         self.blocks.dispatch(pass, offset, tile.map(most_blocks));
         // Quads of pixels, of which the first and the last may lie half outside.
         self.fill.dispatch(pass, offset, tile.map(|pixels| pixels / 2 + 1));
-        self.listed.run(pass, Some(offset), [list_groups(tile, self.software, true), 1]);
+        self.listed.run(pass, Some(offset), [list_groups(tile, self.software, Some(PIXELS_PER_GROUP)), 1]);
     }
 }
 
