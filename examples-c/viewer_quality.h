@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* viewer_quality.h -- adaptive quality: matter with depth at half resolution and then fewer traced pixels while the
- * picture moves, so that the display's rate is held, and a finer and finer picture when it rests. Decides only; knows no
- * window and renders nothing. */
+ * picture moves, so that the display's rate is held, and a finer and finer picture when it rests. Decides only; knows
+ * no window and renders nothing. */
 #ifndef EXAMPLES_VIEWER_QUALITY_H
 #define EXAMPLES_VIEWER_QUALITY_H
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Kernel: traces the blocks that the pixels of a tile get their matter from (emit/half.wgsl) into textures of their own,
-// whose first texel is the first block's.
+// Kernel: traces the blocks that the pixels of a tile get their matter from (emit/half.wgsl) into textures of their
+// own, whose first texel is the first block's.
 
 #import emit/half
 #import shared/not_inlined

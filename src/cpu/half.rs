@@ -50,14 +50,14 @@ impl<'a> Blocks<'a> {
         if !mapping.has_look_direction(x, y) {
             return (Media::new(), true);
         }
-        match self.from_blocks(pixel, x, record) {
+        match self.told_by_blocks(pixel, x, record) {
             Some(media) => (media, true),
             None => (self.recorder.trace(x, y).media, false),
         }
     }
 
     /// `None`: they do not tell.
-    fn from_blocks(&self, pixel: [i32; 2], x: f64, record: &Record) -> Option<Media> {
+    fn told_by_blocks(&self, pixel: [i32; 2], x: f64, record: &Record) -> Option<Media> {
         let mapping = &self.recorder.lens.mapping;
         let [left, top] = pixel.map(first_block);
         let begin = (top - self.first[1]) as usize * self.stride + (left - self.first[0]) as usize;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Matter with depth at half resolution: where the sum along one ray of each block of 2 x 2 pixels stands for those of
-//! its pixels, and where a pixel's own ray has to be summed. Mirrored by `shaders/emit/half.wgsl`. Knows media and whole
-//! numbers; no ray, no tracer and no picture.
+//! its pixels, and where a pixel's own ray has to be summed. Mirrored by `shaders/emit/half.wgsl`. Knows media and
+//! whole numbers; no ray, no tracer and no picture.
 //!
 //! Blocks are counted from the corner of the full frame, so that a part of a frame has the blocks of the whole. The ray
 //! of block b of a row goes through pixel coordinate 2 b + 1, the middle of its two pixels, plus what the sample lies
@@ -9,13 +9,13 @@
 //! and its medium is found from 4 x 4 blocks without the corners, which all must have met the same crossings and the
 //! same fate as the pixel. What the cubics through four blocks (Lagrange) of the middle rows add to the plane between
 //! the nearest four, and what those of the middle columns add, is added to that plane (Gordon's sum of interpolations,
-//! Gordon 1971, SIAM J. Numer. Anal. 8, 158): as exact as the product of both cubics but for a term of the fourth order,
-//! and no block counts that the test below does not look at.
+//! Gordon 1971, SIAM J. Numer. Anal. 8, 158): as exact as the product of both cubics but for a term of the fourth
+//! order, and no block counts that the test below does not look at.
 //!
 //! Second differences of the blocks say how far a straight line between two of them may be off, which is 3/32 of them a
-//! quarter of the way. Where that is more than `TOLERANCE` of what is interpolated, the pixel's own ray is summed. It is
-//! the error of a rule of lower order than the one that is used, as in embedded Runge-Kutta methods: the smoother matter
-//! is, the smaller is the cubic's. Their sizes are added, so that none hides where one of them passes through 0.
+//! quarter of the way. Where that is more than `TOLERANCE` of what is interpolated, the pixel's own ray is summed. It
+//! is the error of a rule of lower order than the one that is used, as in embedded Runge-Kutta methods: the smoother
+//! matter is, the smaller is the cubic's. Their sizes are added, so that none hides where one of them passes through 0.
 
 use super::medium::Medium;
 use std::array::from_fn;

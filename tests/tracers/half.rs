@@ -218,30 +218,3 @@ fn faces_of_a_cube_are_apart() {
         }
     }
 }
-
-#[test]
-fn timing() {
-    for (name, mut renderer) in both() {
-        let scene = scenes().remove(0).1;
-        let mut bare = Scene { volumes: Default::default(), ..scene.clone() };
-        bare.quality.lens_tables = bhr::scene::LensTables::Never;
-        let kinds = [
-            ("full", scene.clone(), true),
-            ("half", half(&scene), true),
-            ("full, unrefined", scene.clone(), false),
-            ("half, unrefined", half(&scene), false),
-            ("bare, unrefined", bare, false),
-        ];
-        let mut best = [1e9_f64; 5];
-        for _ in 0..6 {
-            for (best, (_, scene, refines)) in best.iter_mut().zip(&kinds) {
-                renderer.scene = scene.clone();
-                renderer.scene.quality.refines = *refines;
-                let t = std::time::Instant::now();
-                let _ = picture(&mut renderer, PixelFormat::Rgba8Srgb, [640, 360], None, false);
-                *best = best.min(t.elapsed().as_secs_f64());
-            }
-        }
-        kinds.iter().zip(best).for_each(|((what, ..), best)| println!("{name} {what}: {best:.3} s"));
-    }
-}

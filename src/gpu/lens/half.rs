@@ -15,8 +15,8 @@ use wgpu::BufferUsages as Usage;
 /// Bytes of `OwnRays` of traced/own_rays.wgsl before the pixels.
 const HEAD: u64 = 16 * 4;
 
-/// Pixels of a tile for each workgroup of a software driver (`list_groups`): all may be listed, and a workgroup takes 64
-/// at a time.
+/// Pixels of a tile for each workgroup of a software driver (`list_groups`): all may be listed, and a workgroup takes
+/// 64 at a time.
 const PIXELS_PER_GROUP: u32 = 128;
 
 /// The records of blocks and the list of pixels; they grow and stay.
