@@ -99,9 +99,9 @@ const MIDDLE: [usize; 4] = [5, 6, 9, 10];
 /// The rule by which a frame's pixels are found from blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evenness {
-    /// Of light; darker light need not be told exactly.
+    /// For light; darker light need not be told exactly.
     Light { least: f64 },
-    /// Of I_nu and optical depth.
+    /// For I_nu and optical depth.
     Depth,
 }
 

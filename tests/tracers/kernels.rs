@@ -6,7 +6,7 @@ use crate::frames::plain;
 use crate::random::runs_all;
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, Renderer, RendererOptions};
-use bhr::scene::{LensTables, Method, Motion, Projection, Scene, ToneMap, View};
+use bhr::scene::{LensTables, Method, Motion, Projection, Scene, ToneMap, View, Volume, VolumeResolution};
 
 const SIZE: [u32; 2] = [96, 64];
 
@@ -37,7 +37,7 @@ fn missing(renderer: &Renderer) -> [u64; 2] {
 type Change = fn(&mut Scene);
 
 /// One of each kind of change that a host can make.
-const CHANGES: [Change; 14] = [
+const CHANGES: [Change; 16] = [
     |_| (),
     |scene| scene.hole.spin = 0.9,
     |scene| scene.disk.as_mut().unwrap().turbulence = 1.0,
@@ -52,6 +52,11 @@ const CHANGES: [Change; 14] = [
     |scene| scene.camera.motion = Motion::FreeFall,
     |scene| scene.view = View::Redshift,
     |scene| scene.disk = None,
+    |scene| {
+        scene.view = View::Light;
+        scene.volumes.push(Volume::default());
+    },
+    |scene| scene.quality.volume_resolution = VolumeResolution::Half,
 ];
 
 #[test]

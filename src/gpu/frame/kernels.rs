@@ -7,7 +7,7 @@ use super::tracer::GpuTracer;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource, RefineVariant};
 use crate::image::PixelFormat;
-use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMap, View};
+use crate::scene::{Disk, Effects, Motion, Projection, Region, Scene, Sky, ToneMap, View, VolumeResolution};
 use crate::sky::SkyMap;
 use crate::tracer::{Backend, FrameRequest};
 
@@ -69,6 +69,15 @@ fn neighbours(scene: &Scene) -> Vec<Scene> {
     let tone_map = |tone_map| move |scene: &mut Scene| scene.film.tone_map = tone_map;
     // One of each kind is enough where one kernel serves all: films and projections but the usual ones, views.
     let mut list = vec![changed(&spin), changed(&turbulence), changed(&bloom)];
+    if scene.emitters().needs().parts {
+        // A host whose frames are late may give up this first.
+        list.push(changed(&|scene| {
+            scene.quality.volume_resolution = match scene.quality.volume_resolution {
+                VolumeResolution::Full => VolumeResolution::Half,
+                VolumeResolution::Half => VolumeResolution::Full,
+            }
+        }));
+    }
     list.extend([ToneMap::Agx, ToneMap::Aces].map(|to| changed(&tone_map(to))));
     list.extend([Projection::Fisheye, Projection::Perspective].map(|to| changed(&projection(to))));
     list.extend([Motion::FreeFall, Motion::Static].map(|to| changed(&motion(to))));
