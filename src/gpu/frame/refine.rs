@@ -14,9 +14,12 @@ use wgpu::BufferUsages as Usage;
 /// `Edges` of records/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
 
-/// Workgroups that share the list: as `DEFERRED_GROUPS` of stages.rs.
+/// Workgroups that share the list: as `DEFERRED_GROUPS` of stages.rs. Lavapipe ends all loops of a thread early once
+/// they have gone round 65535 times (LP_MAX_TGSI_LOOP_ITERATIONS of Mesa 22.3), and rays through matter with depth need
+/// thousands: there each group takes fewer pixels.
 const GROUPS: u32 = 2048;
 const GROUPS_SOFTWARE: u32 = 16;
+const GROUPS_OF_MATTER: u32 = 256;
 
 /// The list; it grows and stays.
 #[derive(Default)]
@@ -71,7 +74,12 @@ impl RefineStage {
     ) -> Result<Self> {
         let stage =
             kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
-        Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
+        let groups = match (software, variant.matter) {
+            (false, _) => GROUPS,
+            (true, None) => GROUPS_SOFTWARE,
+            (true, Some(_)) => GROUPS_OF_MATTER,
+        };
+        Ok(Self { stage, groups })
     }
 
     /// After the pixels of a tile have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of

@@ -3,7 +3,8 @@
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, refine_slots, shade_slots,
+    structure_slots, sum_slots,
 };
 use super::variant::{
     FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant,
@@ -108,14 +109,17 @@ impl KernelKey {
         let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
         let [rows, columns] = [LENS_ROWS, LENS_COLUMNS].map(Slot::TextureWrite);
         match self {
-            Self::Pixels(_) => vec![vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])]],
+            Self::Pixels(_) => {
+                let light = Slot::Texture(TABLES[0]);
+                vec![[&[Slot::Uniform, Slot::UniformPart, sky, meta, disk, light][..], &structure_slots()].concat()]
+            }
             Self::Count => vec![vec![Slot::UniformPart, Slot::Texture(TRACED[1]), Slot::Write]],
             Self::Rays(_) => vec![vec![Slot::Uniform, Slot::Read, Slot::Write]],
             Self::ShadeSample(source, _) => vec![shade_slots(), source.slots(), sum_slots(), edge_slots()],
             Self::ShadeOnly(source, _, film) => vec![shade_slots(), source.slots(), film.slots(), edge_slots()],
             Self::Refine(refined, _, film) => {
                 let target = film.map_or_else(sum_slots, FilmVariant::slots);
-                vec![shade_slots(), refined.source.slots(), target, edge_slots()]
+                vec![refine_slots(), refined.source.slots(), target, edge_slots()]
             }
             Self::Develop(film, glare) => {
                 let light = match glare {
@@ -240,6 +244,7 @@ fn matter_constants(matter: MatterVariant) -> Vec<(&'static str, f64)> {
         ("THERMAL", flag(matter.thermal)),
         ("POWER_LAW", flag(matter.power_law)),
         ("SHOWS_DEPTH", flag(matter.shows_depth)),
+        ("STRUCTURE", flag(matter.structure)),
     ]
 }
 

@@ -188,6 +188,8 @@ pub struct Shared<'a> {
     pub step_sum: wgpu::BindingResource<'a>,
     /// `light_tables` of shade/shade.wgsl.
     pub light_tables: wgpu::BindingResource<'a>,
+    /// `structure_slots` of gpu/kernel/slots.rs.
+    pub structure: [wgpu::BindingResource<'a>; 3],
 }
 
 /// The stages that make the records of a tile before they are shaded.
@@ -234,11 +236,11 @@ impl TracedRecords {
         shared: &Shared<'_>,
     ) -> Result<TraceStages> {
         let [sky, meta, disk] = self.resources()?;
-        let Shared { frame, pass, step_sum, light_tables } = shared.clone();
+        let Shared { frame, pass, step_sum, light_tables, structure: [clouds, filaments, sampler] } = shared.clone();
+        let records = [sky, meta.clone(), disk];
+        let traced = [&[frame, pass.clone()][..], &records, &[light_tables, clouds, filaments, sampler]].concat();
         Ok(TraceStages {
-            trace: kernels
-                .get(KernelKey::Pixels(variant))?
-                .stage(device, &[&[frame, pass.clone(), sky, meta.clone(), disk, light_tables]])?,
+            trace: kernels.get(KernelKey::Pixels(variant))?.stage(device, &[&traced])?,
             count: kernels.get(KernelKey::Count)?.stage(device, &[&[pass, meta, step_sum]])?,
         })
     }

@@ -8,6 +8,7 @@
 //! change: no f32 function can be better than that.
 
 mod camera;
+mod clouds;
 mod excused;
 mod film;
 mod geodesic;
@@ -109,6 +110,7 @@ const TABLES: &[fn() -> Group] = &[
     kerr::nodes,
     light::group,
     matter::group,
+    clouds::group,
     sky::group,
     shade::group,
     refine::group,
