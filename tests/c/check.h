@@ -83,7 +83,7 @@ enum {
     FIRST_REGION = 24,
     FIRST_SKY = 64,
     FIRST_TRANSFER = 48,
-    FIRST_VOLUME = 200,
+    FIRST_VOLUME = 168,
     FIRST_WINDOW = 56
 };
 
