@@ -146,6 +146,12 @@ fn cloud_samples(index: u32, passed: f32, r: f32, footprint: f32) -> f32 {
     return passed / (CLOUD_SPACING * max(CLOUD_COARSE * footprint / r * finest, 1.0));
 }
 
+// The share of the places that structure wants, where what is in front lets the share `through` of the light pass, and
+// it sends the share `weight` of what it might.
+fn cloud_worth(through: f32, weight: f32) -> f32 {
+    return max(pow(max(through * weight, 1e-30), WORTH), LEAST_WORTH);
+}
+
 // The angle by which a ray with the impact parameter `b` has been bent between two radii, of which `swept` is that
 // about the hole. `passed`: it came closer to the hole in between.
 fn cloud_bend(swept: f32, b: f32, begin: f32, end: f32, passed: bool) -> f32 {

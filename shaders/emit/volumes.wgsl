@@ -23,15 +23,11 @@ override SHOWS_DEPTH: bool = false;
 override STRUCTURE: bool = false;
 // Cells of even matter for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
 const FINENESS: f32 = 1.7;
-// Less light from behind than this share is not looked for.
-const DARKEST: f32 = 1e-6;
 
 // The medium since the last crossing that was kept.
 var<private> medium: vec4<f32>;
 // The angle about the hole that the ray has swept so far.
 var<private> ray_swept: f32;
-// Texels of each volume's structure along the stretch at hand.
-var<private> texels_passed: array<f32, MOST_VOLUMES>;
 
 // A ray begins.
 fn begin_medium() {
@@ -124,27 +120,17 @@ fn add_part(
         let next = from_share + (to_share - from_share) * share;
         let last = vec2<f32>(quintic_at(course.u, first + run * next), quintic_at(course.n_z, first + run * next));
         let next_width = width_at(c, observer, course, first + run * next, h, before_swept + turned * next, ratio);
-        let cut = cells_between(vec2<f32>(before.x, last.x), vec2<f32>(before.y, last.y), swept * (next - at),
+        let cut = cut_of(vec2<f32>(before.x, last.x), vec2<f32>(before.y, last.y), swept * (next - at),
             0.5 * (width + next_width));
-        if cut.z > 0.0 {
-            let low = at + (next - at) * cut.x;
-            let high = at + (next - at) * cut.y;
-            let grain = Grain(width + (next_width - width) * cut.x, width + (next_width - width) * cut.y,
-                (cut.y - cut.x) / (3.0 * cut.z));
-            add_piece(c, observer, course, first + run * low, first + run * high, h, cut.z, grain, ratio);
+        if cut.count > 0.0 {
+            let ends = first + run * (at + (next - at) * cut.share);
+            let widths = width + (next_width - width) * cut.share;
+            add_piece(c, observer, course, ends, h, cut, widths, ratio);
         }
         at = next;
         before = last;
         width = next_width;
     }
-}
-
-// How fine the structure of a piece's matter may be: how wide a pixel is at its ends, M, and the share of
-// `texels_passed` from place to place.
-struct Grain {
-    from_width: f32,
-    to_width: f32,
-    spacing: f32,
 }
 
 // The width of a pixel at the share x of a step, M, where the ray has swept the angle `swept`. 0 without structure.
@@ -185,28 +171,49 @@ fn pixel_width(
     return cloud_footprint(pixel_angle, distance, b, 1.0 / observer.u, 1.0 / u, bend);
 }
 
-// The share of a stretch that has matter, and the number of cells that it should be cut into: 0 without matter. `width`
-// is that of a pixel there.
-fn cells_between(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> vec3<f32> {
+// How a stretch is cut: the share of it that has matter, and the number of cells, 0 without matter, or, if it has
+// structure, of even layers. `width` is that of a pixel there.
+struct Cut {
+    share: vec2<f32>,
+    count: f32,
+    layers: bool,
+}
+
+fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
     var share = vec2<f32>(1.0, 0.0);
     var cells = 0.0;
+    var places = 0.0;
     for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
         let matter = frame.matter[k];
         let within = clip(matter, u, cosines);
         if within.x < within.y {
             share = vec2<f32>(min(share.x, within.x), max(share.y, within.y));
-            var fineness = FINENESS;
+            cells = max(cells, cells_of(u, cosines, swept, matter));
             if STRUCTURE && k < MOST_VOLUMES {
-                texels_passed[k] = cloud_passed(k, u, cosines, swept);
-                // Three places a cell. Structure is rough: what cells that reach across bends lose is lost in it.
-                cells = max(cells, cloud_samples(k, texels_passed[k], 2.0 / (u.x + u.y), width) / 3.0);
-                fineness = select(FINENESS, 1.0, clouds.volumes[k].structure.x > 0.0);
+                let passed = cloud_passed(k, u, cosines, swept);
+                let wanted = cloud_samples(k, passed, 2.0 / (u.x + u.y), width);
+                places = max(places, wanted * cloud_worth(medium.w, weight_of(u, cosines, swept, matter)));
             }
-            cells = max(cells, fineness * cells_of(u, cosines, swept, matter));
         }
     }
+    let layers = STRUCTURE && places > 0.0;
+    let wanted = select(FINENESS * cells, max(places, LAYERS * cells), layers);
     let part = share.y - share.x;
-    return vec3<f32>(share, select(0.0, clamp(ceil(cells * part), 1.0, MOST_CELLS), part > 0.0));
+    return Cut(share, select(0.0, clamp(ceil(wanted * part), 1.0, MOST_CELLS), part > 0.0), layers);
+}
+
+// How much of the light it may send that a stretch sends, at most, if it were even.
+fn weight_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32 {
+    let r = 2.0 / (u.x + u.y);
+    let near = density_at(1.0 / u.x, cosines.x, 0.0, 0.0, matter);
+    let far = density_at(1.0 / u.y, cosines.y, 0.0, 0.0, matter);
+    let most = max(max(near, far), density_at(r, 0.5 * (cosines.x + cosines.y), 0.0, 0.0, matter));
+    if matter.kind.z != 0u {
+        return min(most, 1.0);
+    }
+    let run = 1.0 / u.x - 1.0 / u.y;
+    let across = swept * r;
+    return 1.0 - exp(-CLUMPED * matter.glow.x * most * sqrt(run * run + across * across));
 }
 
 // The share of a stretch, of which the straight lines between its ends lie within a matter's reach; (1, 0) for none.
@@ -227,42 +234,44 @@ fn clip_between(ends: vec2<f32>, low: f32, high: f32) -> vec2<f32> {
     return select(moving, select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), ends.x >= low && ends.x <= high), still);
 }
 
-// Adds a piece between two shares of a step in cells; one of too great an optical depth is cut again.
+// Adds a piece between two shares of a step, in cells, of which one of too great an optical depth is cut again, or in
+// even layers. `widths`: of a pixel at its ends.
 fn add_piece(
     c: Constants,
     observer: State,
     course: StepCourse,
-    begin: f32,
-    end: f32,
+    ends: vec2<f32>,
     h: f32,
-    cells: f32,
-    grain: Grain,
+    piece: Cut,
+    widths: vec2<f32>,
     ratio: f32,
 ) {
-    let size = (end - begin) / cells;
+    let size = (ends.y - ends.x) / piece.count;
     var cell = 0u;
     var cut = 0u;
     var cuts = 1u;
     // u32 of NaN may be any number.
-    let count = clamp(u32(cells), 1u, u32(MOST_CELLS));
+    let count = clamp(u32(piece.count), 1u, u32(MOST_CELLS));
+    let nodes = select(3u, 1u, piece.layers);
     while cell < count && !is_dark() {
         let part = size / f32(cuts);
-        let low = begin + size * f32(cell) + part * f32(cut);
+        let low = ends.x + size * f32(cell) + part * f32(cut);
         var light = array<vec3<f32>, 3>();
         var depths = vec3<f32>(0.0);
-        for (var node = 0u; node < 3u; node += 1u) {
-            let along = (f32(cell) + (f32(cut) + GAUSS_NODES[node]) / f32(cuts)) / cells;
-            let blur = Blur(grain.from_width + (grain.to_width - grain.from_width) * along, grain.spacing);
-            let there = coefficients_at(c, observer, course, low + part * GAUSS_NODES[node], h, part * h, blur, ratio);
+        for (var node = 0u; node < nodes; node += 1u) {
+            let place = select(GAUSS_NODES[node], 0.5, piece.layers);
+            let along = (f32(cell) + (f32(cut) + place) / f32(cuts)) / piece.count;
+            let width = widths.x + (widths.y - widths.x) * along;
+            let there = coefficients_at(c, observer, course, low + part * place, h, part * h, width, ratio);
             light[node] = there.xyz;
             depths[node] = there.w;
         }
-        let depth = dot(GAUSS_WEIGHTS, depths);
-        if cuts == 1u && depth > 1.0 {
+        let depth = select(dot(GAUSS_WEIGHTS, depths), depths.x, piece.layers);
+        if cuts == 1u && depth > 1.0 && !piece.layers {
             cuts = u32(min(ceil(depth), MOST_CUTS));
             continue;
         }
-        let gains = node_gains(depths) * medium.w;
+        let gains = select(node_gains(depths), vec3<f32>(own_share(depth), 0.0, 0.0), piece.layers) * medium.w;
         let seen = light[0] * gains.x + light[1] * gains.y + light[2] * gains.z;
         medium.x += seen.x;
         if SHOWS_DEPTH {
@@ -286,12 +295,11 @@ fn is_dark() -> bool {
     if SHOWS_DEPTH {
         return medium.y > DARK;
     }
-    return medium.w < DARKEST;
+    return medium.w < exp(-DARK_PICTURE);
 }
 
 // All matter at the share x of a step of the length `h`, as if the length `tau` of it were as it is there: light, and
-// in w the optical depth. In views of matter x of the light is I_nu. The spacing of `blur` is the share of
-// `texels_passed`.
+// in w the optical depth. In views of matter x of the light is I_nu. `width`: of a pixel there, M.
 fn coefficients_at(
     c: Constants,
     observer: State,
@@ -299,7 +307,7 @@ fn coefficients_at(
     x: f32,
     h: f32,
     tau: f32,
-    blur: Blur,
+    width: f32,
     ratio: f32,
 ) -> vec4<f32> {
     let u = quintic_at(course.u, x);
@@ -331,8 +339,7 @@ fn coefficients_at(
             var structure = vec2<f32>(1.0);
             if STRUCTURE && k < MOST_VOLUMES {
                 let there = CloudPlace(r, cosine, azimuth, later);
-                let spaced = Blur(blur.footprint, blur.spacing * texels_passed[k]);
-                structure = cloud_pattern(k, there, angular_velocity(c.a, at, velocity), spaced);
+                structure = cloud_pattern(k, there, angular_velocity(c.a, at, velocity), Blur(width, 0.0));
             }
             // Nothing can move so where this fails, NaN among it.
             if nu > 0.0 && nu < 1e30 {

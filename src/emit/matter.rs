@@ -17,6 +17,8 @@ use crate::physics::orbit::horizon_outer;
 pub(super) const BENDS: usize = 6;
 /// The sine of theta below which cells are no finer.
 pub(crate) const NEAR_AXIS: f64 = 0.01;
+/// Structure is so many times denser here and there than matter without it.
+pub(crate) const CLUMPED: f64 = 10.0;
 
 /// How exactly the matter along rays is summed.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +27,9 @@ pub struct Accuracy {
     pub fineness: f64,
     /// The same beside places where it bends.
     pub beside_bends: f64,
-    /// Whether cells end where matter bends that has structure, too: structure is rougher than bends.
-    pub parts_structure: bool,
+    /// Whether stretches that have structure are summed in even layers, not in cells: structure is so rough that
+    /// polynomials gain nothing.
+    pub layers: bool,
     /// Thinner matter is left out; of matter that absorbs, in optical depths per M.
     pub least: f64,
     /// Matter behind so great an optical depth is left out.
@@ -35,13 +38,11 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// For pixels: 1e-5 of a picture's peak.
-    pub const PICTURE: Self =
-        Self { fineness: 1.0, beside_bends: 1.0, parts_structure: false, least: 1e-7, dark: 18.0 };
+    pub const PICTURE: Self = Self { fineness: 1.0, beside_bends: 1.0, layers: true, least: 1e-7, dark: 12.0 };
     /// For pixels that show a number.
     pub const VIEW: Self = Self { dark: 300.0, ..Self::PICTURE };
     /// For rays whose numbers count: 1e-8 of it.
-    pub const EXACT: Self =
-        Self { fineness: 4.0, beside_bends: 16.0, parts_structure: true, least: 1e-13, dark: 300.0 };
+    pub const EXACT: Self = Self { fineness: 4.0, beside_bends: 16.0, layers: false, least: 1e-13, dark: 300.0 };
 }
 
 impl Default for Accuracy {
@@ -116,6 +117,18 @@ impl VolumeMatter {
             least,
             clouds: Clouds::new(volume, &cloud, &reach, &flow, spin, when),
         })
+    }
+
+    /// How much of the light it may send that a stretch sends, at most, if it were even: of a blackbody that goes with
+    /// the optical depth, of a power law with the density.
+    pub(crate) fn weight(&self, stretch: &Stretch) -> f64 {
+        let ([u, v], [c, d], [r, cos]) = (stretch.u, stretch.cos, stretch.middle());
+        let density = |r: f64, cos: f64| self.cloud.density(r, cos);
+        let most = density(1.0 / u, c).max(density(1.0 / v, d)).max(density(r, cos));
+        match self.glow.power_law {
+            true => most.min(1.0),
+            false => 1.0 - (-CLUMPED * self.glow.absorption * most * stretch.length()).exp(),
+        }
     }
 
     /// The number of cells that a stretch should be cut into.

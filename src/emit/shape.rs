@@ -89,6 +89,18 @@ pub fn jet_wall(r: f64, opening: f64, radius: f64) -> f64 {
     (opening * (radius / r).sqrt()).min(std::f64::consts::FRAC_PI_2).cos()
 }
 
+impl Stretch {
+    /// r and cos th halfway.
+    pub fn middle(&self) -> [f64; 2] {
+        [2.0 / (self.u[0] + self.u[1]), 0.5 * (self.cos[0] + self.cos[1])]
+    }
+
+    /// Its length, M, as if space were flat.
+    pub fn length(&self) -> f64 {
+        f64::hypot(1.0 / self.u[0] - 1.0 / self.u[1], self.swept * self.middle()[0])
+    }
+}
+
 impl Cloud {
     /// `isco`: that of the volume's matter, for inner edges that are not stated.
     pub fn new(volume: &Volume, isco: f64) -> Self {

@@ -7,11 +7,11 @@
 //! levels. Pieces, over which 1/r changes by 25 % and the angle by 0.25 rad at most, are told by dense output and cost
 //! next to nothing; those that no matter is near are passed over. The others are clipped to where matter is, and cut
 //! into cells, as many as lengths of it fit in. A cell is summed from three places, each a step of the integrator; if
-//! its optical depth is more than 1, it is cut again. Structure (`clouds`) is as fine as a pixel and the spacing of
-//! places along the ray let it be.
+//! its optical depth is more than 1, it is cut again. Pieces with structure (`clouds`), which is as fine as a pixel lets
+//! it be, are cut into even layers instead, the fewer the less light they send.
 
 use super::bands::When;
-use super::clouds::{Blur, CloudPlace, Structure, bend, footprint};
+use super::clouds::{Blur, CloudPlace, Structure, bend, footprint, worth};
 use super::effects::Effects;
 use super::filaments::Filaments;
 use super::glow::{Coefficients, Glow};
@@ -38,6 +38,8 @@ pub(crate) const MARGIN_U: f64 = 0.02;
 pub(crate) const MARGIN_COS: f64 = 0.015;
 /// Within a step 1/r may become larger than at its ends by this factor.
 pub(crate) const MARGIN_STEP: f64 = 1.1;
+/// Layers for each cell of even matter.
+pub(crate) const LAYERS: f64 = 2.0;
 /// The most bends between two places: those of all volumes.
 const MOST_BENDS: usize = BENDS * Volume::MOST;
 
@@ -114,6 +116,24 @@ pub(crate) fn clip(reach: &Reach, stretch: &Stretch) -> Option<[f64; 2]> {
         share = [share[0].max(a.min(b)), share[1].min(a.max(b))];
     }
     (share[0] < share[1]).then_some(share)
+}
+
+/// How a stretch should be cut.
+struct Cut {
+    /// The share of it that has matter.
+    share: [f64; 2],
+    /// The number of cells of even matter that the whole of it wants, and that of places that structure wants.
+    cells: f64,
+    places: f64,
+}
+
+impl Cut {
+    /// For the matter of both.
+    fn with(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.share, other.share);
+        let share = [a.min(c), b.max(d)];
+        Self { share, cells: self.cells.max(other.cells), places: self.places.max(other.places) }
+    }
 }
 
 /// Where a stretch of a part begins or ends: the share of the part, (1/r, cos th) and the width of a pixel there.
@@ -207,7 +227,7 @@ impl Volumes {
 
     /// 1/r of the places between two at which volumes bend, in their order.
     fn bends_between(&self, from: f64, to: f64) -> ArrayVec<f64, MOST_BENDS> {
-        let bends = self.volumes.iter().filter(|v| self.accuracy.parts_structure || v.clouds.is_none());
+        let bends = self.volumes.iter().filter(|v| !self.accuracy.layers || v.clouds.is_none());
         let bends = bends.flat_map(|volume| volume.bends);
         let between = bends.filter(|u| (u - from) * (u - to) < 0.0);
         let mut between = between.take(MOST_BENDS).collect::<ArrayVec<_, MOST_BENDS>>();
@@ -215,20 +235,22 @@ impl Volumes {
         between
     }
 
-    /// The share of a stretch that has matter, and the number of cells that it should be cut into. `footprint`: how
-    /// wide a pixel is there; `passed`: the texels that it passes of each volume's structure; `fineness`: cells for
-    /// each length over which matter changes.
-    fn cells(&self, stretch: &Stretch, footprint: f64, passed: &Texels, fineness: f64) -> Option<([f64; 2], f64)> {
-        let r = 2.0 / (stretch.u[0] + stretch.u[1]);
-        let volumes = self.volumes.iter().zip(passed).filter_map(|(v, passed)| {
-            // Three places a cell. Structure is rough: finer cells gain less there than the sixth order in them.
-            let places = v.clouds.map_or(0.0, |clouds| clouds.samples(&v.cloud, *passed, r, footprint));
-            Some((clip(&v.reach, stretch)?, (v.cells(stretch) * fineness).max(places / 3.0 * fineness.sqrt())))
-        });
-        let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch) * fineness)));
-        let all = volumes.chain(spots);
-        let (share, cells) = all.reduce(|([a, b], m), ([c, d], n)| ([a.min(c), b.max(d)], m.max(n)))?;
-        Some((share, cells * (share[1] - share[0])))
+    /// How a stretch should be cut. `passed`: the texels that it passes of each volume's structure; `footprint`: how
+    /// wide a pixel is there; `through`: the share of light that passes what is in front.
+    fn cut(&self, stretch: &Stretch, passed: &Texels, footprint: f64, through: f64) -> Option<Cut> {
+        let of_volume = |(v, passed): (&VolumeMatter, &f64)| {
+            let share = clip(&v.reach, stretch)?;
+            let clouds = v.clouds.as_ref().map_or(0.0, |clouds| {
+                let places = clouds.samples(&v.cloud, *passed, stretch.middle()[0], footprint);
+                places * if self.accuracy.layers { worth(through, v.weight(stretch)) } else { 1.0 }
+            });
+            Some(Cut { share, cells: v.cells(stretch), places: clouds })
+        };
+        let of_spot =
+            |s: &SpotMatter| Some(Cut { share: clip(&s.reach, stretch)?, cells: s.cells(stretch), places: 0.0 });
+        let all =
+            self.volumes.iter().zip(passed).filter_map(of_volume).chain(self.hot_spots.iter().filter_map(of_spot));
+        all.reduce(Cut::with)
     }
 
     /// The matter at a state of a ray, per unit of affine length. `blurs`: for the structure of each volume.
@@ -336,12 +358,53 @@ impl Sum<'_, '_> {
         let of_volume = |v: &VolumeMatter| v.clouds.map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
         let passed = self.volumes.volumes.iter().map(of_volume).collect::<Texels>();
         let width = |share: f64| from.footprint + (to.footprint - from.footprint) * share;
-        if let Some(([low, high], cells)) = self.volumes.cells(&stretch, width(0.5), &passed, fineness) {
-            let cells = cells.ceil().clamp(1.0, MOST_CELLS);
-            let spacing = passed.iter().map(|passed| passed * (high - low) / (3.0 * cells)).collect();
-            let grain = Grain { footprints: [width(low), width(high)], spacing };
-            self.piece([low, high].map(|share| from.share + run * share), cells, &grain, medium);
+        let Some(cut) = self.volumes.cut(&stretch, &passed, width(0.5), medium.through) else { return };
+        let [low, high] = cut.share;
+        let layers = self.volumes.accuracy.layers && cut.places > 0.0;
+        let wanted = match layers {
+            true => cut.places.max(LAYERS * cut.cells),
+            // Three places a cell. Structure is rough: finer cells gain less there than the sixth order in them.
+            false => (cut.cells * fineness).max(cut.places / 3.0 * fineness.sqrt()),
+        };
+        let count = (wanted * (high - low)).ceil().clamp(1.0, MOST_CELLS);
+        // Layers that are wider than structure is are so because it matters little there.
+        let apart = |passed: &f64| if layers { 0.0 } else { passed * (high - low) / (3.0 * count) };
+        let grain = Grain { footprints: [width(low), width(high)], spacing: passed.iter().map(apart).collect() };
+        let shares = [low, high].map(|share| from.share + run * share);
+        if layers {
+            self.layers(shares, count, &grain, medium);
+        } else {
+            self.piece(shares, count, &grain, medium);
         }
+    }
+
+    /// Adds a piece in even layers, each as it is in its middle.
+    fn layers(&self, [begin, end]: [f64; 2], count: f64, grain: &Grain, medium: &mut Medium) {
+        let size = (end - begin) / count;
+        for i in 0..count as u32 {
+            if medium.depth > self.volumes.accuracy.dark {
+                return;
+            }
+            let share = (f64::from(i) + 0.5) / count;
+            medium.add_layer(&self.coefficients(begin + (end - begin) * share, size, share, grain));
+        }
+    }
+
+    /// The coefficients at a share of the part, as if `size` of it were as it is there. `share`: that of the piece.
+    fn coefficients(&self, x: f64, size: f64, share: f64, grain: &Grain) -> Coefficients {
+        let (part, [near, far]) = (self.part, grain.footprints);
+        let footprint = near + (far - near) * share;
+        let blurs = grain.spacing.iter().map(|spacing| Blur { footprint, spacing: *spacing });
+        let blurs = blurs.collect::<ArrayVec<_, { Volume::MOST }>>();
+        // Before the horizon the light of matter that does not fall grows as (u+ - u)^(-1/2), whose integral is even in
+        // the square root.
+        let (x, slope) = if part.to_horizon { (x * (2.0 - x), 2.0 * (1.0 - x)) } else { (x, 1.0) };
+        let there = part.at(x);
+        let found = self.volumes.coefficients(part.constants, part.observer, &there, self.seen, &blurs);
+        if found == Coefficients::default() {
+            return found;
+        }
+        found.along(slope * size * part.length(&there))
     }
 
     /// Adds a piece in cells.
@@ -368,22 +431,9 @@ impl Sum<'_, '_> {
     /// The coefficients of the cell between two shares of the part, each as if all of the cell were as it is there.
     /// `shares`: those of the piece.
     fn nodes(&self, [begin, end]: [f64; 2], shares: [f64; 2], grain: &Grain) -> [Coefficients; 3] {
-        let part = self.part;
         GAUSS_NODES.map(|node| {
-            let x = begin + (end - begin) * node;
-            let [near, far] = grain.footprints;
-            let footprint = near + (far - near) * (shares[0] + (shares[1] - shares[0]) * node);
-            let blurs = grain.spacing.iter().map(|spacing| Blur { footprint, spacing: *spacing });
-            let blurs = blurs.collect::<ArrayVec<_, { Volume::MOST }>>();
-            // Before the horizon the light of matter that does not fall grows as (u+ - u)^(-1/2), whose integral is
-            // even in the square root.
-            let (x, slope) = if part.to_horizon { (x * (2.0 - x), 2.0 * (1.0 - x)) } else { (x, 1.0) };
-            let there = part.at(x);
-            let found = self.volumes.coefficients(part.constants, part.observer, &there, self.seen, &blurs);
-            if found == Coefficients::default() {
-                return found;
-            }
-            found.along(slope * (end - begin) * part.length(&there))
+            let share = shares[0] + (shares[1] - shares[0]) * node;
+            self.coefficients(begin + (end - begin) * node, end - begin, share, grain)
         })
     }
 }

@@ -174,12 +174,6 @@ fn the_tracers_agree() {
         });
         let far = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
         println!("{name}: {far} of {}", a.len());
-        for (i, (a, b)) in a.chunks(4).zip(b.chunks(4)).enumerate() {
-            if (0..3).any(|k| a[k].abs_diff(b[k]) > 2) {
-                print!("({},{} {:?} {:?}) ", i % 128, i / 128, &a[..3], &b[..3]);
-            }
-        }
-        println!();
         // The matter does something.
         cpu.scene = Scene { volumes: Default::default(), hot_spots: Default::default(), ..scene };
         let bare = picture(&mut cpu, PixelFormat::Rgba8Srgb, [128, 72], None, false);

@@ -193,6 +193,11 @@ fn all() -> Vec<(&'static str, String)> {
         LEAST_SIN2: f32 = flow::LEAST_SIN2;
         NEAR_AXIS: f32 = matter::NEAR_AXIS;
         DARK: f32 = matter::Accuracy::VIEW.dark;
+        DARK_PICTURE: f32 = matter::Accuracy::PICTURE.dark;
+        CLUMPED: f32 = matter::CLUMPED;
+        LAYERS: f32 = volumes::LAYERS;
+        WORTH: f32 = clouds::WORTH;
+        LEAST_WORTH: f32 = clouds::LEAST_WORTH;
         ABSORPTION_INDEX: f32 = glow::ABSORPTION_INDEX;
         INNER_FADE: vec2 = shape::INNER_FADE;
         OUTER_FADE: vec2 = shape::OUTER_FADE;

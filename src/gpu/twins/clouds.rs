@@ -6,7 +6,7 @@ use super::run::{Image, Table};
 use super::{Group, ROUNDING, SAME, TRANSCENDENTAL, twin};
 use crate::emit::bands::When;
 use crate::emit::bands::{Generations, bands_at, generation_key};
-use crate::emit::clouds::{Blur, CloudPlace, Clouds, Structure, bend, footprint};
+use crate::emit::clouds::{Blur, CloudPlace, Clouds, Structure, bend, footprint, worth};
 use crate::emit::effects::Effects;
 use crate::emit::filaments::{FILAMENT_LAST, FILAMENT_SIDES, Filaments, filament_log_mean, filament_variance};
 use crate::emit::matter::{Accuracy, VolumeMatter};
@@ -220,6 +220,17 @@ pub fn group() -> Group {
             },
             // As filament_value, in the exponent.
             2e-2,
+        ),
+        twin(
+            clouds,
+            "cloud_worth",
+            "out1(cloud_worth(in1(0u), in1(1u)));",
+            |i| {
+                i.log(1e-6, 1.0);
+                i.log(1e-6, 1.0);
+            },
+            |i, o| o.put(worth(i.x(0), i.x(1))),
+            TRANSCENDENTAL,
         ),
         twin(
             clouds,

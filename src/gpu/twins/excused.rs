@@ -63,7 +63,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
     (
         "emit/volumes",
-        "begin_medium step_course add_part width_at cells_between add_piece is_dark coefficients_at",
+        "begin_medium step_course add_part width_at cut_of weight_of add_piece is_dark coefficients_at",
         VOLUMES,
     ),
     ("geodesic/rays", "on_part", NO_VOLUMES),
