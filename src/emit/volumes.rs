@@ -7,8 +7,8 @@
 //! levels. Pieces, over which 1/r changes by 25 % and the angle by 0.25 rad at most, are told by dense output and cost
 //! next to nothing; those that no matter is near are passed over. The others are clipped to where matter is, and cut
 //! into cells, as many as lengths of it fit in. A cell is summed from three places, each a step of the integrator; if
-//! its optical depth is more than 1, it is cut again. Pieces with structure (`clouds`), which is as fine as a pixel lets
-//! it be, are cut into even layers instead, the fewer the less light they send.
+//! its optical depth is more than 1, it is cut again. Pieces with structure (`clouds`), which is as fine as a pixel
+//! lets it be, are cut into even layers instead, the fewer the less light they send.
 
 use super::bands::When;
 use super::clouds::{Blur, CloudPlace, Structure, bend, footprint, worth};

@@ -174,6 +174,7 @@ fn the_tracers_agree() {
         });
         let far = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
         println!("{name}: {far} of {}", a.len());
+        assert!(far <= a.len() / 1000, "{name}: {far} of {}", a.len());
         // The matter does something.
         cpu.scene = Scene { volumes: Default::default(), hot_spots: Default::default(), ..scene };
         let bare = picture(&mut cpu, PixelFormat::Rgba8Srgb, [128, 72], None, false);
