@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* telescope.h -- an observer so far from a hole that its light arrives in parallel rays: which hole, how large it is on
+ * the sky, and the matter along a square grid of such rays. Writes no file and no picture. */
+#ifndef EXAMPLES_TELESCOPE_H
+#define EXAMPLES_TELESCOPE_H
+
+#include "common.h"
+
+#include <bhr.h>
+
+#define SPEED_OF_LIGHT 299792458.0     /* m / s, exact in the SI */
+#define BOLTZMANN 1.380649e-23         /* J / K, exact in the SI (CODATA 2018) */
+#define SOLAR_GM 1.3271244e20          /* m^3 / s^2: IAU 2015, Resolution B3 */
+#define PARSEC 3.0856775814913673e16   /* m: 648000 / pi astronomical units of 149597870700 m (IAU 2015, B2; 2012, B2) */
+#define JANSKY 1e-26                   /* W / m^2 / Hz */
+#define MICROARCSECOND (PI / 648000e6) /* radians */
+
+/* A hole in the sky. */
+typedef struct Target {
+    const char *name;           /* of files */
+    const char *object;         /* as catalogues write it */
+    double      mass;           /* in those of the Sun */
+    double      distance;       /* kpc */
+    double      right_ascension, declination; /* degrees, ICRS */
+    double      inclination;    /* degrees between the spin and the way to us: above 90 the spin points away */
+    double      position_angle; /* degrees of the projected spin, from north over east */
+    double      flux;           /* Jy at 230 GHz */
+} Target;
+
+extern const Choice TARGETS[]; /* indices of TARGET_LIST */
+extern const Target TARGET_LIST[];
+
+/* G M / c^2 in metres; as an angle on the sky, radians; as a time, seconds. */
+double metres_of(const Target *target);
+double angle_of(const Target *target);
+double seconds_of(const Target *target);
+
+/* Parallel rays through a square grid in the plane that the observer sees the hole in: row by row from the top, the
+ * first point of a row on the left. Lengths in M. */
+typedef struct Grid {
+    double   inclination, position_angle; /* radians */
+    double   half;                        /* of the first and the last point from the middle */
+    uint32_t side;                        /* points in a row, and rows; 2 or more */
+} Grid;
+
+/* The grid of the centres of side x side pixels that fill a square of this width. */
+Grid grid_of_pixels(double inclination, double position_angle, double width, uint32_t side);
+
+/* The light's way from r = 0 to the observer, in M: flat, and Shapiro's delay beyond r = 2. A scene whose time is later
+ * by this shows what happens at the hole at the time itself. */
+double travel_time(void);
+
+/* What the matter of the context's scene sends along the rays, and the optical depth, NaN for captured rays. `share`:
+ * the part of the work that the progress counts for this, from `done` on. 0, or an exit status after a message. */
+int grid_transfer(BhrContext *context, const Grid *grid, double *out_intensity, double *out_depth, Progress *progress,
+                  double done, double share);
+
+#endif
