@@ -12,6 +12,7 @@
 typedef struct Settings {
     Target      target; /* with what the options say otherwise */
     double      spin, inclination, position_angle;
+    double      observer; /* M from the hole */
     double      fov;    /* of image: microarcseconds; of hotspot: M */
     double      beam;   /* microarcseconds across at half of the peak; 0: none */
     double      flux;   /* Jy at 230 GHz */

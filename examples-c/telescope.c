@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define FAR 1e6      /* the observer's distance in M, where light bends by 1e-6 of what it does beside the hole */
 #define CHUNK 2048u  /* rays that are traced at a time: 200 kB on the stack */
 
 const Choice TARGETS[] = {{"sgra", 0}, {"m87", 1}, {NULL, 0}};
@@ -32,26 +31,26 @@ double seconds_of(const Target *target) {
     return metres_of(target) / SPEED_OF_LIGHT;
 }
 
-Grid grid_of_pixels(double inclination, double position_angle, double width, uint32_t side) {
-    const Grid grid = {inclination, position_angle, 0.5 * width * (side - 1.0) / side, side};
+Grid grid_of_pixels(double inclination, double position_angle, double distance, double width, uint32_t side) {
+    const Grid grid = {inclination, position_angle, distance, 0.5 * width * (side - 1.0) / side, side};
     return grid;
 }
 
-double travel_time(void) {
-    return FAR + 2.0 * log(0.5 * FAR);
+double travel_time(double distance) {
+    return distance + 2.0 * log(0.5 * distance);
 }
 
-/* The ray that begins at the point `column`, `row`. The observer is at azimuth 0: outwards = (sin i, 0, cos i), the
- * spin's projection up = (-cos i, 0, sin i), and y is to the right of it. */
+/* The ray through the point `column`, `row`. The observer is at azimuth 0: outwards = (sin i, 0, cos i), the spin's
+ * projection up = (-cos i, 0, sin i), and y is to the right of it. */
 static BhrRay ray_at(const Grid *grid, uint32_t column, uint32_t row) {
-    const double s = sin(grid->inclination), c = cos(grid->inclination);
+    const double s = sin(grid->inclination), c = cos(grid->inclination), far = grid->distance;
     const double right = grid->half * (2.0 * column / (grid->side - 1.0) - 1.0);
     const double north = grid->half * (1.0 - 2.0 * row / (grid->side - 1.0));
     /* East is to the left: the spin is turned to it by the position angle. */
     const double turn_c = cos(grid->position_angle), turn_s = sin(grid->position_angle);
     const double x = right * turn_c + north * turn_s, y = north * turn_c - right * turn_s;
     /* A frequency at rest there is higher than at infinity, where it is meant. */
-    const BhrRay ray = {{s * FAR - c * y, x, c * FAR + s * y}, {-s, 0.0, -c}, sqrt(1.0 - 2.0 / FAR)};
+    const BhrRay ray = {{s * far, 0.0, c * far}, {-s * far - c * y, x, -c * far + s * y}, sqrt(1.0 - 2.0 / far)};
     return ray;
 }
 
@@ -82,7 +81,9 @@ int grid_transfer(BhrContext *context, const Grid *grid, double *out_intensity, 
                 return EXIT_FAILURE;
             }
             out_intensity[begin + i] = found[i].intensity;
-            out_depth[begin + i] = found[i].optical_depth;
+            if (out_depth != NULL) {
+                out_depth[begin + i] = found[i].optical_depth;
+            }
         }
         progress_draw(progress, done + share * (double)(begin + length) / (double)count);
     }

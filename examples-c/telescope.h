@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* telescope.h -- an observer so far from a hole that its light arrives in parallel rays: which hole, how large it is on
- * the sky, and the matter along a square grid of such rays. Writes no file and no picture. */
+/* telescope.h -- an observer far from a hole: which hole, how large it is on the sky, and the matter along a square grid
+ * of rays. Writes no file and no picture. */
 #ifndef EXAMPLES_TELESCOPE_H
 #define EXAMPLES_TELESCOPE_H
 
@@ -35,23 +35,27 @@ double metres_of(const Target *target);
 double angle_of(const Target *target);
 double seconds_of(const Target *target);
 
-/* Parallel rays through a square grid in the plane that the observer sees the hole in: row by row from the top, the
- * first point of a row on the left. Lengths in M. */
+#define FAR 1e6 /* M: from there light bends by 1e-6 of what it does beside the hole, and rays are parallel */
+
+/* Rays from an observer through a square grid in the plane of the hole that faces the observer, as if they were
+ * straight: row by row from the top, the first point of a row on the left. Lengths in M. */
 typedef struct Grid {
     double   inclination, position_angle; /* radians */
+    double   distance;                    /* from the hole, where the observer is at rest */
     double   half;                        /* of the first and the last point from the middle */
     uint32_t side;                        /* points in a row, and rows; 2 or more */
 } Grid;
 
 /* The grid of the centres of side x side pixels that fill a square of this width. */
-Grid grid_of_pixels(double inclination, double position_angle, double width, uint32_t side);
+Grid grid_of_pixels(double inclination, double position_angle, double distance, double width, uint32_t side);
 
-/* The light's way from r = 0 to the observer, in M: flat, and Shapiro's delay beyond r = 2. A scene whose time is later
+/* The light's way from r = 0 to an observer, in M: flat, and Shapiro's delay beyond r = 2. A scene whose time is later
  * by this shows what happens at the hole at the time itself. */
-double travel_time(void);
+double travel_time(double distance);
 
 /* What the matter of the context's scene sends along the rays, and the optical depth, NaN for captured rays. `share`:
- * the part of the work that the progress counts for this, from `done` on. 0, or an exit status after a message. */
+ * the part of the work that the progress counts for this, from `done` on. out_depth may be NULL. 0, or an exit status
+ * after a message. */
 int grid_transfer(BhrContext *context, const Grid *grid, double *out_intensity, double *out_depth, Progress *progress,
                   double done, double share);
 
