@@ -100,7 +100,7 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
           "0 to 1e6"}, IMAGE},
         {{"--hot-spot", OPTION_TEXTS, &s->hot_spots, HOT_SPOT_VALUE,
           "fields as BhrHotSpot has them, with - for _; radius=7,size=0.7 unless given", NULL, NULL}, HOTSPOT},
-        {{"--phases", OPTION_UINT, &s->phases, "N", "times in an orbit", NULL, "4 to 1000"}, HOTSPOT},
+        {{"--phases", OPTION_UINT, &s->phases, "N", "times in an orbit", NULL, "2 to 1000"}, HOTSPOT},
         {{"--fast-light", OPTION_FLAG, &s->fast_light, NULL, "as if light took no time on its way", NULL, NULL},
          HOTSPOT},
         {{"--observer", OPTION_DOUBLE, &s->observer, "R",
@@ -111,6 +111,9 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
           "above 0"}, IMAGE | HOTSPOT},
         {{"--pixels", OPTION_UINT, &s->pixels, "N", "in a row; a ray goes through the centre of each", NULL,
           "2 to 4096"}, IMAGE | HOTSPOT},
+        {{"--plain", OPTION_FLAG, &s->plain, NULL,
+          "no more rays than that: images of order 1 and more, beside the shadow, are not resolved then", NULL, NULL},
+         IMAGE | HOTSPOT},
         {{"--output", OPTION_TEXT, &s->output, "FOLDER", "for the files; made if need be", NULL, NULL},
          IMAGE | HOTSPOT},
         {{"--threads", OPTION_UINT, &in->threads, "N", "of the tracer; 0: one per core", NULL, NULL},
@@ -181,8 +184,8 @@ static int check(const char *program, unsigned bit, const Settings *s) {
     if (s->pixels < 2 || s->pixels > MOST_PIXELS) {
         return refuse(program, "--pixels", s->pixels, "2 to 4096");
     }
-    if (s->phases < 4 || s->phases > 1000) {
-        return refuse(program, "--phases", s->phases, "4 to 1000");
+    if (s->phases < 2 || s->phases > 1000) {
+        return refuse(program, "--phases", s->phases, "2 to 1000");
     }
     return 0;
 }
@@ -263,6 +266,7 @@ static int run(int argc, char **argv) {
                 argc > 1 ? argv[1] : "");
         return EXIT_USAGE;
     } else {
+        argv[1] = argv[0]; /* messages begin with it */
         const int result = read_options(&in, command, argc - 1, argv + 1);
         if (result != 0) {
             return result;

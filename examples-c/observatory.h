@@ -19,7 +19,7 @@ typedef struct Settings {
     const char *frequencies;
     TextList    volumes, hot_spots;
     uint32_t    pixels, phases;
-    int         fast_light;
+    int         fast_light, plain;
     const char *output;
     Progress    progress;
 } Settings;

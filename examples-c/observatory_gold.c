@@ -58,9 +58,10 @@ static double find_flux(BhrContext *context, Settings *s, size_t number, double 
         report_failure("set the scene", status);
         return NAN;
     }
-    const Grid   grid = {PI / 3.0, 0.0, FAR, HALF, SIDE};
+    const Grid   grid = {PI / 3.0, 0.0, FAR, HALF, SIDE, 0};
     const double share = 1.0 / COUNT_OF(TESTS);
-    if (grid_transfer(context, &grid, intensity, NULL, &s->progress, (double)number * share, share) != 0) {
+    Transferred  out = {intensity, NULL, &s->progress, (double)number * share, share};
+    if (grid_transfer(context, &grid, &out) != 0) {
         return NAN;
     }
     double sum = 0.0;

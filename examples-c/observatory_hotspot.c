@@ -79,9 +79,9 @@ static int find_phase(Curve *curve, uint32_t number) {
     if (status < 0) {
         return report_failure("set the time", status);
     }
-    const Grid grid = grid_of_pixels(s->inclination, 0.0, s->observer, curve->width, s->pixels);
-    const int  result = grid_transfer(curve->context, &grid, curve->light, NULL, &curve->s->progress,
-                                      (double)number / s->phases, 1.0 / s->phases);
+    const Grid  grid = grid_of_pixels(s->inclination, 0.0, s->observer, curve->width, s->pixels, !s->plain);
+    Transferred out = {curve->light, NULL, &curve->s->progress, (double)number / s->phases, 1.0 / s->phases};
+    const int   result = grid_transfer(curve->context, &grid, &out);
     if (result != 0) {
         return result;
     }

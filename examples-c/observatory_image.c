@@ -101,9 +101,9 @@ static int trace(Images *images, double ghz, uint32_t number, uint32_t of) {
     }
     const Settings *s = images->s;
     const Grid      grid = grid_of_pixels(s->inclination, s->position_angle, s->observer,
-                                          images->pixel * s->pixels / angle_of(&s->target), s->pixels);
-    return grid_transfer(images->context, &grid, images->light, images->depth, &images->s->progress,
-                         (double)number / of, 1.0 / of);
+                                          images->pixel * s->pixels / angle_of(&s->target), s->pixels, !s->plain);
+    Transferred     out = {images->light, images->depth, &images->s->progress, (double)number / of, 1.0 / of};
+    return grid_transfer(images->context, &grid, &out);
 }
 
 static double sum_of(const double *values, size_t count) {
@@ -367,10 +367,22 @@ static int write_files(const Images *images, const Measured *found) {
     return written && write_picture(images, found, name) ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
+static int finish_image(Images *images, double ghz) {
+    Measured  found;
+    const int result = measure(images, ghz, &found);
+    return result != 0 ? result : write_files(images, &found);
+}
+
 /* The image at 230 GHz comes first, listed or not, because it scales the emission. */
 static int make_images(Images *images) {
     const Settings *s = images->s;
-    int             result = trace(images, REFERENCE_GHZ, 0, images->frequency_count + 1);
+    uint32_t        traced = 1, all = 1;
+    int             listed = 0;
+    for (uint32_t i = 0; i < images->frequency_count; i++) {
+        listed |= images->frequencies[i] == REFERENCE_GHZ;
+        all += images->frequencies[i] != REFERENCE_GHZ;
+    }
+    int result = trace(images, REFERENCE_GHZ, 0, all);
     if (result == 0) {
         result = scale_emission(images);
     }
@@ -383,14 +395,15 @@ static int make_images(Images *images) {
            s->target.mass, s->target.distance, angle_of(&s->target) / MICROARCSECOND, metres, seconds_of(&s->target));
     printf("emission at density 1 and 230 GHz: %.4g W/m^2/Hz/sr per M, %.4g erg/s/cm^3/Hz/sr\n", images->emission,
            images->emission / metres * 10.0); /* W / m^3 = 10 erg / s / cm^3 */
+    if (listed) {
+        result = finish_image(images, REFERENCE_GHZ);
+    }
     for (uint32_t i = 0; result == 0 && i < images->frequency_count; i++) {
-        Measured found;
-        result = trace(images, images->frequencies[i], i + 1, images->frequency_count + 1);
-        if (result == 0) {
-            result = measure(images, images->frequencies[i], &found);
-        }
-        if (result == 0) {
-            result = write_files(images, &found);
+        if (images->frequencies[i] != REFERENCE_GHZ) {
+            result = trace(images, images->frequencies[i], traced++, all);
+            if (result == 0) {
+                result = finish_image(images, images->frequencies[i]);
+            }
         }
     }
     return result;

@@ -4,8 +4,14 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#define CHUNK 2048u  /* rays that are traced at a time: 200 kB on the stack */
+#define CHUNK 2048u /* rays that are traced at a time: 200 kB on the stack */
+/* Where a grid is refined: pixels within RING (in M) outside the shadow's edge, in parts that are at most FINE wide. The
+ * first image of what is behind the hole is a tenth of M across there. */
+#define RING 0.5
+#define FINE 0.05
+#define MOST_PARTS 16u
 
 const Choice TARGETS[] = {{"sgra", 0}, {"m87", 1}, {NULL, 0}};
 
@@ -31,8 +37,9 @@ double seconds_of(const Target *target) {
     return metres_of(target) / SPEED_OF_LIGHT;
 }
 
-Grid grid_of_pixels(double inclination, double position_angle, double distance, double width, uint32_t side) {
-    const Grid grid = {inclination, position_angle, distance, 0.5 * width * (side - 1.0) / side, side};
+Grid grid_of_pixels(double inclination, double position_angle, double distance, double width, uint32_t side,
+                    int refines) {
+    const Grid grid = {inclination, position_angle, distance, 0.5 * width * (side - 1.0) / side, side, refines};
     return grid;
 }
 
@@ -40,9 +47,9 @@ double travel_time(double distance) {
     return distance + 2.0 * log(0.5 * distance);
 }
 
-/* The ray through the point `column`, `row`. The observer is at azimuth 0: outwards = (sin i, 0, cos i), the spin's
+/* The ray through the point `column`, `row`, which may lie between points of the grid. The observer is at azimuth 0: outwards = (sin i, 0, cos i), the spin's
  * projection up = (-cos i, 0, sin i), and y is to the right of it. */
-static BhrRay ray_at(const Grid *grid, uint32_t column, uint32_t row) {
+static BhrRay ray_at(const Grid *grid, double column, double row) {
     const double s = sin(grid->inclination), c = cos(grid->inclination), far = grid->distance;
     const double right = grid->half * (2.0 * column / (grid->side - 1.0) - 1.0);
     const double north = grid->half * (1.0 - 2.0 * row / (grid->side - 1.0));
@@ -54,38 +61,143 @@ static BhrRay ray_at(const Grid *grid, uint32_t column, uint32_t row) {
     return ray;
 }
 
+/* ---- a ray for each point ---- */
+
 static int is_traced(const BhrTransfer *found) {
     return (found->fate == BHR_FATE_CAPTURED || found->fate == BHR_FATE_ESCAPED) && isfinite(found->intensity);
 }
 
-int grid_transfer(BhrContext *context, const Grid *grid, double *out_intensity, double *out_depth, Progress *progress,
-                  double done, double share) {
-    BhrRay      rays[CHUNK];
-    BhrTransfer found[COUNT_OF(rays)];
-    const size_t count = (size_t)grid->side * grid->side;
-    for (size_t begin = 0; begin < count; begin += COUNT_OF(rays)) {
-        const size_t length = count - begin < COUNT_OF(rays) ? count - begin : COUNT_OF(rays);
-        for (size_t i = 0; i < length; i++) {
-            rays[i] = ray_at(grid, (uint32_t)((begin + i) % grid->side), (uint32_t)((begin + i) / grid->side));
-        }
-        const BhrStatus status = bhr_transfer_rays(context, rays, sizeof *rays, length, found, sizeof *found);
-        if (status < 0) {
+/* Traces up to CHUNK rays. 0, or an exit status after a message. */
+static int trace(BhrContext *context, const BhrRay *rays, size_t count, BhrTransfer *out, Progress *progress) {
+    const BhrStatus status = bhr_transfer_rays(context, rays, sizeof *rays, count, out, sizeof *out);
+    int             result = 0;
+    if (status < 0) {
+        progress_clear(progress);
+        return report_failure("trace the rays", status);
+    }
+    for (size_t i = 0; result == 0 && i < count; i++) {
+        if (!is_traced(&out[i])) {
             progress_clear(progress);
-            return report_failure("trace the rays", status);
+            fprintf(stderr, "cannot trace a ray to its end: it began towards (%g, %g, %g)\n", rays[i].direction[0],
+                    rays[i].direction[1], rays[i].direction[2]);
+            result = EXIT_FAILURE;
+        }
+    }
+    return result;
+}
+
+/* `captured`: 1 for each ray that ends in the hole. */
+static int trace_points(BhrContext *context, const Grid *grid, Transferred *out, unsigned char *captured) {
+    BhrRay       rays[CHUNK];
+    BhrTransfer  found[CHUNK];
+    const size_t count = (size_t)grid->side * grid->side;
+    for (size_t begin = 0; begin < count; begin += CHUNK) {
+        const size_t length = count - begin < CHUNK ? count - begin : CHUNK;
+        for (size_t i = 0; i < length; i++) {
+            rays[i] = ray_at(grid, (double)((begin + i) % grid->side), (double)((begin + i) / grid->side));
+        }
+        const int result = trace(context, rays, length, found, out->progress);
+        if (result != 0) {
+            return result;
         }
         for (size_t i = 0; i < length; i++) {
-            if (!is_traced(&found[i])) {
-                progress_clear(progress);
-                fprintf(stderr, "cannot trace the ray of row %u, column %u to its end\n",
-                        (unsigned)((begin + i) / grid->side), (unsigned)((begin + i) % grid->side));
-                return EXIT_FAILURE;
-            }
-            out_intensity[begin + i] = found[i].intensity;
-            if (out_depth != NULL) {
-                out_depth[begin + i] = found[i].optical_depth;
+            out->intensity[begin + i] = found[i].intensity;
+            captured[begin + i] = found[i].fate == BHR_FATE_CAPTURED;
+            if (out->depth != NULL) {
+                out->depth[begin + i] = found[i].optical_depth;
             }
         }
-        progress_draw(progress, done + share * (double)(begin + length) / (double)count);
+        const double all = grid->refines ? 0.4 : 1.0; /* of the work, about */
+        progress_draw(out->progress, out->done + out->share * all * (double)(begin + length) / (double)count);
     }
     return 0;
+}
+
+/* ---- more rays beside the shadow's edge ---- */
+
+/* Marks, along a row or column of `side` points `stride` apart, those within `reach` of a marked one. */
+static void widen(const unsigned char *from, unsigned char *to, size_t stride, uint32_t side, uint32_t reach) {
+    uint32_t near = UINT32_MAX; /* steps since the last marked one */
+    for (uint32_t i = 0; i < side; i++) {
+        near = from[stride * i] ? 0 : near == UINT32_MAX ? near : near + 1;
+        to[stride * i] = near <= reach;
+    }
+    near = UINT32_MAX;
+    for (uint32_t i = side; i-- > 0;) {
+        near = from[stride * i] ? 0 : near == UINT32_MAX ? near : near + 1;
+        to[stride * i] |= near <= reach;
+    }
+}
+
+/* The same in a square about each marked point. `room` and `to` have room for all. */
+static void widen_all(const unsigned char *from, unsigned char *room, unsigned char *to, uint32_t side,
+                      uint32_t reach) {
+    for (uint32_t i = 0; i < side; i++) {
+        widen(from + (size_t)i * side, room + (size_t)i * side, 1, side, reach);
+    }
+    for (uint32_t i = 0; i < side; i++) {
+        widen(room + i, to + i, side, side, reach);
+    }
+}
+
+/* The mean of `parts` x `parts` rays that are spread evenly over a pixel. */
+static int trace_pixel(BhrContext *context, const Grid *grid, uint32_t column, uint32_t row, uint32_t parts,
+                       Transferred *out) {
+    BhrRay         rays[MOST_PARTS * MOST_PARTS];
+    BhrTransfer    found[MOST_PARTS * MOST_PARTS];
+    const uint32_t count = parts * parts;
+    memset(rays, 0, sizeof rays);
+    for (uint32_t i = 0; i < count; i++) {
+        rays[i] = ray_at(grid, column - 0.5 + (i % parts + 0.5) / parts, row - 0.5 + (i / parts + 0.5) / parts);
+    }
+    const int result = trace(context, rays, count, found, out->progress);
+    double    sum = 0.0;
+    for (uint32_t i = 0; i < count; i++) {
+        sum += found[i].intensity;
+    }
+    out->intensity[(size_t)row * grid->side + column] = sum / count;
+    return result;
+}
+
+/* Outside the edge, in a ring that is thinner than pixels often are, lie all images but the first. */
+static int refine(BhrContext *context, const Grid *grid, Transferred *out, const unsigned char *captured,
+                  unsigned char *room) {
+    const uint32_t side = grid->side;
+    const size_t   count = (size_t)side * side;
+    const double   pixel = 2.0 * grid->half / (side - 1.0);
+    const uint32_t parts = (uint32_t)fmin(ceil(pixel / FINE), MOST_PARTS);
+    const uint32_t reach = (uint32_t)ceil(RING / pixel);
+    unsigned char *near_hole = room, *escaped = room + count, *near_sky = room + 2 * count, *between = room + 3 * count;
+    widen_all(captured, between, near_hole, side, reach);
+    for (size_t i = 0; i < count; i++) {
+        escaped[i] = !captured[i];
+    }
+    widen_all(escaped, between, near_sky, side, 1);
+    size_t todo = 0, ready = 0;
+    for (size_t i = 0; i < count; i++) {
+        todo += near_hole[i] && near_sky[i];
+    }
+    int result = 0;
+    for (size_t i = 0; result == 0 && parts > 1 && i < count; i++) {
+        if (near_hole[i] && near_sky[i]) {
+            result = trace_pixel(context, grid, (uint32_t)(i % side), (uint32_t)(i / side), parts, out);
+            progress_draw(out->progress, out->done + out->share * (0.4 + 0.6 * (double)++ready / (double)todo));
+        }
+    }
+    return result;
+}
+
+int grid_transfer(BhrContext *context, const Grid *grid, Transferred *out) {
+    const size_t   count = (size_t)grid->side * grid->side;
+    unsigned char *room = malloc(5 * count);
+    if (room == NULL) {
+        fprintf(stderr, "cannot hold a grid of %u x %u rays\n", (unsigned)grid->side, (unsigned)grid->side);
+        return EXIT_FAILURE;
+    }
+    int result = trace_points(context, grid, out, room);
+    if (result == 0 && grid->refines) {
+        result = refine(context, grid, out, room, room + count);
+    }
+    free(room);
+    return result;
 }

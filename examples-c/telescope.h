@@ -44,19 +44,27 @@ typedef struct Grid {
     double   distance;                    /* from the hole, where the observer is at rest */
     double   half;                        /* of the first and the last point from the middle */
     uint32_t side;                        /* points in a row, and rows; 2 or more */
+    int      refines;                     /* points are centres of pixels: those beside the shadow's edge, where images
+                                           * of order 1 and more lie, become the mean of many rays */
 } Grid;
 
 /* The grid of the centres of side x side pixels that fill a square of this width. */
-Grid grid_of_pixels(double inclination, double position_angle, double distance, double width, uint32_t side);
+Grid grid_of_pixels(double inclination, double position_angle, double distance, double width, uint32_t side,
+                    int refines);
 
 /* The light's way from r = 0 to an observer, in M: flat, and Shapiro's delay beyond r = 2. A scene whose time is later
  * by this shows what happens at the hole at the time itself. */
 double travel_time(double distance);
 
-/* What the matter of the context's scene sends along the rays, and the optical depth, NaN for captured rays. `share`:
- * the part of the work that the progress counts for this, from `done` on. out_depth may be NULL. 0, or an exit status
- * after a message. */
-int grid_transfer(BhrContext *context, const Grid *grid, double *out_intensity, double *out_depth, Progress *progress,
-                  double done, double share);
+/* What grid_transfer fills in, and the part of the work that the progress counts for it: `share`, from `done` on. */
+typedef struct Transferred {
+    double   *intensity; /* of each point, as in BhrTransfer */
+    double   *depth;     /* of the ray through each point, NaN where it is captured; NULL: not asked for */
+    Progress *progress;
+    double    done, share;
+} Transferred;
+
+/* The matter of the context's scene along the rays. 0, or an exit status after a message. */
+int grid_transfer(BhrContext *context, const Grid *grid, Transferred *out);
 
 #endif
