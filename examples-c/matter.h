@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* matter.h -- volumes and hot spots from text, as options of the example programs have them: "torus,radius=9,infall=0.2"
- * and "radius=7,size=0.7". Knows no context and makes no frame. */
+/* matter.h -- volumes and hot spots from text, as options of the example programs have them:
+ * "torus,radius=9,infall=0.2" and "radius=7,size=0.7". Knows no context and makes no frame. */
 #ifndef EXAMPLES_MATTER_H
 #define EXAMPLES_MATTER_H
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* observatory.c -- black holes as radio astronomers see them, in numbers: images in Jy at several frequencies, the fluxes
- * of the Event Horizon Telescope's tests, light curves of hot spots. All light is summed along single rays in double
- * precision (bhr_transfer_rays). Reads the command line; observatory_*.c do the rest. */
+/* observatory.c -- black holes as radio astronomers see them, in numbers: images in Jy at several frequencies, the
+ * fluxes of the Event Horizon Telescope's tests, light curves of hot spots. All light is summed along single rays in
+ * double precision (bhr_transfer_rays). Reads the command line; observatory_*.c do the rest. */
 #include "observatory.h"
 
 #include "matter.h"
@@ -76,7 +76,8 @@ typedef struct Input {
 static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS]) {
     Settings           *s = &in->settings;
     const CommandOption list[] = {
-        {{"--target", OPTION_CHOICE, &in->target, NULL, "whose mass, distance, place, inclination and flux", TARGETS, NULL},
+        {{"--target", OPTION_CHOICE, &in->target, NULL, "whose mass, distance, place, inclination and flux", TARGETS,
+          NULL},
          IMAGE | HOTSPOT},
         {{"--mass-msun", OPTION_DOUBLE, &s->target.mass, "M", "in those of the Sun", NULL,
           "1 to 1e12"}, IMAGE | HOTSPOT},
@@ -91,10 +92,13 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
           "of the projected spin, from north over east", NULL, "-360 to 360"},
          IMAGE},
         {{"--volume", OPTION_TEXTS, &s->volumes, VOLUME_VALUE,
-          "matter: disk, torus, halo or jet, and fields as BhrVolume has them, with - for _; its light is a power law of"
-          "\n        the frequency, its absorption is that at 230 GHz; may be given again", NULL, NULL}, IMAGE},
-        {{"--frequency", OPTION_TEXT, &s->frequencies, "GHZ,...", "of the images", NULL, "1 to 1e5, 8 at most"}, IMAGE},
-        {{"--flux-230", OPTION_DOUBLE, &s->flux, "JY", "scales the emission so that this is the flux at 230 GHz", NULL, "above 0"}, IMAGE},
+          "matter: disk, torus, halo or jet, and fields as BhrVolume has them, with - for _; its light is a power law"
+          "\n        of the frequency, its absorption is that at 230 GHz; may be given again", NULL, NULL},
+         IMAGE},
+        {{"--frequency", OPTION_TEXT, &s->frequencies, "GHZ,...", "of the images", NULL, "1 to 1e5, 8 at most"},
+         IMAGE},
+        {{"--flux-230", OPTION_DOUBLE, &s->flux, "JY", "scales the emission so that this is the flux at 230 GHz", NULL,
+          "above 0"}, IMAGE},
         {{"--beam", OPTION_DOUBLE, &s->beam, "UAS",
           "width at half of its peak of the Gaussian that the images are blurred by, microarcseconds; 0: none", NULL,
           "0 to 1e6"}, IMAGE},
@@ -129,9 +133,9 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
 static void print_help(const CommandOption *list, size_t count) {
     printf("Usage: observatory image|gold|hotspot [options]\n"
            "Makes images and light curves of matter about black holes, in the units of radio astronomers.\n"
-           "image: images in Jy at some frequencies, as FITS and PNG files. gold: the fluxes of the tests of Gold et al.\n"
-           "2020 (ApJ 897, 148). hotspot: the light curve of a spot in orbit and the track of its centroid, as CSV and\n"
-           "PNG. An option names the commands that take it.\n\n");
+           "image: images in Jy at some frequencies, as FITS and PNG files. gold: the fluxes of the tests of\n"
+           "Gold et al. 2020 (ApJ 897, 148). hotspot: the light curve of a spot in orbit and the track of its\n"
+           "centroid, as CSV and PNG. An option names the commands that take it.\n\n");
     for (size_t i = 0; i < count; i++) {
         char   help[512] = "";
         size_t used = 0;

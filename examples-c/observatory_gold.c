@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* observatory_gold.c -- the tests of Gold et al. 2020 (ApJ 897, 148), in which codes of the Event Horizon Telescope were
- * compared: the flux of five media, found by the library and as published. Writes no file. */
+/* observatory_gold.c -- the tests of Gold et al. 2020 (ApJ 897, 148), in which codes of the Event Horizon Telescope
+ * were compared: the flux of five media, found by the library and as published. Writes no file. */
 #include "observatory.h"
 
 #include <math.h>

@@ -75,7 +75,8 @@ static int find_phase(Curve *curve, uint32_t number) {
     const Settings *s = curve->s;
     Phase          *phase = &curve->phases[number];
     phase->time = curve->period * number / s->phases;
-    const BhrStatus status = bhr_set_time(curve->context, phase->time + (s->fast_light ? 0.0 : travel_time(s->observer)));
+    const double    way = s->fast_light ? 0.0 : travel_time(s->observer);
+    const BhrStatus status = bhr_set_time(curve->context, phase->time + way);
     if (status < 0) {
         return report_failure("set the time", status);
     }

@@ -52,8 +52,8 @@ static int read_frequencies(Images *images, const char *text) {
         rest = option_read_double(rest, &ghz);
         if (rest == NULL || (*rest != ',' && *rest != '\0') || !(ghz >= 1.0 && ghz <= 1e5) ||
             images->frequency_count == MOST_FREQUENCIES) {
-            fprintf(stderr, "observatory: '%s' is no value for --frequency, which takes 1 to %u numbers of GHz, each 1 to "
-                            "1e5, with commas between them\n", text, MOST_FREQUENCIES);
+            fprintf(stderr, "observatory: '%s' is no value for --frequency, which takes 1 to %u numbers of GHz, "
+                            "each 1 to 1e5, with commas between them\n", text, MOST_FREQUENCIES);
             return EXIT_USAGE;
         }
         images->frequencies[images->frequency_count++] = ghz;
@@ -322,7 +322,7 @@ static void annotate(const Images *images, BhrImage *picture, const Measured *fo
     draw_line(picture, right - length * uas, bottom, right, bottom, 3.0, WHITE);
     snprintf(words, sizeof words, "%g uas", length);
     const double wide = (double)(strlen(words) * CELL_WIDTH * text);
-    picture_write(picture, (uint32_t)(right - 0.5 * length * uas - 0.5 * wide), (uint32_t)bottom - line - 4, text, words);
+    picture_write(picture, (uint32_t)(right - 0.5 * (length * uas + wide)), (uint32_t)bottom - line - 4, text, words);
     if (s->beam > 0.0 && s->beam * uas < 0.5 * picture->width) {
         const double radius = 0.5 * s->beam * uas, x = edge + radius, y = bottom - radius;
         for (int i = 0; i < 64; i++) {

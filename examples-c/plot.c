@@ -31,7 +31,8 @@ void draw_line(BhrImage *image, double x0, double y0, double x1, double y1, doub
     }
     const double reach = 0.5 * thickness + 1.0;
     const double dx = x1 - x0, dy = y1 - y0, square = dx * dx + dy * dy;
-    const long   left = (long)fmax(0.0, floor(fmin(x0, x1) - reach)), top = (long)fmax(0.0, floor(fmin(y0, y1) - reach));
+    const long   left = (long)fmax(0.0, floor(fmin(x0, x1) - reach));
+    const long   top = (long)fmax(0.0, floor(fmin(y0, y1) - reach));
     const long   right = (long)fmin((double)image->width, ceil(fmax(x0, x1) + reach));
     const long   bottom = (long)fmin((double)image->height, ceil(fmax(y0, y1) + reach));
     for (long y = top; y < bottom; y++) {

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #define CHUNK 2048u /* rays that are traced at a time: 200 kB on the stack */
-/* Where a grid is refined: pixels within RING (in M) outside the shadow's edge, in parts that are at most FINE wide. The
- * first image of what is behind the hole is a tenth of M across there. */
+/* Where a grid is refined: pixels within RING (in M) outside the shadow's edge, in parts that are at most FINE wide.
+ * The second image of a spot is a tenth of M across there. */
 #define RING 0.5
 #define FINE 0.05
 #define MOST_PARTS 16u
@@ -16,10 +16,11 @@
 const Choice TARGETS[] = {{"sgra", 0}, {"m87", 1}, {NULL, 0}};
 
 /* Sgr A*: mass and distance of the GRAVITY Collaboration 2022 (A&A 657, L12), place of Reid and Brunthaler 2004 (ApJ
- * 616, 872), inclination of the models that the Event Horizon Telescope favours, and the flux that its models have (2022,
- * ApJL 930, L16); where its spin points is not known. M87*: mass, distance and inclination of the EHT 2019 (ApJL 875, L1
- * and L5), place of Lambert and Gontier 2009 (A&A 493, 317); the jet that comes towards us lies at the position angle of
- * 288 degrees and the spin points away from us, opposite to it; the flux of the compact part that L5 gives the models. */
+ * 616, 872), inclination of the models that the Event Horizon Telescope favours, and the flux that its models have
+ * (2022, ApJL 930, L16); where its spin points is not known. M87*: mass, distance and inclination of the EHT 2019 (ApJL
+ * 875, L1 and L5), place of Lambert and Gontier 2009 (A&A 493, 317); the jet that comes towards us lies at the position
+ * angle of 288 degrees and the spin points away from us, opposite to it; the flux of the compact part that L5 gives the
+ * models. */
 const Target TARGET_LIST[] = {
     {"sgra", "Sgr A*", 4.297e6, 8.277, 266.4168167, -29.0078250, 30.0, 0.0, 2.4},
     {"m87", "M87*", 6.5e9, 16800.0, 187.7059308, 12.3911233, 163.0, 108.0, 0.5},
@@ -47,8 +48,8 @@ double travel_time(double distance) {
     return distance + 2.0 * log(0.5 * distance);
 }
 
-/* The ray through the point `column`, `row`, which may lie between points of the grid. The observer is at azimuth 0: outwards = (sin i, 0, cos i), the spin's
- * projection up = (-cos i, 0, sin i), and y is to the right of it. */
+/* The ray through the point `column`, `row`, which may lie between points of the grid. The observer is at azimuth 0:
+ * outwards = (sin i, 0, cos i), the spin's projection up = (-cos i, 0, sin i), and y is to the right of it. */
 static BhrRay ray_at(const Grid *grid, double column, double row) {
     const double s = sin(grid->inclination), c = cos(grid->inclination), far = grid->distance;
     const double right = grid->half * (2.0 * column / (grid->side - 1.0) - 1.0);

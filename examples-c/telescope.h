@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* telescope.h -- an observer far from a hole: which hole, how large it is on the sky, and the matter along a square grid
- * of rays. Writes no file and no picture. */
+/* telescope.h -- an observer far from a hole: which hole, how large it is on the sky, and the matter along a square
+ * grid of rays. Writes no file and no picture. */
 #ifndef EXAMPLES_TELESCOPE_H
 #define EXAMPLES_TELESCOPE_H
 
@@ -11,7 +11,7 @@
 #define SPEED_OF_LIGHT 299792458.0     /* m / s, exact in the SI */
 #define BOLTZMANN 1.380649e-23         /* J / K, exact in the SI (CODATA 2018) */
 #define SOLAR_GM 1.3271244e20          /* m^3 / s^2: IAU 2015, Resolution B3 */
-#define PARSEC 3.0856775814913673e16   /* m: 648000 / pi astronomical units of 149597870700 m (IAU 2015, B2; 2012, B2) */
+#define PARSEC 3.0856775814913673e16   /* m: 648000 / pi au (IAU 2015, B2) of 149597870700 m (IAU 2012, B2) */
 #define JANSKY 1e-26                   /* W / m^2 / Hz */
 #define MICROARCSECOND (PI / 648000e6) /* radians */
 

@@ -56,7 +56,7 @@ contrast() {
 }
 
 # near VALUE TRUTH TOLERANCE
-near() { awk -v value="$1" -v truth="$2" -v most="$3" 'BEGIN { exit !(value - truth <= most && truth - value <= most) }'; }
+near() { awk -v v="$1" -v truth="$2" -v most="$3" 'BEGIN { exit !(v - truth <= most && truth - v <= most) }'; }
 
 # On a grid of 96 x 96 rays the contrast of slow light is 22.1, and that of fast light 8.9 (the curves of
 # tests/golden/volume/manifest.json); more rays beside the shadow find more light in the dark phase.
