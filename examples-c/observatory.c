@@ -83,10 +83,10 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
           "1 to 1e12"}, IMAGE | HOTSPOT},
         {{"--distance-kpc", OPTION_DOUBLE, &s->target.distance, "D", "to the hole", NULL, "1e-3 to 1e8"},
          IMAGE | HOTSPOT},
-        {{"--spin", OPTION_DOUBLE, &s->spin, "A", "a / M; hotspot: 0 unless given", NULL,
+        {{"--spin", OPTION_DOUBLE, &s->spin, "A", "a / M", NULL,
           "-0.999 to 0.999"}, IMAGE | HOTSPOT},
         {{"--inclination", OPTION_DEGREES, &s->inclination, "DEG",
-          "between the spin and the way to us; hotspot: 60 unless given", NULL, "0 to 180"},
+          "between the spin and the way to us", NULL, "0 to 180"},
          IMAGE | HOTSPOT},
         {{"--position-angle", OPTION_DEGREES, &s->position_angle, "DEG",
           "of the projected spin, from north over east", NULL, "-360 to 360"},
@@ -130,17 +130,21 @@ static size_t list_options(Input *in, CommandOption out[MOST_OBSERVATORY_OPTIONS
     return COUNT_OF(list);
 }
 
-static void print_help(const CommandOption *list, size_t count) {
+/* `command`: NULL for all of them, each option with the names of those that take it. */
+static void print_help(const CommandOption *list, size_t count, const Command *command) {
     printf("Usage: observatory image|gold|hotspot [options]\n"
            "Makes images and light curves of matter about black holes, in the units of radio astronomers.\n"
            "image: images in Jy at some frequencies, as FITS and PNG files. gold: the fluxes of the tests of\n"
            "Gold et al. 2020 (ApJ 897, 148). hotspot: the light curve of a spot in orbit and the track of its\n"
-           "centroid, as CSV and PNG. An option names the commands that take it.\n\n");
+           "centroid, as CSV and PNG. With --help after it, each shows its own defaults.\n\n");
     for (size_t i = 0; i < count; i++) {
+        if (command != NULL && !(list[i].commands & command->bit)) {
+            continue;
+        }
         char   help[512] = "";
         size_t used = 0;
         for (size_t j = 0; list[i].commands != (IMAGE | GOLD | HOTSPOT) && j < COUNT_OF(COMMANDS); j++) {
-            if (list[i].commands & COMMANDS[j].bit) {
+            if (command == NULL && list[i].commands & COMMANDS[j].bit) {
                 used += (size_t)snprintf(help + used, sizeof help - used, "%s%s", used > 0 ? ", " : "(",
                                          COMMANDS[j].name);
             }
@@ -278,8 +282,8 @@ static int run(int argc, char **argv) {
     }
     if (in.help) {
         CommandOption list[MOST_OBSERVATORY_OPTIONS];
-        begin(&in, &COMMANDS[0]);
-        print_help(list, list_options(&in, list));
+        begin(&in, command != NULL ? command : &COMMANDS[0]);
+        print_help(list, list_options(&in, list), command);
         return EXIT_SUCCESS;
     }
     const int result = check(argv[0], command->bit, &in.settings);
