@@ -8,6 +8,10 @@
 
 #include <bhr.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* What --help says a value of --volume and --hot-spot is. */
 #define VOLUME_VALUE "KIND,FIELD=X,..."
 #define HOT_SPOT_VALUE "FIELD=X,..."
@@ -28,5 +32,9 @@ int hot_spot_read(const char *name, const char *text, BhrHotSpot *out);
 /* All texts of an option, in their order. *out_count: how many; more than `most` are refused. 0, or an exit status. */
 int volumes_read(const char *name, const TextList *texts, BhrVolume *out, uint32_t most, uint32_t *out_count);
 int hot_spots_read(const char *name, const TextList *texts, BhrHotSpot *out, uint32_t most, uint32_t *out_count);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
