@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* gallery.c -- named scenes into PNG files, and a contact sheet of them: what the renderer can show, each in a few
  * lines. Lengths are in units of the hole's mass M, angles in degrees. */
+#include "matter.h"
 #include "options.h"
 #include "picture.h"
 #include "scene.h"
@@ -61,6 +62,33 @@ static void stand_before(Scene *scene, double right_ascension, double declinatio
     scene->camera.up[0] = scene->camera.up[1] = 0.0;
     scene->camera.up[2] = 1.0;
     scene->camera.fov_y = fov * PI / 180.0;
+}
+
+/* Matter with depth instead of the thin disk, or beside it: one volume more. NULL after an error, and *status is it. */
+static BhrVolume *add_volume(Scene *scene, BhrVolumeShape kind, BhrStatus *status) {
+    BhrVolume *volume = &scene->volumes[scene->volume_count];
+    *status = volume_begin(volume, kind);
+    scene->volume_count += *status >= 0;
+    return *status >= 0 ? volume : NULL;
+}
+
+static BhrHotSpot *add_hot_spot(Scene *scene, double radius, double size, double azimuth, BhrStatus *status) {
+    BhrHotSpot *spot = &scene->hot_spots[scene->hot_spot_count];
+    *status = bhr_hot_spot_init(spot, sizeof *spot);
+    if (*status < 0) {
+        return NULL;
+    }
+    scene->hot_spot_count++;
+    spot->radius = radius;
+    spot->size = size;
+    spot->azimuth = azimuth * PI / 180.0;
+    return spot;
+}
+
+static void set_colour(double tint[3], double r, double g, double b) {
+    tint[0] = r;
+    tint[1] = g;
+    tint[2] = b;
 }
 
 /* ---- the scenes ---- */
@@ -186,6 +214,109 @@ static BhrStatus grid(Scene *scene) {
     return stand(scene, 20.0, -90.0, 20.0, 80.0);
 }
 
+/* A disk of a twentieth of its radius, dense but not hard: the library's default volume. */
+static BhrStatus soft_disk(Scene *scene) {
+    BhrStatus status;
+    scene->has_disk = 0;
+    scene->spin = 0.6;
+    if (add_volume(scene, BHR_VOLUME_DISK, &status) == NULL) {
+        return status;
+    }
+    return stand(scene, 28.0, 75.0, 6.5, 37.6);
+}
+
+/* So thin that the shadow and all rings shine through it, and thick as a torus. */
+static BhrStatus torus(Scene *scene) {
+    BhrStatus  status;
+    BhrVolume *volume = add_volume(scene, BHR_VOLUME_DISK, &status);
+    if (volume == NULL) {
+        return status;
+    }
+    scene->has_disk = 0;
+    scene->spin = 0.9;
+    volume->thickness = 0.14;
+    volume->absorption = 0.3;
+    volume->inner_radius = 2.55;
+    volume->slope = 0.9;
+    volume->temperature = 5400.0;
+    return stand(scene, 30.0, 75.0, 10.0, 39.6);
+}
+
+/* Thin matter all about the hole, as in the models of Sgr A*. */
+static BhrStatus halo(Scene *scene) {
+    BhrStatus  status;
+    BhrVolume *volume = add_volume(scene, BHR_VOLUME_HALO, &status);
+    if (volume == NULL) {
+        return status;
+    }
+    scene->has_disk = 0;
+    scene->spin = 0.9;
+    volume->flags = BHR_VOLUME_POWER_LAW;
+    volume->radius = 6.0;
+    volume->thickness = 0.45;
+    volume->absorption = 0.05;
+    volume->spectral_index = 0.5;
+    volume->brightness = 0.1;
+    set_colour(volume->tint, 1.0, 0.45, 0.16);
+    return stand(scene, 30.0, 75.0, 28.0, 48.0);
+}
+
+/* Two cones that a soft disk feeds: the near one is brightened by its motion. */
+static BhrStatus jet(Scene *scene) {
+    BhrStatus  status;
+    BhrVolume *disk = add_volume(scene, BHR_VOLUME_DISK, &status);
+    BhrVolume *volume = disk != NULL ? add_volume(scene, BHR_VOLUME_JET, &status) : NULL;
+    if (volume == NULL) {
+        return status;
+    }
+    scene->has_disk = 0;
+    scene->spin = 0.9;
+    disk->thickness = 0.08;
+    disk->absorption = 1.0;
+    volume->flags = BHR_VOLUME_POWER_LAW;
+    volume->outer_radius = 60.0;
+    volume->absorption = 0.002;
+    volume->spectral_index = 0.7;
+    volume->brightness = 0.3;
+    volume->speed = 0.8;
+    set_colour(volume->tint, 0.45, 0.65, 1.0);
+    return stand(scene, 60.0, 75.0, 30.0, 60.0);
+}
+
+/* The flare of a spot that approaches: its second image is beside the shadow. */
+static BhrStatus hot_spot(Scene *scene) {
+    BhrStatus   status;
+    BhrVolume  *disk = add_volume(scene, BHR_VOLUME_DISK, &status);
+    BhrHotSpot *spot = disk != NULL ? add_hot_spot(scene, 7.0, 0.7, 0.0, &status) : NULL;
+    if (spot == NULL) {
+        return status;
+    }
+    scene->has_disk = 0;
+    scene->spin = 0.6;
+    disk->thickness = 0.08;
+    disk->absorption = 0.4;
+    disk->brightness = 0.5;
+    spot->brightness = 2.0;
+    set_colour(spot->tint, 1.0, 0.75, 0.45);
+    return stand(scene, 28.0, 75.0, 25.0, 42.0);
+}
+
+/* The eye in the matter: mist before the shadow, light all around. */
+static BhrStatus inside_the_torus(Scene *scene) {
+    BhrStatus  status;
+    BhrVolume *volume = add_volume(scene, BHR_VOLUME_TORUS, &status);
+    if (volume == NULL) {
+        return status;
+    }
+    scene->has_disk = 0;
+    scene->spin = 0.9;
+    volume->radius = 9.0;
+    volume->width = 2.5;
+    volume->thickness = 0.2;
+    volume->absorption = 0.12;
+    return stand(scene, 9.0, 75.0, 2.0, 90.0);
+}
+
 /* The views of one scene, whose disk is opaque: false colour is legible without stars behind it. */
 static BhrStatus view(Scene *scene, BhrView which) {
     scene->disk.edge_softness = 0.0;
@@ -253,6 +384,12 @@ static const Exhibit EXHIBITS[] = {
     {"dome-master", "half the sky for a planetarium", {1, 1}, CINEMATIC, dome_master},
     {"equirect", "the whole sky, 360 x 180 degrees", {2, 1}, CINEMATIC, equirect},
     {"cube", "the whole sky as the faces of a cube: right left up down front back", {6, 1}, CINEMATIC, cube},
+    {"soft-disk", "a disk with depth: soft edges, mist before the shadow", {16, 9}, CINEMATIC, soft_disk},
+    {"torus", "thick and thin matter: the shadow and its rings shine through", {16, 9}, CINEMATIC, torus},
+    {"halo", "thin matter all about the hole", {16, 9}, CINEMATIC, halo},
+    {"jet", "two cones of matter that flows out, above a soft disk", {16, 9}, CINEMATIC, jet},
+    {"hot-spot", "a glowing spot in orbit, and its second image", {16, 9}, CINEMATIC, hot_spot},
+    {"inside-the-torus", "the same matter from within", {16, 9}, CINEMATIC, inside_the_torus},
     {"view-redshift", "false colour: frequency here over frequency there", {16, 9}, CINEMATIC, view_redshift},
     {"view-order", "false colour: which image of the disk", {16, 9}, CINEMATIC, view_order},
     {"view-deflection", "false colour: how far the light was bent", {16, 9}, CINEMATIC, view_deflection},

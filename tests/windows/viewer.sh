@@ -108,7 +108,8 @@ viewer_takes_keys() {
     done
     viewer_until 60 viewer_says '^  Esc *quit' || return 1
     local words
-    for words in 'spin 0.100' 'disk off' 'disk on' 'beaming off' 'view: metric' 'view: intensity' 'depth: disk' 'hot spot on' 'hot spot off' 'camera: freefall' 'camera: orbit' \
+    for words in 'spin 0.100' 'disk off' 'disk on' 'beaming off' 'view: metric' 'view: intensity' \
+        'depth: disk' 'hot spot on' 'hot spot off' 'camera: freefall' 'camera: orbit' \
         'camera: static' 'mass 1.1' 'time stands still' '6 M of the' '-6 M of the' 'turbulence of the disk 0.90' \
         'tone map: agx' 'field of view 40.9' 'exposure +0.25' 'stars off' 'method: rk4' 'quality as it is set'; do
         viewer_says "$words" || { echo "it did not say: $words"; cat -- "$viewer_log"; return 1; }
