@@ -85,6 +85,14 @@ static BhrHotSpot *add_hot_spot(Scene *scene, double radius, double size, double
     return spot;
 }
 
+/* Matter whose receding side is dim: a softer tone curve, more light, and the sky as dark as it was. */
+static void expose(Scene *scene, double stops) {
+    scene->film.tone_map = BHR_TONE_MAP_AGX;
+    scene->film.exposure_ev = stops;
+    scene->sky.stars_brightness *= pow(2.0, -stops);
+    scene->sky.map_brightness *= pow(2.0, -stops);
+}
+
 static void set_colour(double tint[3], double r, double g, double b) {
     tint[0] = r;
     tint[1] = g;
@@ -222,6 +230,7 @@ static BhrStatus soft_disk(Scene *scene) {
     if (add_volume(scene, BHR_VOLUME_DISK, &status) == NULL) {
         return status;
     }
+    expose(scene, 1.5);
     return stand(scene, 28.0, 75.0, 6.5, 37.6);
 }
 
@@ -239,6 +248,7 @@ static BhrStatus torus(Scene *scene) {
     volume->inner_radius = 2.55;
     volume->slope = 0.9;
     volume->temperature = 5400.0;
+    expose(scene, 2.5);
     return stand(scene, 30.0, 75.0, 10.0, 39.6);
 }
 
@@ -256,8 +266,8 @@ static BhrStatus halo(Scene *scene) {
     volume->thickness = 0.45;
     volume->absorption = 0.05;
     volume->spectral_index = 0.5;
-    volume->brightness = 0.1;
-    set_colour(volume->tint, 1.0, 0.45, 0.16);
+    volume->brightness = 0.05;
+    set_colour(volume->tint, 1.0, 0.42, 0.13);
     return stand(scene, 30.0, 75.0, 28.0, 48.0);
 }
 
@@ -277,26 +287,28 @@ static BhrStatus jet(Scene *scene) {
     volume->outer_radius = 60.0;
     volume->absorption = 0.002;
     volume->spectral_index = 0.7;
-    volume->brightness = 0.3;
+    volume->brightness = 0.15;
     volume->speed = 0.8;
+    expose(scene, 1.5);
     set_colour(volume->tint, 0.45, 0.65, 1.0);
-    return stand(scene, 60.0, 75.0, 30.0, 60.0);
+    return stand(scene, 50.0, 75.0, 22.0, 52.0);
 }
 
 /* The flare of a spot that approaches: its second image is beside the shadow. */
 static BhrStatus hot_spot(Scene *scene) {
     BhrStatus   status;
     BhrVolume  *disk = add_volume(scene, BHR_VOLUME_DISK, &status);
-    BhrHotSpot *spot = disk != NULL ? add_hot_spot(scene, 7.0, 0.7, 0.0, &status) : NULL;
+    BhrHotSpot *spot = disk != NULL ? add_hot_spot(scene, 7.0, 0.7, 20.0, &status) : NULL;
     if (spot == NULL) {
         return status;
     }
     scene->has_disk = 0;
     scene->spin = 0.6;
     disk->thickness = 0.08;
-    disk->absorption = 0.4;
+    disk->absorption = 0.6;
     disk->brightness = 0.5;
-    spot->brightness = 2.0;
+    spot->brightness = 1.5;
+    expose(scene, 1.5);
     set_colour(spot->tint, 1.0, 0.75, 0.45);
     return stand(scene, 28.0, 75.0, 25.0, 42.0);
 }
@@ -313,8 +325,11 @@ static BhrStatus inside_the_torus(Scene *scene) {
     volume->radius = 9.0;
     volume->width = 2.5;
     volume->thickness = 0.2;
-    volume->absorption = 0.12;
-    return stand(scene, 9.0, 75.0, 2.0, 90.0);
+    volume->absorption = 0.07;
+    scene->film.exposure_ev = -1.5;
+    status = stand(scene, 10.5, 75.0, 12.0, 85.0);
+    turn(scene, 25.0, 0.0); /* towards the side that recedes, which is not so bright */
+    return status;
 }
 
 /* The views of one scene, whose disk is opaque: false colour is legible without stars behind it. */
