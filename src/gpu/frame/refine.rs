@@ -17,6 +17,9 @@ const HEAD: u64 = 8 * MAX_BATCH as u64;
 /// Workgroups that share the list: as `DEFERRED_GROUPS` of stages.rs.
 const GROUPS: u32 = 2048;
 const GROUPS_SOFTWARE: u32 = 16;
+/// With matter that has depth, few pixels for each: llvmpipe ends all loops of an invocation after 65535 turns together
+/// (LP_MAX_TGSI_LOOP_ITERATIONS in Mesa's lp_bld_limits.h), and then the sum over a pixel's samples is cut short.
+const GROUPS_SOFTWARE_MATTER: u32 = 2048;
 
 /// The list; it grows and stays.
 #[derive(Default)]
@@ -71,7 +74,12 @@ impl RefineStage {
     ) -> Result<Self> {
         let stage =
             kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
-        Ok(Self { stage, groups: if software { GROUPS_SOFTWARE } else { GROUPS } })
+        let groups = match (software, variant.matter.is_some()) {
+            (true, true) => GROUPS_SOFTWARE_MATTER,
+            (true, false) => GROUPS_SOFTWARE,
+            (false, _) => GROUPS,
+        };
+        Ok(Self { stage, groups })
     }
 
     /// After the pixels of a tile have been shaded; group 3 is set, and 2, if that is for the caller. `offsets`: of
