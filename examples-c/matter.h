@@ -12,7 +12,7 @@
 extern "C" {
 #endif
 
-/* What --help says a value of --volume and --hot-spot is. */
+/* The values of --volume and --hot-spot, as --help names them. */
 #define VOLUME_VALUE "KIND,FIELD=X,..."
 #define HOT_SPOT_VALUE "FIELD=X,..."
 

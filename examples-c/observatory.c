@@ -198,7 +198,7 @@ static int check(const char *program, unsigned bit, const Settings *s) {
     return 0;
 }
 
-/* What a command begins with, before its options. */
+/* The settings that a command begins with, before its options. */
 static void begin(Input *in, const Command *command) {
     const int32_t target = in->target;
     memset(in, 0, sizeof *in);

@@ -56,7 +56,8 @@ Grid grid_of_pixels(double inclination, double position_angle, double distance, 
  * by this shows what happens at the hole at the time itself. */
 double travel_time(double distance);
 
-/* What grid_transfer fills in, and the part of the work that the progress counts for it: `share`, from `done` on. */
+/* The numbers that grid_transfer finds, and the part of the work that the progress counts for it: `share`, from `done`
+ * on. */
 typedef struct Transferred {
     double   *intensity; /* of each point, as in BhrTransfer */
     double   *depth;     /* of the ray through each point, NaN where it is captured; NULL: not asked for */
