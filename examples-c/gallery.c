@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* gallery.c -- named scenes (gallery_scenes.c) into PNG files, and a contact sheet of them: what the renderer can show. */
+/* gallery.c -- named scenes (gallery_scenes.c) into PNG files, and a contact sheet of them: what the renderer can
+ * show. */
 #include "gallery_scenes.h"
 #include "options.h"
 #include "picture.h"
