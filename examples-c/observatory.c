@@ -34,8 +34,18 @@ typedef struct CommandOption {
 } CommandOption;
 
 #define MOST_OBSERVATORY_OPTIONS 24u
+#define MOST_WIDTH 0.2 /* of a frame, over the observer's distance */
 
 /* ---- what the commands share ---- */
+
+int check_width(const Settings *s, double width) {
+    if (width <= MOST_WIDTH * s->observer) {
+        return 0;
+    }
+    fprintf(stderr, "observatory: the frame is %g M wide; it must be at most %g M, a fifth of --observer: give another "
+                    "--fov\n", width, MOST_WIDTH * s->observer);
+    return EXIT_USAGE;
+}
 
 int prepare_output(const Settings *s) {
     if (!make_folder(s->output) && errno != EEXIST) {

@@ -31,6 +31,10 @@ int observatory_image(BhrContext *context, Settings *s);
 int observatory_gold(BhrContext *context, Settings *s);
 int observatory_hotspot(BhrContext *context, Settings *s);
 
+/* Whether the observer sees a square of this width, in M, from far enough that rays do not part much. 0, or an exit
+ * status after a message. */
+int check_width(const Settings *s, double width);
+
 /* Makes the folder of the output, where there is none. 0, or an exit status after a message. */
 int prepare_output(const Settings *s);
 

@@ -68,7 +68,7 @@ static int begin_curve(Curve *curve) {
     curve->period = 2.0 * PI * (pow(radius, 1.5) + (retrograde ? -s->spin : s->spin));
     /* Lensing shows the orbit larger than it is, most where it passes behind the hole. */
     curve->width = s->fov > 0.0 ? s->fov : 2.0 * (1.25 * radius + 5.0 * curve->spot.size + 2.0);
-    return 0;
+    return check_width(s, curve->width);
 }
 
 static int find_phase(Curve *curve, uint32_t number) {

@@ -414,6 +414,9 @@ int observatory_image(BhrContext *context, Settings *s) {
     images.pixel = s->fov * MICROARCSECOND / s->pixels;
     int result = read_frequencies(&images, s->frequencies);
     if (result == 0) {
+        result = check_width(s, images.pixel * s->pixels / angle_of(&s->target));
+    }
+    if (result == 0) {
         result = read_volumes(&images, &s->volumes);
     }
     if (result == 0) {

@@ -250,9 +250,9 @@ constexpr NumberField<BhrVolume> VOLUME_FIELDS[] = {
     {"its slope", &BhrVolume::temperature_slope, 0.0, 2.0, "%.2f", false, 1.0},
     {"index", &BhrVolume::spectral_index, -4.0, 4.0, "%.2f", false, 1.0},
     {"brightness", &BhrVolume::brightness, 0.01, 100.0, "%.2f", true, 1.0},
-    {"sub-Keplerian", &BhrVolume::sub_keplerian, 0.0, 1.0, "%.2f", false, 1.0},
+    {"sub-Kepler", &BhrVolume::sub_keplerian, 0.0, 1.0, "%.2f", false, 1.0},
     {"infall", &BhrVolume::infall, 0.0, 1.0, "%.2f", false, 1.0},
-    {"ang. momentum", &BhrVolume::angular_momentum, 0.0, 1.0, "%.2f", false, 1.0},
+    {"ang. mom.", &BhrVolume::angular_momentum, 0.0, 1.0, "%.2f", false, 1.0},
     {"speed", &BhrVolume::speed, 0.0, 0.995, "%.3f", false, 1.0},
 };
 
