@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #define CHUNK 2048u /* rays that are traced at a time: 200 kB on the stack */
 /* Where a grid is refined: pixels within RING (in M) outside the shadow's edge, in parts that are at most FINE wide.
@@ -141,22 +140,36 @@ static void widen_all(const unsigned char *from, unsigned char *room, unsigned c
     }
 }
 
-/* The mean of `parts` x `parts` rays that are spread evenly over a pixel. */
-static int trace_pixel(BhrContext *context, const Grid *grid, uint32_t column, uint32_t row, uint32_t parts,
-                       Transferred *out) {
-    BhrRay         rays[MOST_PARTS * MOST_PARTS];
-    BhrTransfer    found[MOST_PARTS * MOST_PARTS];
-    const uint32_t count = parts * parts;
-    memset(rays, 0, sizeof rays);
-    for (uint32_t i = 0; i < count; i++) {
-        rays[i] = ray_at(grid, column - 0.5 + (i % parts + 0.5) / parts, row - 0.5 + (i / parts + 0.5) / parts);
+/* Pixels that wait for their rays, as many as fit into a chunk. */
+typedef struct Batch {
+    BhrRay      rays[CHUNK];
+    BhrTransfer found[CHUNK];
+    size_t      pixels[CHUNK]; /* their indices */
+    size_t      count;
+} Batch;
+
+/* Adds `parts` x `parts` rays that are spread evenly over a pixel. */
+static void add_pixel(Batch *batch, const Grid *grid, size_t pixel, uint32_t parts) {
+    const double left = (double)(pixel % grid->side) - 0.5, top = (double)(pixel / grid->side) - 0.5;
+    BhrRay      *rays = batch->rays + batch->count * parts * parts;
+    for (uint32_t i = 0; i < parts * parts; i++) {
+        rays[i] = ray_at(grid, left + (i % parts + 0.5) / parts, top + (i / parts + 0.5) / parts);
     }
-    const int result = trace(context, rays, count, found, out->progress);
-    double    sum = 0.0;
-    for (uint32_t i = 0; i < count; i++) {
-        sum += found[i].intensity;
+    batch->pixels[batch->count++] = pixel;
+}
+
+/* Gives each pixel of the batch the mean of its rays, and empties it. */
+static int trace_batch(BhrContext *context, Batch *batch, uint32_t parts, Transferred *out) {
+    const size_t rays = (size_t)parts * parts;
+    const int    result = trace(context, batch->rays, batch->count * rays, batch->found, out->progress);
+    for (size_t k = 0; result == 0 && k < batch->count; k++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < rays; i++) {
+            sum += batch->found[k * rays + i].intensity;
+        }
+        out->intensity[batch->pixels[k]] = sum / (double)rays;
     }
-    out->intensity[(size_t)row * grid->side + column] = sum / count;
+    batch->count = 0;
     return result;
 }
 
@@ -178,13 +191,27 @@ static int refine(BhrContext *context, const Grid *grid, Transferred *out, const
     for (size_t i = 0; i < count; i++) {
         todo += near_hole[i] && near_sky[i];
     }
+    Batch *batch = parts > 1 && todo > 0 ? malloc(sizeof *batch) : NULL;
+    if (batch == NULL) {
+        if (parts > 1 && todo > 0) {
+            fprintf(stderr, "cannot hold %u rays\n", CHUNK);
+            return EXIT_FAILURE;
+        }
+        return 0;
+    }
+    batch->count = 0;
     int result = 0;
-    for (size_t i = 0; result == 0 && parts > 1 && i < count; i++) {
+    for (size_t i = 0; result == 0 && ready < todo && i < count; i++) {
         if (near_hole[i] && near_sky[i]) {
-            result = trace_pixel(context, grid, (uint32_t)(i % side), (uint32_t)(i / side), parts, out);
-            progress_draw(out->progress, out->done + out->share * (0.4 + 0.6 * (double)++ready / (double)todo));
+            add_pixel(batch, grid, i, parts);
+            ready++;
+            if (ready == todo || (batch->count + 1) * parts * parts > CHUNK) {
+                result = trace_batch(context, batch, parts, out);
+                progress_draw(out->progress, out->done + out->share * (0.4 + 0.6 * (double)ready / (double)todo));
+            }
         }
     }
+    free(batch);
     return result;
 }
 

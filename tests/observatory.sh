@@ -98,7 +98,7 @@ observatory_refusals() {
         refuses 2 'no power law' image --volume halo && refuses 2 'no field' hotspot --hot-spot width=1 &&
         refuses 2 'must be the same' image --volume halo,power-law --volume jet,power-law,spectral-index=0 &&
         refuses 2 'given 2 times' hotspot --hot-spot radius=7 --hot-spot radius=8 &&
-        refuses 2 'at most 2e+05 M' image --mass-msun 1 && refuses 2 'at most 20 M' hotspot --observer 100 &&
+        refuses 2 'at most 200000 M' image --mass-msun 1 && refuses 2 'at most 20 M' hotspot --observer 100 &&
         refuses 1 'spin' image --spin 2 && refuses 1 'spin' hotspot --spin nan &&
         refuses 1 'radius' image --volume halo,power-law,radius=nan --output "$scratch/none" &&
         refuses 1 'size' hotspot --hot-spot size=9 && refuses 1 'absent' image --output "$scratch/absent/none" &&
