@@ -268,14 +268,7 @@ static BhrStatus jet(Scene *scene) {
     scene->spin = 0.9;
     disk->thickness = 0.08;
     disk->absorption = 1.0;
-    volume->flags = BHR_VOLUME_POWER_LAW;
-    volume->outer_radius = 60.0;
-    volume->absorption = 0.002;
-    volume->spectral_index = 0.7;
-    volume->brightness = 0.15;
-    volume->speed = 0.8;
     expose(scene, 1.5);
-    set_colour(volume->tint, 0.45, 0.65, 1.0);
     return stand(scene, 50.0, 75.0, 22.0, 52.0);
 }
 
@@ -307,10 +300,8 @@ static BhrStatus inside_the_torus(Scene *scene) {
     }
     scene->has_disk = 0;
     scene->spin = 0.9;
-    volume->radius = 9.0;
-    volume->width = 2.5;
-    volume->thickness = 0.2;
     volume->absorption = 0.07;
+    volume->brightness = 1.0;
     scene->film.exposure_ev = -1.5;
     status = stand(scene, 10.5, 75.0, 12.0, 85.0);
     turn(scene, 25.0, 0.0); /* towards the side that recedes, which is not so bright */

@@ -9,6 +9,7 @@
 
 typedef enum FieldKind {
     FIELD_WORD,    /* uint32_t: gets the bit of the first of `choices`; the word alone, without a value */
+    FIELD_NO_WORD, /* the same; takes the bit away */
     FIELD_CHOICE,  /* int32_t: the value of one of `choices` */
     FIELD_DOUBLE,  /* double */
     FIELD_DEGREES, /* double: radians, written in degrees */
@@ -38,6 +39,7 @@ static const Choice THERMAL[] = {{"thermal", BHR_HOT_SPOT_THERMAL}, {NULL, 0}};
 static const Field VOLUME_FIELDS[] = {
     {"retrograde", FIELD_WORD, OF_VOLUME(flags), VOLUME_RETROGRADE},
     {"power-law", FIELD_WORD, OF_VOLUME(flags), POWER_LAW},
+    {"thermal", FIELD_NO_WORD, OF_VOLUME(flags), POWER_LAW},
     {"flow", FIELD_CHOICE, OF_VOLUME(flow), FLOWS},
     {"inner-radius", FIELD_DOUBLE, OF_VOLUME(inner_radius), NULL},
     {"outer-radius", FIELD_DOUBLE, OF_VOLUME(outer_radius), NULL},
@@ -101,12 +103,15 @@ static int read_value(const Field *field, const char *value, void *out) {
     char         *target = (char *)out + field->offset;
     const Choice *choice;
     double        number;
-    if ((value == NULL) != (field->kind == FIELD_WORD)) {
+    if ((value == NULL) != (field->kind == FIELD_WORD || field->kind == FIELD_NO_WORD)) {
         return 0;
     }
     switch (field->kind) {
     case FIELD_WORD:
         *(uint32_t *)(void *)target |= (uint32_t)field->choices[0].value;
+        return 1;
+    case FIELD_NO_WORD:
+        *(uint32_t *)(void *)target &= ~(uint32_t)field->choices[0].value;
         return 1;
     case FIELD_CHOICE:
         choice = find_choice(field->choices, value);
@@ -129,7 +134,8 @@ static int read_value(const Field *field, const char *value, void *out) {
 
 static void print_value_name(FILE *out, const Field *field) {
     switch (field->kind) {
-    case FIELD_WORD: fputs("no value", out); return;
+    case FIELD_WORD:
+    case FIELD_NO_WORD: fputs("no value", out); return;
     case FIELD_COLOUR: fputs("R/G/B", out); return;
     case FIELD_DEGREES: fputs("degrees", out); return;
     case FIELD_DOUBLE: fputs("a number", out); return;
@@ -201,13 +207,17 @@ BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind) {
     volume->shape = kind;
     switch (kind) {
     case BHR_VOLUME_TORUS:
-        volume->thickness = 0.25;
-        volume->absorption = 0.5;
+        volume->radius = 9.0;
+        volume->width = 2.5;
+        volume->thickness = 0.2;
+        volume->absorption = 0.12;
+        volume->brightness = 0.6;
         volume->outer_radius = 40.0;
         break;
     case BHR_VOLUME_HALO:
         volume->thickness = 0.5;
-        volume->absorption = 0.1;
+        volume->absorption = 0.05;
+        volume->brightness = 0.6;
         volume->radius = 6.0;
         volume->outer_radius = 40.0;
         break;
@@ -218,7 +228,13 @@ BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind) {
         volume->thickness = 0.02;
         volume->opening = 0.35;
         volume->slope = 1.2;
-        volume->absorption = 0.03;
+        volume->flags = BHR_VOLUME_POWER_LAW; /* thermal matter as thin as this shines too little */
+        volume->absorption = 0.002;
+        volume->spectral_index = 0.7;
+        volume->brightness = 0.15;
+        volume->speed = 0.8;
+        volume->tint[0] = 0.45;
+        volume->tint[1] = 0.65;
         break;
     default:
         break;

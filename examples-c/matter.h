@@ -22,7 +22,7 @@ extern const Choice VOLUME_KINDS[];
 BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind);
 
 /* Reads a volume: a kind (disk, torus, halo, jet), then fields by BhrVolume's names with - for _, angles in degrees,
- * colours R/G/B, and the words retrograde and power-law. `name`: of the option, for messages. 0, or an exit status
+ * colours R/G/B, and the words retrograde, power-law and thermal. `name`: of the option, for messages. 0, or an exit status
  * after a message on stderr. Ranges are left to the library. */
 int volume_read(const char *name, const char *text, BhrVolume *out);
 
