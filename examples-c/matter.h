@@ -22,8 +22,8 @@ extern const Choice VOLUME_KINDS[];
 BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind);
 
 /* Reads a volume: a kind (disk, torus, halo, jet), then fields by BhrVolume's names with - for _, angles in degrees,
- * colours R/G/B, and the words retrograde, power-law and thermal. `name`: of the option, for messages. 0, or an exit status
- * after a message on stderr. Ranges are left to the library. */
+ * colours R/G/B, and the words retrograde, power-law and thermal. `name`: of the option, for messages. 0, or an exit
+ * status after a message on stderr. Ranges are left to the library. */
 int volume_read(const char *name, const char *text, BhrVolume *out);
 
 /* The same for a hot spot, without a kind; its words are retrograde and thermal. */

@@ -34,7 +34,7 @@ observatory_image() {
     done
     # Another frame, beam, target and frequency.
     observatory_says "$scratch/fluxes" image --target m87 --plain --pixels 24 --beam 0 --fov 150 --frequency 230 \
-        --volume torus,power-law,radius=6,absorption=0.1 --volume jet,power-law --output "$folder" &&
+        --volume torus,power-law,radius=6,absorption=0.1,spectral-index=0.7 --volume jet --output "$folder" &&
         python3 "$tests/observatory/fits.py" "$folder" "$scratch/fluxes" 24 150 0 &&
         picture "$folder/m87-230GHz.png" 648x648 50
 }
