@@ -82,6 +82,15 @@ refuses() {
     exits "$status" "$words" "$examples/observatory" "$@"
 }
 
+# A disk that is full: a message, and nothing half written stays.
+observatory_on_a_full_disk() {
+    local folder=$scratch/full
+    mkdir -p -- "$folder" && ln -s /dev/full "$folder/sgra-230GHz.fits" && ln -s /dev/full "$folder/hotspot.csv" &&
+        refuses 1 'cannot write .*sgra-230GHz.fits: No space left' image --plain --pixels 8 --output "$folder" &&
+        refuses 1 'cannot write .*hotspot.csv: No space left' hotspot --plain --pixels 16 --phases 2 \
+            --output "$folder" && [ -z "$(ls -- "$folder")" ]
+}
+
 observatory_refusals() {
     local option
     refuses 2 'image, gold or hotspot' && refuses 2 'no command' picture || return 1
