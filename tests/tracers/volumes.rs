@@ -182,6 +182,39 @@ fn the_tracers_agree() {
     }
 }
 
+/// Beside the shadow's edge pixels are the mean of many rays. Those of a ray that circles the hole in matter take so
+/// many turns of loops that a software driver may end them all: no pixel may lack a part of its light.
+#[test]
+fn no_pixel_of_the_edge_is_dark() {
+    let (mut cpu, mut gpu) = (cpu(), gpu());
+    let halo = Volume {
+        power_law: true,
+        shape: Shape::Halo,
+        radius: 6.0,
+        thickness: 0.45,
+        absorption: 0.05,
+        spectral_index: 0.5,
+        outer_radius: 40.0,
+        ..Volume::default()
+    };
+    let mut scene = Scene {
+        camera: Camera { fov_y: 0.35, ..outside(30.0, 28.0) },
+        disk: None,
+        sky: Sky::black(),
+        volumes: std::iter::once(halo).collect(),
+        ..Scene::plain()
+    };
+    scene.hole.spin = 0.9;
+    let [expected, found] = [&mut cpu, &mut gpu].map(|renderer| {
+        renderer.scene = scene.clone();
+        floats(&picture(renderer, PixelFormat::Rgba32F, [320, 180], None, false))
+    });
+    for (i, (found, expected)) in found.chunks(4).zip(expected.chunks(4)).enumerate() {
+        let error = (found[0] / expected[0] - 1.0).abs();
+        assert!(error < 0.2, "pixel {} {}: {} instead of {}", i % 320, i / 320, found[0], expected[0]);
+    }
+}
+
 /// I_nu and the optical depth, of every pixel. Structure is rough: the tracers' steps, and so the places that they ask,
 /// differ.
 #[test]

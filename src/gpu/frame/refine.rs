@@ -19,7 +19,6 @@ const HEAD: u64 = 8 * MAX_BATCH as u64;
 /// thousands: there each group takes fewer pixels.
 const GROUPS: u32 = 2048;
 const GROUPS_SOFTWARE: u32 = 16;
-const GROUPS_OF_MATTER: u32 = 256;
 
 /// The list; it grows and stays.
 #[derive(Default)]
@@ -74,10 +73,8 @@ impl RefineStage {
     ) -> Result<Self> {
         let stage =
             kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
-        let groups = match (software, variant.matter) {
-            (false, _) => GROUPS,
             (true, None) => GROUPS_SOFTWARE,
-            (true, Some(_)) => GROUPS_OF_MATTER,
+            _ => GROUPS,
         };
         Ok(Self { stage, groups })
     }
