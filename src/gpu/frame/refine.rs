@@ -73,6 +73,7 @@ impl RefineStage {
     ) -> Result<Self> {
         let stage =
             kernels.get(KernelKey::refine(RefineVariant { source, variant }, shade, film))?.stage(device, shared)?;
+        let groups = match (software, variant.matter) {
             (true, None) => GROUPS_SOFTWARE,
             _ => GROUPS,
         };
