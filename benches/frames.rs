@@ -5,9 +5,9 @@
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
-use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky};
+use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky, Volume};
 use criterion::Criterion;
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -150,6 +150,39 @@ fn traced(a: f64) -> impl FnOnce(&mut Renderer) {
     move |renderer| (renderer.scene.hole.spin, renderer.scene.quality.lens_tables) = (a, LensTables::Never)
 }
 
+/// Matter with depth instead of the thin disk: a soft disk or a thick one, far from it or within.
+fn matter(volume: Volume, a: f64, distance: f64, elevation: f64, half_tan: f64) -> impl FnOnce(&mut Renderer) {
+    move |renderer| {
+        let (sin, cos) = elevation.to_radians().sin_cos();
+        let position = DVec3::new(distance * cos, 0.0, distance * sin);
+        let scene = &mut renderer.scene;
+        (scene.hole.spin, scene.disk, scene.time) = (a, None, 35.0);
+        scene.volumes.push(volume);
+        let fov_y = 2.0 * half_tan.atan();
+        scene.camera = Camera { position, forward: -position, up: DVec3::Z, fov_y, ..Camera::plain() };
+    }
+}
+
+fn volumes(measured: &mut dyn FnMut(&str, Box<dyn FnOnce(&mut Renderer)>)) {
+    let soft = Volume::default();
+    let thick = Volume {
+        thickness: 0.14,
+        absorption: 0.3,
+        inner_radius: 2.55,
+        slope: 0.9,
+        temperature: 5400.0,
+        clumping: 2.0,
+        ..soft
+    };
+    for turbulence in [1.0, 0.0] {
+        let how = if turbulence > 0.0 { "" } else { ", even" };
+        let [soft, thick] = [soft, thick].map(|volume| Volume { turbulence, ..volume });
+        measured(&format!("soft disk{how}"), Box::new(matter(soft, 0.6, 28.0, 6.5, 0.34)));
+        measured(&format!("thick disk{how}"), Box::new(matter(thick, 0.9, 30.0, 10.0, 0.36)));
+        measured(&format!("within a thick disk{how}"), Box::new(matter(thick, 0.9, 8.0, 10.0, 0.8)));
+    }
+}
+
 fn gpu(criterion: &mut Criterion, times: &Times) {
     let software = Stage::new(None, [16, 16], |_| ()).renderer.adapter().software;
     let size = if software { [1280, 720] } else { [3840, 2160] };
@@ -185,6 +218,10 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
         };
         measured(&format!("default scene, spin {a}"), size, Change::Nothing, Box::new(default));
     }
+    let sizes = if software { vec![[640, 360]] } else { vec![size, [1920, 1080]] };
+    for size in sizes {
+        volumes(&mut |name, set| measured(name, size, Change::Nothing, set));
+    }
     for a in [0.5, 0.998] {
         measured(&format!("spin {a}"), size, Change::Nothing, Box::new(spin(a)));
     }
@@ -213,6 +250,9 @@ fn gpu(criterion: &mut Criterion, times: &Times) {
 }
 
 fn cpu(criterion: &mut Criterion, times: &Times) {
+    volumes(&mut |name, set| {
+        measure(criterion, times, &format!("cpu 640x360 {name}"), || Stage::new(Some(Backend::Cpu), [640, 360], set));
+    });
     let size = [1280, 720];
     for a in [0.0, 0.9] {
         let name = format!("cpu 1280x720 plain scene, spin {a}");

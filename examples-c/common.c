@@ -107,6 +107,40 @@ BhrStatus create_context_on(BhrBackend backend, BhrContext **out) {
     return bhr_context_create(BHR_ABI_VERSION, &options, out);
 }
 
+/* ---- a bar ---- */
+
+#define PROGRESS_AFTER_SECONDS 0.5 /* what is done sooner needs no bar */
+#define PROGRESS_CELLS 40
+
+Progress progress_begin(int shown) {
+    const Progress progress = {shown, -1, wall_seconds()};
+    return progress;
+}
+
+void progress_draw(Progress *progress, double fraction) {
+    const int percent = (int)(100.0 * fraction);
+    if (!progress->shown || percent == progress->percent ||
+        wall_seconds() - progress->begin < PROGRESS_AFTER_SECONDS) {
+        return;
+    }
+    progress->percent = percent;
+    char bar[PROGRESS_CELLS + 1];
+    for (int i = 0; i < PROGRESS_CELLS; i++) {
+        bar[i] = i < (int)(fraction * PROGRESS_CELLS) ? '#' : '.';
+    }
+    bar[PROGRESS_CELLS] = '\0';
+    fprintf(stderr, "\r[%s] %3d %%", bar, percent);
+    fflush(stderr);
+}
+
+void progress_clear(Progress *progress) {
+    if (progress->percent >= 0) {
+        fprintf(stderr, "\r%*s\r", PROGRESS_CELLS + 8, "");
+        fflush(stderr);
+        progress->percent = -1;
+    }
+}
+
 /* ---- the process ---- */
 
 int end_output(int result) {

@@ -40,6 +40,17 @@ void print_driver_advice(FILE *out, const BhrAdapterInfo *info, const char *inde
 /* A context with the defaults and this backend. */
 BhrStatus create_context_on(BhrBackend backend, BhrContext **out);
 
+/* ---- a bar on stderr, while something takes long ---- */
+typedef struct Progress {
+    int    shown;   /* 0: never drawn */
+    int    percent; /* drawn last; -1: nothing drawn yet */
+    double begin;   /* of wall_seconds */
+} Progress;
+
+Progress progress_begin(int shown);
+void     progress_draw(Progress *progress, double fraction); /* nothing in the first half second */
+void     progress_clear(Progress *progress);                 /* takes the bar off the line */
+
 /* ---- the process ---- */
 int      end_output(int result);        /* an exit status: EXIT_FAILURE instead of 0 when stdout cannot be written */
 double   wall_seconds(void);            /* monotonic; only differences mean something */

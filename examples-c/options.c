@@ -9,9 +9,8 @@
 
 /* ---- values ---- */
 
-/* Puts the number that `text` begins with into *out and returns where it ends; NULL when there is none or it overflows.
- * strtod alone would skip leading blanks. */
-static const char *read_double(const char *text, double *out) {
+/* strtod alone would skip leading blanks. */
+const char *option_read_double(const char *text, double *out) {
     char *end;
     if (isspace((unsigned char)text[0])) {
         return NULL;
@@ -26,7 +25,7 @@ static const char *read_double(const char *text, double *out) {
     return end;
 }
 
-/* As read_double, digits only: strtoull alone would take "-1" for a large number. */
+/* As option_read_double, digits only: strtoull alone would take "-1" for a large number. */
 static const char *read_whole(const char *text, uint64_t most, uint64_t *out) {
     char *end;
     if (!isdigit((unsigned char)text[0])) {
@@ -54,7 +53,7 @@ static const char *read_uint(const char *text, uint32_t *out) {
 static int read_numbers(const char *text, int count, double *out) {
     double value[4];
     for (int i = 0; i < count; i++) {
-        text = read_double(text, &value[i]);
+        text = option_read_double(text, &value[i]);
         if (text == NULL || *text != (i + 1 < count ? ',' : '\0')) {
             return 0;
         }
@@ -105,6 +104,14 @@ static int read_bits(const char *text, const Choice *choices, uint32_t *out) {
     return 1;
 }
 
+static int add_text(TextList *texts, const char *text) {
+    if (texts->count == MOST_TEXTS) {
+        return 0;
+    }
+    texts->list[texts->count++] = text;
+    return 1;
+}
+
 /* 1 when all of `text` is a value of the option's kind; only then is the target written. */
 static int read_value(const Option *option, const char *text) {
     const char   *end;
@@ -115,7 +122,7 @@ static int read_value(const Option *option, const char *text) {
     switch (option->kind) {
     case OPTION_DOUBLE:
     case OPTION_DEGREES:
-        end = read_double(text, &number);
+        end = option_read_double(text, &number);
         if (end == NULL || *end != '\0') {
             return 0;
         }
@@ -153,6 +160,8 @@ static int read_value(const Option *option, const char *text) {
     case OPTION_TEXT:
         *(const char **)option->target = text;
         return text[0] != '\0';
+    case OPTION_TEXTS:
+        return text[0] != '\0' && add_text(option->target, text);
     case OPTION_FLAG:
     case OPTION_UNFLAG:
     case OPTION_BIT:
@@ -255,6 +264,7 @@ static void print_default(FILE *out, const Option *option) {
             fprintf(out, "; default %s", *(const char *const *)option->target);
         }
         return;
+    case OPTION_TEXTS:
     case OPTION_FLAG:
     case OPTION_UNFLAG:
     case OPTION_BIT:
@@ -311,6 +321,10 @@ int options_parse(const Option *options, size_t count, int argc, char **argv) {
             fprintf(stderr, "%s: %s needs a value:", argv[0], option->name);
             print_value_name(stderr, option);
             fputc('\n', stderr);
+            return EXIT_USAGE;
+        }
+        if (option->kind == OPTION_TEXTS && ((const TextList *)option->target)->count == MOST_TEXTS) {
+            fprintf(stderr, "%s: %s is given more than %u times\n", argv[0], option->name, MOST_TEXTS);
             return EXIT_USAGE;
         }
         if (!read_value(option, value)) {

@@ -23,8 +23,17 @@ typedef enum OptionKind {  /* what Option.target points to */
     OPTION_SIZE,           /* uint32_t[2], written WxH */
     OPTION_CHOICE,         /* int32_t: the value of one of `choices` */
     OPTION_BITS,           /* uint32_t: the bits of some of `choices`, written with commas, or "none" */
-    OPTION_TEXT            /* const char *: the argument itself */
+    OPTION_TEXT,           /* const char *: the argument itself */
+    OPTION_TEXTS           /* TextList: one argument more; the option may be given again */
 } OptionKind;
+
+#define MOST_TEXTS 8u
+
+/* The arguments of an option that may be given again, in their order. */
+typedef struct TextList {
+    const char *list[MOST_TEXTS];
+    size_t      count;
+} TextList;
 
 typedef struct Option {
     const char   *name;    /* with its dashes */
@@ -43,6 +52,10 @@ int options_parse(const Option *options, size_t count, int argc, char **argv);
 /* Each with its value, its help, its range and what its target holds, the default. UINT32_MAX, NaN, NULL and numbers
  * of no choice are no defaults. */
 void options_print(FILE *out, const Option *options, size_t count);
+
+/* Puts the number that `text` begins with into *out and returns where it ends; NULL when there is none or it
+ * overflows. */
+const char *option_read_double(const char *text, double *out);
 
 #ifdef __cplusplus
 }

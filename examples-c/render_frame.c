@@ -8,8 +8,6 @@
 #include <string.h>
 
 #define NOT_GIVEN UINT32_MAX
-#define PROGRESS_AFTER_SECONDS 0.5 /* a frame that is done sooner needs no bar */
-#define PROGRESS_CELLS 40
 /* Rays for each core below which the CPU tracer is done with a picture before Mesa's software driver, which traces a
  * ray in a third of the time (0.2 us of a core, not 0.6), has compiled its kernels: 1.5 s of a core (Debian 12, Mesa
  * 22, nothing cached). A picture of 1280 x 720 pixels and 4 samples has 1.8 million for each of two cores. */
@@ -24,35 +22,9 @@ typedef struct Settings {
     int         progress, verbose, list_adapters, help;
 } Settings;
 
-/* ---- progress ---- */
-
-typedef struct Progress {
-    double begin;
-    int    percent; /* drawn last; -1: nothing drawn yet */
-} Progress;
-
-static int32_t draw_progress(void *user, double fraction) {
-    Progress *progress = user;
-    int       percent = (int)(100.0 * fraction);
-    if (percent == progress->percent || wall_seconds() - progress->begin < PROGRESS_AFTER_SECONDS) {
-        return 1;
-    }
-    progress->percent = percent;
-    char bar[PROGRESS_CELLS + 1];
-    for (int i = 0; i < PROGRESS_CELLS; i++) {
-        bar[i] = i < (int)(fraction * PROGRESS_CELLS) ? '#' : '.';
-    }
-    bar[PROGRESS_CELLS] = '\0';
-    fprintf(stderr, "\r[%s] %3d %%", bar, percent);
-    fflush(stderr);
+static int32_t show_progress(void *user, double fraction) {
+    progress_draw(user, fraction);
     return 1; /* go on */
-}
-
-static void clear_progress(const Progress *progress) {
-    if (progress->percent >= 0) {
-        fprintf(stderr, "\r%*s\r", PROGRESS_CELLS + 8, "");
-        fflush(stderr);
-    }
 }
 
 /* ---- the frame ---- */
@@ -90,15 +62,15 @@ static void print_report(const Settings *s, const BhrAdapterInfo *adapter, const
 
 /* Renders into `image`, saves it and reports. */
 static int render_and_save(BhrContext *context, const Settings *s, const BhrImage *image) {
-    Progress  progress = {wall_seconds(), -1};
+    Progress  progress = progress_begin(s->progress || is_terminal(stderr));
     BhrStatus status = BHR_OK;
-    if (s->progress || is_terminal(stderr)) {
-        status = bhr_set_progress(context, draw_progress, &progress);
+    if (progress.shown) {
+        status = bhr_set_progress(context, show_progress, &progress);
     }
     if (status >= 0) {
         status = bhr_render_image(context, image);
     }
-    clear_progress(&progress);
+    progress_clear(&progress);
     if (status < 0) {
         return report_failure("render the frame", status);
     }

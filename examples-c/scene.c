@@ -26,6 +26,7 @@ BhrStatus scene_defaults(Scene *scene) {
     scene->effects = BHR_EFFECT_ALL;
     scene->view = BHR_VIEW_LIGHT;
     scene->has_disk = scene->has_sky = 1;
+    scene->volume_count = scene->hot_spot_count = 0;
     BhrStatus status = bhr_camera_init(&scene->camera, sizeof scene->camera);
     if (status >= 0) {
         status = bhr_disk_init(&scene->disk, sizeof scene->disk);
@@ -96,6 +97,12 @@ BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
         status = bhr_set_disk(context, scene->has_disk ? &scene->disk : NULL);
     }
     if (status >= 0) {
+        status = bhr_set_volumes(context, scene->volumes, sizeof *scene->volumes, scene->volume_count);
+    }
+    if (status >= 0) {
+        status = bhr_set_hot_spots(context, scene->hot_spots, sizeof *scene->hot_spots, scene->hot_spot_count);
+    }
+    if (status >= 0) {
         status = bhr_set_sky(context, scene->has_sky ? &scene->sky : NULL);
     }
     if (status >= 0) {
@@ -128,5 +135,8 @@ void camera_turn(BhrCamera *camera, double right, double up) {
 }
 
 int scene_changes_with_time(const Scene *scene) {
-    return scene->has_disk && scene->disk.turbulence > 0.0 && scene->view == BHR_VIEW_LIGHT;
+    const int shows_matter = scene->view == BHR_VIEW_LIGHT || scene->view == BHR_VIEW_OPTICAL_DEPTH ||
+                             scene->view == BHR_VIEW_INTENSITY;
+    return (scene->has_disk && scene->disk.turbulence > 0.0 && scene->view == BHR_VIEW_LIGHT) ||
+           (scene->hot_spot_count > 0 && shows_matter);
 }

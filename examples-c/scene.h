@@ -18,6 +18,10 @@ typedef struct Scene {
     BhrCamera  camera;
     BhrDisk    disk;
     int        has_disk;
+    BhrVolume  volumes[BHR_MAX_VOLUMES];
+    uint32_t   volume_count;
+    BhrHotSpot hot_spots[BHR_MAX_HOT_SPOTS];
+    uint32_t   hot_spot_count;
     BhrSky     sky;
     int        has_sky;
     BhrFilm    film;

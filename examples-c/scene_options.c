@@ -2,6 +2,8 @@
 /* scene_options.c -- see scene_options.h. */
 #include "scene_options.h"
 
+#include "matter.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -76,6 +78,12 @@ static const SceneOption TABLE[] = {
      "the disk's light by the angle to its normal", EMISSION_LAWS},
     {"--seed", SCENE_DISK, OPTION_UINT64, AT(scene.disk.seed), "N", NULL, "of the turbulence", NULL},
     {"--time", SCENE_DISK, OPTION_DOUBLE, AT(time), "T", NULL, "in M; turns the disk's structure", NULL},
+
+    {"--volume", SCENE_MATTER, OPTION_TEXTS, AT(volumes), VOLUME_VALUE, "4 of them",
+     "matter with depth: disk, torus, halo or jet, then fields as BhrVolume has them, with - for _, degrees and R/G/B;"
+     "\n        torus,radius=9,infall=0.2,power-law", NULL},
+    {"--hot-spot", SCENE_MATTER, OPTION_TEXTS, AT(hot_spots), HOT_SPOT_VALUE, "8 of them",
+     "a blob in orbit: fields as BhrHotSpot has them; radius=7,size=0.7,azimuth=90", NULL},
 
     {"--no-stars", SCENE_SKY, OPTION_UNFLAG, AT(scene.has_sky), NULL, NULL, "makes the sky black", NULL},
     {"--sky", SCENE_SKY, OPTION_BITS, AT(scene.sky.flags), NULL, NULL, "what is at infinity", SKY_PARTS},
@@ -189,6 +197,18 @@ static BhrStatus place_camera(SceneInput *input) {
     return status;
 }
 
+/* 0, or an exit status after a message. */
+static int read_matter(SceneInput *input, const char *program) {
+    char      name[128];
+    Scene    *scene = &input->scene;
+    snprintf(name, sizeof name, "%.100s: --volume", program);
+    const int result = volumes_read(name, &input->volumes, scene->volumes, BHR_MAX_VOLUMES, &scene->volume_count);
+    snprintf(name, sizeof name, "%.100s: --hot-spot", program);
+    return result != 0 ? result
+                       : hot_spots_read(name, &input->hot_spots, scene->hot_spots, BHR_MAX_HOT_SPOTS,
+                                        &scene->hot_spot_count);
+}
+
 int scene_input_finish(SceneInput *input, BhrContext *context, const Options *options, int argc, char **argv) {
     BhrStatus status = BHR_OK;
     if (input->preset != NO_PRESET) {
@@ -197,10 +217,15 @@ int scene_input_finish(SceneInput *input, BhrContext *context, const Options *op
             return report_failure("set the preset", status);
         }
         /* The options once more, over the preset. */
+        input->volumes.count = input->hot_spots.count = 0;
         const int result = options_parse(options->list, options->count, argc, argv);
         if (result != 0) {
             return result;
         }
+    }
+    const int result = read_matter(input, argv[0]);
+    if (result != 0) {
+        return result;
     }
     if (input->sky_map != NULL) {
         status = set_map(&input->scene, context, input->sky_map);

@@ -18,7 +18,8 @@
 #define SCENE_EFFECTS 128u
 #define SCENE_VIEW 256u
 #define SCENE_QUALITY 512u
-#define ALL_OF_SCENE 1023u
+#define SCENE_MATTER 1024u /* volumes and hot spots */
+#define ALL_OF_SCENE 2047u
 
 #define MOST_OPTIONS 96u
 
@@ -30,6 +31,7 @@ typedef struct SceneInput {
     double      position[3], forward[3];       /* in M; NaN: by those above, and towards the hole */
     double      time;                          /* in M */
     const char *sky_map;                       /* a file; NULL: none */
+    TextList    volumes, hot_spots;            /* as matter.h reads them */
 } SceneInput;
 
 /* The options of a program: its own and a scene's. */

@@ -372,6 +372,7 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->tried_view = v->scene.view;
     v->tried_projection = v->scene.camera.projection;
     v->preset = s->input->preset; /* the key goes on from there; from none to the first */
+    v->matter = -1; /* the key's first is the first kind */
     v->pilot.motion = motion;
     v->pilot.steered = 1;
     v->pace = FIRST_PACE;

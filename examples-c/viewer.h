@@ -37,7 +37,7 @@ typedef struct Viewer {
 
     Mouse   mouse;
     int     windowed[4]; /* position and size to come back to from the full screen */
-    int32_t tried_view, tried_projection, preset; /* the cycling keys pass over what is refused */
+    int32_t tried_view, tried_projection, preset, matter; /* the cycling keys pass over what is refused */
     char    said[SAID];  /* by the last key; printed when bhr has accepted the change */
 
     double   now;           /* wall_seconds() of this turn of the loop */

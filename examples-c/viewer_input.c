@@ -2,6 +2,8 @@
 /* viewer_input.c -- see viewer_input.h. */
 #include "viewer_input.h"
 
+#include "matter.h"
+
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -50,6 +52,46 @@ static void change_opacity(Viewer *v, double by) {
 static void change_turbulence(Viewer *v, double by) {
     v->scene.disk.turbulence = clamp(v->scene.disk.turbulence + by, 0.0, 1.0);
     SAY(v, "turbulence of the disk %.2f", v->scene.disk.turbulence);
+}
+
+/* As the viewer began; then each kind of volume, instead of the thin disk but for the jet, which comes from it. */
+static void cycle_matter(Viewer *v, double unused) {
+    (void)unused;
+    v->matter = v->matter < 0 || VOLUME_KINDS[v->matter].name == NULL ? 0 : v->matter + 1;
+    const Choice *kind = &VOLUME_KINDS[v->matter];
+    if (kind->name == NULL) {
+        memcpy(v->scene.volumes, v->first.volumes, sizeof v->scene.volumes);
+        v->scene.volume_count = v->first.volume_count;
+        v->scene.has_disk = v->first.has_disk;
+        SAY(v, "matter as in the beginning");
+        return;
+    }
+    BhrStatus status = volume_begin(&v->scene.volumes[0], kind->value);
+    if (status < 0) {
+        report_failure("begin a volume", status);
+        return;
+    }
+    v->scene.volume_count = 1;
+    v->scene.has_disk = kind->value == BHR_VOLUME_JET;
+    SAY(v, "matter with depth: %s", kind->name);
+}
+
+static void toggle_hot_spot(Viewer *v, double unused) {
+    (void)unused;
+    if (v->scene.hot_spot_count > 0) {
+        v->scene.hot_spot_count = 0;
+    } else if (v->first.hot_spot_count > 0) {
+        memcpy(v->scene.hot_spots, v->first.hot_spots, sizeof v->scene.hot_spots);
+        v->scene.hot_spot_count = v->first.hot_spot_count;
+    } else {
+        BhrStatus status = bhr_hot_spot_init(&v->scene.hot_spots[0], sizeof v->scene.hot_spots[0]);
+        if (status < 0) {
+            report_failure("begin a hot spot", status);
+            return;
+        }
+        v->scene.hot_spot_count = 1;
+    }
+    SAY(v, "hot spot %s", v->scene.hot_spot_count > 0 ? "on" : "off");
 }
 
 static void toggle_effect(Viewer *v, double bit) {
@@ -113,7 +155,7 @@ static void centre_hole(Viewer *v, double unused) {
 
 static void cycle_view(Viewer *v, double unused) {
     (void)unused;
-    v->tried_view = (v->tried_view + 1) % (BHR_VIEW_METRIC + 1);
+    v->tried_view = (v->tried_view + 1) % (BHR_VIEW_INTENSITY + 1);
     v->scene.view = v->tried_view;
     SAY(v, "view: %s", choice_name(VIEWS, v->scene.view));
 }
@@ -190,6 +232,7 @@ static void reset(Viewer *v, double unused) {
     v->tried_view = v->scene.view;
     v->tried_projection = v->scene.camera.projection;
     v->preset = NO_PRESET;
+    v->matter = -1;
     SAY(v, "back to the beginning");
 }
 
@@ -279,6 +322,8 @@ static const Key KEYS[] = {
     {GLFW_KEY_O, 1, NULL, "make the disk less opaque", change_opacity, -0.1, 0},
     {GLFW_KEY_T, 0, NULL, "make the disk more turbulent", change_turbulence, 0.1, 0},
     {GLFW_KEY_T, 1, NULL, "make the disk less turbulent", change_turbulence, -0.1, 0},
+    {GLFW_KEY_U, 0, NULL, "change the matter: soft disk, torus, halo, jet, as in the beginning", cycle_matter, 0, 0},
+    {GLFW_KEY_J, 0, NULL, "show a hot spot in orbit, or leave it out", toggle_hot_spot, 0, 0},
     {GLFW_KEY_K, 0, NULL, "show the stars, or leave them out", toggle_sky, 0, 0},
 
     {GLFW_KEY_1, 0, NULL, "switch the Doppler shift", toggle_effect, BHR_EFFECT_DOPPLER_SHIFT, 0},
@@ -286,7 +331,8 @@ static const Key KEYS[] = {
     {GLFW_KEY_3, 0, NULL, "switch the beaming", toggle_effect, BHR_EFFECT_BEAMING, 0},
     {GLFW_KEY_4, 0, NULL, "switch the light delay", toggle_effect, BHR_EFFECT_LIGHT_DELAY, 0},
 
-    {GLFW_KEY_V, 0, NULL, "show: light, redshift, order, deflection, steps, metric", cycle_view, 0, 0},
+    {GLFW_KEY_V, 0, NULL, "show: light, redshift, order, deflection, steps, metric, optical depth, intensity",
+     cycle_view, 0, 0},
     {GLFW_KEY_P, 0, NULL, "change the projection", cycle_projection, 0, 0},
     {GLFW_KEY_RIGHT_BRACKET, 0, NULL, "widen the field of view", change_fov, 1.1, 0},
     {GLFW_KEY_LEFT_BRACKET, 0, NULL, "narrow the field of view", change_fov, 1 / 1.1, 0},

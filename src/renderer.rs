@@ -410,12 +410,13 @@ impl Renderer {
     }
 
     /// The matter with depth along `rays`, thin disk and sky left out; `found` is as long. Always in f64 on the CPU: on
-    /// the CPU tracer's threads, else on this one. A ray that is not valid becomes `Fate::Invalid`.
+    /// the CPU tracer's threads, else on this one. A ray that is not valid becomes `Fate::Invalid`. Errors:
+    /// OUT_OF_MEMORY.
     pub fn transfer_rays(&mut self, rays: &[Ray], found: &mut [Transfer]) -> Result<()> {
         if let Tracer::Cpu(tracer) = &mut *self.tracer.lock() {
             return tracer.transfer_rays(&self.scene, rays, found);
         }
-        let (emitters, settings) = transfer_setup(&self.scene);
+        let (emitters, settings) = transfer_setup(&self.scene)?;
         for (ray, found) in rays.iter().zip(found) {
             *found = transfer_ray(&self.scene, &settings, &emitters, ray);
         }

@@ -430,6 +430,12 @@ void App::say(const Picture::Input &input) {
                     orbit.distance, orbit.azimuth / DEGREE, orbit.elevation / DEGREE);
         said_geometry_ = scene_.geometry_version();
     }
+    const size_t volumes = scene_.volumes().size(), spots = scene_.hot_spots().size();
+    if (volumes != said_volumes_ || spots != said_spots_) {
+        std::printf("matter volumes %zu hot spots %zu\n", volumes, spots);
+        said_volumes_ = volumes;
+        said_spots_ = spots;
+    }
     if (settings_.refusals() != said_refusals_) {
         std::printf("refused %s\n", settings_.last_refusal().c_str());
         said_refusals_ = settings_.refusals();

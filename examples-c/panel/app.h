@@ -102,6 +102,7 @@ private:
     Wanted   said_place_; // what --verbose said last
     uint64_t said_geometry_ = 0;
     size_t   said_refusals_ = 0;
+    size_t   said_volumes_ = 0, said_spots_ = 0;
     uint32_t said_pictures_ = 0;
 };
 

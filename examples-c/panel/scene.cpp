@@ -36,6 +36,13 @@ void Scene::read_back() {
     int32_t present = 0;
     bhr_get_disk(context_, &disk_, &present);
     has_disk_ = present != 0;
+    uint32_t count = 0;
+    volumes_.resize(BHR_MAX_VOLUMES);
+    bhr_get_volumes(context_, volumes_.data(), sizeof(BhrVolume), BHR_MAX_VOLUMES, &count);
+    volumes_.resize(count);
+    hot_spots_.resize(BHR_MAX_HOT_SPOTS);
+    bhr_get_hot_spots(context_, hot_spots_.data(), sizeof(BhrHotSpot), BHR_MAX_HOT_SPOTS, &count);
+    hot_spots_.resize(count);
     sky_ = sized<BhrSky>();
     bhr_get_sky(context_, &sky_);
     film_ = sized<BhrFilm>();
@@ -83,6 +90,16 @@ Result Scene::set_camera(const BhrCamera &camera) {
 
 Result Scene::set_disk(const BhrDisk *disk) {
     return accepted(bhr_set_disk(context_, disk), true);
+}
+
+Result Scene::set_volumes(const std::vector<BhrVolume> &volumes) {
+    const auto count = static_cast<uint32_t>(volumes.size());
+    return accepted(bhr_set_volumes(context_, volumes.data(), sizeof(BhrVolume), count), false);
+}
+
+Result Scene::set_hot_spots(const std::vector<BhrHotSpot> &hot_spots) {
+    const auto count = static_cast<uint32_t>(hot_spots.size());
+    return accepted(bhr_set_hot_spots(context_, hot_spots.data(), sizeof(BhrHotSpot), count), false);
 }
 
 Result Scene::set_sky(const BhrSky &sky) {

@@ -7,6 +7,8 @@
 #include "handles.h"
 #include "vec.h"
 
+#include <vector>
+
 // The camera about the hole, which it looks at. Scene lengths and radians.
 struct Orbit {
     double distance = 30.0, azimuth = -90.0 * DEGREE, elevation = 10.0 * DEGREE;
@@ -32,6 +34,8 @@ public:
     const BhrCamera  &camera() const { return camera_; }
     const BhrDisk    &disk() const { return disk_; }
     bool              has_disk() const { return has_disk_; }
+    const std::vector<BhrVolume>  &volumes() const { return volumes_; }
+    const std::vector<BhrHotSpot> &hot_spots() const { return hot_spots_; }
     const BhrSky     &sky() const { return sky_; }
     const BhrFilm    &film() const { return film_; }
     const BhrQuality &quality() const { return quality_; }
@@ -50,6 +54,8 @@ public:
     Result set_orbit(const Orbit &orbit);
     Result set_camera(const BhrCamera &camera); // lens and motion; place and direction are the orbit's
     Result set_disk(const BhrDisk *disk);       // NULL: none
+    Result set_volumes(const std::vector<BhrVolume> &volumes);
+    Result set_hot_spots(const std::vector<BhrHotSpot> &hot_spots);
     Result set_sky(const BhrSky &sky);
     Result set_film(const BhrFilm &film);
     Result set_quality(const BhrQuality &quality);
@@ -71,6 +77,8 @@ private:
     BhrCamera   camera_{};
     BhrDisk     disk_{};
     bool        has_disk_ = true;
+    std::vector<BhrVolume>  volumes_;
+    std::vector<BhrHotSpot> hot_spots_;
     BhrSky      sky_{};
     BhrFilm     film_{};
     BhrQuality  quality_{};

@@ -2,6 +2,7 @@
 // settings.cpp -- see settings.h.
 #include "settings.h"
 
+#include "../matter.h"
 #include "draw.h"
 
 #include <cmath>
@@ -225,6 +226,135 @@ void SettingsPanel::disk(Scene &scene) {
     show_message("seed");
 }
 
+// A field of a struct of the library: the slider's range, and what it shows.
+template <class Struct> struct NumberField {
+    const char    *label;
+    double Struct::*member;
+    double         low, high;
+    const char    *format;
+    bool           logarithmic;
+    double         unit; // of what is shown
+};
+
+// A new field of BhrVolume is one line here.
+constexpr NumberField<BhrVolume> VOLUME_FIELDS[] = {
+    {"inner / M", &BhrVolume::inner_radius, 0.0, 30.0, "%.2f", false, 1.0},
+    {"outer / M", &BhrVolume::outer_radius, 2.0, 200.0, "%.2f", true, 1.0},
+    {"radius / M", &BhrVolume::radius, 0.5, 50.0, "%.2f", true, 1.0},
+    {"width / M", &BhrVolume::width, 0.1, 20.0, "%.2f", true, 1.0},
+    {"thickness", &BhrVolume::thickness, 0.01, 2.0, "%.3f", true, 1.0},
+    {"opening", &BhrVolume::opening, 1.0, 85.0, "%.1f\xC2\xB0", false, DEGREE},
+    {"slope", &BhrVolume::slope, 0.0, 4.0, "%.2f", false, 1.0},
+    {"absorption", &BhrVolume::absorption, 1e-3, 1e3, "%.4g", true, 1.0},
+    {"temperature", &BhrVolume::temperature, 500.0, 1e6, "%.0f K", true, 1.0},
+    {"its slope", &BhrVolume::temperature_slope, 0.0, 2.0, "%.2f", false, 1.0},
+    {"index", &BhrVolume::spectral_index, -4.0, 4.0, "%.2f", false, 1.0},
+    {"brightness", &BhrVolume::brightness, 0.01, 100.0, "%.2f", true, 1.0},
+    {"sub-Kepler", &BhrVolume::sub_keplerian, 0.0, 1.0, "%.2f", false, 1.0},
+    {"infall", &BhrVolume::infall, 0.0, 1.0, "%.2f", false, 1.0},
+    {"ang. mom.", &BhrVolume::angular_momentum, 0.0, 1.0, "%.2f", false, 1.0},
+    {"speed", &BhrVolume::speed, 0.0, 0.995, "%.3f", false, 1.0},
+};
+
+constexpr NumberField<BhrHotSpot> HOT_SPOT_FIELDS[] = {
+    {"radius / M", &BhrHotSpot::radius, 2.0, 50.0, "%.2f", true, 1.0},
+    {"size / M", &BhrHotSpot::size, 0.05, 5.0, "%.2f", true, 1.0},
+    {"azimuth", &BhrHotSpot::azimuth, -180.0, 180.0, "%.1f\xC2\xB0", false, DEGREE},
+    {"absorption", &BhrHotSpot::absorption, 0.0, 100.0, "%.3g", true, 1.0},
+    {"temperature", &BhrHotSpot::temperature, 500.0, 1e6, "%.0f K", true, 1.0},
+    {"index", &BhrHotSpot::spectral_index, -4.0, 4.0, "%.2f", false, 1.0},
+    {"brightness", &BhrHotSpot::brightness, 0.01, 100.0, "%.2f", true, 1.0},
+};
+
+template <class Struct, size_t Count, class Set>
+void SettingsPanel::fields(const NumberField<Struct> (&list)[Count], Struct &value, Set set) {
+    for (const NumberField<Struct> &field : list) {
+        number(field.label, value.*field.member / field.unit, field.low, field.high, field.format, field.logarithmic,
+               [&](double shown) {
+                   value.*field.member = shown * field.unit;
+                   return set();
+               });
+    }
+    vector("tint", value.tint, [&](const double tint[3]) {
+        std::copy(tint, tint + 3, value.tint);
+        return set();
+    });
+}
+
+void SettingsPanel::volume(Scene &scene, size_t index) {
+    static const char *const names[BHR_MAX_VOLUMES] = {"Volume 1", "Volume 2", "Volume 3", "Volume 4"};
+    if (!section(names[index], false)) {
+        return;
+    }
+    ImGui::PushID(names[index]);
+    std::vector<BhrVolume> volumes = scene.volumes();
+    BhrVolume             &volume = volumes[index];
+    const auto             set = [&] { return scene.set_volumes(volumes); };
+    const auto             set_flags = [&](uint32_t flags) {
+        volume.flags = flags;
+        return set();
+    };
+    constexpr const char *shapes[] = {"disk", "torus", "halo", "jet"};
+    // Each shape begins with values that suit it.
+    choice("shape", volume.shape, shapes, 4, BHR_VOLUME_DISK, [&](int32_t shape) {
+        const Result begun = result_of(volume_begin(&volume, shape));
+        return begun.ok() ? set() : begun;
+    });
+    constexpr const char *flows[] = {"Keplerian", "angular momentum", "outflow"};
+    choice("flow", volume.flow, flows, 3, BHR_FLOW_KEPLERIAN, [&](int32_t flow) {
+        volume.flow = flow;
+        return set();
+    });
+    flag("retrograde", volume.flags, BHR_VOLUME_RETROGRADE, set_flags);
+    ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
+    flag("power law", volume.flags, BHR_VOLUME_POWER_LAW, set_flags);
+    fields(VOLUME_FIELDS, volume, set);
+    ImGui::PopID();
+}
+
+void SettingsPanel::hot_spot(Scene &scene, size_t index) {
+    static const char *const names[BHR_MAX_HOT_SPOTS] = {"Hot spot 1", "Hot spot 2", "Hot spot 3", "Hot spot 4",
+                                                         "Hot spot 5", "Hot spot 6", "Hot spot 7", "Hot spot 8"};
+    if (!section(names[index], false)) {
+        return;
+    }
+    ImGui::PushID(names[index]);
+    std::vector<BhrHotSpot> spots = scene.hot_spots();
+    BhrHotSpot             &spot = spots[index];
+    const auto              set = [&] { return scene.set_hot_spots(spots); };
+    const auto              set_flags = [&](uint32_t flags) {
+        spot.flags = flags;
+        return set();
+    };
+    flag("retrograde", spot.flags, BHR_HOT_SPOT_RETROGRADE, set_flags);
+    ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
+    flag("thermal", spot.flags, BHR_HOT_SPOT_THERMAL, set_flags);
+    fields(HOT_SPOT_FIELDS, spot, set);
+    ImGui::PopID();
+}
+
+// How many there are, and each in a section of its own. New ones are the library's defaults.
+void SettingsPanel::matter(Scene &scene) {
+    if (section("Matter with depth", true)) {
+        std::vector<BhrVolume>  volumes = scene.volumes();
+        std::vector<BhrHotSpot> spots = scene.hot_spots();
+        whole("volumes", static_cast<uint32_t>(volumes.size()), 0, BHR_MAX_VOLUMES, [&](uint32_t count) {
+            volumes.resize(std::min<size_t>(count, BHR_MAX_VOLUMES), with_defaults(bhr_volume_init));
+            return scene.set_volumes(volumes);
+        });
+        whole("hot spots", static_cast<uint32_t>(spots.size()), 0, BHR_MAX_HOT_SPOTS, [&](uint32_t count) {
+            spots.resize(std::min<size_t>(count, BHR_MAX_HOT_SPOTS), with_defaults(bhr_hot_spot_init));
+            return scene.set_hot_spots(spots);
+        });
+    }
+    for (size_t i = 0; i < scene.volumes().size(); i++) {
+        volume(scene, i);
+    }
+    for (size_t i = 0; i < scene.hot_spots().size(); i++) {
+        hot_spot(scene, i);
+    }
+}
+
 void SettingsPanel::sky(Scene &scene) {
     if (!section("Sky", true)) {
         return;
@@ -354,8 +484,9 @@ void SettingsPanel::view(Scene &scene) {
     if (!section("View and effects", true)) {
         return;
     }
-    constexpr const char *views[] = {"light", "redshift", "order", "deflection", "steps", "metric -g_tt"};
-    choice("view", scene.view(), views, 6, BHR_VIEW_LIGHT, [&](int32_t view) { return scene.set_view(view); });
+    constexpr const char *views[] = {"light", "redshift", "order", "deflection", "steps", "metric -g_tt",
+                                     "optical depth", "intensity"};
+    choice("view", scene.view(), views, 8, BHR_VIEW_LIGHT, [&](int32_t view) { return scene.set_view(view); });
     const auto set = [&](uint32_t effects) { return scene.set_effects(effects); };
     flag("Doppler shift", scene.effects(), BHR_EFFECT_DOPPLER_SHIFT, set);
     ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
@@ -391,6 +522,7 @@ void SettingsPanel::draw(Scene &scene, const BhrHoleInfo &numbers, FrameSettings
     hole(scene, numbers);
     camera(scene, numbers);
     disk(scene);
+    matter(scene);
     sky(scene);
     film(scene);
     quality(scene, frames);

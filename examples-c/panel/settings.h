@@ -24,6 +24,8 @@ struct Clock {
     bool   moves_camera = false; // along its world line, when it falls or orbits
 };
 
+template <class Struct> struct NumberField;
+
 class SettingsPanel {
 public:
     // numbers: of the scene as it is.
@@ -38,6 +40,9 @@ private:
     void hole(Scene &scene, const BhrHoleInfo &numbers);
     void camera(Scene &scene, const BhrHoleInfo &numbers);
     void disk(Scene &scene);
+    void matter(Scene &scene);
+    void volume(Scene &scene, size_t index);
+    void hot_spot(Scene &scene, size_t index);
     void sky(Scene &scene);
     void film(Scene &scene);
     void quality(Scene &scene, FrameSettings &frames);
@@ -52,6 +57,8 @@ private:
     template <class Set> void vector(const char *label, const double value[3], Set set);
     template <class Set>
     void choice(const char *label, int32_t value, const char *const *names, int32_t count, int32_t first, Set set);
+    template <class Struct, size_t Count, class Set>
+    void fields(const NumberField<Struct> (&list)[Count], Struct &value, Set set);
     template <class Set> void flag(const char *label, uint32_t flags, uint32_t bit, Set set);
     template <class Set> void try_number(const char *label, double value, Set set);
     void                      show_message(const char *label);

@@ -375,6 +375,10 @@ struct Volume {
     double infall;
     double angular_momentum;
     double speed;
+    double turbulence;
+    double clumping;
+    double heating;
+    std::uint64_t seed;
 
     Volume() noexcept { detail::defaults(*this, bhr_volume_init); }
     BhrVolume c() const noexcept { return detail::as_c<BhrVolume>(*this); }

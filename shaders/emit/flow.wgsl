@@ -69,6 +69,11 @@ fn measured_by(light: ZamoLight, velocity: vec2<f32>) -> f32 {
     return select(time - along, square / (time + along), along > 0.0) - gv * light.azimuthal;
 }
 
+// dph/dt of matter with the velocity (along phi; outwards) about the hole of spin `a`.
+fn angular_velocity(a: f32, at: Place, velocity: vec2<f32>) -> f32 {
+    return place_omega(a, at) + at.lapse * velocity.x / at.around;
+}
+
 // The velocity of matter at a place, as the ZAMO there measures it.
 fn flow_velocity(c: Constants, at: Place, matter: Matter) -> vec2<f32> {
     let sense = matter.reach.w;

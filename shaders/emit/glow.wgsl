@@ -21,8 +21,8 @@ struct Coefficients {
 }
 
 // Matter of a density at the radius r, which measures the frequency nu, that of the local frame's observer being 1.
-// g = nu(camera) / nu(matter), `shift`: as the effects let it show.
-fn glow_coefficients(matter: Matter, density: f32, r: f32, nu: f32, g: f32, shift: Shift) -> Coefficients {
+// `heat`: a factor on the temperature; g = nu(camera) / nu(matter), `shift`: as the effects let it show.
+fn glow_coefficients(matter: Matter, density: f32, heat: f32, r: f32, nu: f32, g: f32, shift: Shift) -> Coefficients {
     let column = density * nu;
     if POWER_LAW && (!THERMAL || matter.kind.z != 0u) {
         let ln_g = log(g);
@@ -33,7 +33,7 @@ fn glow_coefficients(matter: Matter, density: f32, r: f32, nu: f32, g: f32, shif
             min(matter.glow.x * column * exp(ln_g * (ABSORPTION_INDEX + index)), LARGEST_COEFFICIENT));
     }
     let absorption = min(matter.glow.x * column, LARGEST_COEFFICIENT);
-    let temperature = matter.glow.y * pow(r / matter.glow.z, -matter.glow.w);
+    let temperature = heat * matter.glow.y * pow(r / matter.glow.z, -matter.glow.w);
     let rgb = shifted_blackbody(temperature, matter.light.x, shift.colour, shift.beaming);
     return Coefficients(min(rgb * (matter.light.z * absorption), vec3<f32>(LARGEST_COEFFICIENT)), 0.0, absorption);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // The densities of matter with depth, and the lengths over which they change. Mirrors src/emit/shape.rs and the spots
-// of src/emit/volumes.rs, where the formulas are. Knows no light and no motion.
+// of src/emit/matter.rs, where the formulas are. Knows no light and no motion.
 
 #import constants
 #import shared/matter
@@ -41,11 +41,11 @@ fn halo_density(r: f32, cosine: f32, radius: f32, thickness: f32) -> f32 {
 
 fn jet_density(r: f32, cosine: f32, matter: Matter) -> f32 {
     return faded(r, matter.radii.x, matter.radii.y) * pow(r / matter.radii.z, -matter.form.z)
-        * gaussian((abs(cosine) - jet_wall(r, matter)) / matter.form.x);
+        * gaussian((abs(cosine) - jet_wall(r, matter.form.y, matter.radii.z)) / matter.form.x);
 }
 
-fn jet_wall(r: f32, matter: Matter) -> f32 {
-    return cos(min(matter.form.y * sqrt(matter.radii.z / r), 0.5 * PI));
+fn jet_wall(r: f32, opening: f32, radius: f32) -> f32 {
+    return cos(min(opening * sqrt(radius / r), 0.5 * PI));
 }
 
 // `later`: the time at which the light left, less the frame's.
@@ -106,7 +106,8 @@ fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32
             + abs(cosines.y * far - cosines.x * near) / (1.5 * thickness * matter.radii.z);
     }
     if (SHAPES & (1u << SHAPE_JET)) != 0u && matter.kind.x == SHAPE_JET {
-        return cells + (change + abs(jet_wall(far, matter) - jet_wall(near, matter))) / thickness;
+        let wall = jet_wall(far, matter.form.y, matter.radii.z) - jet_wall(near, matter.form.y, matter.radii.z);
+        return cells + (change + abs(wall)) / thickness;
     }
     if (SHAPES & (1u << SHAPE_HALO)) != 0u && matter.kind.x == SHAPE_HALO {
         cells += abs(near - far) / (1.5 * matter.radii.z);

@@ -4,6 +4,7 @@
 // bends, but cells are finer; and the last stretch before the horizon, a millionth of its radius, is left out.
 
 #import constants
+#import emit/clouds
 #import emit/flow
 #import emit/glow
 #import shared/matter
@@ -14,16 +15,25 @@
 #import geodesic/integrator
 #import geodesic/trace
 #import shared/frame
+#import shared/not_inlined
 
 // Whether the view shows I_nu and optical depth, not light.
 override SHOWS_DEPTH: bool = false;
-// Cells for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
+// Whether some matter has structure.
+override STRUCTURE: bool = false;
+// Cells of even matter for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
 const FINENESS: f32 = 1.7;
-// Less light from behind than this share is not looked for.
-const DARKEST: f32 = 1e-6;
 
 // The medium since the last crossing that was kept.
 var<private> medium: vec4<f32>;
+// The angle about the hole that the ray has swept so far.
+var<private> ray_swept: f32;
+
+// A ray begins.
+fn begin_medium() {
+    medium = NO_MEDIUM;
+    ray_swept = 0.0;
+}
 
 // Dense output over a step: 1/r, N, and the values and slopes (times the step) of drag and delay at its ends.
 struct StepCourse {
@@ -78,6 +88,10 @@ fn add_part(
     ratio: f32,
 ) {
     let outer = frame.depth_u.x;
+    let before_swept = ray_swept;
+    // N turns by sqrt(K) per tau.
+    let turned = abs(end - begin) * min(sqrt(max(c.k, 0.0)), c.scale);
+    ray_swept += turned;
     if max(from_state.u, to_state.u) * MARGIN_STEP < outer || is_dark() {
         return;
     }
@@ -98,37 +112,108 @@ fn add_part(
     let count = clamp(u32(min(ceil(wanted), MOST_PIECES)), 1u, u32(MOST_PIECES));
     var at = from_share;
     var before = vec2<f32>(quintic_at(course.u, first + run * at), quintic_at(course.n_z, first + run * at));
+    var width = width_at(c, observer, course, first + run * at, h, before_swept + turned * at, ratio);
     for (var k = 1u; k <= count; k += 1u) {
         let even = f32(k) / f32(count);
         let rise = quotient - 1.0;
         let share = select((pow(quotient, even) - 1.0) / rise, even, abs(rise) < 1e-4);
         let next = from_share + (to_share - from_share) * share;
         let last = vec2<f32>(quintic_at(course.u, first + run * next), quintic_at(course.n_z, first + run * next));
-        let cut = cells_between(vec2<f32>(before.x, last.x), vec2<f32>(before.y, last.y), swept * (next - at));
-        if cut.z > 0.0 {
-            let low = at + (next - at) * cut.x;
-            let high = at + (next - at) * cut.y;
-            add_piece(c, observer, course, first + run * low, first + run * high, h, cut.z, ratio);
+        let next_width = width_at(c, observer, course, first + run * next, h, before_swept + turned * next, ratio);
+        let cut = cut_of(vec2<f32>(before.x, last.x), vec2<f32>(before.y, last.y), swept * (next - at),
+            0.5 * (width + next_width));
+        if cut.count > 0.0 {
+            let ends = first + run * (at + (next - at) * cut.share);
+            let widths = width + (next_width - width) * cut.share;
+            add_piece(c, observer, course, ends, h, cut, widths, ratio);
         }
         at = next;
         before = last;
+        width = next_width;
     }
 }
 
-// The share of a stretch that has matter, and the number of cells that it should be cut into: 0 without matter.
-fn cells_between(u: vec2<f32>, cosines: vec2<f32>, swept: f32) -> vec3<f32> {
+// The width of a pixel at the share x of a step, M, where the ray has swept the angle `swept`. 0 without structure.
+fn width_at(
+    c: Constants,
+    observer: State,
+    course: StepCourse,
+    x: f32,
+    h: f32,
+    swept: f32,
+    ratio: f32,
+) -> f32 {
+    if !STRUCTURE {
+        return 0.0;
+    }
+    let n = vec3<f32>(quintic_at(course.n_x, x), quintic_at(course.n_y, x), quintic_at(course.n_z, x));
+    let u = max(quintic_at(course.u, x), 1e-9);
+    // Aberration makes angles as much smaller as frequencies larger.
+    let pixel_angle = frame.right.w * ratio;
+    return pixel_width(c, observer, u, quintic_slope(course.u, x) * h, n, swept, pixel_angle);
+}
+
+// The width of a pixel of an angle in the local frame at the place n / u, M, where the ray has swept the angle `swept`
+// and 1/r changes with the sign of `du`.
+fn pixel_width(
+    c: Constants,
+    observer: State,
+    u: f32,
+    du: f32,
+    n: vec3<f32>,
+    swept: f32,
+    pixel_angle: f32,
+) -> f32 {
+    let b = sqrt(max(c.k, 0.0)) / max(abs(c.energy), 1e-3);
+    let passed = observer.du > 0.0 && du < 0.0;
+    let bend = cloud_bend(swept, b, 1.0 / observer.u, 1.0 / u, passed);
+    let distance = length(normalize(n) / u - normalize(observer.n) / observer.u);
+    return cloud_footprint(pixel_angle, distance, b, 1.0 / observer.u, 1.0 / u, bend);
+}
+
+// How a stretch is cut: the share of it that has matter, and the number of cells, 0 without matter, or, if it has
+// structure, of even layers. `width` is that of a pixel there.
+struct Cut {
+    share: vec2<f32>,
+    count: f32,
+    layers: bool,
+}
+
+fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
     var share = vec2<f32>(1.0, 0.0);
     var cells = 0.0;
-    for (var k = 0u; k < frame.matter_count; k += 1u) {
+    var places = 0.0;
+    for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
         let matter = frame.matter[k];
         let within = clip(matter, u, cosines);
         if within.x < within.y {
             share = vec2<f32>(min(share.x, within.x), max(share.y, within.y));
             cells = max(cells, cells_of(u, cosines, swept, matter));
+            if STRUCTURE && k < MOST_VOLUMES {
+                let passed = cloud_passed(k, u, cosines, swept);
+                let wanted = cloud_samples(k, passed, 2.0 / (u.x + u.y), width);
+                places = max(places, wanted * cloud_worth(medium.w, weight_of(u, cosines, swept, matter)));
+            }
         }
     }
-    let width = share.y - share.x;
-    return vec3<f32>(share, select(0.0, clamp(ceil(FINENESS * cells * width), 1.0, MOST_CELLS), width > 0.0));
+    let layers = STRUCTURE && places > 0.0;
+    let wanted = select(FINENESS * cells, max(places, LAYERS * cells), layers);
+    let part = share.y - share.x;
+    return Cut(share, select(0.0, clamp(ceil(wanted * part), 1.0, MOST_CELLS), part > 0.0), layers);
+}
+
+// How much of the light it may send that a stretch sends, at most, if it were even.
+fn weight_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32 {
+    let r = 2.0 / (u.x + u.y);
+    let near = density_at(1.0 / u.x, cosines.x, 0.0, 0.0, matter);
+    let far = density_at(1.0 / u.y, cosines.y, 0.0, 0.0, matter);
+    let most = max(max(near, far), density_at(r, 0.5 * (cosines.x + cosines.y), 0.0, 0.0, matter));
+    if matter.kind.z != 0u {
+        return min(most, 1.0);
+    }
+    let run = 1.0 / u.x - 1.0 / u.y;
+    let across = swept * r;
+    return 1.0 - exp(-CLUMPED * matter.glow.x * most * sqrt(run * run + across * across));
 }
 
 // The share of a stretch, of which the straight lines between its ends lie within a matter's reach; (1, 0) for none.
@@ -149,39 +234,44 @@ fn clip_between(ends: vec2<f32>, low: f32, high: f32) -> vec2<f32> {
     return select(moving, select(vec2<f32>(1.0, 0.0), vec2<f32>(0.0, 1.0), ends.x >= low && ends.x <= high), still);
 }
 
-// Adds a piece between two shares of a step in cells; one of too great an optical depth is cut again.
+// Adds a piece between two shares of a step, in cells, of which one of too great an optical depth is cut again, or in
+// even layers. `widths`: of a pixel at its ends.
 fn add_piece(
     c: Constants,
     observer: State,
     course: StepCourse,
-    begin: f32,
-    end: f32,
+    ends: vec2<f32>,
     h: f32,
-    cells: f32,
+    piece: Cut,
+    widths: vec2<f32>,
     ratio: f32,
 ) {
-    let size = (end - begin) / cells;
+    let size = (ends.y - ends.x) / piece.count;
     var cell = 0u;
     var cut = 0u;
     var cuts = 1u;
     // u32 of NaN may be any number.
-    let count = clamp(u32(cells), 1u, u32(MOST_CELLS));
+    let count = clamp(u32(piece.count), 1u, u32(MOST_CELLS));
+    let nodes = select(3u, 1u, piece.layers);
     while cell < count && !is_dark() {
         let part = size / f32(cuts);
-        let low = begin + size * f32(cell) + part * f32(cut);
+        let low = ends.x + size * f32(cell) + part * f32(cut);
         var light = array<vec3<f32>, 3>();
         var depths = vec3<f32>(0.0);
-        for (var node = 0u; node < 3u; node += 1u) {
-            let there = coefficients_at(c, observer, course, low + part * GAUSS_NODES[node], h, part * h, ratio);
+        for (var node = 0u; node < nodes; node += 1u) {
+            let place = select(GAUSS_NODES[node], 0.5, piece.layers);
+            let along = (f32(cell) + (f32(cut) + place) / f32(cuts)) / piece.count;
+            let width = widths.x + (widths.y - widths.x) * along;
+            let there = coefficients_at(c, observer, course, low + part * place, h, part * h, width, ratio);
             light[node] = there.xyz;
             depths[node] = there.w;
         }
-        let depth = dot(GAUSS_WEIGHTS, depths);
-        if cuts == 1u && depth > 1.0 {
+        let depth = select(dot(GAUSS_WEIGHTS, depths), depths.x, piece.layers);
+        if cuts == 1u && depth > 1.0 && !piece.layers {
             cuts = u32(min(ceil(depth), MOST_CUTS));
             continue;
         }
-        let gains = node_gains(depths) * medium.w;
+        let gains = select(node_gains(depths), vec3<f32>(own_share(depth), 0.0, 0.0), piece.layers) * medium.w;
         let seen = light[0] * gains.x + light[1] * gains.y + light[2] * gains.z;
         medium.x += seen.x;
         if SHOWS_DEPTH {
@@ -205,11 +295,11 @@ fn is_dark() -> bool {
     if SHOWS_DEPTH {
         return medium.y > DARK;
     }
-    return medium.w < DARKEST;
+    return medium.w < exp(-DARK_PICTURE);
 }
 
 // All matter at the share x of a step of the length `h`, as if the length `tau` of it were as it is there: light, and
-// in w the optical depth. In views of matter x of the light is I_nu.
+// in w the optical depth. In views of matter x of the light is I_nu. `width`: of a pixel there, M.
 fn coefficients_at(
     c: Constants,
     observer: State,
@@ -217,6 +307,7 @@ fn coefficients_at(
     x: f32,
     h: f32,
     tau: f32,
+    width: f32,
     ratio: f32,
 ) -> vec4<f32> {
     let u = quintic_at(course.u, x);
@@ -228,22 +319,28 @@ fn coefficients_at(
         let du = quintic_slope(course.u, x) / h;
         var azimuth = 0.0;
         var later = 0.0;
-        if (SHAPES & (1u << SHAPE_SPOT)) != 0u {
+        if STRUCTURE || (SHAPES & (1u << SHAPE_SPOT)) != 0u {
             azimuth = arctan2(quintic_at(course.n_y, x), quintic_at(course.n_x, x)) + cubic_at(course.drag, x);
             if DELAY {
                 let integral = cubic_at(course.delay, x) - observer.delay;
                 later = frame.matter_delay - retardation(c, observer.u, observer.du, u, du, integral);
             }
         }
-        for (var k = 0u; k < frame.matter_count; k += 1u) {
+        for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
             let matter = frame.matter[k];
-            let density = density_at(r, cosine, azimuth, later, matter);
-            if !(density >= matter.light.w) {
+            let even = density_at(r, cosine, azimuth, later, matter);
+            if !(even >= matter.light.w) {
                 continue;
             }
             let at = place_at(c, u, cosine);
             let light = zamo_light(c, at, du);
-            let nu = measured_by(light, flow_velocity(c, at, matter)) / c.nu_local;
+            let velocity = flow_velocity(c, at, matter);
+            let nu = measured_by(light, velocity) / c.nu_local;
+            var structure = vec2<f32>(1.0);
+            if STRUCTURE && k < MOST_VOLUMES {
+                let there = CloudPlace(r, cosine, azimuth, later);
+                structure = cloud_pattern(k, there, angular_velocity(c.a, at, velocity), Blur(width, 0.0));
+            }
             // Nothing can move so where this fails, NaN among it.
             if nu > 0.0 && nu < 1e30 {
                 let g = ratio / nu;
@@ -251,7 +348,7 @@ fn coefficients_at(
                 if !ALL_EFFECTS {
                     shift = visible_shift(g, nu_static_observer(c.energy / c.nu_local) * c.nu_local / light.frequency);
                 }
-                let found = glow_coefficients(matter, density, r, nu, g, shift);
+                let found = glow_coefficients(matter, even * structure.x, structure.y, r, nu, g, shift);
                 if SHOWS_DEPTH {
                     sum += vec4<f32>(found.intensity, 0.0, 0.0, found.absorption);
                 } else {

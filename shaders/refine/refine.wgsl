@@ -7,6 +7,7 @@
 #import camera/critical
 #import camera/observer
 #import camera/projection
+#import emit/clouds
 #import records/record
 #import records/edges
 #import shade/shade
@@ -20,6 +21,15 @@
 #requires fn rewind_crossings()
 #requires fn with_sky(record: Record) -> Record
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
+
+// The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
+@group(0) @binding(9) var<uniform> clouds: Clouds;
+@group(0) @binding(10) var filaments: texture_3d<f32>;
+@group(0) @binding(11) var filament_sampler: sampler;
+
+fn filament_texel(place: vec3<f32>, level: f32) -> f32 {
+    return textureSampleLevel(filaments, filament_sampler, place, level).x;
+}
 
 // The samples of a pixel: 4, its quarters, or two in each of the strips along the critical curve.
 var<private> samples: u32;

@@ -21,6 +21,10 @@
 @group(0) @binding(4) var record_disk: texture_storage_2d_array<rgba32float, write>;
 // As in shade/shade.wgsl: matter with depth reads blackbodies there.
 @group(0) @binding(5) var light_tables: texture_2d<f32>;
+// The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
+@group(0) @binding(6) var<uniform> clouds: Clouds;
+@group(0) @binding(7) var filaments: texture_3d<f32>;
+@group(0) @binding(8) var filament_sampler: sampler;
 
 // Whether shading needs to know where on the disk a crossing is.
 override AZIMUTH: bool = true;
@@ -36,6 +40,10 @@ var<private> plane_u: f32;
 
 fn light_table(i: u32) -> vec4<f32> {
     return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
+}
+
+fn filament_texel(place: vec3<f32>, level: f32) -> f32 {
+    return textureSampleLevel(filaments, filament_sampler, place, level).x;
 }
 
 fn on_crossing(c: Constants, crossing: PlaneCrossing) {
@@ -94,7 +102,7 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     disk_orders = 0u;
     beside_orders = 0u;
     plane_u = 0.0;
-    medium = NO_MEDIUM;
+    begin_medium();
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local,
         polar_momentum(begin, frequency_ratio) * frame.place.x);

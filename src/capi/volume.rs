@@ -103,6 +103,17 @@ pub struct BhrVolume {
     pub angular_momentum: f64,
     /// OUTFLOW: far away, in units of c, 0 .. 0.995. Default 0.9.
     pub speed: f64,
+    /// 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit.
+    /// Seen with its delay where effects have BHR_EFFECT_LIGHT_DELAY. Default 1; 0 is even matter, as is that of a
+    /// host whose BhrVolume ends before this field.
+    pub turbulence: f64,
+    /// 0.5 .. 3: density goes as pattern^clumping, its mean staying what it is without; a larger number draws the
+    /// matter together into filaments. Default 1.8.
+    pub clumping: f64,
+    /// 0 .. 0.5: the temperature goes as pattern^heating, so that dense matter is hotter. Default 0.15.
+    pub heating: f64,
+    /// Selects the structure: the same seed always gives the same one. Any number. Default 0.
+    pub seed: u64,
 }
 
 /// Most volumes of a scene. Since 0.2.0.
@@ -113,9 +124,14 @@ const _: () = assert!(BHR_MAX_VOLUMES == Volume::MOST);
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrVolume {
     const NAME: &'static str = "BhrVolume";
-    const SIZES: &'static [usize] = &[168];
+    const SIZES: &'static [usize] = &[168, 200];
     fn defaults() -> Self {
         Volume::default().into()
+    }
+    fn defaults_of(size: usize) -> Self {
+        // Before structure had its fields, matter was even.
+        let even = Volume { turbulence: 0.0, ..Volume::default() };
+        if size < size_of::<Self>() { even.into() } else { Self::defaults() }
     }
 }
 
@@ -144,6 +160,10 @@ impl From<Volume> for BhrVolume {
             infall: volume.infall,
             angular_momentum: volume.angular_momentum,
             speed: volume.speed,
+            turbulence: volume.turbulence,
+            clumping: volume.clumping,
+            heating: volume.heating,
+            seed: volume.seed,
         }
     }
 }
@@ -188,6 +208,10 @@ impl TryFrom<BhrVolume> for Volume {
             infall: given.infall,
             angular_momentum: given.angular_momentum,
             speed: given.speed,
+            turbulence: given.turbulence,
+            clumping: given.clumping,
+            heating: given.heating,
+            seed: given.seed,
         };
         volume.check()?;
         Ok(volume)

@@ -141,6 +141,7 @@ impl<'a> Frame<'a> {
             Some(tables) => RecordSource::LensLookup(LensLookup::new(recorder, tables)),
             None => RecordSource::Traced(recorder),
         };
+        scene.emitters().volumes.prepare()?;
         let samples = if light { scene.quality.samples_per_pixel } else { 1 };
         Ok(Self {
             lens,

@@ -98,12 +98,12 @@ mod tests {
         [own.count() as f64, blocks.records.len() as f64].map(|count| count / f64::from(full_width * full_height))
     }
 
-    /// The soft disk from near its plane, as large as it is meant to be shown: less than 45 % of the rays of a frame.
+    /// The soft disk without turbulence from near its plane, as large as it is meant to be shown: less than 45 % of the rays of a frame.
     #[test]
     fn few_rays_are_summed() {
         let mut scene = Scene { disk: None, ..Scene::plain() };
         scene.hole.spin = 0.6;
-        scene.volumes.push(Volume::default());
+        scene.volumes.push(Volume { turbulence: 0.0, ..Volume::default() });
         scene.quality.volume_resolution = VolumeResolution::Half;
         let elevation = 6.5_f64.to_radians();
         let position = 28.0 * DVec3::new(elevation.cos(), 0.0, elevation.sin());

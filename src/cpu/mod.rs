@@ -79,7 +79,6 @@ impl CpuTracer {
     /// Errors: OUT_OF_MEMORY.
     pub fn transfer_rays(&mut self, scene: &Scene, rays: &[Ray], found: &mut [Transfer]) -> Result<()> {
         allocate::check_room(0, "summing the matter along rays")?;
-        self.pool.install(|| rays::transfer_rays(scene, rays, found));
-        Ok(())
+        self.pool.install(|| rays::transfer_rays(scene, rays, found))
     }
 }

@@ -73,7 +73,10 @@ impl<'a> Recorder<'a> {
         let (constants, traced, media) = if parts {
             let (emitters, plane_u) = (&self.emitters, self.plane_u);
             let (media, medium) = (Media::new(), Medium::default());
-            let seen = Seen { frequency_ratio, static_lapse: observer.frame.static_lapse() };
+            // Aberration makes angles as much smaller as frequencies larger.
+            let pixel_angle = self.lens.mapping.pixel_angle * frequency_ratio;
+            let static_lapse = observer.frame.static_lapse();
+            let seen = Seen { frequency_ratio, static_lapse, pixel_angle, swept: 0.0 };
             let mut along = MediaAlong { emitters, seen, plane_u, media, medium };
             let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);
             (constants, traced, along.finish())

@@ -28,6 +28,7 @@ impl MediaAlong<'_> {
 impl Visitor for MediaAlong<'_> {
     fn part(&mut self, part: &Part<'_>) {
         self.emitters.along(part, &self.seen, &mut self.medium);
+        self.seen = self.seen.after(part, 1.0);
     }
 
     fn crossing(&mut self, crossing: &PlaneCrossing) {

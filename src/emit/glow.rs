@@ -65,11 +65,12 @@ impl Coefficients {
 impl Glow {
     /// Matter of density `density` at the radius `r`, which measures the frequency `nu`, that of the local frame's
     /// observer being 1. `g`: nu(camera) / nu(matter); `shift`: as the effects let it show, which is in the light only.
-    pub fn coefficients(&self, density: f64, r: f64, nu: f64, g: f64, shift: Shift) -> Coefficients {
+    /// `heat`: a factor on the temperature.
+    pub fn coefficients(&self, density: f64, heat: f64, r: f64, nu: f64, g: f64, shift: Shift) -> Coefficients {
         if self.power_law {
             self.power_law(density * nu, g, shift)
         } else {
-            let temperature = self.temperature * (r / self.reference_radius).powf(-self.temperature_slope);
+            let temperature = heat * self.temperature * (r / self.reference_radius).powf(-self.temperature_slope);
             self.thermal(density * nu, temperature, shift)
         }
     }
@@ -122,13 +123,13 @@ mod tests {
     #[test]
     fn power_laws_are_shifted_as_the_invariant_says() {
         let (g, nu, density) = (1.3_f64, 0.8, 0.2);
-        let found = GLOW.coefficients(density, 5.0, nu, g, all(g));
+        let found = GLOW.coefficients(density, 1.0, 5.0, nu, g, all(g));
         let there: f64 = 1.0 / g;
         assert!((found.intensity / (g.powi(3) * density * nu * there.powf(-1.5)) - 1.0).abs() < 1e-12);
         assert!((found.absorption / (0.4 * density * nu * there.powf(-4.0)) - 1.0).abs() < 1e-12);
         assert!((found.light[1] / found.intensity - 1.0).abs() < 1e-12 && found.light[0] == 2.0 * found.light[1]);
         // Effects change light, not what there is.
-        let flat = GLOW.coefficients(density, 5.0, nu, g, Shift { colour: 1.0, beaming: 1.0 });
+        let flat = GLOW.coefficients(density, 1.0, 5.0, nu, g, Shift { colour: 1.0, beaming: 1.0 });
         assert_eq!((flat.intensity, flat.absorption), (found.intensity, found.absorption));
         assert!((flat.light[1] / (density * nu) - 1.0).abs() < 1e-12);
     }
@@ -139,7 +140,7 @@ mod tests {
         let bright = Glow { absorption: 1e6, brightness: 1e6, spectral_index: 4.0, ..GLOW };
         for glow in [bright, Glow { power_law: false, temperature: 500.0, temperature_slope: 2.0, ..bright }] {
             for g in [1e-100, 1.0, 1e100] {
-                let found = glow.coefficients(1.0, 1e-3, 1.0 / g, g, all(g));
+                let found = glow.coefficients(1.0, 1.0, 1e-3, 1.0 / g, g, all(g));
                 assert!(found.light.into_iter().chain([found.intensity, found.absorption]).all(f64::is_finite), "{g}");
             }
         }
@@ -152,11 +153,11 @@ mod tests {
         let table = BlackbodyTable::shared();
         let glow = Glow { power_law: false, log_reference: table.ln_luminance(6000.0), ..GLOW };
         let luminance = |s: Coefficients| 0.2126 * s.light[0] + 0.7152 * s.light[1] + 0.0722 * s.light[2];
-        let rest = glow.coefficients(0.3, 8.0, 1.0, 1.0, all(1.0));
+        let rest = glow.coefficients(0.3, 1.0, 8.0, 1.0, 1.0, all(1.0));
         assert!((luminance(rest) / rest.absorption - 2.0).abs() < 1e-3, "{rest:?}");
         assert!((rest.absorption - 0.12).abs() < 1e-15 && rest.intensity == 0.0);
-        let seen = glow.coefficients(0.3, 2.0, 0.5, 0.7, all(0.7));
-        let expected = table.shade(0.7 * 12_000.0, 6000.0);
+        let seen = glow.coefficients(0.3, 1.1, 2.0, 0.5, 0.7, all(0.7));
+        let expected = table.shade(0.7 * 1.1 * 12_000.0, 6000.0);
         for (light, expected) in seen.light.iter().zip(expected) {
             assert!((light / seen.absorption / 2.0 / expected - 1.0).abs() < 1e-9, "{seen:?}");
         }

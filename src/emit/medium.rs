@@ -48,6 +48,23 @@ impl Medium {
     }
 }
 
+impl Medium {
+    /// Adds an even layer behind what is there already.
+    pub fn add_layer(&mut self, layer: &Coefficients) {
+        let depth = layer.absorption;
+        let seen = self.through * own_share(depth);
+        (0..3).for_each(|c| self.light[c] += seen * layer.light[c]);
+        self.intensity += seen * layer.intensity;
+        self.through *= (-depth).exp();
+        self.depth += depth;
+    }
+}
+
+/// (1 - e^-t) / t: the share of its light that leaves an even layer of the optical depth t.
+pub(crate) fn own_share(t: f64) -> f64 {
+    if t > 1e-5 { -(-t).exp_m1() / t } else { 1.0 - 0.5 * t }
+}
+
 /// The stretch whose optical depth is larger is summed in layers.
 pub(crate) const THICK: f64 = 2.0;
 
@@ -76,8 +93,7 @@ pub(crate) fn layer_gains(depths: [f64; 3]) -> [f64; 3] {
     let mut through = 1.0;
     [0, 1, 2].map(|i| {
         let t = GAUSS_WEIGHTS[i] * depths[i];
-        let own = if t > 1e-5 { -(-t).exp_m1() / t } else { 1.0 - 0.5 * t };
-        let gain = GAUSS_WEIGHTS[i] * through * own;
+        let gain = GAUSS_WEIGHTS[i] * through * own_share(t);
         through *= (-t).exp();
         gain
     })

@@ -10,12 +10,16 @@
 //! To add an emitter, follow "Where to change what" in ARCHITECTURE.md.
 
 pub mod along;
+pub mod bands;
+pub mod clouds;
 pub mod crossing;
 pub mod disk;
 pub mod effects;
+pub mod filaments;
 pub mod glow;
 pub mod half;
 pub mod hot_spot;
+pub mod matter;
 pub mod medium;
 pub mod shape;
 pub mod streaks;

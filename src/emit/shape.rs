@@ -9,6 +9,11 @@ use crate::physics::orbit::horizon_outer;
 pub const INNER_FADE: [f64; 2] = [0.9, 1.25];
 pub const OUTER_FADE: [f64; 2] = [0.5, 1.0];
 
+/// The greatest width in c over which structure changes.
+pub const WIDEST: f64 = 0.35;
+/// The heights in a jet and in its counterjet differ by twice this, so that they are not alike.
+pub const OPPOSITE: f64 = 0.7;
+
 /// A shape with its radii.
 #[derive(Clone, Copy, Debug)]
 pub struct Cloud {
@@ -75,12 +80,25 @@ pub fn halo_density(r: f64, cos: f64, radius: f64, thickness: f64) -> f64 {
 /// a parabola, R^2 ~ r: psi = opening sqrt(radius / r), but at most a right angle.
 pub fn jet_density(r: f64, cos: f64, cloud: &Cloud) -> f64 {
     let fade = smooth_step(INNER_FADE, r / cloud.inner) * (1.0 - smooth_step(OUTER_FADE, r / cloud.outer));
-    fade * (r / cloud.radius).powf(-cloud.slope) * gaussian((cos.abs() - jet_wall(r, cloud)) / cloud.thickness)
+    fade * (r / cloud.radius).powf(-cloud.slope)
+        * gaussian((cos.abs() - jet_wall(r, cloud.opening, cloud.radius)) / cloud.thickness)
 }
 
 /// cos psi.
-fn jet_wall(r: f64, cloud: &Cloud) -> f64 {
-    (cloud.opening * (cloud.radius / r).sqrt()).min(std::f64::consts::FRAC_PI_2).cos()
+pub fn jet_wall(r: f64, opening: f64, radius: f64) -> f64 {
+    (opening * (radius / r).sqrt()).min(std::f64::consts::FRAC_PI_2).cos()
+}
+
+impl Stretch {
+    /// r and cos th halfway.
+    pub fn middle(&self) -> [f64; 2] {
+        [2.0 / (self.u[0] + self.u[1]), 0.5 * (self.cos[0] + self.cos[1])]
+    }
+
+    /// Its length, M, as if space were flat.
+    pub fn length(&self) -> f64 {
+        f64::hypot(1.0 / self.u[0] - 1.0 / self.u[1], self.swept * self.middle()[0])
+    }
 }
 
 impl Cloud {
@@ -106,6 +124,18 @@ impl Cloud {
             Shape::Torus => torus_density(r, cos, self.radius, self.width, self.thickness),
             Shape::Halo => halo_density(r, cos, self.radius, self.thickness),
             Shape::Jet => jet_density(r, cos, self),
+        }
+    }
+
+    /// A coordinate across the shape that matter keeps while it moves, and its change with c: the distance from the
+    /// plane, or from a jet's wall, in thicknesses, of which those of a shape that fills all latitudes are no wider
+    /// than `WIDEST`.
+    pub fn height(&self, r: f64, cos: f64) -> [f64; 2] {
+        let thickness = self.thickness.min(WIDEST);
+        let wall = |r: f64| jet_wall(r, self.opening, self.radius);
+        match self.shape {
+            Shape::Disk | Shape::Torus | Shape::Halo => [cos / thickness, 1.0 / thickness],
+            Shape::Jet => [(cos.abs() - wall(r)) / thickness + OPPOSITE.copysign(cos), 1.0 / thickness],
         }
     }
 
@@ -163,8 +193,8 @@ impl Cloud {
             + match self.shape {
                 Shape::Disk => across / (1.5 * self.thickness),
                 Shape::Jet => {
-                    let wall = jet_wall(1.0 / v, self) - jet_wall(1.0 / u, self);
-                    (across + wall.abs()) / self.thickness
+                    let [near, far] = [u, v].map(|u| jet_wall(1.0 / u, self.opening, self.radius));
+                    (across + (far - near).abs()) / self.thickness
                 }
                 Shape::Torus => {
                     let place = |u: f64, c: f64| [((1.0 - c * c).max(0.0)).sqrt() / u, c / u];

@@ -3,76 +3,39 @@
 //! pattern's motion, the split of the scene's time, and where which pattern shows are here; `streaks` has the pattern.
 //! Both tracers use them, and `shaders/emit/turbulence.wgsl` mirrors `brightness`. Knows no colours and no rays.
 //!
-//! Matter at radius r turns by Omega(r) times its age. Were age counted from one instant, differential rotation would
-//! wind the pattern up without end. So the disk is split into bands, equally wide in ln r, in each of which generations
-//! of the pattern follow each other, each sheared by its own age only. They live for a fixed number of the band's
-//! orbits: hence streaks have the same pitch at every radius. Each shows another part of the picture of `streaks`, by
-//! a seed of its own.
+//! `bands` splits the disk into bands of radius, and its structure into generations, each sheared by its own age only.
+//! They live for a fixed number of the band's orbits: hence streaks have the same pitch at every radius. Each shows
+//! another part of the picture of `streaks`, by a seed of its own.
 //!
-//! Where two bands meet, and while one generation follows another, both show, weighted by cos and sin: the squares of
-//! all weights add up to 1. The factor is e^G over its mean, with G the weighted sum of the patterns, so that its
-//! variance is the same everywhere and at any time; its distribution is about log-normal, as is that of the light of
-//! accreting black holes (Uttley, McHardy & Vaughan 2005). A generation is invisible when it comes and goes.
+//! The factor is e^G over its mean, with G the weighted sum of the patterns, so that its variance is the same
+//! everywhere and at any time; its distribution is about log-normal, as is that of the light of accreting black holes
+//! (Uttley, McHardy & Vaughan 2005).
 
+use super::bands::{Bands, Life, Shown, When};
 use super::crossing::EmissionPoint;
 use super::disk::Disk;
 use super::streaks::{STREAK_COLUMNS, STREAK_PERIOD, STREAK_ROWS, Streaks};
 use crate::physics::orbit::isco;
-use crate::random::mix;
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+use std::f64::consts::TAU;
 
-/// The width of a band in ln r, and the share of it over which it blends with its neighbours.
-pub(crate) const BAND: f64 = 0.3;
-pub(crate) const BAND_FADE: f64 = 0.35;
 /// The lifetime of a generation, in orbits at the middle of its band. Half-way through it, shear has displaced the
 /// pattern by 1.5 pi rad an e-fold of the radius. A longer one would wind it up, of a shorter one little would be seen
 /// to go round.
 const LIFETIME: f64 = 1.0;
-/// The time in which a generation fades in, and the one before it out, in times from birth to birth.
-pub(crate) const GENERATION_FADE: f64 = 0.35;
 /// Plunging matter loses its structure over so much in ln r inside the ISCO: it falls faster than patterns that live
 /// for an orbit could show, and is drawn out.
 pub(crate) const PLUNGE_FADE: f64 = 0.4;
-/// Bands that a disk has at most: from r = 1 to `Disk::MAX_RADIUS`, and one more at either end for crossings beside it.
-pub(crate) const MOST_BANDS: usize = 50;
-
-/// When a frame shows its emitters. Times in M.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct When {
-    /// The time at which light leaves emitters whose delay is `reference_delay`.
-    pub time: f64,
-    /// 0 where light is not delayed.
-    pub reference_delay: f64,
-    /// Whether light is seen as it left, each ray's by its own delay.
-    pub delayed: bool,
-}
-
-/// The generations of a band as a frame shows them: small numbers that f32 can hold, however large the scene's time is.
-/// Times in M.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Band {
-    /// The age of the youngest generation at the reference time.
-    pub age: f64,
-    /// The time from birth to birth.
-    pub spacing: f64,
-    /// The number of the youngest generation, counted modulo 2^32.
-    pub generation: u32,
-}
 
 /// The turbulence of a frame. Times in M.
 #[derive(Clone, Copy, Debug)]
 pub struct Turbulence {
     /// 0 .. 1.
     pub strength: f64,
-    pub seed: u32,
     /// Delay of light that left at the reference time; 0 where light is not delayed.
     pub reference_delay: f64,
     /// Whether the delays of crossings are to be known.
     pub needs_delay: bool,
-    /// The number of the first band, band 0 beginning at r = 1, and how many there are.
-    pub first_band: i32,
-    pub band_count: usize,
-    pub bands: [Band; MOST_BANDS],
+    pub bands: Bands,
     /// Spin as the matter meets it, and +1 or -1: its sense of motion.
     matter_spin: f64,
     sense: f64,
@@ -87,30 +50,16 @@ impl Turbulence {
         if disk.turbulence <= 0.0 {
             return None;
         }
-        let seed = mix((disk.seed as u32).wrapping_add(mix((disk.seed >> 32) as u32)));
-        // From the inner edge to the outer one, and one more on either side.
+        // From the inner edge to the outer one.
         let fades_inside = disk.plunges.then(|| isco(matter_spin).ln());
         let innermost = fades_inside.map_or(f64::NEG_INFINITY, |ln_r| ln_r - PLUNGE_FADE);
-        let [last, first] = u.map(|u| ((-u.ln()).max(innermost) / BAND).floor() as i32);
-        let (first_band, band_count) = (first - 1, ((last - first + 3).max(1) as usize).min(MOST_BANDS));
-        let mut bands = [Band::default(); MOST_BANDS];
-        for (band, number) in bands.iter_mut().zip(first_band..).take(band_count) {
-            let orbit = TAU * ((1.5 * BAND * (f64::from(number) + 0.5)).exp() + matter_spin);
-            let spacing = orbit * LIFETIME / (1.0 + GENERATION_FADE);
-            // Bands do not all renew themselves at once.
-            let begin = f64::from(mix(seed.wrapping_add(mix(number as u32)))) / 4_294_967_296.0;
-            let age = (when.time + begin * spacing).rem_euclid(spacing);
-            let births = ((when.time - age) / spacing + begin).round();
-            *band = Band { age, spacing, generation: births.rem_euclid(4_294_967_296.0) as u32 };
-        }
+        let [outer, inner] = u.map(|u| (-u.ln()).max(innermost));
+        let life = |ln_r: f64| Life { time: TAU * ((1.5 * ln_r).exp() + matter_spin) * LIFETIME, drift: 0.0 };
         Some(Self {
             strength: disk.turbulence,
-            seed,
             reference_delay: when.reference_delay,
             needs_delay: when.delayed,
-            first_band,
-            band_count,
-            bands,
+            bands: Bands::new([inner, outer], disk.seed, when.time, life),
             matter_spin,
             sense: if disk.retrograde { -1.0 } else { 1.0 },
             fades_inside,
@@ -127,62 +76,26 @@ impl Turbulence {
         let carried = |d: EmissionPoint| [d.azimuth + omega * d.delay, d.ln_r];
         let [dx, dy] = per_pixel.map(carried);
         let left = self.fades_inside.map_or(1.0, |from| (1.0 + (at.ln_r - from) / PLUNGE_FADE).clamp(0.0, 1.0));
-        let (border, first, shares, bands) = self.bands_at(at.ln_r);
         let mut exponent = 0.0;
-        for k in 0..bands {
-            let number = border + first + k;
-            let band = self.band(number);
-            let since = band.age + (self.reference_delay - at.delay);
-            let births = (since / band.spacing).floor();
-            let young = since - births * band.spacing;
-            let generation = band.generation.wrapping_add(births as i32 as u32);
-            let grown = (young / (GENERATION_FADE * band.spacing)).min(1.0);
-            let alive = if grown < 1.0 { 2 } else { 1 };
-            for old in 0..alive {
-                let faded = if alive == 2 { FRAC_PI_2 * (grown + f64::from(old)) } else { FRAC_PI_2 };
-                let weight = shares[k as usize] * faded.sin();
-                let age = young + f64::from(old) * band.spacing;
-                let key = mix((number as u32).wrapping_add(mix(generation.wrapping_sub(old).wrapping_add(self.seed))));
-                let place = [
-                    (at.azimuth - omega * age) / TAU + f64::from(key & 0xffff) / 65536.0,
-                    at.ln_r / STREAK_PERIOD + f64::from(key >> 16) / 65536.0,
-                ];
-                let texels = |[turn, ln_r]: [f64; 2]| {
-                    let turn = (turn - shear * age * ln_r) / TAU;
-                    [turn * STREAK_COLUMNS as f64, ln_r / STREAK_PERIOD * STREAK_ROWS as f64]
-                };
-                exponent += streaks.patch(place, texels(dx), texels(dy)).exponent(self.strength * left * weight);
-            }
+        for Shown { weight, age, key, .. } in self.bands.shown(at.ln_r, self.reference_delay - at.delay) {
+            let place = [
+                (at.azimuth - omega * age) / TAU + f64::from(key & 0xffff) / 65536.0,
+                at.ln_r / STREAK_PERIOD + f64::from(key >> 16) / 65536.0,
+            ];
+            let texels = |[turn, ln_r]: [f64; 2]| {
+                let turn = (turn - shear * age * ln_r) / TAU;
+                [turn * STREAK_COLUMNS as f64, ln_r / STREAK_PERIOD * STREAK_ROWS as f64]
+            };
+            exponent += streaks.patch(place, texels(dx), texels(dy)).exponent(self.strength * left * weight);
         }
         exponent.exp()
-    }
-
-    /// The bands that show at ln r: the border of two bands that is nearest, as the number of the outer one; the first
-    /// that shows, -1 or 0 from there; the shares of it and the next; how many show.
-    fn bands_at(&self, ln_r: f64) -> (i32, i32, [f64; 2], i32) {
-        let place = ln_r / BAND;
-        let border = (place + 0.5).floor();
-        let across = (place - border) * (2.0 / BAND_FADE);
-        let border = border.clamp(-1e6, 1e6) as i32;
-        match () {
-            () if across <= -1.0 => (border, -1, [1.0, 0.0], 1),
-            () if across >= 1.0 => (border, 0, [1.0, 0.0], 1),
-            () => {
-                let (outer, inner) = (FRAC_PI_4 * (across + 1.0)).sin_cos();
-                (border, -1, [inner, outer], 2)
-            }
-        }
-    }
-
-    fn band(&self, number: i32) -> Band {
-        let index = (number - self.first_band).clamp(0, self.band_count as i32 - 1);
-        self.bands[index as usize]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::emit::bands::BAND;
     use crate::scene::{Effects, Scene};
 
     const STILL: [EmissionPoint; 2] = [EmissionPoint { ln_r: 0.0, azimuth: 0.0, delay: 0.0 }; 2];
@@ -299,12 +212,16 @@ mod tests {
     fn generations_come_and_go_unseen() {
         for time in [0.0, -600.0, 1e6] {
             let some = turbulence(0.0, false, time, 1);
-            for (index, band) in some.bands.iter().enumerate().take(some.band_count) {
+            for (index, band) in some.bands.bands.iter().enumerate().take(some.bands.count) {
                 let birth = time + band.spacing - band.age;
                 let [before, after] = [birth - 1e-5, birth + 1e-5].map(|time| turbulence(0.0, false, time, 1));
-                assert_eq!(before.bands[index].generation.wrapping_add(1), after.bands[index].generation, "{birth}");
+                assert_eq!(
+                    before.bands.bands[index].generation.wrapping_add(1),
+                    after.bands.bands[index].generation,
+                    "{birth}"
+                );
                 let places = places(30)
-                    .map(|p| at(BAND * (f64::from(some.first_band + index as i32) + p.ln_r / 3.0), p.azimuth));
+                    .map(|p| at(BAND * (f64::from(some.bands.first + index as i32) + p.ln_r / 3.0), p.azimuth));
                 let step = places.map(|p| (brightness(&before, p, STILL) - brightness(&after, p, STILL)).abs());
                 assert!(step.fold(0.0, f64::max) < 1e-3, "{birth}");
             }
@@ -354,7 +271,10 @@ mod tests {
             let mut scene = scene(0.9, true, time, u64::MAX);
             scene.hole.mass = 1e-3;
             let t = of_scene(&scene);
-            assert!(t.bands.iter().take(t.band_count).all(|b| (0.0..=b.spacing).contains(&b.age)), "{time}: {t:?}");
+            assert!(
+                t.bands.bands.iter().take(t.bands.count).all(|b| (0.0..=b.spacing).contains(&b.age)),
+                "{time}: {t:?}"
+            );
             assert!(places(5).all(|p| brightness(&t, p, STILL).is_finite()));
         }
     }

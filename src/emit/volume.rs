@@ -72,6 +72,13 @@ pub struct Volume {
     pub angular_momentum: f64,
     /// OUTFLOW: far away, in c. Default 0.9.
     pub speed: f64,
+    /// The contrast of the structure that moves along (`emit::clouds`), 0: none. Default 1.
+    pub turbulence: f64,
+    /// Density ~ pattern^clumping. Default 1.8.
+    pub clumping: f64,
+    /// T ~ pattern^heating. Default 0.15.
+    pub heating: f64,
+    pub seed: u64,
 }
 
 impl Default for Volume {
@@ -98,6 +105,10 @@ impl Default for Volume {
             infall: 0.0,
             angular_momentum: 1.0,
             speed: 0.9,
+            turbulence: 1.0,
+            clumping: 1.8,
+            heating: 0.15,
+            seed: 0,
         }
     }
 }
@@ -152,6 +163,9 @@ impl Volume {
         check("sub_keplerian", self.sub_keplerian, [0.0, 1.0])?;
         check("infall", self.infall, [0.0, 1.0])?;
         check("angular_momentum", self.angular_momentum, [0.0, 1.0])?;
-        check("speed", self.speed, [0.0, 0.995])
+        check("speed", self.speed, [0.0, 0.995])?;
+        check("turbulence", self.turbulence, [0.0, 1.0])?;
+        check("clumping", self.clumping, [0.5, 3.0])?;
+        check("heating", self.heating, [0.0, 0.5])
     }
 }

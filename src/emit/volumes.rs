@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The matter with depth of a frame: volumes and hot spots, prepared, and their sum along the parts of a ray. `shape`
-//! has the densities, `physics::flow` the motion, `glow` the light, `medium` the equation of transfer. Knows no
-//! tracer.
+//! The matter with depth of a frame, summed along the parts of a ray. `matter` has the volumes and hot spots, `shape`
+//! their densities, `clouds` their structure, `physics::flow` the motion, `glow` the light, `medium` the equation of
+//! transfer. Knows no tracer.
 //!
 //! Steps of a ray are as long as its curvature allows, and matter may be finer than that, so each part is cut in three
 //! levels. Pieces, over which 1/r changes by 25 % and the angle by 0.25 rad at most, are told by dense output and cost
 //! next to nothing; those that no matter is near are passed over. The others are clipped to where matter is, and cut
 //! into cells, as many as lengths of it fit in. A cell is summed from three places, each a step of the integrator; if
-//! its optical depth is more than 1, it is cut again.
+//! its optical depth is more than 1, it is cut again. Pieces with structure (`clouds`), which is as fine as a pixel
+//! lets it be, are cut into even layers instead, the fewer the less light they send.
 
+use super::bands::When;
+use super::clouds::{Blur, CloudPlace, Structure, bend, footprint, worth};
 use super::effects::Effects;
+use super::filaments::Filaments;
 use super::glow::{Coefficients, Glow};
 use super::hot_spot::HotSpot;
+use super::matter::{Accuracy, BENDS, SpotMatter, VolumeMatter};
 use super::medium::{GAUSS_NODES, GAUSS_WEIGHTS, Medium};
-use super::shape::{Cloud, Reach, Stretch, gaussian};
-use super::turbulence::When;
-use super::volume::{FlowLaw, Volume};
-use crate::physics::blackbody::BlackbodyTable;
-use crate::physics::flow::{Flow, Motion, Place, ZamoLight};
-use crate::physics::geodesic::{Constants, State, wrap_angle};
-use crate::physics::orbit::horizon_outer;
+use super::shape::{Reach, Stretch};
+use super::volume::Volume;
+use crate::error::Result;
+use crate::physics::flow::{Place, Velocity, ZamoLight};
+use crate::physics::geodesic::{Constants, State};
 use crate::physics::trace::{Part, PartCourse};
 use arrayvec::ArrayVec;
 
@@ -35,11 +38,9 @@ pub(crate) const MARGIN_U: f64 = 0.02;
 pub(crate) const MARGIN_COS: f64 = 0.015;
 /// Within a step 1/r may become larger than at its ends by this factor.
 pub(crate) const MARGIN_STEP: f64 = 1.1;
-/// The sine of theta below which cells are no finer.
-pub(crate) const NEAR_AXIS: f64 = 0.01;
-
-/// The radii at which a volume may bend, and the most between two places: those of all volumes.
-const BENDS: usize = 6;
+/// Layers for each cell of even matter.
+pub(crate) const LAYERS: f64 = 2.0;
+/// The most bends between two places: those of all volumes.
 const MOST_BENDS: usize = BENDS * Volume::MOST;
 
 /// How an observer sees the matter along a ray.
@@ -49,62 +50,44 @@ pub struct Seen {
     pub frequency_ratio: f64,
     /// `LocalFrame::static_lapse`.
     pub static_lapse: Option<f64>,
+    /// The angle of a pixel, in the local frame: finer structure is left out. 0: none is.
+    pub pixel_angle: f64,
+    /// The angle about the hole that the ray has swept so far.
+    pub swept: f64,
 }
 
-/// How exactly the matter along rays is summed.
-#[derive(Clone, Copy, Debug)]
-pub struct Accuracy {
-    /// Cells for each length over which matter changes.
-    pub fineness: f64,
-    /// The same beside places where it bends.
-    pub beside_bends: f64,
-    /// Thinner matter is left out; of matter that absorbs, in optical depths per M.
-    pub least: f64,
-    /// Matter behind so great an optical depth is left out.
-    pub dark: f64,
-}
+impl Seen {
+    /// The width of a pixel at a place of the ray, M: by the distance in the chart, which frame-dragging does not
+    /// change.
+    pub(crate) fn footprint(&self, c: &Constants, observer: &State, there: &State) -> f64 {
+        if self.pixel_angle <= 0.0 {
+            return 0.0;
+        }
+        let place = |state: &State| state.n.normalize() / state.u;
+        let (b, passed) = (c.k.max(0.0).sqrt() / c.energy.abs().max(1e-3), observer.du > 0.0 && there.du < 0.0);
+        let (from, to) = (1.0 / observer.u, 1.0 / there.u);
+        let bend = bend(self.swept, b, from, to, passed);
+        footprint(self.pixel_angle, place(observer).distance(place(there)), b, from, to, bend)
+    }
 
-impl Accuracy {
-    /// For pixels: 1e-5 of a picture's peak.
-    pub const PICTURE: Self = Self { fineness: 1.0, beside_bends: 1.0, least: 1e-7, dark: 18.0 };
-    /// For pixels that show a number.
-    pub const VIEW: Self = Self { dark: 300.0, ..Self::PICTURE };
-    /// For rays whose numbers count: 1e-8 of it.
-    pub const EXACT: Self = Self { fineness: 4.0, beside_bends: 16.0, least: 1e-13, dark: 300.0 };
-}
-
-impl Default for Accuracy {
-    fn default() -> Self {
-        Self::PICTURE
+    /// The same `share` of a part farther along the ray. N turns by sqrt(K) per tau.
+    pub fn after(&self, part: &Part<'_>, share: f64) -> Self {
+        let turned = part.swept() * (part.constants.k.max(0.0).sqrt() / part.constants.scale).min(1.0);
+        Self { swept: self.swept + share * turned, ..*self }
     }
 }
 
-/// A volume of a frame.
-#[derive(Clone, Copy, Debug)]
-pub struct VolumeMatter {
-    pub cloud: Cloud,
-    pub reach: Reach,
-    pub flow: Flow,
-    pub glow: Glow,
-    /// 1/r where cells that reach across would lose an order or more: at the bends of the density, and at the ISCO,
-    /// where matter begins to fall as (r_I - r)^(3/2). Infinite for none.
-    pub bends: [f64; BENDS],
-    /// Thinner matter is left out.
-    pub least: f64,
+/// How fine the structure of a piece's matter may be.
+#[derive(Clone, Debug)]
+struct Grain {
+    /// The width of a pixel at its ends, M.
+    footprints: [f64; 2],
+    /// Texels of each volume's structure from place to place along the ray.
+    spacing: Texels,
 }
 
-/// A hot spot of a frame.
-#[derive(Clone, Copy, Debug)]
-pub struct SpotMatter {
-    pub radius: f64,
-    pub size: f64,
-    /// Azimuth of its centre at the time `When::time`, and its change in time, towards +ph.
-    pub azimuth: f64,
-    pub angular_velocity: f64,
-    pub reach: Reach,
-    pub flow: Flow,
-    pub glow: Glow,
-}
+/// Texels of the structure of each volume.
+type Texels = ArrayVec<f64, { Volume::MOST }>;
 
 /// All matter with depth of a frame.
 #[derive(Clone, Debug, Default)]
@@ -114,104 +97,6 @@ pub struct Volumes {
     effects: Effects,
     pub when: When,
     accuracy: Accuracy,
-}
-
-impl VolumeMatter {
-    /// About a hole of spin `spin`. `None`: all of it lies inside the horizon.
-    pub fn new(volume: &Volume, spin: f64, accuracy: Accuracy) -> Option<Self> {
-        let least = accuracy.least / volume.absorption.max(1.0);
-        // The ISCO does not depend on the law of motion.
-        let circular = Motion::Keplerian { sub_keplerian: volume.sub_keplerian, infall: volume.infall };
-        let flow = Flow::new(spin, volume.retrograde, circular);
-        let cloud = Cloud::new(volume, flow.isco);
-        let motion = match volume.flow {
-            FlowLaw::Keplerian => circular,
-            FlowLaw::AngularMomentum => Motion::AngularMomentum { l0: volume.angular_momentum },
-            FlowLaw::Outflow => Motion::Outflow { speed: volume.speed, base: cloud.inner },
-        };
-        Some(Self {
-            cloud,
-            reach: cloud.reach(spin, least)?,
-            flow: Flow { motion, ..flow },
-            glow: Glow {
-                power_law: volume.power_law,
-                absorption: volume.absorption,
-                temperature: volume.temperature,
-                reference_radius: cloud.reference_radius(),
-                temperature_slope: volume.temperature_slope,
-                log_reference: BlackbodyTable::shared().ln_luminance(volume.temperature),
-                spectral_index: volume.spectral_index,
-                tint: volume.tint,
-                brightness: volume.brightness,
-            },
-            bends: {
-                let [a, b, c, d, e] = cloud.bends();
-                let falls = if volume.flow == FlowLaw::Keplerian { flow.isco } else { 0.0 };
-                [a, b, c, d, e, falls].map(|r| 1.0 / r)
-            },
-            least,
-        })
-    }
-
-    /// The number of cells that a stretch should be cut into.
-    pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
-        let [a, b] = stretch.cos;
-        let sin2 = 1.0 - (a * a).max(b * b);
-        // Velocities by angular momentum go as sqrt(R), which bends without end towards the axis.
-        let bends = matches!(self.flow.motion, Motion::AngularMomentum { .. });
-        let beside_axis = if bends { 0.5 * stretch.swept / sin2.max(NEAR_AXIS * NEAR_AXIS).sqrt() } else { 0.0 };
-        self.cloud.cells(stretch) + beside_axis
-    }
-}
-
-impl SpotMatter {
-    /// About a hole of spin `spin`, as a frame shows it.
-    pub fn new(spot: &HotSpot, spin: f64, when: &When) -> Self {
-        let sense = if spot.retrograde { -1.0 } else { 1.0 };
-        let radius = spot.radius.max(Flow::new(spin, spot.retrograde, Motion::Rigid { angular_velocity: 0.0 }).isco);
-        let angular_velocity = 1.0 / (radius * radius.sqrt() + sense * spin);
-        let flow = Flow::new(spin, spot.retrograde, Motion::Rigid { angular_velocity });
-        let cut = HotSpot::CUT * spot.size;
-        let low = (radius - cut).max(horizon_outer(spin));
-        Self {
-            radius,
-            size: spot.size,
-            azimuth: wrap_angle((spot.azimuth + sense * angular_velocity * when.time) % std::f64::consts::TAU),
-            angular_velocity: sense * angular_velocity,
-            reach: Reach { u: [1.0 / (radius + cut), 1.0 / low], cos: (cut / low).min(1.0) },
-            flow,
-            glow: Glow {
-                power_law: !spot.thermal,
-                absorption: spot.absorption,
-                temperature: spot.temperature,
-                reference_radius: 1.0,
-                temperature_slope: 0.0,
-                log_reference: BlackbodyTable::shared().ln_luminance(spot.temperature),
-                spectral_index: spot.spectral_index,
-                tint: spot.tint,
-                brightness: spot.brightness,
-            },
-        }
-    }
-
-    /// The density at (1/r, cos th, azimuth) = (1 / `r`, `cos`, `azimuth`), `later` after `When::time`: a Gaussian of
-    /// the distance from the spot's centre in chart coordinates.
-    pub fn density(&self, r: f64, cos: f64, azimuth: f64, later: f64) -> f64 {
-        let from = azimuth - self.azimuth - self.angular_velocity * later;
-        // |x - x_s|^2 with the difference of the radii apart from the angle: no cancellation.
-        let axis = r * ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
-        let half = (0.5 * from).sin();
-        let square = (axis - self.radius).powi(2) + 4.0 * axis * self.radius * half * half + (r * cos).powi(2);
-        let widths = square.sqrt() / self.size;
-        if widths < HotSpot::CUT { gaussian(widths) } else { 0.0 }
-    }
-
-    /// The number of cells that a stretch should be cut into.
-    pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
-        let [a, b] = stretch.u;
-        let across = stretch.swept / a.min(b).max(1e-30);
-        (1.0 / a - 1.0 / b).hypot(across) / self.size
-    }
 }
 
 /// The share of a stretch, of which the straight lines between its ends lie within a reach.
@@ -233,6 +118,31 @@ pub(crate) fn clip(reach: &Reach, stretch: &Stretch) -> Option<[f64; 2]> {
     (share[0] < share[1]).then_some(share)
 }
 
+/// How a stretch should be cut.
+struct Cut {
+    /// The share of it that has matter.
+    share: [f64; 2],
+    /// The number of cells of even matter that the whole of it wants, and that of places that structure wants.
+    cells: f64,
+    places: f64,
+}
+
+impl Cut {
+    /// For the matter of both.
+    fn with(self, other: Self) -> Self {
+        let ([a, b], [c, d]) = (self.share, other.share);
+        let share = [a.min(c), b.max(d)];
+        Self { share, cells: self.cells.max(other.cells), places: self.places.max(other.places) }
+    }
+}
+
+/// Where a stretch of a part begins or ends: the share of the part, (1/r, cos th) and the width of a pixel there.
+struct Border {
+    share: f64,
+    at: [f64; 2],
+    footprint: f64,
+}
+
 /// The part of a ray that is being summed.
 struct Sum<'a, 'b> {
     volumes: &'a Volumes,
@@ -249,7 +159,7 @@ impl Volumes {
         when: When,
         accuracy: Accuracy,
     ) -> Self {
-        let matter = |volume: &Volume| VolumeMatter::new(volume, spin, accuracy);
+        let matter = |volume: &Volume| VolumeMatter::new(volume, spin, &when, accuracy);
         Self {
             volumes: volumes.iter().filter_map(matter).take(Volume::MOST).collect(),
             hot_spots: hot_spots.iter().take(HotSpot::MOST).map(|s| SpotMatter::new(s, spin, &when)).collect(),
@@ -265,7 +175,16 @@ impl Volumes {
 
     /// Whether the delays of the light must be known.
     pub fn needs_delay(&self) -> bool {
-        self.when.delayed && !self.hot_spots.is_empty()
+        self.when.delayed && (!self.hot_spots.is_empty() || self.has_structure())
+    }
+
+    pub fn has_structure(&self) -> bool {
+        self.volumes.iter().any(|volume| volume.clouds.is_some())
+    }
+
+    /// Makes the structure of the matter, if there is any, so that `along` has it. Errors: OUT_OF_MEMORY.
+    pub fn prepare(&self) -> Result<()> {
+        if self.has_structure() { Filaments::shared().map(|_| ()) } else { Ok(()) }
     }
 
     fn reaches(&self) -> impl Iterator<Item = &Reach> {
@@ -287,44 +206,62 @@ impl Volumes {
         let course = part.course();
         let [first, last] = [0.0, 1.0].map(|x| course.at(x)[0]);
         let pieces = Pieces::new([first, last], part.swept(), outer * (1.0 - MARGIN_U));
-        let mut at = pieces.border(0);
-        let mut before = course.at(at);
+        let begin = pieces.border(0);
+        let mut before = sum.border(begin, course.at(begin));
         for k in 1..=pieces.count {
             let end = pieces.border(k);
             let last = course.at(end);
             let mut fineness = self.accuracy.fineness;
-            for bend in self.bends_between(before[0], last[0]) {
-                let there = course_reaches(&course, [at, end], bend);
-                let after = course.at(there);
-                sum.stretch([at, there], [before, after], self.accuracy.beside_bends, medium);
+            for bend in self.bends_between(before.at[0], last[0]) {
+                let there = course_reaches(&course, [before.share, end], bend);
+                let after = sum.border(there, course.at(there));
+                sum.stretch([&before, &after], self.accuracy.beside_bends, medium);
                 fineness = self.accuracy.beside_bends;
-                (at, before) = (there, after);
+                before = after;
             }
-            sum.stretch([at, end], [before, last], fineness, medium);
-            (at, before) = (end, last);
+            let last = sum.border(end, last);
+            sum.stretch([&before, &last], fineness, medium);
+            before = last;
         }
     }
 
     /// 1/r of the places between two at which volumes bend, in their order.
     fn bends_between(&self, from: f64, to: f64) -> ArrayVec<f64, MOST_BENDS> {
-        let bends = self.volumes.iter().flat_map(|volume| volume.bends);
+        let bends = self.volumes.iter().filter(|v| !self.accuracy.layers || v.clouds.is_none());
+        let bends = bends.flat_map(|volume| volume.bends);
         let between = bends.filter(|u| (u - from) * (u - to) < 0.0);
         let mut between = between.take(MOST_BENDS).collect::<ArrayVec<_, MOST_BENDS>>();
         between.sort_by(|a, b| (a - from).abs().total_cmp(&(b - from).abs()));
         between
     }
 
-    /// The share of a stretch that has matter, and the number of cells that it should be cut into.
-    fn cells(&self, stretch: &Stretch) -> Option<([f64; 2], f64)> {
-        let volumes = self.volumes.iter().filter_map(|v| Some((clip(&v.reach, stretch)?, v.cells(stretch))));
-        let spots = self.hot_spots.iter().filter_map(|s| Some((clip(&s.reach, stretch)?, s.cells(stretch))));
-        let all = volumes.chain(spots);
-        let (share, cells) = all.reduce(|([a, b], m), ([c, d], n)| ([a.min(c), b.max(d)], m.max(n)))?;
-        Some((share, cells * (share[1] - share[0])))
+    /// How a stretch should be cut. `passed`: the texels that it passes of each volume's structure; `footprint`: how
+    /// wide a pixel is there; `through`: the share of light that passes what is in front.
+    fn cut(&self, stretch: &Stretch, passed: &Texels, footprint: f64, through: f64) -> Option<Cut> {
+        let of_volume = |(v, passed): (&VolumeMatter, &f64)| {
+            let share = clip(&v.reach, stretch)?;
+            let clouds = v.clouds.as_ref().map_or(0.0, |clouds| {
+                let places = clouds.samples(&v.cloud, *passed, stretch.middle()[0], footprint);
+                places * if self.accuracy.layers { worth(through, v.weight(stretch)) } else { 1.0 }
+            });
+            Some(Cut { share, cells: v.cells(stretch), places: clouds })
+        };
+        let of_spot =
+            |s: &SpotMatter| Some(Cut { share: clip(&s.reach, stretch)?, cells: s.cells(stretch), places: 0.0 });
+        let all =
+            self.volumes.iter().zip(passed).filter_map(of_volume).chain(self.hot_spots.iter().filter_map(of_spot));
+        all.reduce(Cut::with)
     }
 
-    /// The matter at a state of a ray, per unit of affine length.
-    pub fn coefficients(&self, c: &Constants, observer: &State, there: &State, seen: &Seen) -> Coefficients {
+    /// The matter at a state of a ray, per unit of affine length. `blurs`: for the structure of each volume.
+    pub fn coefficients(
+        &self,
+        c: &Constants,
+        observer: &State,
+        there: &State,
+        seen: &Seen,
+        blurs: &[Blur],
+    ) -> Coefficients {
         // None is past infinity, where the last step of a ray may end, nor within the horizon.
         if !(there.u > 0.0 && there.u * c.r_plus < 1.0 - 1e-12) {
             return Coefficients::default();
@@ -332,34 +269,52 @@ impl Volumes {
         let (r, cos) = (1.0 / there.u, there.n.z / there.n.length());
         let mut sum = Coefficients::default();
         let mut measured = None;
-        let mut add = |flow: &Flow, glow: &Glow, density: f64| {
-            let (at, light) = measured.get_or_insert_with(|| {
+        let mut measure = || {
+            *measured.get_or_insert_with(|| {
                 let at = Place::on_ray(c, there.u, cos);
                 (at, ZamoLight::new(c, &at, there.du))
-            });
-            let nu = flow.frequency(c, at, light) / c.nu_local;
+            })
+        };
+        let mut moment = None;
+        let mut moment = || {
+            *moment.get_or_insert_with(|| {
+                let delay = if self.when.delayed { c.retardation(observer, there) } else { 0.0 };
+                (there.n.y.atan2(there.n.x) + there.drag, self.when.reference_delay - delay)
+            })
+        };
+        let mut add = |light: &ZamoLight, velocity: Velocity, glow: &Glow, density: f64, heat: f64| {
+            let nu = light.measured_by(velocity) / c.nu_local;
             // Nothing can move so where this fails, NaN among it.
             if nu > 0.0 && nu.is_finite() {
                 let g = seen.frequency_ratio / nu;
                 let camera = seen.static_lapse.map_or(c.nu_local, |lapse| c.energy / lapse);
                 let shift = self.effects.visible_shift(g, || camera / light.frequency);
-                sum.add(glow.coefficients(density, r, nu, g, shift));
+                sum.add(glow.coefficients(density, heat, r, nu, g, shift));
             }
         };
-        for volume in &self.volumes {
-            let density = volume.cloud.density(r, cos);
-            if density >= volume.least {
-                add(&volume.flow, &volume.glow, density);
+        for (volume, blur) in self.volumes.iter().zip(blurs) {
+            let even = volume.cloud.density(r, cos);
+            if even < volume.least {
+                continue;
             }
-        }
-        if !self.hot_spots.is_empty() {
-            let azimuth = there.n.y.atan2(there.n.x) + there.drag;
-            let delay = if self.when.delayed { c.retardation(observer, there) } else { 0.0 };
-            for spot in &self.hot_spots {
-                let density = spot.density(r, cos, azimuth, self.when.reference_delay - delay);
-                if density > 0.0 {
-                    add(&spot.flow, &spot.glow, density);
+            let (at, light) = measure();
+            let velocity = volume.flow.velocity(c.a, &at);
+            let structure = match (volume.clouds, Filaments::shared()) {
+                (Some(clouds), Ok(filaments)) => {
+                    let (azimuth, later) = moment();
+                    let omega = velocity.angular_velocity(c.a, &at);
+                    clouds.pattern(filaments, &volume.cloud, &CloudPlace { r, cos, azimuth, later }, omega, *blur)
                 }
+                _ => Structure::NONE,
+            };
+            add(&light, velocity, &volume.glow, even * structure.density, structure.heat);
+        }
+        for spot in &self.hot_spots {
+            let (azimuth, later) = moment();
+            let density = spot.density(r, cos, azimuth, later);
+            if density > 0.0 {
+                let (at, light) = measure();
+                add(&light, spot.flow.velocity(c.a, &at), &spot.glow, density, 1.0);
             }
         }
         sum
@@ -385,22 +340,80 @@ fn course_reaches(course: &PartCourse, [mut low, mut high]: [f64; 2], u: f64) ->
 }
 
 impl Sum<'_, '_> {
-    /// Adds the stretch between two shares of the part, at which (1/r, cos th) are `ends`.
-    fn stretch(&self, [begin, end]: [f64; 2], ends: [[f64; 2]; 2], fineness: f64, medium: &mut Medium) {
-        let [[u, c], [v, d]] = ends;
-        let stretch = Stretch { u: [u, v], cos: [c, d], swept: self.part.swept() * (end - begin) };
-        if let Some(([low, high], cells)) = self.volumes.cells(&stretch) {
-            let at = |share: f64| begin + (end - begin) * share;
-            self.piece([at(low), at(high)], (cells * fineness).ceil().clamp(1.0, MOST_CELLS), medium);
+    /// `at`: (1/r, cos th) there.
+    fn border(&self, share: f64, at: [f64; 2]) -> Border {
+        let footprint = if self.seen.pixel_angle > 0.0 && self.volumes.has_structure() {
+            let seen = self.seen.after(self.part, share);
+            seen.footprint(self.part.constants, self.part.observer, &self.part.at(share))
+        } else {
+            0.0
+        };
+        Border { share, at, footprint }
+    }
+
+    /// Adds the stretch between two places of the part.
+    fn stretch(&self, [from, to]: [&Border; 2], fineness: f64, medium: &mut Medium) {
+        let ([u, c], [v, d], run) = (from.at, to.at, to.share - from.share);
+        let stretch = Stretch { u: [u, v], cos: [c, d], swept: self.part.swept() * run };
+        let of_volume = |v: &VolumeMatter| v.clouds.map_or(0.0, |clouds| clouds.passed(&v.cloud, &stretch));
+        let passed = self.volumes.volumes.iter().map(of_volume).collect::<Texels>();
+        let width = |share: f64| from.footprint + (to.footprint - from.footprint) * share;
+        let Some(cut) = self.volumes.cut(&stretch, &passed, width(0.5), medium.through) else { return };
+        let [low, high] = cut.share;
+        let layers = self.volumes.accuracy.layers && cut.places > 0.0;
+        let wanted = match layers {
+            true => cut.places.max(LAYERS * cut.cells),
+            // Three places a cell. Structure is rough: finer cells gain less there than the sixth order in them.
+            false => (cut.cells * fineness).max(cut.places / 3.0 * fineness.sqrt()),
+        };
+        let count = (wanted * (high - low)).ceil().clamp(1.0, MOST_CELLS);
+        // Layers that are wider than structure is are so because it matters little there.
+        let apart = |passed: &f64| if layers { 0.0 } else { passed * (high - low) / (3.0 * count) };
+        let grain = Grain { footprints: [width(low), width(high)], spacing: passed.iter().map(apart).collect() };
+        let shares = [low, high].map(|share| from.share + run * share);
+        if layers {
+            self.layers(shares, count, &grain, medium);
+        } else {
+            self.piece(shares, count, &grain, medium);
         }
     }
 
+    /// Adds a piece in even layers, each as it is in its middle.
+    fn layers(&self, [begin, end]: [f64; 2], count: f64, grain: &Grain, medium: &mut Medium) {
+        let size = (end - begin) / count;
+        for i in 0..count as u32 {
+            if medium.depth > self.volumes.accuracy.dark {
+                return;
+            }
+            let share = (f64::from(i) + 0.5) / count;
+            medium.add_layer(&self.coefficients(begin + (end - begin) * share, size, share, grain));
+        }
+    }
+
+    /// The coefficients at a share of the part, as if `size` of it were as it is there. `share`: that of the piece.
+    fn coefficients(&self, x: f64, size: f64, share: f64, grain: &Grain) -> Coefficients {
+        let (part, [near, far]) = (self.part, grain.footprints);
+        let footprint = near + (far - near) * share;
+        let blurs = grain.spacing.iter().map(|spacing| Blur { footprint, spacing: *spacing });
+        let blurs = blurs.collect::<ArrayVec<_, { Volume::MOST }>>();
+        // Before the horizon the light of matter that does not fall grows as (u+ - u)^(-1/2), whose integral is even in
+        // the square root.
+        let (x, slope) = if part.to_horizon { (x * (2.0 - x), 2.0 * (1.0 - x)) } else { (x, 1.0) };
+        let there = part.at(x);
+        let found = self.volumes.coefficients(part.constants, part.observer, &there, self.seen, &blurs);
+        if found == Coefficients::default() {
+            return found;
+        }
+        found.along(slope * size * part.length(&there))
+    }
+
     /// Adds a piece in cells.
-    fn piece(&self, [begin, end]: [f64; 2], cells: f64, medium: &mut Medium) {
+    fn piece(&self, [begin, end]: [f64; 2], cells: f64, grain: &Grain, medium: &mut Medium) {
         let size = (end - begin) / cells;
         for i in 0..cells as u32 {
-            let cell = [begin + size * f64::from(i), begin + size * f64::from(i + 1)];
-            let nodes = self.nodes(cell);
+            let shares = [f64::from(i) / cells, f64::from(i + 1) / cells];
+            let cell = shares.map(|share| begin + (end - begin) * share);
+            let nodes = self.nodes(cell, shares, grain);
             let depth: f64 = nodes.iter().zip(GAUSS_WEIGHTS).map(|(node, weight)| node.absorption * weight).sum();
             if depth <= 1.0 || medium.depth > self.volumes.accuracy.dark {
                 medium.add_nodes(&nodes);
@@ -410,25 +423,17 @@ impl Sum<'_, '_> {
             let size = size / cuts;
             for k in 0..cuts as u32 {
                 let [begin, end] = [k, k + 1].map(|k| cell[0] + size * f64::from(k));
-                medium.add_nodes(&self.nodes([begin, end]));
+                medium.add_nodes(&self.nodes([begin, end], shares, grain));
             }
         }
     }
 
     /// The coefficients of the cell between two shares of the part, each as if all of the cell were as it is there.
-    fn nodes(&self, [begin, end]: [f64; 2]) -> [Coefficients; 3] {
-        let part = self.part;
+    /// `shares`: those of the piece.
+    fn nodes(&self, [begin, end]: [f64; 2], shares: [f64; 2], grain: &Grain) -> [Coefficients; 3] {
         GAUSS_NODES.map(|node| {
-            let x = begin + (end - begin) * node;
-            // Before the horizon the light of matter that does not fall grows as (u+ - u)^(-1/2), whose integral is
-            // even in the square root.
-            let (x, slope) = if part.to_horizon { (x * (2.0 - x), 2.0 * (1.0 - x)) } else { (x, 1.0) };
-            let there = part.at(x);
-            let found = self.volumes.coefficients(part.constants, part.observer, &there, self.seen);
-            if found == Coefficients::default() {
-                return found;
-            }
-            found.along(slope * (end - begin) * part.length(&there))
+            let share = shares[0] + (shares[1] - shares[0]) * node;
+            self.coefficients(begin + (end - begin) * node, end - begin, share, grain)
         })
     }
 }
@@ -463,7 +468,6 @@ impl Pieces {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physics::orbit::isco;
 
     /// Pieces follow each other from where matter may be to where it ends, and none is longer than it may be.
     #[test]
@@ -496,27 +500,5 @@ mod tests {
         assert!(low < 0.125 && low > 0.1 && high > 0.375 && high < 0.4, "{low} {high}");
         let [low, high] = clipped([0.15, 0.16], [-1.0, 1.0]).unwrap();
         assert!(low < 0.35 && low > 0.3 && high > 0.65 && high < 0.7, "{low} {high}");
-    }
-
-    /// A spot moves along its circular geodesic, either way, and none orbits inside the ISCO.
-    #[test]
-    fn spots_are_on_circular_geodesics() {
-        let spin = 0.7;
-        for (retrograde, sense) in [(false, 1.0), (true, -1.0)] {
-            let spot = HotSpot { retrograde, radius: 9.0, azimuth: 0.3, ..HotSpot::default() };
-            let when = When { time: 1e4, ..When::default() };
-            let matter = SpotMatter::new(&spot, spin, &when);
-            let omega = sense / (27.0 + sense * spin);
-            assert!((matter.angular_velocity / omega - 1.0).abs() < 1e-14);
-            for later in [-40.0, 0.0, 13.0] {
-                let azimuth = 0.3 + omega * (1e4 + later);
-                assert!((matter.density(9.0, 0.0, azimuth, later) - 1.0).abs() < 1e-9, "{later}");
-                let beside = matter.density(9.0 + spot.size, 0.0, azimuth, later);
-                assert!((beside - gaussian(1.0)).abs() < 1e-9, "{later}: {beside}");
-                assert_eq!(matter.density(9.0, 0.0, azimuth + 2.0, later), 0.0);
-            }
-            let inner = SpotMatter::new(&HotSpot { radius: 1.0, ..spot }, spin, &when);
-            assert_eq!(inner.radius, isco(sense * spin));
-        }
     }
 }

@@ -127,6 +127,19 @@ pub struct Velocity {
     pub radial: f64,
 }
 
+impl Velocity {
+    /// dph/dt of matter that moves so, about the hole of spin `a`.
+    pub fn angular_velocity(self, a: f64, at: &Place) -> f64 {
+        at.omega(a) + at.lapse * self.around / at.around
+    }
+
+    /// dr/dt of it.
+    pub fn radial_velocity(self, at: &Place) -> f64 {
+        let gamma = ((1.0 + self.radial * self.radial) / (1.0 - self.around * self.around)).sqrt();
+        at.lapse * self.radial / gamma * (at.delta / at.sigma).sqrt()
+    }
+}
+
 /// The laws of motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Motion {
@@ -287,6 +300,10 @@ mod tests {
                     let velocity = flow.velocity(spin, &at);
                     assert!(velocity.around.abs() < 0.999 && velocity.radial.is_finite(), "{spin} {flow:?} {at:?}");
                     let u = four_velocity(spin, &at, velocity);
+                    let rates = [velocity.radial_velocity(&at), velocity.angular_velocity(spin, &at)];
+                    for (rate, expected) in rates.into_iter().zip([u[1] / u[0], u[3] / u[0]]) {
+                        assert!((rate - expected).abs() < 1e-12 * (1.0 + expected.abs()), "{spin} {flow:?} {at:?}");
+                    }
                     // The metric's terms cancel beside the horizon as 1 / Delta, and far away as r^2.
                     let scale = 1.0 + u.iter().map(|u| u * u).sum::<f64>();
                     let norm = product(spin, &at, u, u);

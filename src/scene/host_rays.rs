@@ -27,7 +27,8 @@ pub fn transfer_ray(scene: &Scene, settings: &Settings, emitters: &Emitters, ray
     let Some((constants, state)) = start else {
         return Transfer { fate: Fate::Captured, intensity: 0.0, light: [0.0; 3], ..nothing };
     };
-    let seen = Seen { frequency_ratio: ray.frequency_ratio, static_lapse: frame.static_lapse() };
+    let (frequency_ratio, static_lapse) = (ray.frequency_ratio, frame.static_lapse());
+    let seen = Seen { frequency_ratio, static_lapse, pixel_angle: 0.0, swept: 0.0 };
     let (media, medium) = (Media::new(), Medium::default());
     let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium };
     let traced = trace_visited(&constants, &state, settings, &mut along);
@@ -38,16 +39,17 @@ pub fn transfer_ray(scene: &Scene, settings: &Settings, emitters: &Emitters, ray
 
 /// The emitters of `transfer_ray`, and its settings. Parts end in the plane, where jets bend. Where delays matter,
 /// steps are half as long, which takes the error of a hot spot's light, seen from 1000 M, from 8e-8 of its peak to
-/// 8e-9.
-pub fn transfer_setup(scene: &Scene) -> (Emitters, Settings) {
+/// 8e-9. Errors: OUT_OF_MEMORY.
+pub fn transfer_setup(scene: &Scene) -> Result<(Emitters, Settings)> {
     let emitters = Emitters { volumes: scene.volumes_now(), ..Emitters::default() };
+    emitters.volumes.prepare()?;
     let mut settings = scene.quality.ray_settings(scene.hole.spin);
     settings.delay = emitters.needs().delays;
     settings.max_crossings = CROSSINGS_KEPT;
     if settings.delay && scene.quality.method == Method::Auto {
         settings.step *= 0.5;
     }
-    (emitters, settings)
+    Ok((emitters, settings))
 }
 
 /// Most points of a path: more than any plot shows, and bounded memory.

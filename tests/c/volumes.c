@@ -36,6 +36,9 @@ static const Limits VOLUME[] = {
     {offsetof(BhrVolume, infall), 0.0, 1.0, "infall"},
     {offsetof(BhrVolume, angular_momentum), 0.0, 1.0, "angular_momentum"},
     {offsetof(BhrVolume, speed), 0.0, 0.995, "speed"},
+    {offsetof(BhrVolume, turbulence), 0.0, 1.0, "turbulence"},
+    {offsetof(BhrVolume, clumping), 0.5, 3.0, "clumping"},
+    {offsetof(BhrVolume, heating), 0.0, 0.5, "heating"},
 };
 
 static const Limits HOT_SPOT[] = {
@@ -68,6 +71,24 @@ static BhrHotSpot a_spot(void) {
     return spot;
 }
 
+
+/* A host that was compiled when matter was even still gets even matter. */
+static void shorter_struct(BhrContext *context) {
+    enum { SHORTER = 168 };
+    union {
+        BhrVolume     volume;
+        unsigned char bytes[sizeof(BhrVolume)];
+    } old, read;
+    memset(old.bytes, 0xff, sizeof old.bytes);
+    CHECK_OK(bhr_volume_init(&old.volume, SHORTER));
+    CHECK(old.volume.struct_size == SHORTER && old.bytes[SHORTER] == 0xff, "beyond the host's struct");
+    CHECK_OK(bhr_set_volumes(context, &old.volume, SHORTER, 1));
+    uint32_t count = 0;
+    CHECK_OK(bhr_get_volumes(context, &read.volume, sizeof read.volume, 1, &count));
+    CHECK(count == 1 && read.volume.turbulence == 0.0 && read.volume.clumping == a_volume().clumping,
+          "turbulence %g, clumping %g", read.volume.turbulence, read.volume.clumping);
+    CHECK(a_volume().turbulence == 1.0, "turbulence %g", a_volume().turbulence);
+}
 
 static void numbers(Watch *watch, BhrContext *context) {
     const double no_number[] = {NAN, INFINITY, -INFINITY};
@@ -165,6 +186,7 @@ static void arrays(Watch *watch, BhrContext *context) {
     for (size_t i = 0; i < COUNT_OF(volumes); i++) {
         volumes[i] = a_volume();
         volumes[i].temperature = 1000.0 + (double)i;
+        volumes[i].seed = UINT64_MAX - i;
     }
     for (size_t i = 0; i < COUNT_OF(spots); i++) {
         spots[i] = a_spot();
@@ -388,6 +410,8 @@ int main(int argc, char **argv) {
     static Watch watch;
     watch_unusual_scene(&watch, context);
     arrays(&watch, context);
+    shorter_struct(context);
+    CHECK_OK(bhr_set_volumes(context, watch.volumes, sizeof watch.volumes[0], watch.volume_count));
     numbers(&watch, context);
     flags_and_kinds(&watch, context);
     rays(&watch, context);

@@ -115,6 +115,7 @@ static void scene() {
     bhr::Volume volume;
     EXPECT(volume.outer_radius == 17.0 && volume.tint[2] == 1.0 && volume.shape == bhr::VolumeShape::disk);
     volume.shape = bhr::VolumeShape::halo;
+    EXPECT(volume.turbulence == 1.0 && volume.clumping == 1.8 && volume.heating == 0.15 && volume.seed == 0);
     volume.flow = bhr::Flow::angular_momentum;
     volume.flags = bhr::VolumeFlags::power_law;
     const bhr::Volume two[] = {volume, bhr::Volume()};

@@ -108,7 +108,7 @@ fn layouts_hold_in_rust() {
         volume::BhrVolume {
             struct_size, flags, shape, flow, inner_radius, outer_radius, radius, width, thickness, opening, slope,
             absorption, temperature, temperature_slope, spectral_index, tint, brightness, sub_keplerian, infall,
-            angular_momentum, speed
+            angular_momentum, speed, turbulence, clumping, heating, seed
         }
         volume::BhrHotSpot {
             struct_size, flags, radius, size, azimuth, absorption, temperature, spectral_index, tint, brightness

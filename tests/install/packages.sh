@@ -55,7 +55,7 @@ man_pages() {
         [ ! -s "$scratch/warnings" ] || { cat "$scratch/warnings" && return 1; }
         [[ $page == *.3.gz ]] || grep -q -e '--help' "$scratch/page" || return 1
     done
-    [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 6 ]
+    [ "$(find "$scratch/unpacked/usr/share/man" -name '*.gz' | wc -l)" -eq 7 ]
 }
 
 tarball() {

@@ -20,7 +20,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         scene.hole.spin = spin;
         scene
     };
-    let disk = Volume::default();
+    let disk = Volume { turbulence: 0.0, ..Volume::default() };
     let torus = Volume { shape: Shape::Torus, thickness: 0.2, absorption: 0.3, temperature: 6000.0, ..disk };
     let halo = Volume {
         shape: Shape::Halo,
@@ -70,6 +70,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         ("spots", spots),
         ("within the torus", within),
         ("fisheye", round),
+        ("turbulent torus", of(&[Volume { turbulence: 1.0, ..torus }], 0.9, outside(30.0, 10.0, 0.36))),
     ]
 }
 

@@ -22,6 +22,7 @@ mod random;
 mod rings;
 mod sky;
 mod stars;
+mod structure;
 mod supersampling;
 mod transfer;
 mod volumes;

@@ -56,6 +56,10 @@ const TORUS: Volume = Volume {
     infall: 0.0,
     angular_momentum: 1.0,
     speed: 0.9,
+    turbulence: 0.0,
+    clumping: 1.8,
+    heating: 0.15,
+    seed: 0,
 };
 
 /// One of each shape, flow and light.
@@ -291,6 +295,10 @@ fn any_volume(random: &mut Random) -> Volume {
         infall: random.pick(&[0.0, 1.0, random.0 as f64 / u64::MAX as f64]),
         angular_momentum: random.next(),
         speed: random.range(0.0, 0.995),
+        turbulence: random.pick(&[0.0, 1.0, 0.4]),
+        clumping: random.range(0.5, 3.0),
+        heating: random.range(0.0, 0.5),
+        seed: random.0,
     }
 }
 

@@ -4,9 +4,10 @@
 
 use crate::frames::{cpu, floats, picture};
 use crate::random::runs_all;
+use bhr::emit::bands::When;
 use bhr::emit::glow::Coefficients;
+use bhr::emit::matter::{Accuracy, VolumeMatter};
 use bhr::emit::medium::Medium;
-use bhr::emit::volumes::{Accuracy, VolumeMatter};
 use bhr::image::PixelFormat;
 use bhr::physics::blackbody::{BlackbodyTable, SECOND_RADIATION_CONSTANT};
 use bhr::physics::flow::{ZamoLight, place_of};
@@ -67,6 +68,7 @@ fn volume(medium: &Value) -> Volume {
         infall: number("infall"),
         angular_momentum: number("l0"),
         speed: number("speed"),
+        turbulence: 0.0,
         ..plain
     }
 }
@@ -236,7 +238,7 @@ fn thermal_light_is_that_of_shifted_blackbodies() {
     let volume = volume(&image["medium"]);
     renderer.scene = scene(image, &[volume], &[]);
     let scene = renderer.scene.clone();
-    let matter = VolumeMatter::new(&volume, scene.hole.spin, Accuracy::EXACT).unwrap();
+    let matter = VolumeMatter::new(&volume, scene.hole.spin, &When::default(), Accuracy::EXACT).unwrap();
     let rays = camera_rays(&scene, 32);
     let found = transfer(&mut renderer, &rays);
     let (mut worst, mut brightest) = ([0.0_f64; 5], 0.0_f64);

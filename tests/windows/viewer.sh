@@ -103,12 +103,13 @@ viewer_needs_display() {
 viewer_takes_keys() {
     viewer_open --size 320x180 || return 1
     local key
-    for key in Right x x 3 v v v v v v n n n m p space period slash shift+t g bracketleft Up k i l l h; do
+    for key in Right x x 3 v v v v v v v v u j j n n n m p space period slash shift+t g bracketleft Up k i l l h; do
         xdotool key "$key" && sleep 0.1
     done
     viewer_until 60 viewer_says '^  Esc *quit' || return 1
     local words
-    for words in 'spin 0.100' 'disk off' 'disk on' 'beaming off' 'view: metric' 'camera: freefall' 'camera: orbit' \
+    for words in 'spin 0.100' 'disk off' 'disk on' 'beaming off' 'view: metric' 'view: intensity' \
+        'depth: disk' 'hot spot on' 'hot spot off' 'camera: freefall' 'camera: orbit' \
         'camera: static' 'mass 1.1' 'time stands still' '6 M of the' '-6 M of the' 'turbulence of the disk 0.90' \
         'tone map: agx' 'field of view 40.9' 'exposure +0.25' 'stars off' 'method: rk4' 'quality as it is set'; do
         viewer_says "$words" || { echo "it did not say: $words"; cat -- "$viewer_log"; return 1; }

@@ -209,6 +209,13 @@ class Volume(_Struct):
     angular_momentum: float = 1.0
     #: OUTFLOW: far away, in units of c.
     speed: float = 0.9
+    #: The contrast of structure that the matter carries along; 0: even.
+    turbulence: float = 1.0
+    #: Density goes as pattern^clumping.
+    clumping: float = 1.8
+    #: The temperature goes as pattern^heating.
+    heating: float = 0.15
+    seed: int = 0
 
 
 @dataclasses.dataclass(frozen=True)

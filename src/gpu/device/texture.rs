@@ -17,7 +17,7 @@ pub struct TextureKind {
 pub const SCREEN: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgba8Unorm, dimension: wgpu::TextureViewDimension::D2 };
 
-/// A 2-D texture and its view, whose bytes [`Device::bytes`] counts until it is dropped.
+/// A texture and its view, whose bytes [`Device::bytes`] counts until it is dropped.
 pub struct Texture {
     pub view: wgpu::TextureView,
     raw: wgpu::Texture,
@@ -68,6 +68,15 @@ impl Device {
         self.any_texture(label, format, wgpu::TextureViewDimension::D2, size, [1, levels], usage)
     }
 
+    /// A block of texels that the host fills ([`Self::write_level`]) and kernels read, with `levels`, of which each has
+    /// half the sides of the one before, rounded down, but 1 at least. Errors: as [`Device::scoped`].
+    pub fn block(&self, label: &str, kind: TextureKind, sides: [u32; 3], levels: u32) -> Result<Texture> {
+        let [width, height, layers] = sides;
+        let usage = wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING;
+        self.any_texture(label, kind.format, kind.dimension, [width, height], [layers, levels], usage)
+    }
+
+    /// `layers`: of an array, or the third side of a block.
     fn any_texture(
         &self,
         label: &str,
@@ -77,6 +86,7 @@ impl Device {
         [layers, levels]: [u32; 2],
         usage: wgpu::TextureUsages,
     ) -> Result<Texture> {
+        let solid = dimension == wgpu::TextureViewDimension::D3;
         // Kept bind groups hold textures that this one may replace, and both together need not fit in memory.
         self.bindings.clear();
         let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
@@ -86,7 +96,7 @@ impl Device {
                 size,
                 mip_level_count: levels,
                 sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
+                dimension: if solid { wgpu::TextureDimension::D3 } else { wgpu::TextureDimension::D2 },
                 format,
                 usage,
                 view_formats: &[],
@@ -94,8 +104,11 @@ impl Device {
             let view = wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() };
             (raw.clone(), raw.create_view(&view))
         })?;
-        let texels = |level: u32| u64::from((width >> level).max(1)) * u64::from((height >> level).max(1));
-        let bytes = texel_bytes(format) * (0..levels).map(texels).sum::<u64>() * u64::from(layers);
+        let texels = |level: u32| {
+            let [width, height] = [width, height].map(|side| u64::from((side >> level).max(1)));
+            width * height * u64::from(if solid { (layers >> level).max(1) } else { layers })
+        };
+        let bytes = texel_bytes(format) * (0..levels).map(texels).sum::<u64>();
         let total = self.byte_count();
         total.fetch_add(bytes, Ordering::Relaxed);
         Ok(Texture { view, raw, bytes, total })
@@ -105,6 +118,18 @@ impl Device {
     /// whole number of rows; as [`Device::scoped`].
     pub fn write_rows(&self, texture: &Texture, first_row: u32, data: &[u8]) -> Result<()> {
         self.write_part(texture, 0, [0, first_row], texture.raw.width(), data)
+    }
+
+    /// Writes a whole level of a block, whose sides are `sides`, layer by layer, row by row, before the next submission
+    /// runs. Errors: INTERNAL when `data` is of another size; as [`Device::scoped`].
+    pub fn write_level(&self, texture: &Texture, level: u32, sides: [u32; 3], data: &[u8]) -> Result<()> {
+        let row_bytes = sides[0] as usize * texel_bytes(texture.raw.format()) as usize;
+        let rows = sides[1] as usize * sides[2] as usize;
+        if row_bytes == 0 || data.len() != rows * row_bytes {
+            let size = data.len();
+            return Err(Error::internal(format!("{size} bytes are not {rows} rows of {row_bytes} bytes")));
+        }
+        self.write_block((&texture.raw, level), sides, row_bytes, data)
     }
 
     /// Writes a rectangle of `width` columns of a level, whose first texel is `first` (column, row); the length of

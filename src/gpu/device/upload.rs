@@ -54,6 +54,26 @@ impl Device {
         Ok(())
     }
 
+    /// Writes a whole level of a block, layer by layer, row by row, before the next submission runs. Errors: as
+    /// [`Self::write_texels`].
+    pub(in crate::gpu) fn write_block(
+        &self,
+        (texture, mip_level): (&wgpu::Texture, u32),
+        [width, height, layers]: [u32; 3],
+        row_bytes: usize,
+        data: &[u8],
+    ) -> Result<()> {
+        let pitch = row_bytes.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT as usize);
+        let filled = self.filled(data, row_bytes, pitch)?;
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch as u32), rows_per_image: Some(height) };
+        let from = wgpu::TexelCopyBufferInfo { buffer: &filled, layout };
+        let (origin, aspect) = (wgpu::Origin3d::ZERO, wgpu::TextureAspect::All);
+        let to = wgpu::TexelCopyTextureInfo { texture, mip_level, origin, aspect };
+        let size = wgpu::Extent3d { width, height, depth_or_array_layers: layers };
+        self.upload("writing a block", |encoder| encoder.copy_buffer_to_texture(from, to, size))
+    }
+
     /// A buffer that holds the rows of `data` `pitch` bytes apart, to copy from.
     fn filled(&self, data: &[u8], row_bytes: usize, pitch: usize) -> Result<wgpu::Buffer> {
         let rows = data.chunks(row_bytes.max(1));

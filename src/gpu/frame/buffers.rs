@@ -2,6 +2,7 @@
 //! The buffers that frames of one size share: made, grown, and written with what all tiles share. Knows no kernels.
 
 use super::bloom::BloomBuffers;
+use super::clouds::CloudsUniform;
 use super::refine::EdgeList;
 use super::setup::Setup;
 use super::tiles::MAX_BATCH;
@@ -35,6 +36,8 @@ pub struct FrameBuffers {
 /// The buffers that do not depend on a frame's size.
 pub struct FixedBuffers {
     pub frame: CachedUniform,
+    /// Written for scenes with structure in matter with depth only.
+    pub clouds: CachedUniform,
     pub film: CachedUniform,
     /// The same for light that is exposed already.
     pub film_of_exposed: CachedUniform,
@@ -126,6 +129,7 @@ impl FrameBuffers {
         if self.fixed.is_none() {
             self.fixed = Some(FixedBuffers {
                 frame: CachedUniform::new(device, "frame", size_of::<FrameUniform>() as u64)?,
+                clouds: CachedUniform::new(device, "clouds", size_of::<CloudsUniform>() as u64)?,
                 film: CachedUniform::new(device, "film", size_of::<FilmParams>() as u64)?,
                 film_of_exposed: CachedUniform::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
                 passes: CachedUniform::new(
@@ -155,6 +159,9 @@ impl FrameBuffers {
         self.edges.prepare(device, if setup.variants.shade.refines { size.tile } else { [1, 1] })?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
+        if let Some(clouds) = &setup.clouds {
+            fixed.clouds.write(device, bytemuck::bytes_of(clouds))?;
+        }
         fixed.film.write(device, bytemuck::bytes_of(&setup.film))?;
         fixed.film_of_exposed.write(device, bytemuck::bytes_of(&setup.film.of_exposed()))
     }
@@ -164,7 +171,8 @@ impl FrameBuffers {
         self.record_store.forget();
         self.bloom.forget();
         if let Some(fixed) = &mut self.fixed {
-            for written in [&mut fixed.frame, &mut fixed.film, &mut fixed.film_of_exposed, &mut fixed.passes] {
+            let FixedBuffers { frame, clouds, film, film_of_exposed, passes, .. } = fixed;
+            for written in [frame, clouds, film, film_of_exposed, passes] {
                 written.forget();
             }
         }

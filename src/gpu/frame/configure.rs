@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The setup of a frame from its scene: which records, which shader variants, which film. Knows no buffers.
 
+use super::clouds::CloudsUniform;
 use super::matter::matter_variant;
 use super::settings::{for_f32, variant};
 use super::setup::{Setup, ShadingVariants};
@@ -80,7 +81,8 @@ impl GpuTracer {
         };
         let record_setup = self.record_setup(scene, &lens, &settings, &request.region, projection);
         let uniform = FrameUniform::new(scene, &lens, &settings, record_setup.crossings)?;
-        Ok(Setup { record_setup, variants, samples, uniform, film, bloom })
+        let clouds = emitters.volumes.has_structure().then(|| CloudsUniform::new(&emitters.volumes));
+        Ok(Setup { record_setup, variants, samples, uniform, clouds, film, bloom })
     }
 
     /// How the records of a frame are made.

@@ -94,7 +94,9 @@ impl GpuTracer {
         let [light_tables, ..] = tables.resources();
         let step_sum = fixed.step_sum.as_entire_binding();
         let software = self.adapter.info.software;
-        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables, software };
+        let [filaments, filament_sampler] = tables.filaments().resources();
+        let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables, structure, software };
         let records = buffers.record_store.stages(device, &self.kernels, &setup.record_setup, &shared)?;
         let group = buffers.record_store.group(setup.record_setup.source)?;
         let take = |kernels: &Kernels, source| {

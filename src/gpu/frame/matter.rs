@@ -3,7 +3,8 @@
 //! choices that kernels are compiled with for it.
 
 use crate::emit::glow::Glow;
-use crate::emit::volumes::{SpotMatter, VolumeMatter, Volumes};
+use crate::emit::matter::{SpotMatter, VolumeMatter};
+use crate::emit::volumes::Volumes;
 use crate::gpu::kernel::sizes::MOST_MATTER;
 use crate::gpu::kernel::variant::{MatterVariant, MotionCode, SHAPE_SPOT};
 use crate::physics::flow::{Flow, Motion};
@@ -114,6 +115,7 @@ pub fn matter_variant(volumes: &Volumes, scene: &Scene) -> Option<MatterVariant>
     let mut variant = MatterVariant {
         all_effects: scene.effects.all_light(),
         shows_depth: scene.view.shows_depth_only(),
+        structure: volumes.has_structure(),
         ..MatterVariant::default()
     };
     for matter in &all[..count as usize] {

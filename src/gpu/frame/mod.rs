@@ -4,8 +4,10 @@
 pub(in crate::gpu) mod begun;
 pub(in crate::gpu) mod bloom;
 pub(in crate::gpu) mod buffers;
+pub(in crate::gpu) mod clouds;
 pub(in crate::gpu) mod configure;
 pub(in crate::gpu) mod export;
+mod filaments;
 pub(in crate::gpu) mod kernels;
 pub(in crate::gpu) mod matter;
 pub(in crate::gpu) mod rays;

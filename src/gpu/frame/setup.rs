@@ -2,6 +2,7 @@
 //! The setup of a frame, made before its tiles run: how its records are made, its light shaded and its pixels written.
 //! Plain data; configure.rs fills it from a scene.
 
+use super::clouds::CloudsUniform;
 use super::uniforms::FrameUniform;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
@@ -36,6 +37,8 @@ pub(in crate::gpu) struct Setup {
     pub(in crate::gpu) variants: ShadingVariants,
     pub(in crate::gpu) samples: u32,
     pub(in crate::gpu) uniform: FrameUniform,
+    /// `None`: no matter with depth has structure.
+    pub(in crate::gpu) clouds: Option<CloudsUniform>,
     pub(in crate::gpu) film: FilmParams,
     pub(in crate::gpu) bloom: Option<Bloom>,
 }

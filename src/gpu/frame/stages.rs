@@ -114,8 +114,11 @@ impl FrameBuffers {
         let frame = fixed.frame.buffer.as_entire_binding();
         let step_sum = fixed.step_sum.as_entire_binding();
         let [light_tables, ..] = tables.resources();
-        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables, software };
+        let [filaments, filament_sampler] = tables.filaments().resources();
+        let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let shared = Shared { frame, pass, step_sum, light_tables, structure, software };
         let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
+        let Shared { frame, pass, structure, .. } = shared;
         let records = self.record_store.group(setup.record_setup.source)?;
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [streaks, repeating] = tables.streaks().resources();
@@ -133,8 +136,9 @@ impl FrameBuffers {
             let record_setup = &setup.record_setup;
             let refine = |kernels: &Kernels| {
                 let film = (!variants.several_samples).then_some(variants.film);
-                let (source, groups) =
-                    (record_setup.deferred_source().unwrap_or(record_setup.source), [&shared[..], &records, target]);
+                let source = record_setup.deferred_source().unwrap_or(record_setup.source);
+                let shared = [&shared[..], &structure].concat();
+                let groups = [&shared[..], &records, target];
                 let groups = if film.is_some() { &groups[..2] } else { &groups };
                 RefineStage::new(
                     device,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Tables that shading reads on the GPU: blackbody colours, stars, the mean sky (made anew when the scene shows other
 //! stars), and the disk's temperature profile (made anew when the matter's spin changes). Textures of TABLE_WIDTH
-//! entries a row (shade/shade.wgsl says why). Beside them lie the pictures that shading reads: sky maps, and the
-//! streaks of the disk.
+//! entries a row (shade/shade.wgsl says why). Beside them lie pictures: sky maps, the streaks of the disk, and the
+//! filaments of matter with depth.
 
+use super::filaments::FilamentTexture;
 use super::sky_maps::SkyMaps;
 use super::streaks::StreakTexture;
 use crate::allocate::{collected, with_room};
@@ -33,9 +34,13 @@ pub struct Tables {
     star_cells: Texture,
     sky_maps: SkyMaps,
     streaks: StreakTexture,
+    filaments: FilamentTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
 }
+
+/// The pictures that are kept when the stars change.
+type Pictures = (SkyMaps, StreakTexture, FilamentTexture);
 
 /// A texture of `size` entries in rows, the last one filled up.
 fn table<T: bytemuck::Pod>(
@@ -63,12 +68,13 @@ fn table<T: bytemuck::Pod>(
 }
 
 impl Tables {
-    fn new(device: &Device, stars: Arc<StarIndex>, (sky_maps, streaks): (SkyMaps, StreakTexture)) -> Result<Self> {
+    fn new(device: &Device, stars: Arc<StarIndex>, pictures: Pictures) -> Result<Self> {
+        let (sky_maps, streaks, filaments) = pictures;
         let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
-        Ok(Self { stars, light, star_cells, sky_maps, streaks, profile_spin: None })
+        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, profile_spin: None })
     }
 
     /// Brings the tables up to the scene's stars, maps and disk. `map_sampler`: a sampler is to filter maps. Errors:
@@ -87,21 +93,28 @@ impl Tables {
                 let pictures = held.into_pictures();
                 Self::new(device, stars, pictures)?
             }
-            None => Self::new(device, stars, (SkyMaps::new(device)?, StreakTexture::new(device)?))?,
+            None => {
+                let pictures = (SkyMaps::new(device)?, StreakTexture::new(device)?, FilamentTexture::new(device)?);
+                Self::new(device, stars, pictures)?
+            }
         };
         let tables = tables.insert(made);
         tables.update(device, scene, map_sampler)?;
         Ok(tables)
     }
 
-    /// The maps and the streaks; all else is let go.
-    fn into_pictures(self) -> (SkyMaps, StreakTexture) {
-        (self.sky_maps, self.streaks)
+    fn into_pictures(self) -> Pictures {
+        (self.sky_maps, self.streaks, self.filaments)
     }
 
     /// Group 0 of emit/streaks.wgsl.
     pub fn streaks(&self) -> &StreakTexture {
         &self.streaks
+    }
+
+    /// The texture and the sampler of emit/filaments.wgsl.
+    pub fn filaments(&self) -> &FilamentTexture {
+        &self.filaments
     }
 
     /// In the order of group 0 of shade/shade.wgsl.
@@ -121,6 +134,7 @@ impl Tables {
     fn update(&mut self, device: &Device, scene: &Scene, map_sampler: bool) -> Result<()> {
         self.sky_maps.update(device, scene, map_sampler)?;
         self.streaks.update(device, scene)?;
+        self.filaments.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());

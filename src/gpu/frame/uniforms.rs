@@ -3,9 +3,9 @@
 //! by field. The only place where f64 becomes f32 on its way to the GPU.
 
 use super::matter::{MatterUniform, uniforms_of};
+use crate::emit::bands::{Bands, MOST_BANDS};
 use crate::emit::half::Evenness;
 use crate::emit::thin_disk::SoftEdges;
-use crate::emit::turbulence::{MOST_BANDS, Turbulence};
 use crate::error::Result;
 use crate::gpu::kernel::sizes::MOST_MATTER;
 use crate::physics::blackbody::BlackbodyTable;
@@ -118,11 +118,11 @@ fn range(u: Option<[f64; 2]>) -> [f32; 2] {
     u.map_or([1.0, 0.0], |u| u.map(|u| u as f32))
 }
 
-/// The bands of the disk's turbulence; beyond the last one it goes on.
-fn bands(turbulence: &Turbulence) -> [[u32; 4]; MOST_BANDS] {
+/// Bands as `bands.wgsl` has them; beyond the last one it goes on.
+pub(super) fn bands(bands: &Bands) -> [[u32; 4]; MOST_BANDS] {
     std::array::from_fn(|i| {
-        let band = turbulence.bands[i.min(turbulence.band_count.max(1) - 1)];
-        [(band.age as f32).to_bits(), (band.spacing as f32).to_bits(), band.generation, 0]
+        let band = bands.band(bands.first + i as i32);
+        [(band.age as f32).to_bits(), (band.spacing as f32).to_bits(), band.generation, (band.drift as f32).to_bits()]
     })
 }
 
@@ -181,7 +181,7 @@ impl FrameUniform {
             rain: u32::from(frame.rain) + u32::from(frame.clock() == Clock::Rain),
             effects: scene.effects.light(),
             view: scene.view as u32,
-            pattern: turbulence.map_or([0; 2], |t| [t.seed, t.first_band as u32]),
+            pattern: turbulence.map_or([0; 2], |t| [t.bands.seed, t.bands.first as u32]),
             map_sizes: [1; 4],
             projection: scene.camera.projection as u32,
             medium_layer: crossings,
@@ -193,7 +193,7 @@ impl FrameUniform {
             surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
             shown_edges: four(edges.least[0], edges.least[1], least_light(scene), 0.0),
             plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
-            bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t)),
+            bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t.bands)),
             depth_u: range(emitters.depth_u()),
             matter_count,
             matter_delay: emitters.volumes.when.reference_delay as f32,

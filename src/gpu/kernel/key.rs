@@ -3,7 +3,8 @@
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TRACED, edge_slots, pixel_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TRACED, edge_slots, pixel_slots, refine_slots,
+    shade_slots, sum_slots,
 };
 use super::variant::{
     FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant,
@@ -131,7 +132,7 @@ impl KernelKey {
             Self::ShadeOnly(source, _, film) => vec![shade_slots(), source.slots(), film.slots(), edge_slots()],
             Self::Refine(refined, _, film) => {
                 let target = film.map_or_else(sum_slots, FilmVariant::slots);
-                vec![shade_slots(), refined.source.slots(), target, edge_slots()]
+                vec![refine_slots(), refined.source.slots(), target, edge_slots()]
             }
             Self::Develop(film, glare) => {
                 let light = match glare {
@@ -261,6 +262,7 @@ fn matter_constants(matter: MatterVariant) -> Vec<(&'static str, f64)> {
         ("THERMAL", flag(matter.thermal)),
         ("POWER_LAW", flag(matter.power_law)),
         ("SHOWS_DEPTH", flag(matter.shows_depth)),
+        ("STRUCTURE", flag(matter.structure)),
     ]
 }
 

@@ -53,6 +53,10 @@ pub(super) const TABLES: [TextureKind; 2] = [
 pub const STREAKS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rg16Float, dimension: wgpu::TextureViewDimension::D2 };
 
+/// `filaments` of emit/filaments.wgsl.
+pub const FILAMENTS: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::R16Float, dimension: wgpu::TextureViewDimension::D3 };
+
 /// `milky_way` and `sky_map` of shade/shade.wgsl.
 pub const SKY_MAP: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rgb9e5Ufloat, dimension: wgpu::TextureViewDimension::D2 };
@@ -122,13 +126,24 @@ impl RecordSource {
 /// Group 0 of traced/pixels.wgsl.
 pub fn pixel_slots() -> Vec<Slot> {
     let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
-    vec![Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])]
+    let records = [Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])];
+    [&records[..], &structure_slots()].concat()
 }
 
 /// Group 0 of shade/shade.wgsl and emit/streaks.wgsl.
 pub fn shade_slots() -> Vec<Slot> {
     let ([light, cells], map, streaks) = (TABLES.map(Slot::Texture), Slot::Filtered(SKY_MAP), Slot::Filtered(STREAKS));
     vec![Slot::Uniform, Slot::UniformPart, light, cells, map, map, Slot::Sampler, streaks, Slot::Sampler]
+}
+
+/// `clouds` of emit/clouds.wgsl, and the texture and the sampler of emit/filaments.wgsl.
+pub fn structure_slots() -> [Slot; 3] {
+    [Slot::Uniform, Slot::Filtered(FILAMENTS), Slot::Sampler]
+}
+
+/// Group 0 of refine/refine.wgsl.
+pub fn refine_slots() -> Vec<Slot> {
+    [shade_slots(), structure_slots().into()].concat()
 }
 
 /// Group 2 of shade/sample.wgsl.

@@ -40,6 +40,8 @@ pub struct MatterVariant {
     pub all_effects: bool,
     /// The view shows what there is, not light.
     pub shows_depth: bool,
+    /// Some of it has structure.
+    pub structure: bool,
 }
 
 /// `SHAPE_SPOT` of emit/shape.wgsl, for which volumes have no shape.

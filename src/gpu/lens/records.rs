@@ -217,6 +217,8 @@ pub struct Shared<'a> {
     pub step_sum: wgpu::BindingResource<'a>,
     /// `light_tables` of shade/shade.wgsl.
     pub light_tables: wgpu::BindingResource<'a>,
+    /// `structure_slots` of gpu/kernel/slots.rs.
+    pub structure: [wgpu::BindingResource<'a>; 3],
     /// Whether the driver is software.
     pub software: bool,
 }
@@ -263,9 +265,9 @@ pub fn pixel_group<'a>(
     textures: &[wgpu::BindingResource<'a>; 3],
     shared: &Shared<'a>,
 ) -> Vec<wgpu::BindingResource<'a>> {
-    let Shared { frame, pass, light_tables, .. } = shared.clone();
+    let Shared { frame, pass, light_tables, structure: [clouds, filaments, sampler], .. } = shared.clone();
     let [sky, meta, disk] = textures.clone();
-    vec![frame, pass, sky, meta, disk, light_tables]
+    vec![frame, pass, sky, meta, disk, light_tables, clouds, filaments, sampler]
 }
 
 /// The stages that trace pixels into `textures`.

@@ -133,7 +133,14 @@ fn images() -> Vec<Image> {
     let nodes = (0..=CRITICAL_NODES).map(node).collect::<Vec<_>>();
     let table = nodes.windows(2).flat_map(|pair| pair.iter().flat_map(|(t, slope)| [*t as f32, *slope as f32]));
     let table = table.collect::<Vec<_>>();
-    let nothing = |name, format, layers| Image { name, format, size: [1, 1, layers], levels: 1, bytes: vec![0; 16] };
+    let nothing = |name, format, layers| Image {
+        name,
+        format,
+        size: [1, 1, layers],
+        levels: 1,
+        solid: false,
+        bytes: vec![0; 16],
+    };
     let float = wgpu::TextureFormat::Rgba32Float;
     let mut flags = nothing("kerr_flags", wgpu::TextureFormat::R32Uint, 0);
     flags.bytes.truncate(4);
@@ -143,6 +150,7 @@ fn images() -> Vec<Image> {
             format: float,
             size: [CRITICAL_NODES as u32, 1, 0],
             levels: 1,
+            solid: false,
             bytes: bytemuck::cast_slice(&table).to_vec(),
         },
         nothing("kerr_sky", float, 0),

@@ -14,7 +14,6 @@ use crate::physics::blackbody::{BlackbodyTable, MAX_TEMPERATURE, MIN_TEMPERATURE
 use crate::physics::disk_flux::TemperatureProfile;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::zamo_frequency;
-use crate::random::mix;
 use crate::sky::StarIndex;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -94,6 +93,7 @@ pub fn streaks_image() -> Image {
         format: STREAKS.format,
         size: [STREAK_COLUMNS as u32, STREAK_ROWS as u32, 0],
         levels: STREAK_LAST as u32 + 1,
+        solid: false,
         bytes: bytemuck::cast_slice(&texels).to_vec(),
     }
 }
@@ -303,21 +303,13 @@ pub fn group() -> Group {
             },
             4e-3,
         ),
-        twin(
-            turbulent,
-            "mix_bits",
-            "out_word(mix_bits(word(0u)));",
-            |i| {
-                i.bits();
-            },
-            |i, o| o.word(mix(i.word(0))),
-            SAME,
-        ),
     ];
     let imports = "#import shared/blackbody\n#import emit/disk\n#import emit/turbulence\n#import emit/volumes\n\
                    fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32,
                    end: f32) {}\n\
-                   fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n";
+                   fn on_crossing(c: Constants, crossing: PlaneCrossing) {}\n\
+                   var<private> clouds: Clouds;\n\
+                   fn filament_texel(place: vec3<f32>, level: f32) -> f32 { return 0.0; }\n";
     Group {
         name: "light",
         head: [imports, FRAME, FRAMES, HOOKS].concat(),

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Twins of emit/flow, emit/shape, emit/glow, emit/medium and emit/volumes: matter with depth.
 
-use super::geodesic::{RAYS, constants, push_constants, push_state, random_ray, state};
+use super::geodesic::{RAYS, STATE, constants, push_constants, push_state, random_ray, state};
 use super::inputs::{Inputs, Outputs};
 use super::run::Table;
 use super::scenes::{self, FRAME};
 use super::{Group, ROUNDING, TRANSCENDENTAL, twin};
 use crate::emit::Shift;
+use crate::emit::bands::When;
 use crate::emit::glow::Glow;
+use crate::emit::matter::{Accuracy, SpotMatter, VolumeMatter};
 use crate::emit::medium::{GAUSS_WEIGHTS, THICK, layer_gains, thin_gains};
 use crate::emit::shape::{
     Cloud, Reach, Stretch, disk_density, gaussian, halo_density, jet_density, smooth_step, torus_density,
 };
-use crate::emit::turbulence::When;
-use crate::emit::volumes::{Accuracy, SpotMatter, VolumeMatter, clip};
+use crate::emit::volumes::{Seen, clip};
 use crate::gpu::kernel::variant::{MotionCode, SHAPE_SPOT};
 use crate::physics::blackbody::BlackbodyTable;
 use crate::physics::flow::{Flow, Motion, Place, Velocity, ZamoLight, keplerian, outflow, with_angular_momentum};
+use crate::physics::geodesic::State;
 use crate::physics::integrator::Quintic;
 use crate::physics::orbit::{horizon_outer, isco};
 use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
@@ -25,6 +27,8 @@ use crate::sky::StarIndex;
 const HOOKS: &str = "
 @group(1) @binding(13) var<storage, read> light_tables: array<vec4<f32>>;
 fn light_table(i: u32) -> vec4<f32> { return light_tables[i]; }
+var<private> clouds: Clouds;
+fn filament_texel(place: vec3<f32>, level: f32) -> f32 { return 0.0; }
 fn out_place(p: Place) { out4(vec4<f32>(p.sigma, p.delta, p.big_a, p.lapse)); out1(p.around); }
 ";
 
@@ -214,6 +218,22 @@ fn flows() -> Vec<super::Twin> {
         ),
         twin(
             flow,
+            "angular_velocity",
+            at_place!("out1(angular_velocity(c.a, p, in2(25u)));"),
+            |i| {
+                place(i);
+                i.even(-0.9, 0.9);
+                i.even(-1.0, 1.0);
+            },
+            |i, o| {
+                let (a, p) = place_of(i);
+                let found = Velocity { around: i.x(25), radial: i.x(26) }.angular_velocity(a, &p);
+                o.near(found, p.lapse / p.around);
+            },
+            1e-5,
+        ),
+        twin(
+            flow,
             "flow_velocity",
             at_place!(
                 "var m: Matter; m.kind.y = word(25u); m.reach.w = in1(26u); m.form.w = in1(27u);
@@ -367,7 +387,7 @@ fn shapes() -> Vec<super::Twin> {
                 let flow = [FlowLaw::Keplerian, FlowLaw::AngularMomentum][i.word(13) as usize];
                 // Numbers of other shapes may leave nothing outside the horizon, which this does not ask.
                 let wide = Volume { flow, outer_radius: 1e4, inner_radius: 3.0, radius: 8.0, ..shape_at(i, 0, shape) };
-                let matter = VolumeMatter::new(&wide, 0.0, Accuracy::PICTURE).expect("matter");
+                let matter = VolumeMatter::new(&wide, 0.0, &When::default(), Accuracy::PICTURE).expect("matter");
                 let cloud = Cloud::new(&shape_at(i, 0, shape), 6.0);
                 o.near(VolumeMatter { cloud, ..matter }.cells(&stretch), 1.0);
             },
@@ -385,7 +405,7 @@ pub fn group() -> Group {
             "glow_coefficients",
             "var m: Matter; m.kind.z = word(0u); m.glow = in4(1u); m.light = vec4<f32>(in3(5u), 0.0);
              m.tint = vec4<f32>(in3(8u), 0.0);
-             let s = glow_coefficients(m, in1(11u), in1(12u), in1(13u), in1(14u), Shift(in1(15u), in1(16u)));
+             let s = glow_coefficients(m, in1(11u), in1(12u), in1(13u), in1(14u), in1(15u), Shift(in1(16u), in1(17u)));
              out3(s.light); out2(vec2<f32>(s.intensity, s.absorption));",
             |i| {
                 i.pick(2);
@@ -398,6 +418,7 @@ pub fn group() -> Group {
                 i.log(0.1, 10.0);
                 i.evens(3, 0.0, 1.0);
                 i.log(1e-3, 1.0);
+                i.even(0.8, 1.3);
                 i.log(2.0, 10.0);
                 i.log(0.5, 2.0);
                 i.log(0.4, 2.0);
@@ -416,8 +437,8 @@ pub fn group() -> Group {
                     brightness: i.x(7),
                     tint: i.v3(8).to_array(),
                 };
-                let shift = Shift { colour: i.x(15), beaming: i.x(16) };
-                let sample = glow.coefficients(i.x(11), i.x(12), i.x(13), i.x(14), shift);
+                let shift = Shift { colour: i.x(16), beaming: i.x(17) };
+                let sample = glow.coefficients(i.x(11), i.x(12), i.x(13), i.x(14), i.x(15), shift);
                 let peak = sample.light.into_iter().fold(0.0, f64::max);
                 o.all(sample.light, peak);
                 o.put(sample.intensity);
@@ -446,6 +467,31 @@ pub fn group() -> Group {
                 o.all(gains, if beside { 1e6 } else { 1.0 });
             },
             TRANSCENDENTAL,
+        ),
+        twin(
+            "emit/volumes",
+            "pixel_width",
+            "let c = ray_constants(); let s = ray_state(13u);
+             out1(pixel_width(c, s, in1(23u), in1(24u), in3(25u), in1(28u), in1(29u)));",
+            |i| {
+                let (c, s) = random_ray(i, true);
+                push_constants(i, &c);
+                push_state(i, &s);
+                i.log(0.01, 0.5);
+                i.signed(0.01, 1.0);
+                i.direction();
+                i.even(0.0, 9.0);
+                i.log(1e-4, 1e-2);
+            },
+            |i, o| {
+                let (c, observer) = (constants(i), state(i, STATE));
+                let seen = Seen { frequency_ratio: 1.0, static_lapse: None, pixel_angle: i.x(29), swept: i.x(28) };
+                let there = State { u: i.x(23), du: i.x(24), n: i.v3(25), ..observer };
+                let width = seen.footprint(&c, &observer, &there);
+                // Rays that come straight from where they are bend by the difference of two angles.
+                o.near(width, width + 1e-3 * i.x(29));
+            },
+            1e-3,
         ),
         twin(
             "emit/volumes",

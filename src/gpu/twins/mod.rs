@@ -8,6 +8,7 @@
 //! change: no f32 function can be better than that.
 
 mod camera;
+mod clouds;
 mod excused;
 mod film;
 mod geodesic;
@@ -111,6 +112,7 @@ const TABLES: &[fn() -> Group] = &[
     light::group,
     matter::group,
     half::group,
+    clouds::group,
     sky::group,
     shade::group,
     refine::group,

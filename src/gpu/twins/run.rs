@@ -16,6 +16,8 @@ pub struct Image {
     pub format: wgpu::TextureFormat,
     /// Width, height, layers.
     pub size: [u32; 3],
+    /// The layers are those of a block, not of an array.
+    pub solid: bool,
     /// Each half as wide and high as the one before.
     pub levels: u32,
     pub bytes: Vec<u8>,
@@ -89,6 +91,8 @@ impl Gpu {
             self.device.create_sampler(&wgpu::SamplerDescriptor {
                 address_mode_u: beyond,
                 address_mode_v: beyond,
+                address_mode_w: beyond,
+                mipmap_filter: wgpu::MipmapFilterMode::Linear,
                 mag_filter: wgpu::FilterMode::Linear,
                 min_filter: wgpu::FilterMode::Linear,
                 ..Default::default()
@@ -124,8 +128,8 @@ impl Gpu {
             // f32 textures are read texel by texel.
             let filterable = |v: &GlobalVariable| {
                 let image = images.iter().find(|image| Some(image.name) == v.name.as_deref());
-                use wgpu::TextureFormat::{Rg16Float, Rgb9e5Ufloat, Rgba16Float};
-                image.is_some_and(|image| [Rg16Float, Rgb9e5Ufloat, Rgba16Float].contains(&image.format))
+                use wgpu::TextureFormat::{R16Float, Rg16Float, Rgb9e5Ufloat, Rgba16Float};
+                image.is_some_and(|image| [R16Float, Rg16Float, Rgb9e5Ufloat, Rgba16Float].contains(&image.format))
             };
             let groups = bound.iter().map(|v| v.binding.expect("a binding").group + 1).max().unwrap_or(0);
             let (mut layouts, mut sets) = (Vec::new(), Vec::new());
@@ -199,7 +203,7 @@ impl Gpu {
                 size: wgpu::Extent3d { width, height, depth_or_array_layers: layers.max(1) },
                 mip_level_count: image.levels,
                 sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
+                dimension: if image.solid { wgpu::TextureDimension::D3 } else { wgpu::TextureDimension::D2 },
                 format: image.format,
                 usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
                 view_formats: &[],
@@ -208,7 +212,11 @@ impl Gpu {
             &image.bytes,
         );
         // No layers: a plain image. Some: an array, if only of one.
-        let dimension = if layers == 0 { wgpu::TextureViewDimension::D2 } else { wgpu::TextureViewDimension::D2Array };
+        let dimension = match (image.solid, layers) {
+            (true, _) => wgpu::TextureViewDimension::D3,
+            (false, 0) => wgpu::TextureViewDimension::D2,
+            (false, _) => wgpu::TextureViewDimension::D2Array,
+        };
         texture.create_view(&wgpu::TextureViewDescriptor { dimension: Some(dimension), ..Default::default() })
     }
 }
@@ -217,6 +225,13 @@ fn layout_entry(module: &Module, variable: &GlobalVariable, filterable: bool) ->
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let ty = match (&module.types[variable.ty].inner, variable.space) {
         (TypeInner::Sampler { .. }, _) => wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        (TypeInner::Image { dim: ImageDimension::D3, class: ImageClass::Sampled { .. }, .. }, _) => {
+            wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable },
+                view_dimension: wgpu::TextureViewDimension::D3,
+                multisampled: false,
+            }
+        }
         (TypeInner::Image { dim: ImageDimension::D2, arrayed, class: ImageClass::Sampled { kind, .. } }, _) => {
             wgpu::BindingType::Texture {
                 sample_type: match kind {

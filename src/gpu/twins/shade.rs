@@ -185,6 +185,7 @@ fn images() -> Vec<Image> {
         format,
         size: [TABLE_WIDTH as u32, rows as u32, 0],
         levels: 1,
+        solid: false,
         bytes: bytes.to_vec(),
     };
     let (float, word) = (wgpu::TextureFormat::Rgba32Float, wgpu::TextureFormat::R32Uint);

@@ -64,6 +64,7 @@ pub fn map_image(name: &'static str, map: &SkyMap) -> Image {
         format: SKY_MAP.format,
         size: [width, height, 0],
         levels: 1,
+        solid: false,
         bytes: bytemuck::cast_slice(&texels).to_vec(),
     }
 }

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// The bands of radius in which structure is renewed, and the generations that follow each other there. Mirrors
+// src/emit/bands.rs, where the reasons are. Knows no pattern.
+
+#import constants
+#import shared/math
+
+// The number of the first band that shows at a radius, how many do, and the weights of the first and the next.
+struct BandsAt {
+    first: i32,
+    count: u32,
+    shares: vec2<f32>,
+}
+
+// The age and the number of a band's youngest generation, how many live, the weights of the youngest and the one
+// before it.
+struct Generations {
+    young: f32,
+    youngest: u32,
+    count: u32,
+    weights: vec2<f32>,
+}
+
+// The bands that show at ln r: one, or two about their border.
+fn bands_at(ln_r: f32) -> BandsAt {
+    let place = ln_r / BAND;
+    let border = floor(place + 0.5);
+    let across = (place - border) * (2.0 / BAND_FADE);
+    let blends = abs(across) < 1.0;
+    let shares = sincos(0.25 * PI * (across + 1.0));
+    return BandsAt(i32(border) - select(1, 0, across >= 1.0), select(1u, 2u, blends),
+        select(vec2<f32>(1.0, 0.0), shares.yx, blends));
+}
+
+// The index of a band among those of a frame, which begin with the number `first`: beyond the last one it goes on.
+fn band_index(number: i32, first: i32) -> u32 {
+    return u32(clamp(number - first, 0, i32(MOST_BANDS) - 1));
+}
+
+// The generations of a band (age, time from birth to birth, number, drift) that live `later` than the reference time.
+fn generations(band: vec4<u32>, later: f32) -> Generations {
+    let spacing = bitcast<f32>(band.y);
+    let since = bitcast<f32>(band.x) + later;
+    let births = floor(since / spacing);
+    let young = since - births * spacing;
+    let grown = young / (GENERATION_FADE * spacing);
+    let grows = grown < 1.0;
+    let fades = sincos(0.5 * PI * min(grown, 1.0));
+    return Generations(young, band.z + bitcast<u32>(i32(births)), select(1u, 2u, grows),
+        select(vec2<f32>(1.0, 0.0), fades, grows));
+}
+
+// The bits of a generation of a band, from which it has its part of the pattern.
+fn generation_key(band: i32, generation: u32, seed: u32) -> u32 {
+    return mix_bits(bitcast<u32>(band) + mix_bits(generation + seed));
+}
+
+fn mix_bits(bits: u32) -> u32 {
+    var x = (bits ^ (bits >> 16u)) * 0x7feb352du;
+    x = (x ^ (x >> 15u)) * 0x846ca68bu;
+    return x ^ (x >> 16u);
+}

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The bands of radius in which structure is renewed, and the generations that follow each other there: which of them
+//! show at a place and a time, how old they are and how strongly they show. Mirrored by `shaders/emit/bands.wgsl`.
+//! Knows no pattern and no law of motion but the rates that it is given.
+//!
+//! Matter at radius r turns by its angular velocity times its age. Were age counted from one instant, differential
+//! rotation would wind a pattern up without end. So space is split into bands, equally wide in ln r, in each of which
+//! generations of the pattern follow each other, each carried by its own age only.
+//!
+//! Where two bands meet, and while one generation follows another, both show, weighted by cos and sin: the squares of
+//! all weights add up to 1, so that a sum of independent patterns has the same variance everywhere and at any time. A
+//! generation is invisible when it comes and goes.
+
+use crate::random::mix;
+use arrayvec::ArrayVec;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+/// The width of a band in ln r, and the share of it over which it blends with its neighbours.
+pub(crate) const BAND: f64 = 0.3;
+pub(crate) const BAND_FADE: f64 = 0.35;
+/// The time in which a generation fades in, and the one before it out, in times from birth to birth.
+pub(crate) const GENERATION_FADE: f64 = 0.35;
+/// Bands that an emitter has at most: from r = 1 to its largest radius, and one more at either end for places beside
+/// it.
+pub(crate) const MOST_BANDS: usize = 50;
+
+/// When a frame shows its emitters. Times in M.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct When {
+    /// The time at which light leaves emitters whose delay is `reference_delay`.
+    pub time: f64,
+    /// 0 where light is not delayed.
+    pub reference_delay: f64,
+    /// Whether light is seen as it left, each ray's by its own delay.
+    pub delayed: bool,
+}
+
+/// How long the generations of a band live, M, and how far in ln r they are carried per M.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Life {
+    pub time: f64,
+    pub drift: f64,
+}
+
+/// The generations of a band as a frame shows them: small numbers that f32 can hold, however large the scene's time is.
+/// Times in M.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Band {
+    /// The age of the youngest generation at the reference time.
+    pub age: f64,
+    /// The time from birth to birth.
+    pub spacing: f64,
+    /// The number of the youngest generation, counted modulo 2^32.
+    pub generation: u32,
+    /// The change of ln r that carries the pattern, per M.
+    pub drift: f64,
+}
+
+/// The bands of a frame's emitter.
+#[derive(Clone, Copy, Debug)]
+pub struct Bands {
+    pub seed: u32,
+    /// The number of the first band, band 0 beginning at r = 1, and how many there are.
+    pub first: i32,
+    pub count: usize,
+    pub bands: [Band; MOST_BANDS],
+}
+
+/// The bands that show at a radius: the number of the first, how many, and the weights of the first and the next.
+#[derive(Clone, Copy, Debug)]
+pub struct BandsAt {
+    pub first: i32,
+    pub count: usize,
+    pub shares: [f64; 2],
+}
+
+/// The generations of a band that live at a time: the age and the number of the youngest, how many there are, and the
+/// weights of the youngest and the one before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Generations {
+    pub young: f64,
+    pub youngest: u32,
+    pub count: usize,
+    pub weights: [f64; 2],
+}
+
+/// A generation that shows at a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown {
+    pub weight: f64,
+    /// M.
+    pub age: f64,
+    pub drift: f64,
+    /// `generation_key`.
+    pub key: u32,
+}
+
+impl Bands {
+    /// The bands from one radius to another, with one more on either side, at `time`; `life`: of the band with the
+    /// middle ln r.
+    pub fn new(ln_r: [f64; 2], seed: u64, time: f64, life: impl Fn(f64) -> Life) -> Self {
+        let seed = mix((seed as u32).wrapping_add(mix((seed >> 32) as u32)));
+        let [first, last] = ln_r.map(|ln_r| (ln_r / BAND).floor() as i32);
+        let (first, count) = (first - 1, ((last - first + 3).max(1) as usize).min(MOST_BANDS));
+        let mut bands = [Band::default(); MOST_BANDS];
+        for (band, number) in bands.iter_mut().zip(first..).take(count) {
+            let Life { time: life, drift } = life(BAND * (f64::from(number) + 0.5));
+            let spacing = life / (1.0 + GENERATION_FADE);
+            // Bands do not all renew themselves at once.
+            let begin = f64::from(mix(seed.wrapping_add(mix(number as u32)))) / 4_294_967_296.0;
+            let age = (time + begin * spacing).rem_euclid(spacing);
+            let births = ((time - age) / spacing + begin).round();
+            *band = Band { age, spacing, generation: births.rem_euclid(4_294_967_296.0) as u32, drift };
+        }
+        Self { seed, first, count, bands }
+    }
+
+    /// The generations that show at ln r, `later` than the reference time: those of one band or two.
+    pub fn shown(&self, ln_r: f64, later: f64) -> ArrayVec<Shown, 4> {
+        let mut all = ArrayVec::new();
+        let BandsAt { first, count, shares } = bands_at(ln_r);
+        for (k, number) in (first..).take(count).enumerate() {
+            let band = self.band(number);
+            let Generations { young, youngest, count, weights } = band.generations(later);
+            for (old, weight) in (0..).zip(weights).take(count) {
+                // There is room for two generations of two bands.
+                let _ = all.try_push(Shown {
+                    weight: shares[k] * weight,
+                    age: young + f64::from(old) * band.spacing,
+                    drift: band.drift,
+                    key: generation_key(number, youngest.wrapping_sub(old), self.seed),
+                });
+            }
+        }
+        all
+    }
+
+    /// Beyond the last band it goes on.
+    pub fn band(&self, number: i32) -> Band {
+        let index = (number - self.first).clamp(0, self.count.max(1) as i32 - 1);
+        self.bands[index as usize]
+    }
+}
+
+impl Band {
+    /// The generations that live `later` than the reference time: one, or two while one follows the other.
+    pub fn generations(&self, later: f64) -> Generations {
+        let since = self.age + later;
+        let births = (since / self.spacing).floor();
+        let young = since - births * self.spacing;
+        let youngest = self.generation.wrapping_add(births as i32 as u32);
+        let grown = young / (GENERATION_FADE * self.spacing);
+        if grown < 1.0 {
+            let (new, old) = (FRAC_PI_2 * grown).sin_cos();
+            Generations { young, youngest, count: 2, weights: [new, old] }
+        } else {
+            Generations { young, youngest, count: 1, weights: [1.0, 0.0] }
+        }
+    }
+}
+
+/// The bands that show at ln r: one, or two about their border.
+pub fn bands_at(ln_r: f64) -> BandsAt {
+    let place = ln_r / BAND;
+    let border = (place + 0.5).floor();
+    let across = (place - border) * (2.0 / BAND_FADE);
+    let border = border.clamp(-1e6, 1e6) as i32;
+    if across.abs() < 1.0 {
+        let (outer, inner) = (FRAC_PI_4 * (across + 1.0)).sin_cos();
+        BandsAt { first: border - 1, count: 2, shares: [inner, outer] }
+    } else {
+        BandsAt { first: if across >= 1.0 { border } else { border - 1 }, count: 1, shares: [1.0, 0.0] }
+    }
+}
+
+/// The bits of a generation of a band, from which it has its part of the pattern.
+pub fn generation_key(band: i32, generation: u32, seed: u32) -> u32 {
+    mix((band as u32).wrapping_add(mix(generation.wrapping_add(seed))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bands(time: f64, seed: u64) -> Bands {
+        Bands::new([0.5, 3.5], seed, time, |ln_r| Life { time: (1.5 * ln_r).exp(), drift: 0.25 })
+    }
+
+    /// The variance of a sum of independent patterns, and so of one that fades into another.
+    #[test]
+    fn squares_of_weights_add_up_to_one() {
+        for time in [0.0, -77.7, 1e6, 1e12] {
+            let bands = bands(time, 3);
+            let mut most = 0;
+            for i in 0..4000 {
+                let shown = bands.shown(0.4 + f64::from(i) * 8e-4, f64::from(i % 37) - 20.0);
+                most = most.max(shown.len());
+                let sum: f64 = shown.iter().map(|s| s.weight * s.weight).sum();
+                assert!((sum - 1.0).abs() < 1e-12, "{time} {i}: {sum}");
+            }
+            assert_eq!(most, 4, "{time}");
+        }
+    }
+
+    /// `later` is time: the same generations at the same ages, whichever of the two tells when.
+    #[test]
+    fn later_is_time() {
+        let (early, late) = (bands(1000.0, 8), bands(1040.0, 8));
+        for i in 0..300 {
+            let ln_r = 0.6 + 0.009 * f64::from(i);
+            let [mut a, mut b] = [early.shown(ln_r, 40.0), late.shown(ln_r, 0.0)];
+            // At the very end of its life one may be left out by a rounding.
+            [&mut a, &mut b].into_iter().for_each(|shown| shown.retain(|s| s.weight > 1e-6));
+            assert_eq!(a.len(), b.len(), "{ln_r}");
+            for (a, b) in a.iter().zip(&b) {
+                assert!((a.age - b.age).abs() < 1e-9 && (a.weight - b.weight).abs() < 1e-9, "{ln_r}: {a:?} {b:?}");
+                assert_eq!((a.key, a.drift), (b.key, 0.25), "{ln_r}");
+            }
+        }
+    }
+}

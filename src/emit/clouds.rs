@@ -1,0 +1,467 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The structure of matter with depth: the factors by which turbulence changes its density and its temperature at a
+//! place and a time. `filaments` has the pattern, `bands` its generations; how matter carries it, and how fine it may
+//! be where it is seen, is here. Mirrored by `shaders/emit/clouds.wgsl`. Knows no light and no ray.
+//!
+//! A generation is carried by the matter as it grows old: around the axis by the angular velocity at its very place,
+//! which shears it, and along the radius by that of its band's middle. The pattern is P = e^(s G) over its mean, with G
+//! the weighted sum of the generations' noise, of variance 1. Density goes as P^clumping, divided by its mean, so that
+//! a mean optical depth stays the stated one; the temperature as P^heating.
+
+use super::bands::{Bands, Life, Shown, When};
+use super::filaments::{
+    FILAMENT_HEIGHT, FILAMENT_PERIOD, FILAMENT_SIDES, Filaments, filament_log_mean, filament_variance,
+};
+use super::shape::{Cloud, Reach, Stretch};
+use super::volume::{Shape, Volume};
+use crate::physics::flow::{Flow, Motion, Place};
+use crate::physics::orbit::horizon_outer;
+use crate::random::mix;
+use std::f64::consts::{PI, TAU};
+
+/// The standard deviation of ln P at `Volume::turbulence` 1.
+pub(crate) const CLOUD_DEVIATION: f64 = 1.0;
+/// Orbits that a generation lives, at the middle of its band; if the matter moves inwards or outwards, no longer than
+/// it takes to an e-fold of the radius.
+const LIFETIME: f64 = 1.0;
+/// The shear of a generation half as old as it grows, rad an e-fold of the radius.
+pub(crate) const HALF_SHEARED: f64 = SHEAR * PI * LIFETIME;
+/// The least rate of renewal, in orbital frequencies r^-1.5: turbulence of matter that stands still goes on.
+const LEAST_RATE: f64 = 0.25;
+/// Structure of jets is so much longer along the radius.
+const JET_STRETCH: f64 = 3.0;
+/// Shear, -d Omega / d ln r, in Omega: that of Keplerian orbits, for all, since it only tells how fine structure is.
+pub(crate) const SHEAR: f64 = 1.5;
+/// The share of a footprint, and of a spacing of samples, that a texel may be.
+pub(crate) const CLOUD_SHARP: f64 = 0.7;
+pub(crate) const CLOUD_SPACED: f64 = 0.7;
+/// Shear may make structure so many times finer. Keplerian orbits stay below that; near the axis some flows turn many
+/// times while a generation lives.
+pub(crate) const WOUND: f64 = 4.0;
+/// Smaller impact parameters are taken for it: rays that go round the hole have none.
+pub(crate) const LEAST_B: f64 = 2.0;
+/// The share of a footprint that samples may be coarser by: levels have structure of about a texel, of which the finest
+/// has none.
+pub(crate) const CLOUD_COARSE: f64 = 0.35;
+/// The power of `worth`, and the least share.
+pub(crate) const WORTH: f64 = 0.2;
+pub(crate) const LEAST_WORTH: f64 = 0.1;
+/// Texels that samples of a picture lie apart.
+pub(crate) const CLOUD_SPACING: f64 = 1.4;
+
+/// Where and when matter is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct CloudPlace {
+    pub r: f64,
+    pub cos: f64,
+    pub azimuth: f64,
+    /// M after `When::time`.
+    pub later: f64,
+}
+
+/// How far apart places must be to be told from each other.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Blur {
+    /// Across the ray, M.
+    pub footprint: f64,
+    /// Along it, from sample to sample, texels of the pattern.
+    pub spacing: f64,
+}
+
+/// The factors on density and temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Structure {
+    pub density: f64,
+    pub heat: f64,
+}
+
+impl Structure {
+    pub const NONE: Self = Self { density: 1.0, heat: 1.0 };
+}
+
+/// The structure of a volume as a frame shows it.
+#[derive(Clone, Copy, Debug)]
+pub struct Clouds {
+    /// The standard deviation of ln P.
+    pub strength: f64,
+    pub clumping: f64,
+    pub heating: f64,
+    /// The range of ln r after which the pattern repeats.
+    pub period: f64,
+    /// The angular velocity changes with the distance from the axis, not from the hole.
+    pub leans: bool,
+    pub bands: Bands,
+}
+
+impl Clouds {
+    /// The structure of `volume`, with the shape `cloud` within `reach`, moved by `flow` about a hole of spin `spin`.
+    /// `None`: it is even.
+    pub fn new(volume: &Volume, cloud: &Cloud, reach: &Reach, flow: &Flow, spin: f64, when: &When) -> Option<Self> {
+        if volume.turbulence <= 0.0 {
+            return None;
+        }
+        let life = |ln_r: f64| {
+            let r = ln_r.exp().max(1.02 * horizon_outer(spin));
+            let at = Place::new(spin, 1.0 / r, 0.0);
+            let velocity = flow.velocity(spin, &at);
+            let (around, drift) = (velocity.angular_velocity(spin, &at), velocity.radial_velocity(&at) / r);
+            let rate = around.hypot(TAU * drift).max(LEAST_RATE / (r * r.sqrt()));
+            Life { time: LIFETIME * TAU / rate, drift }
+        };
+        let [outer, inner] = reach.u.map(|u| -u.ln());
+        Some(Self {
+            strength: CLOUD_DEVIATION * volume.turbulence,
+            clumping: volume.clumping,
+            heating: volume.heating,
+            period: FILAMENT_PERIOD * if cloud.shape == Shape::Jet { JET_STRETCH } else { 1.0 },
+            leans: matches!(flow.motion, Motion::AngularMomentum { .. }),
+            bands: Bands::new([inner, outer], volume.seed, when.time, life),
+        })
+    }
+
+    /// The structure at a place of matter of the shape `cloud`, with the angular velocity `omega` there.
+    pub fn pattern(&self, filaments: &Filaments, cloud: &Cloud, at: &CloudPlace, omega: f64, blur: Blur) -> Structure {
+        let (ln_r, sin) = (at.r.ln(), ((1.0 - at.cos) * (1.0 + at.cos)).max(1e-12).sqrt());
+        let [height, steepness] = cloud.height(at.r, at.cos);
+        let [columns, rows, layers] = self.texels();
+        // Texels per rad of the directions: around, and across the shape.
+        let (around, across) = (columns / sin, layers * steepness * sin);
+        // Near the axis nothing is to be finer around than it is along or across.
+        let (pinched, lean) = (around / rows.max(across), if self.leans { at.cos.abs() / sin } else { 0.0 });
+        let (mut sum, mut cumulants) = (0.0, [0.0; 2]);
+        for Shown { weight, age, drift, key } in self.bands.shown(ln_r, at.later) {
+            let wound = columns * SHEAR * omega.abs() * age;
+            let leaning = wound * lean;
+            let finest = rows.hypot(wound).max(across.hypot(leaning)).max(around);
+            let seen = (CLOUD_SHARP * blur.footprint / at.r * finest).max(CLOUD_SPACED * blur.spacing);
+            let level = seen.max(pinched).max(wound.max(leaning) / (WOUND * rows)).log2().max(0.0);
+            let place = [
+                (at.azimuth - omega * age) / TAU + f64::from(key & 0xffff) / 65536.0,
+                (ln_r - drift * age) / self.period + f64::from(key >> 16) / 65536.0,
+                height / FILAMENT_HEIGHT + f64::from(mix(key) & 0xffff) / 65536.0,
+            ];
+            let s = self.strength * weight;
+            sum += s * filaments.value(place, level);
+            let variance = filament_variance(level);
+            for (sum, power) in cumulants.iter_mut().zip([self.clumping, 1.0]) {
+                *sum += filament_log_mean(power * s, variance);
+            }
+        }
+        let [clumps, pattern] = cumulants;
+        Structure { density: (self.clumping * sum - clumps).exp(), heat: (self.heating * (sum - pattern)).exp() }
+    }
+
+    /// Texels of the finest level per rad of azimuth, per e-fold of the radius and per thickness.
+    pub fn texels(&self) -> [f64; 3] {
+        let [columns, rows, layers] = FILAMENT_SIDES.map(|side| side as f64);
+        [columns / TAU, rows / self.period, layers / FILAMENT_HEIGHT]
+    }
+
+    /// The most texels of the finest level that a stretch passes.
+    pub fn passed(&self, cloud: &Cloud, stretch: &Stretch) -> f64 {
+        let ([u, v], [c, d]) = (stretch.u, stretch.cos);
+        let [columns, rows, layers] = self.texels();
+        let [height, steepness] = cloud.height(1.0 / u, c);
+        let climb = cloud.height(1.0 / v, d)[0] - height;
+        let sin = (1.0 - (c * c).max(d * d)).max(0.0).sqrt();
+        // Near the axis azimuths change without end, but structure is no finer there.
+        let around = stretch.swept * (columns / sin.max(0.05)).min(rows.max(layers * steepness * sin));
+        ((u / v).ln() * rows.hypot(columns * HALF_SHEARED)).hypot(climb * layers).hypot(around)
+    }
+
+    /// The number of samples that the texels `passed` at the radius r want, where structure finer than `footprint` does
+    /// not show.
+    pub fn samples(&self, cloud: &Cloud, passed: f64, r: f64, footprint: f64) -> f64 {
+        let [columns, rows, layers] = self.texels();
+        let finest = rows.hypot(columns * HALF_SHEARED).max(layers * cloud.height(r, 0.0)[1]);
+        passed / (CLOUD_SPACING * (CLOUD_COARSE * footprint / r * finest).max(1.0))
+    }
+}
+
+/// The share of the places that structure wants, where what is in front lets the share `through` of the light pass,
+/// and it sends the share `weight` of what it might: an error there shows that much. That the root is the fifth is
+/// found by trial: even places take twice as many for the same errors.
+pub fn worth(through: f64, weight: f64) -> f64 {
+    (through * weight).powf(WORTH).max(LEAST_WORTH)
+}
+
+/// The angle by which a ray with the impact parameter `b` has been bent so far, of which `swept` is that about the
+/// hole: a straight one from r = `from` to r = `to` would have swept less. `passed`: it came closer to the hole in
+/// between.
+pub fn bend(swept: f64, b: f64, from: f64, to: f64, passed: bool) -> f64 {
+    let [from, to] = [from, to].map(|r| (b / r).min(1.0).acos());
+    (swept - if passed { from + to } else { (from - to).abs() }).max(0.0)
+}
+
+/// The width that a pixel sees of matter at r = `to`, from r = `from` at a distance, M: the side of a square as large
+/// as what it sees. Where rays have been bent, they part in the plane that they lie in: the angle changes by d alpha =
+/// F db / b, F being e^(alpha + 0.40) for rays that go round the hole (Darwin 1959, Proc. R. Soc. A 249, 180: alpha =
+/// -ln(b / b_c - 1) - 0.40) and alpha for others (alpha = 4 M / b). e^(alpha + 0.40) - 1.5 - alpha / 2 is near to both,
+/// which is enough to tell how fine structure may be.
+pub fn footprint(pixel_angle: f64, distance: f64, b: f64, from: f64, to: f64, bend: f64) -> f64 {
+    let parted = from * to / b.max(LEAST_B) * ((bend + 0.4).exp() - 1.5 - 0.5 * bend).max(0.0);
+    pixel_angle * (distance * (distance + parted)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::orbit::circular_orbit;
+
+    const SPIN: f64 = 0.7;
+    const SHARP: Blur = Blur { footprint: 0.0, spacing: 0.0 };
+
+    /// A volume with its structure, as `Volumes` makes it.
+    struct Matter {
+        cloud: Cloud,
+        flow: Flow,
+        clouds: Clouds,
+    }
+
+    fn matter(volume: &Volume, motion: Motion, time: f64) -> Matter {
+        let flow = Flow::new(SPIN, volume.retrograde, motion);
+        let cloud = Cloud::new(volume, flow.isco);
+        let reach = cloud.reach(SPIN, 1e-7).unwrap();
+        let when = When { time, reference_delay: 0.0, delayed: true };
+        Matter { cloud, flow, clouds: Clouds::new(volume, &cloud, &reach, &flow, SPIN, &when).unwrap() }
+    }
+
+    const CIRCULAR: Motion = Motion::Keplerian { sub_keplerian: 1.0, infall: 0.0 };
+
+    fn disk(seed: u64) -> Volume {
+        Volume { turbulence: 1.0, seed, ..Volume::default() }
+    }
+
+    impl Matter {
+        fn seen(&self, at: &CloudPlace, blur: Blur) -> Structure {
+            let place = Place::new(SPIN, 1.0 / at.r, at.cos);
+            let omega = self.flow.velocity(SPIN, &place).angular_velocity(SPIN, &place);
+            self.clouds.pattern(Filaments::shared().unwrap(), &self.cloud, at, omega, blur)
+        }
+
+        /// ln of the density's factor.
+        fn log(&self, at: &CloudPlace) -> f64 {
+            self.seen(at, SHARP).density.ln()
+        }
+    }
+
+    /// Places all over a disk from r = 5 to 16.
+    fn places(count: u32) -> impl Iterator<Item = CloudPlace> {
+        let part = |i: u32, step: f64| (f64::from(i) * step).fract();
+        (1..=count).map(move |i| CloudPlace {
+            r: 5.0 * 3.2_f64.powf(part(i, 0.819_172_513)),
+            cos: 0.2 * (part(i, 0.671_043_607) - 0.5),
+            azimuth: TAU * part(i, 0.549_700_478),
+            later: 0.0,
+        })
+    }
+
+    fn mean(values: impl Iterator<Item = f64>) -> f64 {
+        let (sum, count) = values.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
+        sum / count
+    }
+
+    /// However fine or coarse it is seen, and however clumpy it is; the less of it is seen, the less it varies.
+    #[test]
+    fn mean_density_is_one() {
+        for clumping in [0.5, 1.0, 1.8] {
+            let patterns =
+                (0..150_u32).map(|i| matter(&Volume { clumping, ..disk(i.into()) }, CIRCULAR, 37.0 * f64::from(i)));
+            let patterns = patterns.collect::<Vec<_>>();
+            let mut last = f64::INFINITY;
+            for (footprint, spacing) in [(0.0, 0.0), (0.1, 0.0), (0.0, 9.0), (1.0, 1.0), (4.0, 0.0)] {
+                let blur = Blur { footprint, spacing };
+                let all = || patterns.iter().flat_map(|m| places(2000).map(move |p| m.seen(&p, blur)));
+                let average = mean(all().map(|s| s.density));
+                assert!((average - 1.0).abs() < 0.03 * (1.0 + clumping), "{clumping} {blur:?}: {average}");
+                let spread = mean(all().map(|s| s.density.ln().powi(2))).sqrt();
+                assert!(spread < 1.02 * last, "{clumping} {blur:?}: {spread} {last}");
+                last = spread;
+            }
+            assert!(last < 0.5, "{clumping}: {last}");
+            // Heat goes with density: both are powers of one pattern.
+            for at in places(50) {
+                let [a, b] = [0, 1].map(|i| patterns[i].seen(&at, SHARP));
+                let [x, y] = [a, b].map(|s| s.heat.ln() / 0.15);
+                assert!(a.heat != b.heat && a.density != b.density);
+                let whole = matter(&Volume { clumping: 1.0, ..disk(0) }, CIRCULAR, 0.0).log(&at);
+                assert!((x - whole).abs() < 1e-9 && y.is_finite(), "{x} {whole}");
+            }
+        }
+        let blurred =
+            matter(&disk(1), CIRCULAR, 0.0).seen(&places(1).next().unwrap(), Blur { footprint: 1e3, ..SHARP });
+        assert_eq!((blurred.density, blurred.heat), (1.0, 1.0));
+    }
+
+    /// Neither across the border of two bands, nor at the azimuth where the block begins.
+    #[test]
+    fn there_is_no_seam() {
+        let m = matter(&disk(4), CIRCULAR, 777.0);
+        let fine = 1e-5;
+        for start in places(6) {
+            let along = |i: f64| m.log(&CloudPlace { r: start.r.min(8.0) * (fine * i).exp(), ..start });
+            let around = |i: f64| m.log(&CloudPlace { azimuth: TAU * i * fine, ..start });
+            let across = |i: f64| m.log(&CloudPlace { cos: 0.2 * (i * fine - 0.5), ..start });
+            let step = |value: &dyn Fn(f64) -> f64| {
+                (0..100_000).map(f64::from).map(|i| (value(i + 1.0) - value(i)).abs()).fold(0.0, f64::max)
+            };
+            let steps = [step(&along), step(&around), step(&across)];
+            assert!(steps.iter().all(|s| *s < 0.03 && *s > 0.0), "{steps:?}");
+            let turned = CloudPlace { azimuth: start.azimuth - 3.0 * TAU, ..start };
+            assert!((m.log(&start) - m.log(&turned)).abs() < 1e-9);
+        }
+    }
+
+    /// Nothing jumps when a generation comes or goes, nor at any other time; and what changes does so evenly.
+    #[test]
+    fn generations_come_and_go_unseen() {
+        for time in [0.0, -600.0, 1e6] {
+            let m = matter(&disk(1), CIRCULAR, time);
+            for number in 0..m.clouds.bands.count as i32 {
+                let band = m.clouds.bands.band(m.clouds.bands.first + number);
+                let r = (crate::emit::bands::BAND * (f64::from(m.clouds.bands.first + number) + 0.5)).exp();
+                let birth = band.spacing - band.age;
+                for at in places(20) {
+                    let [before, after] =
+                        [birth - 1e-6, birth + 1e-6].map(|later| m.log(&CloudPlace { r: r.max(2.5), later, ..at }));
+                    assert!((before - after).abs() < 1e-3, "{time} {r}: {before} {after}");
+                }
+            }
+            let (mut change, mut bend) = (0.0_f64, 0.0_f64);
+            for at in places(12) {
+                let value = |i: u32| m.log(&CloudPlace { later: 0.02 * f64::from(i), ..at });
+                for i in 0..10_000 {
+                    let [a, b, c] = [i, i + 1, i + 2].map(value);
+                    (change, bend) = (change.max((b - a).abs()), bend.max((c - 2.0 * b + a).abs()));
+                }
+            }
+            // At r = 5 the finest cells pass in 1 M.
+            assert!(change < 0.2 && bend < 0.15, "{time}: {change} {bend}");
+        }
+    }
+
+    /// A parcel keeps its density for a while, wherever its orbit takes it, and whatever moves it.
+    #[test]
+    fn matter_carries_the_pattern() {
+        let outflow = Motion::Outflow { speed: 0.6, base: 2.0 };
+        let jet = Volume { shape: Shape::Jet, thickness: 0.03, outer_radius: 30.0, ..disk(2) };
+        let infall = Motion::Keplerian { sub_keplerian: 0.8, infall: 0.5 };
+        for (volume, motion) in [(disk(5), CIRCULAR), (Volume { retrograde: true, ..disk(6) }, CIRCULAR)]
+            .into_iter()
+            .chain([(disk(7), infall), (jet, outflow), (disk(8), Motion::AngularMomentum { l0: 0.9 })])
+        {
+            let m = matter(&volume, motion, 91.0);
+            let (mut carried, mut standing) = (0.0, 0.0);
+            for at in places(400) {
+                let at = match volume.shape {
+                    Shape::Jet => CloudPlace { cos: 1.0 - 0.02 * (1.0 + at.cos), ..at },
+                    _ => at,
+                };
+                let later = 1.5;
+                let mut parcel = at;
+                for _ in 0..100 {
+                    let place = Place::new(SPIN, 1.0 / parcel.r, at.cos);
+                    let velocity = m.flow.velocity(SPIN, &place);
+                    parcel.azimuth += velocity.angular_velocity(SPIN, &place) * later / 100.0;
+                    parcel.r += velocity.radial_velocity(&place) * later / 100.0;
+                }
+                if volume.shape == Shape::Jet {
+                    // Along the wall.
+                    let [before, after] = [at.r, parcel.r].map(|r| m.cloud.height(r, at.cos)[0]);
+                    parcel.cos += (before - after) * m.cloud.thickness;
+                }
+                let begin = m.log(&at);
+                carried += (m.log(&CloudPlace { later, ..parcel }) - begin).abs();
+                standing += (m.log(&CloudPlace { later, ..at }) - begin).abs();
+            }
+            // Along the radius a band goes as fast as its middle.
+            let limit = if volume.shape == Shape::Jet { 0.7 } else { 0.5 };
+            assert!(carried < limit * standing, "{motion:?}: {carried} {standing}");
+        }
+        // The angular velocity is that of circular geodesics.
+        let (m, place) = (matter(&disk(5), CIRCULAR, 0.0), Place::new(SPIN, 0.1, 0.0));
+        let omega = m.flow.velocity(SPIN, &place).angular_velocity(SPIN, &place);
+        assert!((omega / circular_orbit(SPIN, 10.0).unwrap().angular_velocity - 1.0).abs() < 1e-12);
+    }
+
+    /// Nor does it matter how fast orbits are: the pattern is as fine everywhere, and always.
+    #[test]
+    fn time_does_not_wind_the_pattern_up() {
+        let slopes = |time: f64, r: f64| {
+            let orbit = TAU * (r * r.sqrt() + SPIN);
+            let slope = |i: u32, dr: f64, turn: f64| {
+                let m = matter(&disk(i.into()), CIRCULAR, time + 0.043 * orbit * f64::from(i));
+                mean(places(60).map(|at| {
+                    let at = CloudPlace { r: r * (1.0 + 0.3 * at.azimuth / TAU), ..at };
+                    let there = CloudPlace { r: at.r * (1.0 + dr), azimuth: at.azimuth + turn, ..at };
+                    (m.log(&there) - m.log(&at)).abs() / (dr + turn)
+                }))
+            };
+            [(1e-5, 0.0), (0.0, 1e-5)].map(|(dr, turn)| mean((0..120).map(|i| slope(i, dr, turn))))
+        };
+        let early = slopes(100.0, 8.0);
+        assert!(early[0] > 2.0 * early[1], "{early:?}: not drawn out along the orbit");
+        for (time, r) in [(1e6, 8.0), (1e12, 8.0), (0.0, 14.0), (-1e9, 4.5)] {
+            let late = slopes(time, r);
+            (0..2).for_each(|i| assert!((late[i] / early[i] - 1.0).abs() < 0.15, "{time} {r}: {early:?} {late:?}"));
+        }
+    }
+
+    /// `later` is time: light that took longer shows an earlier one.
+    #[test]
+    fn later_is_time() {
+        let (now, then) = (matter(&disk(3), CIRCULAR, 1e6), matter(&disk(3), CIRCULAR, 1e6 - 31.0));
+        for at in places(300) {
+            let difference = now.log(&CloudPlace { later: -31.0, ..at }) - then.log(&at);
+            assert!(difference.abs() < 1e-6, "{difference}");
+        }
+    }
+
+    #[test]
+    fn any_finite_time_and_place_will_do() {
+        let motions = [
+            CIRCULAR,
+            Motion::Keplerian { sub_keplerian: 0.0, infall: 1.0 },
+            Motion::AngularMomentum { l0: 0.0 },
+            Motion::AngularMomentum { l0: 1.0 },
+            Motion::Outflow { speed: 0.995, base: 1.0 },
+        ];
+        for (time, motion) in
+            [0.0, -1e-300, 1e12, 1e300, f64::MAX, f64::MIN].into_iter().zip(motions.into_iter().cycle())
+        {
+            for shape in [Shape::Disk, Shape::Torus, Shape::Halo, Shape::Jet] {
+                let volume = Volume { shape, thickness: 1e6, outer_radius: 1e4, radius: 1e3, ..disk(u64::MAX) };
+                let m = matter(&volume, motion, time);
+                for (r, cos) in [(1.72, 0.0), (2.0, 1.0), (1e4, -1.0), (7.0, 1.0 - 1e-12), (300.0, 0.3)] {
+                    for blur in [SHARP, Blur { footprint: 1e30, spacing: 1e30 }, Blur { footprint: 0.1, spacing: 3.0 }]
+                    {
+                        let seen = m.seen(&CloudPlace { r, cos, azimuth: -3.0, later: -1e4 }, blur);
+                        assert!(
+                            seen.density.is_finite() && seen.heat.is_finite() && seen.heat > 0.0,
+                            "{time} {seen:?}"
+                        );
+                    }
+                }
+            }
+        }
+        let even = Volume { turbulence: 0.0, ..Volume::default() };
+        let (flow, cloud) = (Flow::new(SPIN, false, CIRCULAR), Cloud::new(&even, 4.0));
+        let reach = cloud.reach(SPIN, 1e-7).unwrap();
+        assert!(Clouds::new(&even, &cloud, &reach, &flow, SPIN, &When::default()).is_none());
+    }
+
+    /// A straight ray is not bent, whichever way it goes; a pixel then sees as much as it would without a hole.
+    #[test]
+    fn straight_rays_see_small_patches() {
+        for (b, x) in [(5.0, 30.0), (20.0, -12.0), (0.1, 7.0)] {
+            let (from, to) = (f64::hypot(50.0, b), f64::hypot(x, b));
+            let swept = f64::atan2(50.0, b) + f64::atan2(x, b);
+            let turned = if x > 0.0 { swept } else { f64::atan2(50.0, b) - f64::atan2(-x, b) };
+            assert!(bend(turned, b, from, to, x > 0.0) < 1e-12, "{b} {x}");
+            assert!((footprint(1e-3, 80.0, b, from, to, 0.0) / 0.08 - 1.0).abs() < 1e-12);
+            // Half a turn more, and everything is e^pi times as narrow, of which the square has the root.
+            let [one, two] = [2.0, 3.0].map(|half| footprint(1e-3, 80.0, b, from, to, half * PI));
+            assert!((two / one / (0.5 * PI).exp() - 1.0).abs() < 0.05, "{one} {two}");
+        }
+    }
+}

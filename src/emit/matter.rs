@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Volumes and hot spots as a frame shows them: their settings with all that depends on the hole, on time and on how
+//! exactly they are summed. `volumes` sums them. Knows no ray and no tracer.
+
+use super::bands::When;
+use super::clouds::Clouds;
+use super::glow::Glow;
+use super::hot_spot::HotSpot;
+use super::shape::{Cloud, Reach, Stretch, gaussian};
+use super::volume::{FlowLaw, Volume};
+use crate::physics::blackbody::BlackbodyTable;
+use crate::physics::flow::{Flow, Motion};
+use crate::physics::geodesic::wrap_angle;
+use crate::physics::orbit::horizon_outer;
+
+/// The radii at which a volume may bend.
+pub(super) const BENDS: usize = 6;
+/// The sine of theta below which cells are no finer.
+pub(crate) const NEAR_AXIS: f64 = 0.01;
+/// Structure is so many times denser here and there than matter without it.
+pub(crate) const CLUMPED: f64 = 10.0;
+
+/// How exactly the matter along rays is summed.
+#[derive(Clone, Copy, Debug)]
+pub struct Accuracy {
+    /// Cells for each length over which matter changes.
+    pub fineness: f64,
+    /// The same beside places where it bends.
+    pub beside_bends: f64,
+    /// Whether stretches that have structure are summed in even layers, not in cells: structure is so rough that
+    /// polynomials gain nothing.
+    pub layers: bool,
+    /// Thinner matter is left out; of matter that absorbs, in optical depths per M.
+    pub least: f64,
+    /// Matter behind so great an optical depth is left out.
+    pub dark: f64,
+}
+
+impl Accuracy {
+    /// For pixels: 1e-5 of a picture's peak.
+    pub const PICTURE: Self = Self { fineness: 1.0, beside_bends: 1.0, layers: true, least: 1e-7, dark: 12.0 };
+    /// For pixels that show a number.
+    pub const VIEW: Self = Self { dark: 300.0, ..Self::PICTURE };
+    /// For rays whose numbers count: 1e-8 of it.
+    pub const EXACT: Self = Self { fineness: 4.0, beside_bends: 16.0, layers: false, least: 1e-13, dark: 300.0 };
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self::PICTURE
+    }
+}
+
+/// A volume of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct VolumeMatter {
+    pub cloud: Cloud,
+    pub reach: Reach,
+    pub flow: Flow,
+    pub glow: Glow,
+    /// 1/r where cells that reach across would lose an order or more: at the bends of the density, and at the ISCO,
+    /// where matter begins to fall as (r_I - r)^(3/2). Infinite for none.
+    pub bends: [f64; BENDS],
+    /// Thinner matter is left out.
+    pub least: f64,
+    /// `None`: it is even.
+    pub clouds: Option<Clouds>,
+}
+
+/// A hot spot of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct SpotMatter {
+    pub radius: f64,
+    pub size: f64,
+    /// Azimuth of its centre at the time `When::time`, and its change in time, towards +ph.
+    pub azimuth: f64,
+    pub angular_velocity: f64,
+    pub reach: Reach,
+    pub flow: Flow,
+    pub glow: Glow,
+}
+
+impl VolumeMatter {
+    /// About a hole of spin `spin`. `None`: all of it lies inside the horizon.
+    pub fn new(volume: &Volume, spin: f64, when: &When, accuracy: Accuracy) -> Option<Self> {
+        let least = accuracy.least / volume.absorption.max(1.0);
+        // The ISCO does not depend on the law of motion.
+        let circular = Motion::Keplerian { sub_keplerian: volume.sub_keplerian, infall: volume.infall };
+        let flow = Flow::new(spin, volume.retrograde, circular);
+        let cloud = Cloud::new(volume, flow.isco);
+        let motion = match volume.flow {
+            FlowLaw::Keplerian => circular,
+            FlowLaw::AngularMomentum => Motion::AngularMomentum { l0: volume.angular_momentum },
+            FlowLaw::Outflow => Motion::Outflow { speed: volume.speed, base: cloud.inner },
+        };
+        let (reach, flow) = (cloud.reach(spin, least)?, Flow { motion, ..flow });
+        Some(Self {
+            cloud,
+            reach,
+            flow,
+            glow: Glow {
+                power_law: volume.power_law,
+                absorption: volume.absorption,
+                temperature: volume.temperature,
+                reference_radius: cloud.reference_radius(),
+                temperature_slope: volume.temperature_slope,
+                log_reference: BlackbodyTable::shared().ln_luminance(volume.temperature),
+                spectral_index: volume.spectral_index,
+                tint: volume.tint,
+                brightness: volume.brightness,
+            },
+            bends: {
+                let [a, b, c, d, e] = cloud.bends();
+                let falls = if volume.flow == FlowLaw::Keplerian { flow.isco } else { 0.0 };
+                [a, b, c, d, e, falls].map(|r| 1.0 / r)
+            },
+            least,
+            clouds: Clouds::new(volume, &cloud, &reach, &flow, spin, when),
+        })
+    }
+
+    /// How much of the light it may send that a stretch sends, at most, if it were even: of a blackbody that goes with
+    /// the optical depth, of a power law with the density.
+    pub(crate) fn weight(&self, stretch: &Stretch) -> f64 {
+        let ([u, v], [c, d], [r, cos]) = (stretch.u, stretch.cos, stretch.middle());
+        let density = |r: f64, cos: f64| self.cloud.density(r, cos);
+        let most = density(1.0 / u, c).max(density(1.0 / v, d)).max(density(r, cos));
+        match self.glow.power_law {
+            true => most.min(1.0),
+            false => 1.0 - (-CLUMPED * self.glow.absorption * most * stretch.length()).exp(),
+        }
+    }
+
+    /// The number of cells that a stretch should be cut into.
+    pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
+        let [a, b] = stretch.cos;
+        let sin2 = 1.0 - (a * a).max(b * b);
+        // Velocities by angular momentum go as sqrt(R), which bends without end towards the axis.
+        let bends = matches!(self.flow.motion, Motion::AngularMomentum { .. });
+        let beside_axis = if bends { 0.5 * stretch.swept / sin2.max(NEAR_AXIS * NEAR_AXIS).sqrt() } else { 0.0 };
+        self.cloud.cells(stretch) + beside_axis
+    }
+}
+
+impl SpotMatter {
+    /// About a hole of spin `spin`, as a frame shows it.
+    pub fn new(spot: &HotSpot, spin: f64, when: &When) -> Self {
+        let sense = if spot.retrograde { -1.0 } else { 1.0 };
+        let radius = spot.radius.max(Flow::new(spin, spot.retrograde, Motion::Rigid { angular_velocity: 0.0 }).isco);
+        let angular_velocity = 1.0 / (radius * radius.sqrt() + sense * spin);
+        let flow = Flow::new(spin, spot.retrograde, Motion::Rigid { angular_velocity });
+        let cut = HotSpot::CUT * spot.size;
+        let low = (radius - cut).max(horizon_outer(spin));
+        Self {
+            radius,
+            size: spot.size,
+            azimuth: wrap_angle((spot.azimuth + sense * angular_velocity * when.time) % std::f64::consts::TAU),
+            angular_velocity: sense * angular_velocity,
+            reach: Reach { u: [1.0 / (radius + cut), 1.0 / low], cos: (cut / low).min(1.0) },
+            flow,
+            glow: Glow {
+                power_law: !spot.thermal,
+                absorption: spot.absorption,
+                temperature: spot.temperature,
+                reference_radius: 1.0,
+                temperature_slope: 0.0,
+                log_reference: BlackbodyTable::shared().ln_luminance(spot.temperature),
+                spectral_index: spot.spectral_index,
+                tint: spot.tint,
+                brightness: spot.brightness,
+            },
+        }
+    }
+
+    /// The density at (1/r, cos th, azimuth) = (1 / `r`, `cos`, `azimuth`), `later` after `When::time`: a Gaussian of
+    /// the distance from the spot's centre in chart coordinates.
+    pub fn density(&self, r: f64, cos: f64, azimuth: f64, later: f64) -> f64 {
+        let from = azimuth - self.azimuth - self.angular_velocity * later;
+        // |x - x_s|^2 with the difference of the radii apart from the angle: no cancellation.
+        let axis = r * ((1.0 - cos) * (1.0 + cos)).max(0.0).sqrt();
+        let half = (0.5 * from).sin();
+        let square = (axis - self.radius).powi(2) + 4.0 * axis * self.radius * half * half + (r * cos).powi(2);
+        let widths = square.sqrt() / self.size;
+        if widths < HotSpot::CUT { gaussian(widths) } else { 0.0 }
+    }
+
+    /// The number of cells that a stretch should be cut into.
+    pub(crate) fn cells(&self, stretch: &Stretch) -> f64 {
+        let [a, b] = stretch.u;
+        let across = stretch.swept / a.min(b).max(1e-30);
+        (1.0 / a - 1.0 / b).hypot(across) / self.size
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::orbit::isco;
+
+    /// A spot moves along its circular geodesic, either way, and none orbits inside the ISCO.
+    #[test]
+    fn spots_are_on_circular_geodesics() {
+        let spin = 0.7;
+        for (retrograde, sense) in [(false, 1.0), (true, -1.0)] {
+            let spot = HotSpot { retrograde, radius: 9.0, azimuth: 0.3, ..HotSpot::default() };
+            let when = When { time: 1e4, ..When::default() };
+            let matter = SpotMatter::new(&spot, spin, &when);
+            let omega = sense / (27.0 + sense * spin);
+            assert!((matter.angular_velocity / omega - 1.0).abs() < 1e-14);
+            for later in [-40.0, 0.0, 13.0] {
+                let azimuth = 0.3 + omega * (1e4 + later);
+                assert!((matter.density(9.0, 0.0, azimuth, later) - 1.0).abs() < 1e-9, "{later}");
+                let beside = matter.density(9.0 + spot.size, 0.0, azimuth, later);
+                assert!((beside - gaussian(1.0)).abs() < 1e-9, "{later}: {beside}");
+                assert_eq!(matter.density(9.0, 0.0, azimuth + 2.0, later), 0.0);
+            }
+            let inner = SpotMatter::new(&HotSpot { radius: 1.0, ..spot }, spin, &when);
+            assert_eq!(inner.radius, isco(sense * spin));
+        }
+    }
+}

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Frames with structured matter: its mean, its motion, and how well a pixel's one ray shows it. `emit::clouds` has the
+//! tests of the structure itself.
+
+use crate::frames::{cpu, floats, picture};
+use bhr::image::PixelFormat;
+use bhr::renderer::Renderer;
+use bhr::scene::{Camera, Effects, FlowLaw, LensTables, Scene, Shape, Sky, View, Volume};
+use glam::DVec3;
+
+const SIZE: [u32; 2] = [48, 27];
+
+/// Volumes by themselves, from r = 28, so many degrees above the plane.
+fn alone(elevation: f64, volume: Volume) -> Scene {
+    let (sin, cos) = elevation.to_radians().sin_cos();
+    let position = DVec3::new(28.0 * cos, 0.0, 28.0 * sin);
+    let camera = Camera { position, forward: -position, up: DVec3::Z, fov_y: 0.7, ..Camera::plain() };
+    let mut scene = Scene { disk: None, sky: Sky::black(), camera, time: 35.0, ..Scene::plain() };
+    scene.hole.spin = 0.6;
+    scene.quality.refines = false;
+    scene.quality.lens_tables = LensTables::Never;
+    scene.volumes.push(volume);
+    scene
+}
+
+fn light(renderer: &mut Renderer, scene: &Scene) -> Vec<f32> {
+    renderer.scene = scene.clone();
+    let pixels = floats(&picture(renderer, PixelFormat::Rgba32F, SIZE, None, false));
+    pixels.as_chunks::<4>().0.iter().map(|p| p[1]).collect()
+}
+
+fn mean(values: &[f32]) -> f64 {
+    values.iter().map(|v| f64::from(*v)).sum::<f64>() / values.len() as f64
+}
+
+fn apart(a: &[f32], b: &[f32]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / a.len() as f64
+}
+
+/// On average over what it may look like, matter with structure is as thick as even matter, and a power law as bright.
+#[test]
+fn structure_keeps_the_mean() {
+    let mut renderer = cpu();
+    let thin = Volume { absorption: 0.02, thickness: 0.15, power_law: true, ..Volume::default() };
+    for view in [View::OpticalDepth, View::Intensity] {
+        let mut value = |turbulence: f64, seed: u64| {
+            let scene = Scene { view, ..alone(40.0, Volume { turbulence, seed, ..thin }) };
+            renderer.scene = scene;
+            let values = floats(&picture(&mut renderer, PixelFormat::R32F, SIZE, None, false));
+            mean(&values.into_iter().map(|v| if v.is_nan() { 0.0 } else { v }).collect::<Vec<_>>())
+        };
+        let even = value(0.0, 0);
+        let structured = (0..12).map(|seed| value(1.0, seed)).collect::<Vec<_>>();
+        let average = structured.iter().sum::<f64>() / 12.0;
+        assert!((average / even - 1.0).abs() < 0.08, "{view:?}: {structured:?}, not {even}");
+        assert!(structured.iter().any(|v| (v / even - 1.0).abs() > 0.02), "{view:?}: {structured:?} all are {even}");
+    }
+}
+
+/// It moves from frame to frame, evenly: no frame differs from the one before by much more than others do.
+#[test]
+fn structure_moves_and_nothing_pops() {
+    let mut renderer = cpu();
+    for (volume, begin) in [
+        (Volume::default(), 35.0),
+        (
+            Volume { shape: Shape::Jet, flow: FlowLaw::Outflow, thickness: 0.05, absorption: 0.3, ..Volume::default() },
+            1e9,
+        ),
+    ] {
+        let mut scene = alone(15.0, volume);
+        let mut frame = |time: f64| {
+            scene.time = time;
+            light(&mut renderer, &scene)
+        };
+        let frames = (0..24).map(|i| frame(begin + f64::from(i))).collect::<Vec<_>>();
+        let mut steps = frames.windows(2).map(|pair| apart(&pair[0], &pair[1])).collect::<Vec<_>>();
+        steps.sort_by(f64::total_cmp);
+        let (median, most) = (steps[steps.len() / 2], steps[steps.len() - 1]);
+        assert!(most < 2.0 * median && median < 0.2 * mean(&frames[0]), "{:?}: {steps:?}", volume.shape);
+        let far = apart(&frames[0], &frames[23]);
+        assert!(far > 3.0 * median, "{:?}: {far} {median}", volume.shape);
+        assert_eq!(frames[0], frame(begin), "{:?}", volume.shape);
+    }
+}
+
+/// Light that took longer shows older structure, unless that is off; and seeds differ.
+#[test]
+fn structure_is_seen_with_its_delay() {
+    let mut renderer = cpu();
+    let mut scene = alone(10.0, Volume::default());
+    let delayed = light(&mut renderer, &scene);
+    scene.effects = Effects(Effects::ALL & !Effects::LIGHT_DELAY);
+    let at_once = light(&mut renderer, &scene);
+    assert!(apart(&delayed, &at_once) > 0.1 * mean(&delayed));
+    scene.volumes[0].seed = 1 << 40;
+    assert!(apart(&light(&mut renderer, &scene), &at_once) > 0.1 * mean(&delayed));
+    scene.volumes[0].turbulence = 0.0;
+    scene.volumes[0].seed = 0;
+    let even = light(&mut renderer, &scene);
+    scene.volumes[0].clumping = 3.0;
+    assert_eq!(light(&mut renderer, &scene), even);
+}
+
+/// One ray of a pixel shows about the mean of what many find there, and no less light.
+#[test]
+fn pixels_show_about_what_many_rays_find() {
+    let mut renderer = cpu();
+    for volume in [
+        Volume::default(),
+        Volume { thickness: 0.14, absorption: 0.3, ..Volume::default() },
+        Volume {
+            shape: Shape::Torus,
+            thickness: 0.2,
+            absorption: 0.1,
+            flow: FlowLaw::AngularMomentum,
+            ..Volume::default()
+        },
+    ] {
+        let mut scene = alone(10.0, volume);
+        let one = light(&mut renderer, &scene);
+        scene.quality.samples_per_pixel = 16;
+        let many = light(&mut renderer, &scene);
+        let (difference, brightness) = (apart(&one, &many), mean(&many));
+        println!("{:?}: {difference} of {brightness}, {}", volume.shape, mean(&one));
+        assert!(difference < 0.2 * brightness, "{:?}: {difference} {brightness}", volume.shape);
+        assert!((mean(&one) / brightness - 1.0).abs() < 0.06, "{:?}: {} {brightness}", volume.shape, mean(&one));
+    }
+}
