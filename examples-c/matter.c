@@ -13,7 +13,8 @@ typedef enum FieldKind {
     FIELD_CHOICE,  /* int32_t: the value of one of `choices` */
     FIELD_DOUBLE,  /* double */
     FIELD_DEGREES, /* double: radians, written in degrees */
-    FIELD_COLOUR   /* double[3], written R/G/B */
+    FIELD_COLOUR,  /* double[3], written R/G/B */
+    FIELD_UINT64   /* uint64_t */
 } FieldKind;
 
 typedef struct Field {
@@ -58,6 +59,10 @@ static const Field VOLUME_FIELDS[] = {
     {"infall", FIELD_DOUBLE, OF_VOLUME(infall), NULL},
     {"angular-momentum", FIELD_DOUBLE, OF_VOLUME(angular_momentum), NULL},
     {"speed", FIELD_DOUBLE, OF_VOLUME(speed), NULL},
+    {"turbulence", FIELD_DOUBLE, OF_VOLUME(turbulence), NULL},
+    {"clumping", FIELD_DOUBLE, OF_VOLUME(clumping), NULL},
+    {"heating", FIELD_DOUBLE, OF_VOLUME(heating), NULL},
+    {"seed", FIELD_UINT64, OF_VOLUME(seed), NULL},
 };
 
 static const Field HOT_SPOT_FIELDS[] = {
@@ -119,6 +124,8 @@ static int read_value(const Field *field, const char *value, void *out) {
             *(int32_t *)(void *)target = choice->value;
         }
         return choice != NULL;
+    case FIELD_UINT64:
+        return option_read_uint64(value, (uint64_t *)(void *)target);
     case FIELD_COLOUR:
         return read_numbers(value, 3, (double *)(void *)target);
     case FIELD_DOUBLE:
@@ -137,6 +144,7 @@ static void print_value_name(FILE *out, const Field *field) {
     case FIELD_WORD:
     case FIELD_NO_WORD: fputs("no value", out); return;
     case FIELD_COLOUR: fputs("R/G/B", out); return;
+    case FIELD_UINT64: fputs("a whole number", out); return;
     case FIELD_DEGREES: fputs("degrees", out); return;
     case FIELD_DOUBLE: fputs("a number", out); return;
     case FIELD_CHOICE: break;
@@ -242,7 +250,7 @@ BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind) {
     return BHR_OK;
 }
 
-int volume_read(const char *name, const char *text, BhrVolume *out) {
+int volume_read(const char *name, const char *text, double turbulence, BhrVolume *out) {
     const size_t length = strcspn(text, ",");
     for (const Choice *kind = VOLUME_KINDS; kind->name != NULL; kind++) {
         if (strlen(kind->name) == length && strncmp(kind->name, text, length) == 0) {
@@ -250,6 +258,7 @@ int volume_read(const char *name, const char *text, BhrVolume *out) {
             if (status < 0) {
                 return report_failure("begin a volume", status);
             }
+            out->turbulence = turbulence;
             return text[length] == '\0' ? 0
                                         : read_items(name, text, text + length + 1, VOLUME_FIELDS,
                                                      COUNT_OF(VOLUME_FIELDS), out);
@@ -273,10 +282,11 @@ static int count_texts(const char *name, const TextList *texts, uint32_t most) {
     return EXIT_USAGE;
 }
 
-int volumes_read(const char *name, const TextList *texts, BhrVolume *out, uint32_t most, uint32_t *out_count) {
+int volumes_read(const char *name, const TextList *texts, double turbulence, BhrVolume *out, uint32_t most,
+                 uint32_t *out_count) {
     int result = count_texts(name, texts, most);
     for (size_t i = 0; result == 0 && i < texts->count; i++) {
-        result = volume_read(name, texts->list[i], &out[i]);
+        result = volume_read(name, texts->list[i], turbulence, &out[i]);
     }
     *out_count = result == 0 ? (uint32_t)texts->count : 0;
     return result;

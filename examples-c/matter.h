@@ -22,15 +22,16 @@ extern const Choice VOLUME_KINDS[];
 BhrStatus volume_begin(BhrVolume *volume, BhrVolumeShape kind);
 
 /* Reads a volume: a kind (disk, torus, halo, jet), then fields by BhrVolume's names with - for _, angles in degrees,
- * colours R/G/B, and the words retrograde, power-law and thermal. `name`: of the option, for messages. 0, or an exit
- * status after a message on stderr. Ranges are left to the library. */
-int volume_read(const char *name, const char *text, BhrVolume *out);
+ * colours R/G/B, and the words retrograde, power-law and thermal. `name`: of the option, for messages; `turbulence`:
+ * where the text does not say. 0, or an exit status after a message on stderr. Ranges are left to the library. */
+int volume_read(const char *name, const char *text, double turbulence, BhrVolume *out);
 
 /* The same for a hot spot, without a kind; its words are retrograde and thermal. */
 int hot_spot_read(const char *name, const char *text, BhrHotSpot *out);
 
 /* All texts of an option, in their order. *out_count: how many; more than `most` are refused. 0, or an exit status. */
-int volumes_read(const char *name, const TextList *texts, BhrVolume *out, uint32_t most, uint32_t *out_count);
+int volumes_read(const char *name, const TextList *texts, double turbulence, BhrVolume *out, uint32_t most,
+                 uint32_t *out_count);
 int hot_spots_read(const char *name, const TextList *texts, BhrHotSpot *out, uint32_t most, uint32_t *out_count);
 
 #ifdef __cplusplus

@@ -35,6 +35,7 @@ static const GoldTest TESTS[] = {
 static BhrStatus set_scene(BhrContext *context, const GoldTest *test) {
     BhrVolume volume;
     BhrStatus status = bhr_volume_init(&volume, sizeof volume);
+    volume.turbulence = 0.0;
     if (status < 0) {
         return status;
     }

@@ -65,7 +65,7 @@ static int read_frequencies(Images *images, const char *text) {
 
 static int read_volumes(Images *images, const TextList *texts) {
     const TextList one = {{DEFAULT_VOLUME}, 1};
-    const int      result = volumes_read("observatory: --volume", texts->count > 0 ? texts : &one, images->volumes,
+    const int      result = volumes_read("observatory: --volume", texts->count > 0 ? texts : &one, 0.0, images->volumes,
                                          BHR_MAX_VOLUMES, &images->volume_count);
     for (uint32_t i = 0; result == 0 && i < images->volume_count; i++) {
         if (!(images->volumes[i].flags & BHR_VOLUME_POWER_LAW)) {

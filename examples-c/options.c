@@ -40,6 +40,16 @@ static const char *read_whole(const char *text, uint64_t most, uint64_t *out) {
     return end;
 }
 
+int option_read_uint64(const char *text, uint64_t *out) {
+    uint64_t    value;
+    const char *end = read_whole(text, UINT64_MAX, &value);
+    if (end == NULL || *end != '\0') {
+        return 0;
+    }
+    *out = value;
+    return 1;
+}
+
 static const char *read_uint(const char *text, uint32_t *out) {
     uint64_t value;
     text = read_whole(text, UINT32_MAX, &value);
@@ -118,7 +128,6 @@ static int read_value(const Option *option, const char *text) {
     const Choice *choice;
     double        number;
     uint32_t      whole;
-    uint64_t      large;
     switch (option->kind) {
     case OPTION_DOUBLE:
     case OPTION_DEGREES:
@@ -136,12 +145,7 @@ static int read_value(const Option *option, const char *text) {
         *(uint32_t *)option->target = whole;
         return 1;
     case OPTION_UINT64:
-        end = read_whole(text, UINT64_MAX, &large);
-        if (end == NULL || *end != '\0') {
-            return 0;
-        }
-        *(uint64_t *)option->target = large;
-        return 1;
+        return option_read_uint64(text, option->target);
     case OPTION_VECTOR:
         return read_numbers(text, 3, option->target);
     case OPTION_QUATERNION:

@@ -57,6 +57,9 @@ void options_print(FILE *out, const Option *options, size_t count);
  * overflows. */
 const char *option_read_double(const char *text, double *out);
 
+/* 1 when all of `text` is a whole number from 0 on that fits; only then is anything written. */
+int option_read_uint64(const char *text, uint64_t *out);
+
 #ifdef __cplusplus
 }
 #endif

@@ -202,7 +202,7 @@ static int read_matter(SceneInput *input, const char *program) {
     char      name[128];
     Scene    *scene = &input->scene;
     snprintf(name, sizeof name, "%.100s: --volume", program);
-    const int result = volumes_read(name, &input->volumes, scene->volumes, BHR_MAX_VOLUMES, &scene->volume_count);
+    const int result = volumes_read(name, &input->volumes, 1.0, scene->volumes, BHR_MAX_VOLUMES, &scene->volume_count);
     snprintf(name, sizeof name, "%.100s: --hot-spot", program);
     return result != 0 ? result
                        : hot_spots_read(name, &input->hot_spots, scene->hot_spots, BHR_MAX_HOT_SPOTS,

@@ -217,9 +217,13 @@ void SettingsPanel::disk(Scene &scene) {
     field("opacity", &BhrDisk::opacity, 0.0, 1.0, "%.2f", false);
     field("brightness", &BhrDisk::brightness, 0.01, 100.0, "%.2f", true);
     field("turbulence", &BhrDisk::turbulence, 0.0, 1.0, "%.2f", false);
+    seed(disk.seed, set);
+}
+
+template <class Set> void SettingsPanel::seed(uint64_t &value, Set set) {
     begin_row("seed");
     constexpr uint64_t one = 1;
-    if (ImGui::InputScalar("##value", ImGuiDataType_U64, &disk.seed, &one)) {
+    if (ImGui::InputScalar("##value", ImGuiDataType_U64, &value, &one)) {
         report(section_, "seed", set().message);
     }
     ImGui::PopID();
@@ -254,6 +258,9 @@ constexpr NumberField<BhrVolume> VOLUME_FIELDS[] = {
     {"infall", &BhrVolume::infall, 0.0, 1.0, "%.2f", false, 1.0},
     {"ang. mom.", &BhrVolume::angular_momentum, 0.0, 1.0, "%.2f", false, 1.0},
     {"speed", &BhrVolume::speed, 0.0, 0.995, "%.3f", false, 1.0},
+    {"turbulence", &BhrVolume::turbulence, 0.0, 1.0, "%.2f", false, 1.0},
+    {"clumping", &BhrVolume::clumping, 0.5, 3.0, "%.2f", false, 1.0},
+    {"heating", &BhrVolume::heating, 0.0, 0.5, "%.2f", false, 1.0},
 };
 
 constexpr NumberField<BhrHotSpot> HOT_SPOT_FIELDS[] = {
@@ -309,6 +316,7 @@ void SettingsPanel::volume(Scene &scene, size_t index) {
     ImGui::SameLine(0.5F * ImGui::GetWindowContentRegionMax().x);
     flag("power law", volume.flags, BHR_VOLUME_POWER_LAW, set_flags);
     fields(VOLUME_FIELDS, volume, set);
+    seed(volume.seed, set);
     ImGui::PopID();
 }
 

@@ -59,6 +59,7 @@ private:
     void choice(const char *label, int32_t value, const char *const *names, int32_t count, int32_t first, Set set);
     template <class Struct, size_t Count, class Set>
     void fields(const NumberField<Struct> (&list)[Count], Struct &value, Set set);
+    template <class Set> void seed(uint64_t &value, Set set);
     template <class Set> void flag(const char *label, uint32_t flags, uint32_t bit, Set set);
     template <class Set> void try_number(const char *label, double value, Set set);
     void                      show_message(const char *label);
