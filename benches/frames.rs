@@ -5,7 +5,7 @@
 
 use bhr::image::{ImageMut, PixelFormat, memory::Layout};
 use bhr::renderer::{Backend, PASSES, Renderer, RendererOptions};
-use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky, Volume};
+use bhr::scene::{Camera, LensTables, Method, Projection, Scene, Sky, Volume, VolumeResolution};
 use criterion::Criterion;
 use glam::{DQuat, DVec3};
 use std::cell::RefCell;
@@ -163,6 +163,13 @@ fn matter(volume: Volume, a: f64, distance: f64, elevation: f64, half_tan: f64) 
     }
 }
 
+fn half(set: impl FnOnce(&mut Renderer)) -> impl FnOnce(&mut Renderer) {
+    |renderer| {
+        set(renderer);
+        renderer.scene.quality.volume_resolution = VolumeResolution::Half;
+    }
+}
+
 fn volumes(measured: &mut dyn FnMut(&str, Box<dyn FnOnce(&mut Renderer)>)) {
     let soft = Volume::default();
     let thick = Volume {
@@ -180,6 +187,8 @@ fn volumes(measured: &mut dyn FnMut(&str, Box<dyn FnOnce(&mut Renderer)>)) {
         measured(&format!("soft disk{how}"), Box::new(matter(soft, 0.6, 28.0, 6.5, 0.34)));
         measured(&format!("thick disk{how}"), Box::new(matter(thick, 0.9, 30.0, 10.0, 0.36)));
         measured(&format!("within a thick disk{how}"), Box::new(matter(thick, 0.9, 8.0, 10.0, 0.8)));
+        measured(&format!("soft disk{how}, half resolution"), Box::new(half(matter(soft, 0.6, 28.0, 6.5, 0.34))));
+        measured(&format!("thick disk{how}, half resolution"), Box::new(half(matter(thick, 0.9, 30.0, 10.0, 0.36))));
     }
 }
 

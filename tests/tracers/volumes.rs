@@ -167,6 +167,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
 #[test]
 fn the_tracers_agree() {
     let (mut cpu, mut gpu) = (cpu(), gpu());
+    let mut worst = Vec::new();
     for (name, scene) in scenes() {
         let [a, b] = [&mut cpu, &mut gpu].map(|renderer| {
             renderer.scene = scene.clone();
@@ -174,12 +175,15 @@ fn the_tracers_agree() {
         });
         let far = a.iter().zip(&b).filter(|(a, b)| a.abs_diff(**b) > 2).count();
         println!("{name}: {far} of {}", a.len());
-        assert!(far <= a.len() / 1000, "{name}: {far} of {}", a.len());
+        if far > a.len() / 1000 {
+            worst.push((name, far));
+        }
         // The matter does something.
         cpu.scene = Scene { volumes: Default::default(), hot_spots: Default::default(), ..scene };
         let bare = picture(&mut cpu, PixelFormat::Rgba8Srgb, [128, 72], None, false);
         assert!(bare.iter().zip(&a).filter(|(a, b)| a.abs_diff(**b) > 8).count() > a.len() / 200, "{name}");
     }
+    assert!(worst.is_empty(), "{worst:?} of 36864 values");
 }
 
 /// Beside the shadow's edge pixels are the mean of many rays. Those of a ray that circles the hole in matter take so

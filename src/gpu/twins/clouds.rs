@@ -170,7 +170,7 @@ pub fn group() -> Group {
                 o.near(Filaments::shared().expect("filaments").value(place, i.x(3)), 1.0);
             },
             // Samplers weigh texels, and levels, in steps of 1/256.
-            1e-2,
+            2e-2,
         ),
         twin(
             filaments,
