@@ -98,7 +98,8 @@ mod tests {
         [own.count() as f64, blocks.records.len() as f64].map(|count| count / f64::from(full_width * full_height))
     }
 
-    /// The soft disk without turbulence from near its plane, as large as it is meant to be shown: less than 45 % of the rays of a frame.
+    /// The soft disk without turbulence from near its plane, as large as it is meant to be shown: less than 45 % of the
+    /// rays of a frame.
     #[test]
     fn few_rays_are_summed() {
         let mut scene = Scene { disk: None, ..Scene::plain() };

@@ -98,8 +98,8 @@ fn errors(exact: &[f32], found: &[f32]) -> Vec<f32> {
     errors
 }
 
-/// Without a sky, whose stars would hide them, errors are within the tolerance, and nearly all far within it. Turbulence
-/// has structure that is finer than a block, of which blocks may not tell.
+/// Without a sky, whose stars would hide them, errors are within the tolerance, and nearly all far within it.
+/// Turbulence has structure that is finer than a block, of which blocks may not tell.
 #[test]
 fn half_is_as_full_within_its_bound() {
     let mut renderer = cpu();
