@@ -170,7 +170,10 @@ fn half(set: impl FnOnce(&mut Renderer)) -> impl FnOnce(&mut Renderer) {
     }
 }
 
-fn volumes(measured: &mut dyn FnMut(&str, Box<dyn FnOnce(&mut Renderer)>)) {
+/// Sets a renderer up for a scene.
+type Set = Box<dyn FnOnce(&mut Renderer)>;
+
+fn volumes(measured: &mut dyn FnMut(&str, Set)) {
     let soft = Volume::default();
     let thick = Volume {
         thickness: 0.14,
@@ -195,7 +198,7 @@ fn volumes(measured: &mut dyn FnMut(&str, Box<dyn FnOnce(&mut Renderer)>)) {
 fn gpu(criterion: &mut Criterion, times: &Times) {
     let software = Stage::new(None, [16, 16], |_| ()).renderer.adapter().software;
     let size = if software { [1280, 720] } else { [3840, 2160] };
-    let mut measured = |what: &str, size: [u32; 2], change: Change, set: Box<dyn FnOnce(&mut Renderer)>| {
+    let mut measured = |what: &str, size: [u32; 2], change: Change, set: Set| {
         let name = format!("gpu {}x{} {what}", size[0], size[1]);
         measure(criterion, times, &name, || Stage::new(None, size, set).with(change));
     };

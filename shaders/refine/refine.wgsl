@@ -23,7 +23,8 @@
 #requires fn take_light(id: vec2<u32>, light: vec4<f32>)
 
 // The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
-@group(0) @binding(9) var<uniform> clouds: Clouds;
+// No uniform: lavapipe crashes with a fourth (shared/not_inlined.wgsl).
+@group(0) @binding(9) var<storage, read> clouds: Clouds;
 @group(0) @binding(10) var filaments: texture_3d<f32>;
 @group(0) @binding(11) var filament_sampler: sampler;
 

@@ -22,7 +22,7 @@
 // As in shade/shade.wgsl: matter with depth reads blackbodies there.
 @group(0) @binding(5) var light_tables: texture_2d<f32>;
 // The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
-@group(0) @binding(6) var<uniform> clouds: Clouds;
+@group(0) @binding(6) var<storage, read> clouds: Clouds;
 @group(0) @binding(7) var filaments: texture_3d<f32>;
 @group(0) @binding(8) var filament_sampler: sampler;
 

@@ -92,6 +92,11 @@ impl CachedUniform {
         Ok(Self { buffer: device.buffer(label, size, Usage::UNIFORM | Usage::COPY_DST)?, bytes: Vec::new() })
     }
 
+    /// The same for kernels that have uniforms enough.
+    pub fn in_storage(device: &Device, label: &str, size: u64) -> Result<Self> {
+        Ok(Self { buffer: device.buffer(label, size, Usage::STORAGE | Usage::COPY_DST)?, bytes: Vec::new() })
+    }
+
     /// Before the next submission runs, unless it is there already. Errors: as [`Device::write`].
     pub fn write(&mut self, device: &Device, bytes: &[u8]) -> Result<()> {
         if self.bytes != bytes {
@@ -129,7 +134,7 @@ impl FrameBuffers {
         if self.fixed.is_none() {
             self.fixed = Some(FixedBuffers {
                 frame: CachedUniform::new(device, "frame", size_of::<FrameUniform>() as u64)?,
-                clouds: CachedUniform::new(device, "clouds", size_of::<CloudsUniform>() as u64)?,
+                clouds: CachedUniform::in_storage(device, "clouds", size_of::<CloudsUniform>() as u64)?,
                 film: CachedUniform::new(device, "film", size_of::<FilmParams>() as u64)?,
                 film_of_exposed: CachedUniform::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
                 passes: CachedUniform::new(

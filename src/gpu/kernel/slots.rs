@@ -138,7 +138,7 @@ pub fn shade_slots() -> Vec<Slot> {
 
 /// `clouds` of emit/clouds.wgsl, and the texture and the sampler of emit/filaments.wgsl.
 pub fn structure_slots() -> [Slot; 3] {
-    [Slot::Uniform, Slot::Filtered(FILAMENTS), Slot::Sampler]
+    [Slot::Read, Slot::Filtered(FILAMENTS), Slot::Sampler]
 }
 
 /// Group 0 of refine/refine.wgsl.
