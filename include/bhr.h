@@ -812,7 +812,7 @@ typedef struct BhrVolume {
  * would have to be faster than light, beside the hole, are left out. It shines and absorbs as BhrVolume says. With
  * BHR_EFFECT_LIGHT_DELAY each part of it is seen where it was when its light left, which for a moving blob is not a
  * detail: without spin, seen 60 degrees from the axis, the flux of one of radius 7 and size 0.7 changes by a factor
- * of 22.1 in an orbit, without the delay by one of 8.9. Since 0.2.0.
+ * of about 21 in an orbit, without the delay by about 8. Since 0.2.0.
  */
 typedef struct BhrHotSpot {
     uint32_t struct_size; /**< sizeof(BhrHotSpot). */
