@@ -2,11 +2,12 @@
 //! Frames with structured matter: its mean, its motion, and how well a pixel's one ray shows it. `emit::clouds` has the
 //! tests of the structure itself.
 
-use crate::frames::{cpu, floats, picture};
+use crate::frames::{cpu, floats, gpu, picture};
+use crate::random::runs_all;
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
 use bhr::scene::{Camera, Effects, FlowLaw, LensTables, Scene, Shape, Sky, View, Volume};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 const SIZE: [u32; 2] = [48, 27];
 
@@ -125,5 +126,45 @@ fn pixels_show_about_what_many_rays_find() {
         println!("{:?}: {difference} of {brightness}, {}", volume.shape, mean(&one));
         assert!(difference < 0.2 * brightness, "{:?}: {difference} {brightness}", volume.shape);
         assert!((mean(&one) / brightness - 1.0).abs() < 0.06, "{:?}: {} {brightness}", volume.shape, mean(&one));
+    }
+}
+
+/// Films do not crawl: what changes from frame to frame other than evenly is less than twice what it is where each pixel
+/// has 16 rays. A view that turns, and time that passes.
+#[test]
+fn films_do_not_crawl() {
+    // Everyday, a few frames of one film.
+    let (frames, size, films) = if runs_all() { (240, [640, 360], 4) } else { (5, [64, 36], 1) };
+    let mut renderer = gpu();
+    let thick = Volume { thickness: 0.14, absorption: 0.3, inner_radius: 2.55, ..Volume::default() };
+    let scenes = [("soft disk", 6.5, Volume::default()), ("thick disk", 10.0, thick)];
+    for (turns, (name, elevation, volume)) in
+        [true, false].into_iter().flat_map(|turns| scenes.map(|scene| (turns, scene))).take(films)
+    {
+        let mut unsteady = |samples: u32| {
+            let mut scene = alone(elevation, volume);
+            scene.quality.refines = true;
+            scene.quality.samples_per_pixel = samples;
+            let forward = scene.camera.forward;
+            let (mut before, mut sum) = (Vec::<Vec<u8>>::new(), 0.0);
+            for frame in 0..frames {
+                if turns {
+                    scene.camera.forward = DQuat::from_rotation_z(5e-4 * f64::from(frame)) * forward;
+                } else {
+                    scene.time = 35.0 + 0.25 * f64::from(frame);
+                }
+                renderer.scene = scene.clone();
+                before.push(picture(&mut renderer, PixelFormat::Rgba8Srgb, size, None, false));
+                if let [a, b, c] = &before[..] {
+                    let bend = |i: usize| (f64::from(a[i]) - 2.0 * f64::from(b[i]) + f64::from(c[i])).abs();
+                    sum += (0..a.len()).map(bend).sum::<f64>() / a.len() as f64;
+                    before.remove(0);
+                }
+            }
+            sum / f64::from(frames - 2)
+        };
+        let (one, many) = (unsteady(1), unsteady(16));
+        println!("{name}, {}: {one:.3} of 255, {many:.3} with 16 samples", if turns { "turning" } else { "in time" });
+        assert!(many > 0.05 && one < 2.0 * many, "{name}, turning {turns}: {one} {many}");
     }
 }
