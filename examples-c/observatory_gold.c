@@ -35,10 +35,10 @@ static const GoldTest TESTS[] = {
 static BhrStatus set_scene(BhrContext *context, const GoldTest *test) {
     BhrVolume volume;
     BhrStatus status = bhr_volume_init(&volume, sizeof volume);
-    volume.turbulence = 0.0;
     if (status < 0) {
         return status;
     }
+    volume.turbulence = 0.0;
     volume.flags = BHR_VOLUME_POWER_LAW;
     volume.shape = BHR_VOLUME_HALO;
     volume.flow = BHR_FLOW_ANGULAR_MOMENTUM;

@@ -65,6 +65,7 @@ static int begin_curve(Curve *curve) {
     /* Bardeen, Press and Teukolsky 1972, eq. 2.16; inside the ISCO the library puts the spot there. */
     const int    retrograde = (curve->spot.flags & BHR_HOT_SPOT_RETROGRADE) != 0;
     const double radius = fmax(curve->spot.radius, retrograde ? hole.isco_retrograde : hole.isco_prograde);
+    curve->spot.radius = radius;
     curve->period = 2.0 * PI * (pow(radius, 1.5) + (retrograde ? -s->spin : s->spin));
     /* Lensing shows the orbit larger than it is, most where it passes behind the hole. */
     curve->width = s->fov > 0.0 ? s->fov : 2.0 * (1.25 * radius + 5.0 * curve->spot.size + 2.0);

@@ -180,7 +180,7 @@ static int refine(BhrContext *context, const Grid *grid, Transferred *out, const
     const size_t   count = (size_t)side * side;
     const double   pixel = 2.0 * grid->half / (side - 1.0);
     const uint32_t parts = (uint32_t)fmin(ceil(pixel / FINE), MOST_PARTS);
-    const uint32_t reach = (uint32_t)ceil(RING / pixel);
+    const uint32_t reach = (uint32_t)fmin(ceil(RING / pixel), side);
     unsigned char *near_hole = room, *escaped = room + count, *near_sky = room + 2 * count, *between = room + 3 * count;
     widen_all(captured, between, near_hole, side, reach);
     for (size_t i = 0; i < count; i++) {

@@ -670,9 +670,10 @@ BHR_NODISCARD BhrStatus bhr_get_disk(const BhrContext *context, BhrDisk *disk, i
 /* ---- matter with depth: volumes and hot spots ---- */
 
 /**
- * Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1 at
- * inner_radius (DISK), at radius (JET; farther in it is larger) or in the middle (TORUS, HALO). At a soft edge n fades
- * in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
+ * Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1
+ * at inner_radius (DISK), at radius (JET; nearer to the hole it is greater than 1) or in the middle (TORUS, HALO),
+ * but for soft edges: n is multiplied by a factor that goes from 0 to 1 between 0.9 and 1.25 of inner_radius, and
+ * from 1 to 0 between 0.5 of outer_radius and all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
  */
 typedef int32_t BhrVolumeShape;
 
@@ -750,7 +751,10 @@ typedef struct BhrVolume {
      * moves as flags say.
      */
     double inner_radius;
-    /** In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape. Default 17. */
+    /**
+     * In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape: a DISK or JET whose
+     * outer_radius is less than 0.9 times its inner edge, the ISCO among them, shows nothing. Default 17.
+     */
     double outer_radius;
     double radius; /**< In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8. */
     double width;  /**< In M, 1e-3 .. 1e4, of a TORUS at least radius / 100: its Gaussian width in R. Default 2. */
@@ -1152,8 +1156,9 @@ BHR_NODISCARD BhrStatus bhr_get_film(const BhrContext *context, BhrFilm *film);
 /**
  * Sets the effects that colour the light: BHR_EFFECT_* bits; unknown bits are ignored. Default BHR_EFFECT_ALL. Lensing
  * itself cannot be switched off. The redshift g = g_gravity g_doppler is split at the local static observers (ZAMO) of
- * emitter and camera. LIGHT_DELAY shows in a turbulent disk and in hot spots only, from inside a spin-0 horizon too;
- * without it, all matter is seen as it is at the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
+ * emitter and camera. LIGHT_DELAY shows only where matter is not the same all around: in a turbulent disk, in the
+ * structure of volumes and in hot spots, from inside a spin-0 horizon too; without it, all matter is seen as it is at
+ * the t that bhr_set_time gives. Errors: INVALID_ARGUMENT for NULL.
  */
 BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 
@@ -1161,10 +1166,11 @@ BHR_NODISCARD BhrStatus bhr_set_effects(BhrContext *context, uint32_t effects);
 BHR_NODISCARD BhrStatus bhr_get_effects(const BhrContext *context, uint32_t *out_effects);
 
 /**
- * Sets the scene's time in scene lengths, finite; it turns disk and spots. Default 0. It is the chart's t at the
- * camera, which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain (Painleve-Gullstrand)
- * time T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) + sqrt(2))), which a clock
- * that falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors: INVALID_ARGUMENT.
+ * Sets the scene's time in scene lengths, finite; it turns disk, volumes and spots. Default 0. It is the chart's t
+ * at the camera, which ends at the horizon; for a camera at or inside a spin-0 horizon it is the rain
+ * (Painleve-Gullstrand) time T = t + H(r), r in M, with H = 2 sqrt(2 r) + 2 ln((sqrt(r) - sqrt(2)) / (sqrt(r) +
+ * sqrt(2))), which a clock that falls from rest at infinity shows. bhr_camera_advance tells how both go by. Errors:
+ * INVALID_ARGUMENT.
  */
 BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
 
@@ -1726,10 +1732,10 @@ typedef struct BhrTransfer {
 /**
  * Sums the matter of volumes and hot spots along count rays, the thin disk and the sky left out: intensities and
  * optical depths in double precision on the CPU, whatever the backend; on BHR_BACKEND_CPU on all of its threads, else
- * on the calling one. The scene's time is that of the rays' observers, at rest where they are; hot spots are seen at
- * their retarded time with BHR_EFFECT_LIGHT_DELAY. One bad ray is BHR_FATE_INVALID, not an error of the batch.
- * Numbers agree with two independent codes to 1e-8 of a picture's peak, and with the fluxes that Gold et al. 2020
- * published to all digits.
+ * on the calling one. The scene's time is that of the rays' observers, at rest where they are; hot spots and the
+ * structure of volumes are seen at their retarded time with BHR_EFFECT_LIGHT_DELAY. One bad ray is BHR_FATE_INVALID,
+ * not an error of the batch. For even matter numbers agree with two independent codes to 1e-8 of a picture's peak, and
+ * with the five fluxes that Gold et al. 2020 published: four to all digits, the first to 2e-4.
  *
  * ray_size = sizeof(BhrRay) and out_size = sizeof(BhrTransfer) as the caller was compiled, at least 56 and 48, the
  * sizes of the first version; both arrays are packed. A ray that is longer than this library's must be 0 beyond it; a

@@ -27,7 +27,8 @@ fn glow_coefficients(matter: Matter, density: f32, heat: f32, r: f32, nu: f32, g
     if POWER_LAW && (!THERMAL || matter.kind.z != 0u) {
         let ln_g = log(g);
         let index = matter.light.y;
-        let seen = column * shift.beaming * shift.beaming * shift.beaming * pow(shift.colour, index) * matter.light.z;
+        let column_seen = column * shift.beaming * shift.beaming * shift.beaming * pow(shift.colour, index);
+        let seen = min(column_seen, LARGEST_COEFFICIENT) * matter.light.z;
         return Coefficients(matter.tint.xyz * min(seen, LARGEST_COEFFICIENT),
             min(column * exp(ln_g * (3.0 + index)), LARGEST_COEFFICIENT),
             min(matter.glow.x * column * exp(ln_g * (ABSORPTION_INDEX + index)), LARGEST_COEFFICIENT));

@@ -191,8 +191,11 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
             cells = max(cells, cells_of(u, cosines, swept, matter));
             if STRUCTURE && k < MOST_VOLUMES {
                 let passed = cloud_passed(k, u, cosines, swept);
-                let wanted = cloud_samples(k, passed, 2.0 / (u.x + u.y), width);
-                places = max(places, wanted * cloud_worth(medium.w, weight_of(u, cosines, swept, matter)));
+                // Matter without structure passes none.
+                if passed > 0.0 {
+                    let wanted = cloud_samples(k, passed, 2.0 / (u.x + u.y), width);
+                    places = max(places, wanted * cloud_worth(medium.w, weight_of(u, cosines, swept, matter)));
+                }
             }
         }
     }

@@ -75,10 +75,10 @@ unsafe fn transfer_all(renderer: &mut Renderer, rays: Array, out: Array, count: 
 
 /// Sums the matter of volumes and hot spots along count rays, the thin disk and the sky left out: intensities and
 /// optical depths in double precision on the CPU, whatever the backend; on BHR_BACKEND_CPU on all of its threads, else
-/// on the calling one. The scene's time is that of the rays' observers, at rest where they are; hot spots are seen at
-/// their retarded time with BHR_EFFECT_LIGHT_DELAY. One bad ray is BHR_FATE_INVALID, not an error of the batch.
-/// Numbers agree with two independent codes to 1e-8 of a picture's peak, and with the fluxes that Gold et al. 2020
-/// published to all digits.
+/// on the calling one. The scene's time is that of the rays' observers, at rest where they are; hot spots and the
+/// structure of volumes are seen at their retarded time with BHR_EFFECT_LIGHT_DELAY. One bad ray is BHR_FATE_INVALID,
+/// not an error of the batch. For even matter numbers agree with two independent codes to 1e-8 of a picture's peak, and
+/// with the five fluxes that Gold et al. 2020 published: four to all digits, the first to 2e-4.
 ///
 /// ray_size = sizeof(BhrRay) and out_size = sizeof(BhrTransfer) as the caller was compiled, at least 56 and 48, the
 /// sizes of the first version; both arrays are packed. A ray that is longer than this library's must be 0 beyond it; a

@@ -11,9 +11,10 @@ use crate::error::{Error, Result};
 use crate::scene::{FlowLaw, HotSpot, Shape, Volume};
 use arrayvec::ArrayVec;
 
-/// Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1 at
-/// inner_radius (DISK), at radius (JET; farther in it is larger) or in the middle (TORUS, HALO). At a soft edge n fades
-/// in from 0.9 to 1.25 of inner_radius, or out from 0.5 of outer_radius to all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
+/// Where the matter of a volume is: its density n, with c = cos th, R = r sin th, z = r c, and lengths in M. n is 1
+/// at inner_radius (DISK), at radius (JET; nearer to the hole it is greater than 1) or in the middle (TORUS, HALO),
+/// but for soft edges: n is multiplied by a factor that goes from 0 to 1 between 0.9 and 1.25 of inner_radius, and
+/// from 1 to 0 between 0.5 of outer_radius and all of it, by 3 t^2 - 2 t^3. Since 0.2.0.
 pub type BhrVolumeShape = i32;
 /// About the equatorial plane: n = (r / inner_radius)^-slope e^(-(c / thickness)^2 / 2), with soft edges. Since 0.2.0.
 pub const BHR_VOLUME_DISK: BhrVolumeShape = 0;
@@ -70,7 +71,8 @@ pub struct BhrVolume {
     /// In M, 0 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter that
     /// moves as flags say.
     pub inner_radius: f64,
-    /// In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape. Default 17.
+    /// In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape: a DISK or JET whose
+    /// outer_radius is less than 0.9 times its inner edge, the ISCO among them, shows nothing. Default 17.
     pub outer_radius: f64,
     /// In M, 0.1 .. 1e4. TORUS: the ring's; HALO: the scale; JET: where psi = opening. Default 8.
     pub radius: f64,
@@ -124,6 +126,7 @@ const _: () = assert!(BHR_MAX_VOLUMES == Volume::MOST);
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrVolume {
     const NAME: &'static str = "BhrVolume";
+    // 168: of the days of 0.2.0's making in which matter was even.
     const SIZES: &'static [usize] = &[168, 200];
     fn defaults() -> Self {
         Volume::default().into()

@@ -89,8 +89,9 @@ impl Glow {
     fn power_law(&self, column: f64, g: f64, shift: Shift) -> Coefficients {
         let log = g.ln();
         let intensity = (column * (log * (3.0 + self.spectral_index)).exp()).min(MOST);
-        let seen = column * shift.beaming.powi(3) * shift.colour.powf(self.spectral_index) * self.brightness;
-        let seen = seen.min(MOST);
+        // Bounded before it is multiplied by a brightness that may be 0.
+        let seen = (column * shift.beaming.powi(3) * shift.colour.powf(self.spectral_index)).min(MOST);
+        let seen = (seen * self.brightness).min(MOST);
         Coefficients {
             light: self.tint.map(|v| v * seen),
             intensity,

@@ -129,8 +129,8 @@ fn pixels_show_about_what_many_rays_find() {
     }
 }
 
-/// Films do not crawl: what changes from frame to frame other than evenly is less than twice what it is where each pixel
-/// has 16 rays. A view that turns, and time that passes.
+/// Films do not crawl: what changes from frame to frame other than evenly is less than twice what it is where each
+/// pixel has 16 rays. A view that turns, and time that passes.
 #[test]
 fn films_do_not_crawl() {
     // Everyday, a few frames of one film.

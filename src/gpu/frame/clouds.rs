@@ -48,6 +48,8 @@ impl CloudsUniform {
     /// The volumes in their order; those without structure, and those that a scene has not, have the strength 0.
     pub fn new(volumes: &Volumes) -> Self {
         let mut uniform = Self::zeroed();
+        // Shaders divide by the period.
+        uniform.volumes.iter_mut().for_each(|volume| volume.structure = four([0.0, 0.0, 0.0, 1.0]));
         for (uniform, volume) in uniform.volumes.iter_mut().zip(&volumes.volumes) {
             if let Some(clouds) = &volume.clouds {
                 *uniform = CloudUniform {
