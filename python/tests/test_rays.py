@@ -126,6 +126,7 @@ def test_matter_along_rays_is_summed(ctx):
         thickness=1e6,
         absorption=1e-4,
         spectral_index=-2.5,
+        turbulence=0.0,
     )
     ctx.volumes = [cloud]
     assert ctx.volumes == (cloud,)
