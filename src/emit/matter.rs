@@ -83,7 +83,8 @@ pub struct SpotMatter {
 impl VolumeMatter {
     /// About a hole of spin `spin`. `None`: all of it lies inside the horizon.
     pub fn new(volume: &Volume, spin: f64, when: &When, accuracy: Accuracy) -> Option<Self> {
-        let least = accuracy.least / volume.absorption.max(1.0);
+        // The more of it shows, the thinner matter may be.
+        let least = accuracy.least / volume.absorption.max(volume.brightness).max(1.0);
         // The ISCO does not depend on the law of motion.
         let circular = Motion::Keplerian { sub_keplerian: volume.sub_keplerian, infall: volume.infall };
         let flow = Flow::new(spin, volume.retrograde, circular);
