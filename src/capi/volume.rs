@@ -105,14 +105,15 @@ pub struct BhrVolume {
     pub angular_momentum: f64,
     /// OUTFLOW: far away, in units of c, 0 .. 0.995. Default 0.9.
     pub speed: f64,
-    /// 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit.
-    /// Seen with its delay where effects have BHR_EFFECT_LIGHT_DELAY. Default 1; 0 is even matter, as is that of a
-    /// host whose BhrVolume ends before this field.
+    /// 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit:
+    /// a pattern P = e^(turbulence G) over its mean, G being noise of mean 0 and about variance 1. Seen with its
+    /// delay where effects have BHR_EFFECT_LIGHT_DELAY. Default 1; 0 is even matter, as is that of a host whose
+    /// BhrVolume ends before this field.
     pub turbulence: f64,
-    /// 0.5 .. 3: density goes as pattern^clumping, its mean staying what it is without; a larger number draws the
-    /// matter together into filaments. Default 1.8.
+    /// 0.5 .. 3: the density is multiplied by P^clumping over its mean, so that on average it is what it is without; a
+    /// larger number draws the matter together into filaments. Default 1.8.
     pub clumping: f64,
-    /// 0 .. 0.5: the temperature goes as pattern^heating, so that dense matter is hotter. Default 0.15.
+    /// 0 .. 0.5: the temperature is multiplied by P^heating, so that dense matter is hotter. Default 0.15.
     pub heating: f64,
     /// Selects the structure: the same seed always gives the same one. Any number. Default 0.
     pub seed: u64,

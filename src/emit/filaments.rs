@@ -13,6 +13,7 @@
 //! the level has lost of the variance is known: the mean of e^(k g) over all places is e^(k^2 v / 2), v being the
 //! variance that is left.
 
+use super::lattice::Between;
 use crate::allocate::{collected, filled, with_room};
 use crate::error::Result;
 use crate::random::mix;
@@ -77,25 +78,9 @@ struct Noise {
     slopes: Vec<[f32; 3]>,
 }
 
-/// A place between the planes of a lattice along one direction: the two, the distance from the first, its smooth share.
-#[derive(Clone, Copy)]
-struct Between {
-    sides: [usize; 2],
-    offset: f32,
-    share: f32,
-}
-
-impl Between {
-    /// `place`: in periods, -8 or more; `count` cells, a power of two, make a period.
-    fn new(place: f32, count: usize) -> Self {
-        let cells = (place + 8.0) * count as f32;
-        let whole = cells as usize;
-        let offset = cells - whole as f32;
-        let first = whole & (count - 1);
-        // Goes from 0 to 1 with two continuous derivatives (Perlin 2002).
-        let share = offset * offset * offset * (offset * (offset * 6.0 - 15.0) + 10.0);
-        Self { sides: [first, (first + 1) & (count - 1)], offset, share }
-    }
+/// A place in periods, -8 or more, on a lattice of which `count` cells make a period.
+fn between(place: f32, count: usize) -> Between {
+    Between::new((place + 8.0) * count as f32, count)
 }
 
 impl Noise {
@@ -109,7 +94,7 @@ impl Noise {
 
     fn columns(&self) -> Result<Vec<Between>> {
         let width = 1.0 / FILAMENT_SIDES[0] as f32;
-        collected((0..FILAMENT_SIDES[0]).map(|x| Between::new((x as f32 + 0.5) * width, self.cells[0])), WHAT)
+        collected((0..FILAMENT_SIDES[0]).map(|x| between((x as f32 + 0.5) * width, self.cells[0])), WHAT)
     }
 
     /// At a column, and between rows and layers.
@@ -144,13 +129,13 @@ fn drawn() -> Result<Vec<f32>> {
     let mut all = with_room(width * rows * layers, WHAT)?;
     for (z, y) in (0..layers).flat_map(|z| (0..rows).map(move |y| (z, y))) {
         let [row, layer] = [(y as f32 + 0.5) / rows as f32, (z as f32 + 0.5) / layers as f32];
-        let [coarse_row, coarse_layer] = [(row, 1), (layer, 2)].map(|(at, side)| Between::new(at, CELLS[0][side]));
+        let [coarse_row, coarse_layer] = [(row, 1), (layer, 2)].map(|(at, side)| between(at, CELLS[0][side]));
         for x in 0..width {
             let [up, out] = [1, 0].map(|k| DISPLACED[k] * displacing[k].at(&columns[0][x], &coarse_row, &coarse_layer));
             let (mut sum, mut amplitude) = (0.0, 1.0);
             for (octave, (noise, columns)) in noises.iter().zip(&columns).enumerate() {
                 let [_, row_cells, layer_cells] = noise.cells;
-                let across = [Between::new(row + out, row_cells), Between::new(layer + up, layer_cells)];
+                let across = [between(row + out, row_cells), between(layer + up, layer_cells)];
                 let plain = noise.at(&columns[x], &across[0], &across[1]);
                 let crease = if CREASED.contains(&octave) { CREASE } else { 0.0 };
                 sum += amplitude * (plain + crease * (CREASE_OFFSET - CREASE_GAIN * plain.abs() - plain));

@@ -19,6 +19,7 @@ pub mod filaments;
 pub mod glow;
 pub mod half;
 pub mod hot_spot;
+mod lattice;
 pub mod matter;
 pub mod medium;
 pub mod shape;

@@ -13,6 +13,7 @@
 //! ln M(1), M(s) being the mean of e^(s g) there. For other s it is taken to grow as ln M(s) does ([`Patch`]). So the
 //! mean light stays whatever the filter, and at s = 1, where one pattern shows alone, the light of a patch is its mean.
 
+use super::lattice::Between;
 use crate::allocate::{collected, filled, with_room};
 use crate::error::Result;
 use crate::random::mix;
@@ -92,26 +93,6 @@ struct Level {
 struct Noise {
     cells: usize,
     slopes: Vec<[f32; 2]>,
-}
-
-/// A place between columns, or rows, of a lattice: the two, the distance from the first, and its smooth share.
-#[derive(Clone, Copy)]
-struct Between {
-    sides: [usize; 2],
-    offset: f32,
-    share: f32,
-}
-
-impl Between {
-    /// `cells`: places in cells, from 0 to three periods; `count` of them make a period.
-    fn new(cells: f32, count: usize) -> Self {
-        let whole = cells as usize;
-        let offset = cells - whole as f32;
-        let first = whole % count;
-        // Goes from 0 to 1 with two continuous derivatives (Perlin 2002).
-        let share = offset * offset * offset * (offset * (offset * 6.0 - 15.0) + 10.0);
-        Self { sides: [first, (first + 1) % count], offset, share }
-    }
 }
 
 impl Noise {

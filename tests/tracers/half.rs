@@ -3,8 +3,9 @@
 //! the same bytes whole or in parts.
 
 use crate::frames::{Lent, both, cpu, differing, floats, gpu, picture, tiled};
+use crate::volumes::one_of_each;
 use bhr::image::PixelFormat;
-use bhr::scene::{Camera, Disk, FlowLaw, HotSpot, Projection, Scene, Shape, Sky, View, Volume, VolumeResolution};
+use bhr::scene::{Camera, Disk, HotSpot, Projection, Scene, Sky, View, Volume, VolumeResolution};
 use glam::DVec3;
 
 fn outside(distance: f64, elevation: f64, tan: f64) -> Camera {
@@ -20,29 +21,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         scene.hole.spin = spin;
         scene
     };
-    let disk = Volume { turbulence: 0.0, ..Volume::default() };
-    let torus = Volume { shape: Shape::Torus, thickness: 0.2, absorption: 0.3, temperature: 6000.0, ..disk };
-    let halo = Volume {
-        shape: Shape::Halo,
-        flow: FlowLaw::AngularMomentum,
-        power_law: true,
-        outer_radius: 60.0,
-        thickness: 0.3,
-        absorption: 0.1,
-        brightness: 0.05,
-        tint: [1.0, 0.6, 0.3],
-        ..disk
-    };
-    let jet = Volume {
-        shape: Shape::Jet,
-        flow: FlowLaw::Outflow,
-        power_law: true,
-        outer_radius: 30.0,
-        inner_radius: 2.5,
-        absorption: 0.0,
-        brightness: 0.3,
-        ..disk
-    };
+    let [disk, torus, halo, jet] = one_of_each(0.0);
     let beside_disk = Scene {
         disk: Some(Disk { opacity: 0.8, turbulence: 0.5, ..Disk::plain() }),
         ..of(&[halo], 0.9, outside(25.0, 20.0, 0.4))

@@ -99,17 +99,9 @@ fn far_from_the_hole_rays_are_chords() {
     }
 }
 
-/// The scenes that both tracers are to show alike: every shape, motion, light and place of the observer; with the thin
-/// disk in front of, within and behind the matter; and spots in slow light.
-fn scenes() -> Vec<(&'static str, Scene)> {
-    let of = |volumes: &[Volume], spin: f64, distance: f64, elevation: f64| {
-        let mut scene = Scene { disk: None, ..Scene::plain() };
-        scene.volumes = volumes.iter().copied().collect();
-        scene.hole.spin = spin;
-        scene.camera = outside(distance, elevation);
-        scene
-    };
-    let disk = Volume::default();
+/// A soft disk, a torus, a halo and a jet, each with so much turbulence.
+pub fn one_of_each(turbulence: f64) -> [Volume; 4] {
+    let disk = Volume { turbulence, ..Volume::default() };
     let torus = Volume { shape: Shape::Torus, thickness: 0.2, absorption: 0.3, temperature: 6000.0, ..disk };
     let halo = Volume {
         shape: Shape::Halo,
@@ -133,6 +125,20 @@ fn scenes() -> Vec<(&'static str, Scene)> {
         brightness: 0.3,
         ..disk
     };
+    [disk, torus, halo, jet]
+}
+
+/// The scenes that both tracers are to show alike: every shape, motion, light and place of the observer; with the thin
+/// disk in front of, within and behind the matter; and spots in slow light.
+fn scenes() -> Vec<(&'static str, Scene)> {
+    let of = |volumes: &[Volume], spin: f64, distance: f64, elevation: f64| {
+        let mut scene = Scene { disk: None, ..Scene::plain() };
+        scene.volumes = volumes.iter().copied().collect();
+        scene.hole.spin = spin;
+        scene.camera = outside(distance, elevation);
+        scene
+    };
+    let [disk, torus, halo, jet] = one_of_each(1.0);
     let with_disk = |opacity: f64| {
         let mut scene = of(&[torus], 0.9, 20.0, 12.0);
         scene.disk = Some(Disk { opacity, turbulence: 0.5, ..Disk::plain() });

@@ -38,7 +38,9 @@ impl FilamentTexture {
     /// Makes the texture if the scene is the first to show it. Errors: as [`Device::scoped`]; it is then made when it
     /// is needed next.
     pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
-        if self.made || !scene.emitters().volumes.has_structure() {
+        // The settings are asked first: most scenes have none, and emitters take time to make.
+        let may = scene.volumes.iter().any(|volume| volume.turbulence > 0.0);
+        if self.made || !may || !scene.emitters().volumes.has_structure() {
             return Ok(());
         }
         let sides = FILAMENT_SIDES.map(|side| side as u32);
