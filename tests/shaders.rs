@@ -137,6 +137,7 @@ const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most
 const TURBULENCE: Because = Because("it counts bands or generations, 2 at most, or taps, 8 at most");
 const PIECES: Because = Because("it counts the pieces of a part of a ray, of which there are 96 at most");
 const MATTER: Because = Because("it counts volumes and hot spots, of which there are 12 at most");
+const LAYERS: Because = Because("it counts the layers of a piece, of which there are 256 at most");
 const CELLS: Because = Because(
     "a turn that goes on leaves `cuts` above 1; every other one adds to `cut` or `cell`: 16 times 256 turns at most",
 );
@@ -149,12 +150,20 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("bloom/gather", "gathered_within", "for (var i = 0u; i < 3u; i += 1u)", CONSTANT),
     ("bloom/gather", "gather", "for (var y = 0; y < taps; y += 1)", CONSTANT),
     ("bloom/gather", "gather", "for (var x = 0; x < taps; x += 1)", CONSTANT),
-    ("emit/clouds", "cloud_pattern", "for (var k = 0u; k < count; k += 1u)", TURBULENCE),
+    ("emit/clouds", "cloud_pattern", "for (var k = 0u; k < shown.count; k += 1u)", TURBULENCE),
+    ("emit/layers", "add_layers", "for (var span = 0u; span < spans && !is_dark(); span += 1u)", LAYERS),
+    ("emit/layers", "add_layers", "for (var i = 0u; i < nodes; i += 1u)", CONSTANT),
+    ("emit/layers", "add_layers", "for (var layer = span; layer < last && !is_dark(); layer += 1u)", LAYERS),
     ("emit/streaks", "streak_exponent", "for (var i = 0u; i < u32(count); i += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var k = 0u; k < shown.count; k += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var old = 0u; old < alive.count; old += 1u)", TURBULENCE),
     ("emit/volumes", "add_part", "for (var k = 1u; k <= count; k += 1u)", PIECES),
-    ("emit/volumes", "cut_of", "for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u)", MATTER),
+    (
+        "emit/volumes",
+        "cut_of",
+        "for (var k = 0u; k < select(not_inlined(frame.matter_count), 1u, ALONE); k += 1u)",
+        MATTER,
+    ),
     ("emit/volumes", "add_piece", "while cell < count && !is_dark()", CELLS),
     ("emit/volumes", "add_piece", "for (var node = 0u; node < nodes; node += 1u)", CONSTANT),
     ("emit/volumes", "coefficients_at", "for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u)", MATTER),
@@ -173,6 +182,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         "while steps < settings.max_steps",
         Because("every turn adds 1 to `steps` before it can `continue`; the host keeps max_steps at 100000 or less"),
     ),
+    ("geodesic/trace", "trace", "for (var part = select(1u, 0u, meets); part < 2u; part += 1u)", CONSTANT),
     ("lens/kerr_flags", "flag_cells", "for (var order = 0u; order < orders; order += 1u)", ORDERS),
     ("lens/kerr_flags", "flag_cells", "for (var order = 0u; order < orders; order += 4u)", ORDERS),
     ("lens/kerr_flags", "flag_cells", "for (var k = 0u; k < 4u && order + k < orders; k += 1u)", CONSTANT),

@@ -27,9 +27,9 @@ fn bands_at(ln_r: f32) -> BandsAt {
     let border = floor(place + 0.5);
     let across = (place - border) * (2.0 / BAND_FADE);
     let blends = abs(across) < 1.0;
-    let shares = sincos(0.25 * PI * (across + 1.0));
+    let turn = 0.25 * PI * clamp(across + 1.0, 0.0, 2.0);
     return BandsAt(i32(border) - select(1, 0, across >= 1.0), select(1u, 2u, blends),
-        select(vec2<f32>(1.0, 0.0), shares.yx, blends));
+        select(vec2<f32>(1.0, 0.0), vec2<f32>(cos(turn), sin(turn)), blends));
 }
 
 // The index of a band among those of a frame, which begin with the number `first`: beyond the last one it goes on.
@@ -45,9 +45,9 @@ fn generations(band: vec4<u32>, later: f32) -> Generations {
     let young = since - births * spacing;
     let grown = young / (GENERATION_FADE * spacing);
     let grows = grown < 1.0;
-    let fades = sincos(0.5 * PI * min(grown, 1.0));
+    let turn = 0.5 * PI * min(grown, 1.0);
     return Generations(young, band.z + bitcast<u32>(i32(births)), select(1u, 2u, grows),
-        select(vec2<f32>(1.0, 0.0), fades, grows));
+        select(vec2<f32>(1.0, 0.0), vec2<f32>(sin(turn), cos(turn)), grows));
 }
 
 // The bits of a generation of a band, from which it has its part of the pattern.

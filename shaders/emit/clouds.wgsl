@@ -26,6 +26,8 @@ struct Cloud {
 
 struct Clouds {
     volumes: array<Cloud, MOST_VOLUMES>,
+    // The variance of each level of the filaments and of the next one; 0, 0.
+    variances: array<vec4<f32>, FILAMENT_LEVELS>,
 }
 
 // Where and when matter is asked for: r, cos th, azimuth, M after the reference time.
@@ -42,67 +44,64 @@ struct Blur {
     spacing: f32,
 }
 
-// The factors on density and temperature.
+// The factors on density and temperature. The two generations of a band go side by side, in the components of vectors,
+// also where one has the weight 0: GPUs then wait for both at once.
 fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32> {
     let structure = clouds.volumes[index].structure;
     if structure.x <= 0.0 {
         return vec2<f32>(1.0);
     }
     let ln_r = log(at.r);
-    let sin = sqrt(max((1.0 - at.cos) * (1.0 + at.cos), 1e-12));
+    let sin2 = max((1.0 - at.cos) * (1.0 + at.cos), 1e-12);
+    let sin = sqrt(sin2);
     let height = cloud_height(index, at.r, at.cos);
     let texels = cloud_texels(index);
     let pattern = clouds.volumes[index].pattern;
-    // Texels per rad: around, and across the shape.
+    // Texels per rad: around, and across the shape; squared, where they are compared.
     let around = texels.x / sin;
     let across = texels.z * height.y * sin;
     let least = max(CLOUD_SPACED * blur.spacing, around / max(texels.y, across));
     let widest = CLOUD_SHARP * blur.footprint / at.r;
-    let lean = select(0.0, abs(at.cos) / sin, pattern.z == 1u);
+    let lean2 = select(0.0, at.cos * at.cos / sin2, pattern.z == 1u);
+    let wound_texels = 1.0 / (WOUND * texels.y);
 
     let shown = bands_at(ln_r);
-    let first = band_index(shown.first, bitcast<i32>(pattern.y));
-    let next = band_index(shown.first + 1, bitcast<i32>(pattern.y));
-    let bands = array<vec4<u32>, 2>(clouds.volumes[index].bands[first], clouds.volumes[index].bands[next]);
-    let alive = array<Generations, 2>(generations(bands[0], at.later), generations(bands[1], at.later));
-    let count = alive[0].count + select(0u, alive[1].count, shown.count == 2u);
     var sum = 0.0;
     var lost = vec2<f32>(0.0);
-    // One loop over the generations of both bands: lavapipe's run through all loops of a thread 65535 times at most.
-    for (var k = 0u; k < count; k += 1u) {
-        var band = bands[0];
-        var of_band = alive[0];
-        var share = shown.shares.x;
-        var number = shown.first;
-        var old = k;
-        if k >= alive[0].count {
-            band = bands[1];
-            of_band = alive[1];
-            share = shown.shares.y;
-            number += 1;
-            old -= alive[0].count;
-        }
-        let weight = share * select(of_band.weights.x, of_band.weights.y, old == 1u);
-        let age = of_band.young + f32(old) * bitcast<f32>(band.y);
-        let key = generation_key(number, of_band.youngest - old, pattern.x);
-        let wound = texels.x * SHEAR * abs(omega) * age;
-        let leaning = wound * lean;
-        let outwards = sqrt(texels.y * texels.y + wound * wound);
-        let upwards = sqrt(across * across + leaning * leaning);
-        let seen = max(widest * max(max(outwards, upwards), around), max(wound, leaning) / (WOUND * texels.y));
-        let level = max(log2(max(seen, least)), 0.0);
-        let from_seed = vec3<f32>(vec3<u32>(key & 0xffffu, key >> 16u, mix_bits(key) & 0xffffu)) / 65536.0;
-        let place = from_seed + vec3<f32>(
-            (at.azimuth - omega * age) / TAU,
-            (ln_r - bitcast<f32>(band.w) * age) / structure.w,
-            height.x / FILAMENT_HEIGHT,
-        );
-        let s = structure.x * weight;
-        sum += s * filament_value(place, level);
-        let variance = filament_variance(level);
-        lost += vec2<f32>(filament_log_mean(structure.y * s, variance), filament_log_mean(s, variance));
+    for (var k = 0u; k < shown.count; k += 1u) {
+        let number = shown.first + i32(k);
+        let band = clouds.volumes[index].bands[band_index(number, bitcast<i32>(pattern.y))];
+        let alive = generations(band, at.later);
+        let age = alive.young + vec2<f32>(0.0, bitcast<f32>(band.y));
+        let keys = vec2<u32>(generation_key(number, alive.youngest, pattern.x),
+            generation_key(number, alive.youngest - 1u, pattern.x));
+        let wound = (texels.x * SHEAR * abs(omega)) * age;
+        let wound2 = wound * wound;
+        let leaning2 = lean2 * wound2;
+        let finest2 = max(max(texels.y * texels.y + wound2, across * across + leaning2), vec2<f32>(around * around));
+        let seen2 = max(widest * widest * finest2, wound_texels * wound_texels * max(wound2, leaning2));
+        let level = max(0.5 * log2(max(seen2, vec2<f32>(least * least))), vec2<f32>(0.0));
+        let turns = (at.azimuth - omega * age) / TAU;
+        let rows = (ln_r - bitcast<f32>(band.w) * age) / structure.w;
+        let layer = height.x / FILAMENT_HEIGHT;
+        let young = vec3<f32>(turns.x, rows.x, layer) + cloud_shift(keys.x);
+        let old = vec3<f32>(turns.y, rows.y, layer) + cloud_shift(keys.y);
+        let s = structure.x * select(shown.shares.x, shown.shares.y, k == 1u) * alive.weights;
+        sum += dot(s, vec2<f32>(filament_value(young, level.x), filament_value(old, level.y)));
+        let deviation = s * sqrt(vec2<f32>(filament_variance(level.x), filament_variance(level.y)));
+        lost += vec2<f32>(filament_log_mean(structure.y * deviation.x), filament_log_mean(deviation.x))
+            + vec2<f32>(filament_log_mean(structure.y * deviation.y), filament_log_mean(deviation.y));
     }
     return exp(vec2<f32>(structure.y * sum - lost.x, structure.z * (sum - lost.y)));
+}
+
+// The place of a generation in the block, in periods, from the bits of it.
+fn cloud_shift(key: u32) -> vec3<f32> {
+    return vec3<f32>(vec3<u32>(key & 0xffffu, key >> 16u, mix_bits(key) & 0xffffu)) / 65536.0;
+}
+
+fn level_variances(level: u32) -> vec2<f32> {
+    return clouds.variances[level].xy;
 }
 
 // A coordinate across the shape that matter keeps while it moves, and its change with cos th.

@@ -8,6 +8,7 @@
 
 #import constants
 #requires fn filament_texel(place: vec3<f32>, level: f32) -> f32
+#requires fn level_variances(level: u32) -> vec2<f32>
 
 // A level of the pyramid, and the share of it that is left.
 fn faded_level(level: f32) -> vec2<f32> {
@@ -24,21 +25,12 @@ fn filament_value(place: vec3<f32>, level: f32) -> f32 {
 fn filament_variance(level: f32) -> f32 {
     let faded = faded_level(level);
     let whole = floor(faded.x);
-    let share = faded.x - whole;
-    let fine = level_variance(u32(whole));
-    let coarse = level_variance(min(u32(whole) + 1u, FILAMENT_LAST));
-    return faded.y * faded.y * ((1.0 - share) * (1.0 - share) * fine + share * (2.0 - share) * coarse);
+    let beside = 1.0 - (faded.x - whole);
+    let pair = level_variances(u32(whole));
+    return faded.y * faded.y * (pair.y + beside * beside * (pair.x - pair.y));
 }
 
-fn level_variance(level: u32) -> f32 {
-    let fine = FILAMENT_FINE;
-    let coarse = FILAMENT_COARSE;
-    return select(fine[level & 3u], coarse[level & 3u], level >= 4u);
-}
-
-// ln of the mean of e^(k g) over a level whose values have the `variance`.
-fn filament_log_mean(k: f32, variance: f32) -> f32 {
-    let x2 = k * k * variance;
-    let x = sqrt(x2);
-    return x2 * (0.5 + x * (FILAMENT_SKEW + x * FILAMENT_KURTOSIS));
+// ln of the mean of e^g, where g has the standard deviation x.
+fn filament_log_mean(x: f32) -> f32 {
+    return x * x * (0.5 + x * (FILAMENT_SKEW + x * FILAMENT_KURTOSIS));
 }

@@ -21,11 +21,11 @@ fn bend(a: vec4<f32>, b: vec4<f32>, c: vec4<f32>, d: vec4<f32>) -> vec4<f32> {
 
 // Whether light (xyz, and in w the share that passes) is even enough that bends so. `darkest`: the least of what it is
 // at the four blocks nearest, of light the brightest component; light as dark as `least` need not be told exactly.
-fn light_is_even(bends: vec4<f32>, darkest: vec2<f32>, least: f32) -> bool {
-    return all(bends <= HALF_TOLERANCE * vec4<f32>(vec3<f32>(darkest.x + least), darkest.y + HALF_LEAST_SHARE));
+fn light_is_even(bends: vec4<f32>, darkest: vec2<f32>, least: f32, tolerance: f32) -> bool {
+    return all(bends <= tolerance * vec4<f32>(vec3<f32>(darkest.x + least), darkest.y + HALF_LEAST_SHARE));
 }
 
 // The same for I_nu and optical depth.
-fn depth_is_even(bends: vec2<f32>, least: vec2<f32>) -> bool {
-    return all(bends <= HALF_TOLERANCE * vec2<f32>(least.x, least.y + HALF_LEAST_DEPTH));
+fn depth_is_even(bends: vec2<f32>, least: vec2<f32>, tolerance: f32) -> bool {
+    return all(bends <= tolerance * vec2<f32>(least.x, least.y + HALF_LEAST_DEPTH));
 }

@@ -9,6 +9,9 @@
 
 const NO_MEDIUM: vec4<f32> = vec4<f32>(0.0, 0.0, 0.0, 1.0);
 
+// The medium since the last crossing that was kept.
+var<private> medium: vec4<f32>;
+
 // (1 - e^-t) / t.
 fn own_share(t: f32) -> f32 {
     // The series is for depths at which the quotient would be rounding.

@@ -5,8 +5,10 @@
 
 #import constants
 #import emit/clouds
+#import emit/course
 #import emit/flow
 #import emit/glow
+#import emit/layers
 #import shared/matter
 #import emit/medium
 #import emit/shape
@@ -17,61 +19,22 @@
 #import shared/frame
 #import shared/not_inlined
 
-// Whether the view shows I_nu and optical depth, not light.
-override SHOWS_DEPTH: bool = false;
-// Whether some matter has structure.
-override STRUCTURE: bool = false;
 // Cells of even matter for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
 const FINENESS: f32 = 1.7;
+// Where a pixel's light is the mean of so many rays or more, each has this share of the layers that structure wants.
+const MANY_RAYS: u32 = 16u;
+const MANY_SHARE: f32 = 0.7;
 
-// The medium since the last crossing that was kept.
-var<private> medium: vec4<f32>;
 // The angle about the hole that the ray has swept so far.
 var<private> ray_swept: f32;
+// Whether MANY_RAYS are traced for its pixel.
+var<private> among_many: bool;
 
-// A ray begins.
-fn begin_medium() {
+// A ray begins, one of `rays` of a pixel.
+fn begin_medium(rays: u32) {
     medium = NO_MEDIUM;
     ray_swept = 0.0;
-}
-
-// Dense output over a step: 1/r, N, and the values and slopes (times the step) of drag and delay at its ends.
-struct StepCourse {
-    u: Quintic,
-    n_x: Quintic,
-    n_y: Quintic,
-    n_z: Quintic,
-    drag: vec4<f32>,
-    delay: vec4<f32>,
-}
-
-fn step_course(c: Constants, a: State, b: State, h: f32) -> StepCourse {
-    let hh = h * h;
-    let f = n_acceleration(c, a.n) * hh;
-    let g = n_acceleration(c, b.n) * hh;
-    return StepCourse(
-        quintic_of_u(c, a, b, h),
-        quintic(a.n.x, a.dn.x * h, f.x, b.n.x, b.dn.x * h, g.x),
-        quintic(a.n.y, a.dn.y * h, f.y, b.n.y, b.dn.y * h, g.y),
-        quintic(a.n.z, a.dn.z * h, f.z, b.n.z, b.dn.z * h, g.z),
-        vec4<f32>(a.drag, drag_rate(c, a.u) * h, b.drag, drag_rate(c, b.u) * h),
-        vec4<f32>(a.delay, delay_rate(c, a.u, a.n.z) * h, b.delay, delay_rate(c, b.u, b.n.z) * h),
-    );
-}
-
-fn quintic_at(q: Quintic, x: f32) -> f32 {
-    return q.low.x + x * (q.low.y + x * (q.low.z + x * (q.high.x + x * (q.high.y + x * q.high.z))));
-}
-
-fn quintic_slope(q: Quintic, x: f32) -> f32 {
-    return q.low.y + x * (2.0 * q.low.z + x * (3.0 * q.high.x + x * (4.0 * q.high.y + x * 5.0 * q.high.z)));
-}
-
-// Cubic Hermite interpolation: value and slope at 0, value and slope at 1. It keeps slopes even from step to step,
-// without which rings would show (a clock that is linear within steps makes them).
-fn cubic_at(ends: vec4<f32>, x: f32) -> f32 {
-    let rise = ends.z - ends.x;
-    return ends.x + x * (ends.y + x * (3.0 * rise - 2.0 * ends.y - ends.w + x * (ends.y + ends.w - 2.0 * rise)));
+    among_many = rays >= MANY_RAYS;
 }
 
 // Adds the matter along a part of a ray to the medium: the step of the length `h` in tau from `from_state` to
@@ -125,7 +88,11 @@ fn add_part(
         if cut.count > 0.0 {
             let ends = first + run * (at + (next - at) * cut.share);
             let widths = width + (next_width - width) * cut.share;
-            add_piece(c, observer, course, ends, h, cut, widths, ratio);
+            if ALONE {
+                add_layers(c, observer, course, ends, h, cut.count, widths, ratio);
+            } else {
+                add_piece(c, observer, course, ends, h, cut, widths, ratio);
+            }
         }
         at = next;
         before = last;
@@ -183,7 +150,7 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
     var share = vec2<f32>(1.0, 0.0);
     var cells = 0.0;
     var places = 0.0;
-    for (var k = 0u; k < not_inlined(frame.matter_count); k += 1u) {
+    for (var k = 0u; k < select(not_inlined(frame.matter_count), 1u, ALONE); k += 1u) {
         let matter = frame.matter[k];
         let within = clip(matter, u, cosines);
         if within.x < within.y {
@@ -199,8 +166,9 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
             }
         }
     }
-    let layers = STRUCTURE && places > 0.0;
-    let wanted = select(FINENESS * cells, max(places, LAYERS * cells), layers);
+    let layers = ALONE || (STRUCTURE && places > 0.0);
+    let wants = select(1.0, MANY_SHARE, among_many);
+    let wanted = select(FINENESS * cells, max(wants * places, LAYERS * cells), layers);
     let part = share.y - share.x;
     return Cut(share, select(0.0, clamp(ceil(wanted * part), 1.0, MOST_CELLS), part > 0.0), layers);
 }
@@ -291,14 +259,6 @@ fn add_piece(
             cell += 1u;
         }
     }
-}
-
-// Whether so much matter is in front that what is behind does not matter.
-fn is_dark() -> bool {
-    if SHOWS_DEPTH {
-        return medium.y > DARK;
-    }
-    return medium.w < exp(-DARK_PICTURE);
 }
 
 // All matter at the share x of a step of the length `h`, as if the length `tau` of it were as it is there: light, and

@@ -57,7 +57,7 @@ fn integrated_record(id: vec2<u32>) -> Record {
     kept_count = 0u;
     if PARTS {
         kept_given = 0u;
-        begin_medium();
+        begin_medium(pass_.refined);
     }
     let place = pixel_place(id);
     let begin = begin_ray(look_direction(place.x, place.y));

@@ -66,8 +66,8 @@ struct Frame {
     // 1 if the disk's light is limb-darkened, 0 if it is isotropic; then ThinDisk::least_profile of
     // src/emit/thin_disk.rs, (0, 0) without; 0.
     surface: vec4<f32>,
-    // `least` of DiskEdges in src/scene/refine.rs: outer, inner; light that need not be told exactly at half resolution
-    // (`Evenness` of src/emit/half.rs); 0.
+    // `least` of DiskEdges in src/scene/refine.rs: outer, inner; light that need not be told exactly at half
+    // resolution, and the tolerance there (`Evenness` of src/emit/half.rs).
     shown_edges: vec4<f32>,
     // Plunge of src/physics/plunge.rs: ISCO, E, a x, x; 0 where no matter plunges.
     plunge: vec4<f32>,

@@ -142,9 +142,9 @@ impl Clouds {
             ];
             let s = self.strength * weight;
             sum += s * filaments.value(place, level);
-            let variance = filament_variance(level);
+            let deviation = s * filament_variance(level).sqrt();
             for (sum, power) in cumulants.iter_mut().zip([self.clumping, 1.0]) {
-                *sum += filament_log_mean(power * s, variance);
+                *sum += filament_log_mean(power * deviation);
             }
         }
         let [clumps, pattern] = cumulants;

@@ -27,9 +27,9 @@ pub(crate) const FILAMENT_PERIOD: f64 = 0.6;
 pub(crate) const FILAMENT_HEIGHT: f64 = 5.0;
 /// The number of the last level of the pyramid; each has half the sides of the one before. The next would be 0.
 pub(crate) const FILAMENT_LAST: usize = FILAMENT_SIDES[2].ilog2() as usize;
-const LEVELS: usize = FILAMENT_LAST + 1;
+pub(crate) const FILAMENT_LEVELS: usize = FILAMENT_LAST + 1;
 /// The variance of each level.
-pub(crate) const FILAMENT_VARIANCES: [f64; LEVELS] = [0.9312, 0.7714, 0.5889, 0.4129, 0.2257, 0.0729, 0.0153];
+pub(crate) const FILAMENT_VARIANCES: [f64; FILAMENT_LEVELS] = [0.9312, 0.7714, 0.5889, 0.4129, 0.2257, 0.0729, 0.0153];
 
 /// ln of the mean of e^(x g) is x^2 (1 / 2 + c0 x + c1 x^2): right at x = 1 and 2.
 pub(crate) const FILAMENT_CUMULANTS: [f64; 2] = [-0.037_24, -0.004_25];
@@ -54,7 +54,7 @@ const STEPS: f32 = 256.0;
 pub struct Filaments {
     /// g in steps, level after level, layer by layer, row by row.
     texels: Vec<i16>,
-    levels: [Level; LEVELS],
+    levels: [Level; FILAMENT_LEVELS],
 }
 
 #[derive(Clone, Copy, Default)]
@@ -176,7 +176,7 @@ impl Filaments {
     }
 
     fn new(drawn: Vec<f32>) -> Result<Self> {
-        let mut levels = [Level::default(); LEVELS];
+        let mut levels = [Level::default(); FILAMENT_LEVELS];
         let mut end = 0;
         for (number, level) in levels.iter_mut().enumerate() {
             *level = Level { begin: end, sides: FILAMENT_SIDES.map(|side| side >> number) };
@@ -271,18 +271,17 @@ pub fn filament_variance(level: f64) -> f64 {
     left * left * (rest * rest * FILAMENT_VARIANCES[whole] + share * (2.0 - share) * coarse)
 }
 
-/// The variances of the levels as shaders have them: by fours, and 0 beyond the last one.
-pub(crate) fn level_variances() -> [[f64; 4]; 2] {
-    [0, 4].map(|first| std::array::from_fn(|i| FILAMENT_VARIANCES.get(first + i).copied().unwrap_or(0.0)))
+/// The variance of each level and of the next one, 0 beyond the last, as shaders have them.
+pub(crate) fn level_variances() -> [[f64; 2]; FILAMENT_LEVELS] {
+    let variance = |level: usize| FILAMENT_VARIANCES.get(level).copied().unwrap_or(0.0);
+    std::array::from_fn(|level| [variance(level), variance(level + 1)])
 }
 
-/// ln of the mean of e^(k g) over a level whose values have the `variance`: half of k^2 times that if g were normally
-/// distributed; the other terms are measured.
-pub fn filament_log_mean(k: f64, variance: f64) -> f64 {
-    let x2 = k * k * variance;
-    let x = x2.sqrt();
+/// ln of the mean of e^(k g) over a level, where k g has the standard deviation `x`: half of its square if g were
+/// normally distributed; the other terms are measured.
+pub fn filament_log_mean(x: f64) -> f64 {
     let [c3, c4] = FILAMENT_CUMULANTS;
-    x2 * (0.5 + x * (c3 + x * c4))
+    x * x * (0.5 + x * (c3 + x * c4))
 }
 
 /// A level of the pyramid, and the share of it that is left: coarser than the last one it fades out.
@@ -322,7 +321,7 @@ mod tests {
             assert!((found - stated).abs() < 2e-3, "{found}, not {stated}");
         }
         for k in [0.3, 0.5, 1.0, 1.5, 2.0, 2.5] {
-            let error = lost(k) - filament_log_mean(k, filament_variance(0.0));
+            let error = lost(k) - filament_log_mean(k * filament_variance(0.0).sqrt());
             assert!(error.abs() < 0.01 * k * k, "at {k}: {error}");
         }
         // Between levels, and beyond the last one.
@@ -330,7 +329,7 @@ mod tests {
             let seen = values(level);
             let [found, stated] = [mean(seen.iter().map(|g| g * g)), filament_variance(level)];
             assert!((found - stated).abs() < 0.03, "at level {level}: {found}, not {stated}");
-            let found = mean(seen.iter().map(|g| (1.3 * g).exp())).ln() - filament_log_mean(1.3, stated);
+            let found = mean(seen.iter().map(|g| (1.3 * g).exp())).ln() - filament_log_mean(1.3 * stated.sqrt());
             assert!(found.abs() < 0.05, "at level {level}: {found}");
         }
     }

@@ -6,7 +6,7 @@ use super::observer::look_components;
 use super::rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray};
 use super::{Method, Quality, Scene, VolumeResolution};
 use crate::emit::Emitters;
-use crate::emit::half::{Evenness, LEAST_LIGHT};
+use crate::emit::half::{Evenness, LEAST_LIGHT, STRUCTURE_TOLERANCE, TOLERANCE};
 use crate::physics::geodesic::{Constants, State};
 use crate::physics::integrator;
 use crate::physics::observer::LocalFrame;
@@ -94,9 +94,11 @@ impl Scene {
     /// The rule by which pixels get their matter with depth from blocks. `None`: each sums its own.
     pub fn half_resolution(&self) -> Option<Evenness> {
         let half = self.quality.volume_resolution == VolumeResolution::Half && self.emitters().needs().parts;
+        let structured = self.volumes.iter().any(|volume| volume.turbulence > 0.0);
+        let tolerance = if structured { STRUCTURE_TOLERANCE } else { TOLERANCE };
         // Light that the film shows as white is 1 after exposure.
-        let light = Evenness::Light { least: LEAST_LIGHT * (-self.film.exposure_ev).exp2() };
-        half.then_some(if self.view == super::View::Light { light } else { Evenness::Depth })
+        let light = Evenness::Light { least: LEAST_LIGHT * (-self.film.exposure_ev).exp2(), tolerance };
+        half.then_some(if self.view == super::View::Light { light } else { Evenness::Depth { tolerance } })
     }
 
     /// Steps a ray of a pixel takes on average, for planning, or what takes as long: sigma runs to about 6.

@@ -4,6 +4,7 @@
 
 use super::uniforms::bands;
 use crate::emit::bands::MOST_BANDS;
+use crate::emit::filaments::{FILAMENT_LEVELS, level_variances};
 use crate::emit::shape::{Cloud, WIDEST};
 use crate::emit::volume::{Shape, Volume};
 use crate::emit::volumes::Volumes;
@@ -23,12 +24,16 @@ pub struct CloudUniform {
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub struct CloudsUniform {
     volumes: [CloudUniform; Volume::MOST],
+    variances: [Vec4; FILAMENT_LEVELS],
 }
 
 #[cfg(test)]
 pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     use crate::gpu::kernel::layout::layout;
-    [layout!(CloudUniform as "Cloud": structure, shape, pattern, bands), layout!(CloudsUniform as "Clouds": volumes)]
+    [
+        layout!(CloudUniform as "Cloud": structure, shape, pattern, bands),
+        layout!(CloudsUniform as "Clouds": volumes, variances),
+    ]
 }
 
 fn four(numbers: [f64; 4]) -> Vec4 {
@@ -48,6 +53,7 @@ impl CloudsUniform {
     /// The volumes in their order; those without structure, and those that a scene has not, have the strength 0.
     pub fn new(volumes: &Volumes) -> Self {
         let mut uniform = Self::zeroed();
+        uniform.variances = level_variances().map(|[fine, coarse]| four([fine, coarse, 0.0, 0.0]));
         // Shaders divide by the period.
         uniform.volumes.iter_mut().for_each(|volume| volume.structure = four([0.0, 0.0, 0.0, 1.0]));
         for (uniform, volume) in uniform.volumes.iter_mut().zip(&volumes.volumes) {

@@ -126,11 +126,12 @@ pub(super) fn bands(bands: &Bands) -> [[u32; 4]; MOST_BANDS] {
     })
 }
 
-/// Light that need not be told exactly at half resolution; 0 where none is.
-fn least_light(scene: &Scene) -> f64 {
+/// Light that need not be told exactly at half resolution, and the tolerance there; 0 without.
+fn evenness(scene: &Scene) -> [f64; 2] {
     match scene.half_resolution() {
-        Some(Evenness::Light { least }) => least,
-        Some(Evenness::Depth) | None => 0.0,
+        Some(Evenness::Light { least, tolerance }) => [least, tolerance],
+        Some(Evenness::Depth { tolerance }) => [0.0, tolerance],
+        None => [0.0; 2],
     }
 }
 
@@ -145,6 +146,7 @@ impl FrameUniform {
         let emitters = scene.emitters();
         let turbulence = emitters.disk.and_then(|disk| disk.turbulence);
         let [hottest, least] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
+        let [least_light, tolerance] = evenness(scene);
         let edges = DiskEdges::new(emitters.disk_u().unwrap_or_default(), emitters.fading_u());
         let (matter, matter_count) = uniforms_of(&emitters.volumes);
         let u = 1.0 / frame.r;
@@ -191,7 +193,7 @@ impl FrameUniform {
                 four(outer[0], outer[1], inner[0], inner[1])
             }),
             surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
-            shown_edges: four(edges.least[0], edges.least[1], least_light(scene), 0.0),
+            shown_edges: four(edges.least[0], edges.least[1], least_light, tolerance),
             plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
             bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t.bands)),
             depth_u: range(emitters.depth_u()),

@@ -160,8 +160,7 @@ fn all() -> Vec<(&'static str, String)> {
         FILAMENT_LAYERS: f32 = filaments::FILAMENT_SIDES[2];
         FILAMENT_HEIGHT: f32 = filaments::FILAMENT_HEIGHT;
         FILAMENT_LAST: u32 = filaments::FILAMENT_LAST;
-        FILAMENT_FINE: vec4 = filaments::level_variances()[0];
-        FILAMENT_COARSE: vec4 = filaments::level_variances()[1];
+        FILAMENT_LEVELS: u32 = filaments::FILAMENT_LEVELS;
         FILAMENT_SKEW: f32 = filaments::FILAMENT_CUMULANTS[0];
         FILAMENT_KURTOSIS: f32 = filaments::FILAMENT_CUMULANTS[1];
         CLOUD_SHARP: f32 = clouds::CLOUD_SHARP;
@@ -181,7 +180,6 @@ fn all() -> Vec<(&'static str, String)> {
         GAUSS_BEFORE_1: vec3 = medium::GAUSS_BEFORE[1];
         GAUSS_BEFORE_2: vec3 = medium::GAUSS_BEFORE[2];
         BLOCK: i32 = half::BLOCK;
-        HALF_TOLERANCE: f32 = half::TOLERANCE;
         HALF_LEAST_SHARE: f32 = half::LEAST_SHARE;
         HALF_LEAST_DEPTH: f32 = half::LEAST_DEPTH;
         HALF_CUBIC: vec4 = half::CUBIC;

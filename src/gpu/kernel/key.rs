@@ -263,6 +263,7 @@ fn matter_constants(matter: MatterVariant) -> Vec<(&'static str, f64)> {
         ("POWER_LAW", flag(matter.power_law)),
         ("SHOWS_DEPTH", flag(matter.shows_depth)),
         ("STRUCTURE", flag(matter.structure)),
+        ("ALONE", flag(matter.alone)),
     ]
 }
 

@@ -42,6 +42,8 @@ pub struct MatterVariant {
     pub shows_depth: bool,
     /// Some of it has structure.
     pub structure: bool,
+    /// A volume with structure is all the matter that there is, in a picture with all effects.
+    pub alone: bool,
 }
 
 /// `SHAPE_SPOT` of emit/shape.wgsl, for which volumes have no shape.

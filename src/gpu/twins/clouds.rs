@@ -174,7 +174,7 @@ pub fn group() -> Group {
         ),
         twin(
             filaments,
-            "filament_variance level_variance",
+            "filament_variance",
             "out1(filament_variance(in1(0u)));",
             |i| {
                 i.even(-0.5, 7.5);
@@ -185,17 +185,16 @@ pub fn group() -> Group {
         twin(
             filaments,
             "filament_log_mean",
-            "out1(filament_log_mean(in1(0u), in1(1u)));",
+            "out1(filament_log_mean(in1(0u)));",
             |i| {
                 i.even(0.0, 3.0);
-                i.even(0.0, 1.0);
             },
-            |i, o| o.near(filament_log_mean(i.x(0), i.x(1)), 0.01),
+            |i, o| o.near(filament_log_mean(i.x(0)), 0.01),
             ROUNDING,
         ),
         twin(
             clouds,
-            "cloud_pattern",
+            "cloud_pattern cloud_shift level_variances",
             "let at = CloudPlace(in1(1u), in1(2u), in1(3u), in1(4u));
              out2(cloud_pattern(word(0u), at, in1(5u), Blur(in1(6u), in1(7u))));",
             |i| {

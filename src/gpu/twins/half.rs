@@ -59,20 +59,24 @@ pub fn group() -> Group {
         twin(
             file,
             "light_is_even",
-            "out_flag(light_is_even(in4(0u), in2(4u), in1(6u)));",
+            "out_flag(light_is_even(in4(0u), in2(4u), in1(6u), in1(7u)));",
             |i| {
                 push_bends(i, 4, 2, 1.0);
                 i.log(1e-3, 0.1);
+                i.even(0.01, 0.1);
             },
-            |i, o| o.flag(light_is_even(i.v4(0).to_array(), i.v2(4).to_array(), i.x(6))),
+            |i, o| o.flag(light_is_even(i.v4(0).to_array(), i.v2(4).to_array(), i.x(6), i.x(7))),
             SAME,
         ),
         twin(
             file,
             "depth_is_even",
-            "out_flag(depth_is_even(in2(0u), in2(2u)));",
-            |i| push_bends(i, 2, 2, 4.0),
-            |i, o| o.flag(depth_is_even(i.v2(0).to_array(), i.v2(2).to_array())),
+            "out_flag(depth_is_even(in2(0u), in2(2u), in1(4u)));",
+            |i| {
+                push_bends(i, 2, 2, 4.0);
+                i.even(0.01, 0.1);
+            },
+            |i, o| o.flag(depth_is_even(i.v2(0).to_array(), i.v2(2).to_array(), i.x(4))),
             SAME,
         ),
     ];
