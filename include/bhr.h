@@ -1181,8 +1181,9 @@ BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
  * A named look: values for disk, sky, film and effects that setters can then change. Since 0.2.0.
  *
  * Each preset sets all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky. Hole, camera,
- * volumes, hot spots, time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host
- * that shows its own map sets BHR_SKY_MAP again. An empty cell has the first column's value.
+ * hot spots, time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host that shows
+ * its own map sets BHR_SKY_MAP again. bhr_set_preset_with can also show matter with depth, a volume, in place of the
+ * thin disk. An empty cell has the first column's value.
  *
  * ```text
  * field                  if empty     CINEMATIC    PHYSICAL     OBSERVATORY  TEACHING
@@ -1237,8 +1238,88 @@ typedef int32_t BhrPreset;
  */
 #define BHR_PRESET_TEACHING 3
 
-/** Gives the scene a look: the values of BhrPreset. Since 0.2.0. Errors: INVALID_ARGUMENT for an unknown preset. */
+/** The matter that bhr_set_preset_with shows. Since 0.2.0. */
+typedef int32_t BhrPresetMatter;
+
+/** DEEP where the adapter is fast enough for it, else THIN. Since 0.2.0. */
+#define BHR_PRESET_MATTER_AUTO 0
+
+/** The thin disk, as bhr_set_preset. Since 0.2.0. */
+#define BHR_PRESET_MATTER_THIN 1
+
+/**
+ * One volume instead of the disk; sky, film and effects are as BhrPreset states. An empty cell has the first column's
+ * value, and every field of BhrVolume that is not here that of bhr_volume_init. TEACHING, whose colours are the
+ * frequency shifts of one plane, has no such look and stays THIN. Since 0.2.0.
+ *
+ * ```text
+ * field                     if empty     CINEMATIC    PHYSICAL     OBSERVATORY
+ * volume.flags              0                                      POWER_LAW
+ * volume.shape              DISK                                   TORUS
+ * volume.inner_radius       0 (ISCO)
+ * volume.outer_radius       17                                     20
+ * volume.radius             8                                      5
+ * volume.width              2
+ * volume.thickness          0.05                                   0.4
+ * volume.slope              0.7
+ * volume.absorption         3                                      0.05
+ * volume.temperature        4800                      9000
+ * volume.temperature_slope  0.35                      0.75
+ * volume.spectral_index     1
+ * volume.brightness         1            1.4          5            0.6
+ * volume.sub_keplerian      1                                      0.8
+ * volume.infall             0                                      0.2
+ * volume.turbulence         0            1
+ * ```
+ */
+#define BHR_PRESET_MATTER_DEEP 2
+
+/** How bhr_set_preset_with chooses. Since 0.2.0. */
+typedef struct BhrPresetOptions {
+    uint32_t struct_size;   /**< sizeof(BhrPresetOptions). */
+    BhrPresetMatter matter; /**< BHR_PRESET_MATTER_AUTO (default), _THIN, _DEEP. */
+    /** AUTO: the width of the frames that are to be rendered, in pixels, 1 .. 1048576; 0 means the default, 1920. */
+    uint32_t width;
+    uint32_t height; /**< AUTO: their height, in pixels, 1 .. 1048576; 0 means the default, 1080. */
+    /** AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16. */
+    double frame_ms;
+} BhrPresetOptions;
+
+/**
+ * Gives the scene a look: the values of BhrPreset, with the thin disk. A volume that bhr_set_preset_with set leaves
+ * with the look that it belongs to, unless it was changed since; volumes of the host's own stay. Since 0.2.0. Errors:
+ * INVALID_ARGUMENT for an unknown preset.
+ */
 BHR_NODISCARD BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_preset_options_init(BhrPresetOptions *options, size_t struct_size);
+
+/**
+ * Gives the scene a look, and decides its volumes as well: with DEEP they are that look's one, in place of the thin
+ * disk; with THIN there are none. Volumes that were set before are gone; hot spots stay. options NULL: all defaults.
+ * *out_matter becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now; out_matter may be NULL.
+ *
+ * THIN and DEEP give the same picture on every machine. AUTO measures, and may choose otherwise on another machine, or
+ * when the machine is busy: it renders the look with depth, as a new context's camera sees it, about a hole of
+ * spin 0.5, with the context's BhrQuality, and throws it away. Frames of 480 x 270 come first; where those take less
+ * than 4 ms larger ones follow, up to 1920 x 1080. The fastest of three counts, by the GPU's clock where BhrFrameStats
+ * has it (gpu_ns), else by the host's; after a second fewer do. DEEP is chosen if width x height pixels take at
+ * most frame_ms by that. Each preset is measured once in a context, and again when BhrQuality or, by
+ * bhr_context_recover, the device is another. That takes up to a second on a GPU, where programs are compiled first,
+ * and some seconds on the CPU tracer or a software driver. bhr_frame_stats does not count these frames and the
+ * progress callback is not told of them; the call waits for a job that is being rendered.
+ *
+ * Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for an unknown preset or matter, or a number outside its
+ * range; with AUTO also DEVICE_LOST and OUT_OF_MEMORY. The scene then stays as it was. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_set_preset_with(BhrContext *context,
+                                            BhrPreset preset,
+                                            const BhrPresetOptions *options,
+                                            BhrPresetMatter *out_matter);
 
 /* ---- quality ---- */
 

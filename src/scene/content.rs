@@ -74,6 +74,8 @@ pub struct Scene {
     /// Matter with depth, and hot spots.
     pub volumes: ArrayVec<Volume, { Volume::MOST }>,
     pub hot_spots: ArrayVec<HotSpot, { HotSpot::MOST }>,
+    /// The volume that the last preset set, if it did; the host may have changed or replaced it since.
+    pub preset_volume: Option<Volume>,
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
@@ -97,6 +99,7 @@ impl Default for Scene {
             disk: Some(Disk::default()),
             volumes: ArrayVec::new(),
             hot_spots: ArrayVec::new(),
+            preset_volume: None,
             sky: Sky::default(),
             sky_map: None,
             film: Film::default(),
