@@ -82,7 +82,7 @@ pub const BHR_PRESET_MATTER_THIN: BhrPresetMatter = 1;
 /// volume.temperature        4800                      9000
 /// volume.temperature_slope  0.35                      0.75
 /// volume.spectral_index     1
-/// volume.brightness         1            1.4          5            0.6
+/// volume.brightness         1            1.4          7            0.6
 /// volume.sub_keplerian      1                                      0.8
 /// volume.infall             0                                      0.2
 /// volume.turbulence         0            1

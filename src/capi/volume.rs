@@ -68,8 +68,8 @@ pub struct BhrVolume {
     pub shape: BhrVolumeShape,
     /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
     pub flow: BhrFlow,
-    /// In M, 0 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter that
-    /// moves as flags say.
+    /// In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter
+    /// that moves as flags say.
     pub inner_radius: f64,
     /// In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape: a DISK or JET whose
     /// outer_radius is less than 0.9 times its inner edge, the ISCO among them, shows nothing. Default 17.

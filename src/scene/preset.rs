@@ -108,7 +108,7 @@ impl Preset {
             Self::Cinematic => Some(Volume { brightness: 1.4, turbulence: 1.0, ..Volume::plain() }),
             // Temperatures of a thin disk, r^(-3/4) (Shakura and Sunyaev 1973, A&A 24, 337).
             Self::Physical => {
-                Some(Volume { temperature: 9000.0, temperature_slope: 0.75, brightness: 5.0, ..Volume::plain() })
+                Some(Volume { temperature: 9000.0, temperature_slope: 0.75, brightness: 7.0, ..Volume::plain() })
             }
             // As models of hot accretion about Sgr A* and M87* have it (Yuan and Narayan 2014, ARA&A 52, 529): thick,
             // transparent at 230 GHz, slower than Kepler's orbits and falling in.

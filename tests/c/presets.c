@@ -131,7 +131,7 @@ static BhrVolume volume_of(BhrPreset preset) {
     switch (preset) {
     case BHR_PRESET_CINEMATIC: volume.brightness = 1.4, volume.turbulence = 1.0; break;
     case BHR_PRESET_PHYSICAL:
-        volume.temperature = 9000.0, volume.temperature_slope = 0.75, volume.brightness = 5.0;
+        volume.temperature = 9000.0, volume.temperature_slope = 0.75, volume.brightness = 7.0;
         break;
     default:
         volume.flags = BHR_VOLUME_POWER_LAW, volume.shape = BHR_VOLUME_TORUS;

@@ -37,6 +37,8 @@ pub struct Tables {
     filaments: FilamentTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
+    /// `Uploads::lost` when they were made: after another number nobody knows what they hold.
+    lost_uploads: u64,
 }
 
 /// The pictures that are kept when the stars change.
@@ -74,7 +76,8 @@ impl Tables {
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
-        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, profile_spin: None })
+        let lost_uploads = device.uploads.lost();
+        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, profile_spin: None, lost_uploads })
     }
 
     /// Brings the tables up to the scene's stars, maps and disk. `map_sampler`: a sampler is to filter maps. Errors:
@@ -86,7 +89,12 @@ impl Tables {
         map_sampler: bool,
     ) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
-        let made = match tables.take() {
+        let held = tables.take().filter(|held| held.lost_uploads == device.uploads.lost());
+        if held.is_none() {
+            // What was bound of tables before these.
+            device.bindings.clear();
+        }
+        let made = match held {
             Some(held) if Arc::ptr_eq(&held.stars, &stars) => held,
             // The old stars go first: both together need not fit.
             Some(held) => {
