@@ -3,7 +3,8 @@
 
 use bhr::error::{ErrorKind, Result};
 use bhr::gpu::{
-    Adapter, Buffer, Device, FrameTarget, GpuTimer, GpuTracer, Kernel, Loops, Readback, Search, adapters, forget_drivers, read_time,
+    Adapter, Buffer, Device, FrameTarget, GpuTimer, GpuTracer, Kernel, Loops, Readback, Search, adapters,
+    forget_drivers, read_time,
 };
 use bhr::image::PixelFormat;
 use bhr::renderer::{Backend, FrameRequest, Tile};

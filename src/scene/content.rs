@@ -122,11 +122,16 @@ impl Scene {
                 turbulence: Turbulence::new(&disk.disk, disk.u, disk.matter_spin, &self.when()).filter(|_| light),
                 ..disk
             });
-        let volumes = match light || depth {
-            true => self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW }),
-            false => Volumes::default(),
-        };
-        Emitters { disk, volumes }
+        Emitters { disk, volumes: self.shown_volumes() }
+    }
+
+    /// The part of [`Self::emitters`] that has depth.
+    pub fn shown_volumes(&self) -> Volumes {
+        let light = self.view == View::Light;
+        if !(light || self.view.shows_depth_only()) || (self.volumes.is_empty() && self.hot_spots.is_empty()) {
+            return Volumes::default();
+        }
+        self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW })
     }
 
     /// The matter with depth as it is at a time.

@@ -93,7 +93,7 @@ impl Scene {
 
     /// The rule by which pixels get their matter with depth from blocks. `None`: each sums its own.
     pub fn half_resolution(&self) -> Option<Evenness> {
-        let half = self.quality.volume_resolution == VolumeResolution::Half && self.emitters().needs().parts;
+        let half = self.quality.volume_resolution == VolumeResolution::Half && !self.shown_volumes().is_empty();
         // Light that the film shows as white is 1 after exposure.
         let light = Evenness::Light { least: LEAST_LIGHT * (-self.film.exposure_ev).exp2() };
         half.then_some(if self.view == super::View::Light { light } else { Evenness::Depth })

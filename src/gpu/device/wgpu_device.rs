@@ -307,8 +307,7 @@ impl Device {
         let uploads = self.uploads.take();
         let carried = uploads.is_some();
         let encoders = uploads.into_iter().chain([encoder]);
-        let submitted =
-            self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)));
+        let submitted = self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)));
         if submitted.is_err() && carried {
             self.uploads.lost.fetch_add(1, Ordering::Relaxed);
         }
