@@ -3,12 +3,11 @@
 
 use bhr::error::{ErrorKind, Result};
 use bhr::gpu::{
-    Adapter, Buffer, Device, FrameTarget, GpuTimer, GpuTracer, Kernel, Loops, Readback, Search, adapters,
-    forget_drivers, read_time,
+    Adapter, Buffer, Device, GpuTimer, GpuTracer, Kernel, Loops, Readback, Search, adapters, forget_drivers, read_time,
 };
 use bhr::image::PixelFormat;
 use bhr::renderer::{Backend, FrameRequest, Tile};
-use bhr::scene::{Region, Scene, Volume};
+use bhr::scene::{Region, Scene};
 use std::time::{Duration, Instant};
 use wgpu::BufferUsages;
 
@@ -266,47 +265,6 @@ fn a_rejected_request_is_an_error_and_the_device_goes_on() {
     assert_eq!(error.kind, ErrorKind::Internal, "{error}");
     drop(copied);
     round_trip(&device).unwrap();
-}
-
-/// A submission that fails takes with it what was written for it: tables, streaks, filaments and uniforms are all
-/// written again.
-#[test]
-fn what_a_failed_submission_was_to_write_is_written_again() {
-    const SIDE: u32 = 48;
-    let mut scene = Scene::default();
-    scene.volumes.push(Volume { outer_radius: 12.0, ..Volume::default() });
-    let region = Region { full_width: SIDE, full_height: SIDE, x: 0, y: 0 };
-    let request =
-        FrameRequest { width: SIDE, height: SIDE, region, format: PixelFormat::Rgba8Srgb, transparent: false };
-    let picture = |tracer: &mut GpuTracer| {
-        let mut bytes = vec![0; (4 * SIDE * SIDE) as usize];
-        let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
-            for (y, row) in (tile.y..).zip(pixels.chunks(bytes_per_row)) {
-                let at = (4 * (y * SIDE + tile.x)) as usize;
-                bytes[at..][..4 * tile.width as usize].copy_from_slice(&row[..4 * tile.width as usize]);
-            }
-            Ok(())
-        };
-        tracer.render(&scene, &request, &mut sink, &mut |_| true).unwrap();
-        bytes
-    };
-    let expected = picture(&mut GpuTracer::new(adapter()).unwrap());
-    let mut tracer = GpuTracer::new(adapter()).unwrap();
-    let small = tracer.device().buffer("small", 16, BufferUsages::COPY_SRC | BufferUsages::COPY_DST).unwrap();
-    let mut overrun = |encoder: &mut wgpu::CommandEncoder| {
-        encoder.copy_buffer_to_buffer(&small, 0, &small, 64, 64);
-        Ok(())
-    };
-    let mut frame = tracer.begin(&scene, &request, FrameTarget::Host).unwrap();
-    // The frame's last step is the one that fails.
-    let error = loop {
-        match tracer.submit_and(&mut frame, &mut overrun) {
-            Ok(step) => drop(step.expect("a step that fails")),
-            Err(error) => break error,
-        }
-    };
-    assert_eq!(error.kind, ErrorKind::Internal, "{error}");
-    assert!(picture(&mut tracer) == expected, "the next frame differs from that of a new tracer");
 }
 
 #[test]

@@ -4,6 +4,7 @@
 #define BHR_CONTEXT_HPP
 
 #include "image.hpp"
+#include "preset.hpp"
 
 #include <cmath>
 #include <cstring>

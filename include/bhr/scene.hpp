@@ -120,21 +120,6 @@ enum class ColourMap : std::int32_t {
     afmhot = BHR_COLOUR_MAP_AFMHOT,
 };
 
-/// BhrPreset.
-enum class Preset : std::int32_t {
-    cinematic = BHR_PRESET_CINEMATIC,
-    physical = BHR_PRESET_PHYSICAL,
-    observatory = BHR_PRESET_OBSERVATORY,
-    teaching = BHR_PRESET_TEACHING,
-};
-
-/// BhrPresetMatter.
-enum class PresetMatter : std::int32_t {
-    automatic = BHR_PRESET_MATTER_AUTO,
-    thin = BHR_PRESET_MATTER_THIN,
-    deep = BHR_PRESET_MATTER_DEEP,
-};
-
 /// BhrMethod.
 enum class Method : std::int32_t {
     automatic = BHR_METHOD_AUTO,
@@ -406,18 +391,6 @@ struct HotSpot {
 
     HotSpot() noexcept { detail::defaults(*this, bhr_hot_spot_init); }
     BhrHotSpot c() const noexcept { return detail::as_c<BhrHotSpot>(*this); }
-};
-
-/// BhrPresetOptions, with the defaults of bhr_preset_options_init.
-struct PresetOptions {
-    std::uint32_t struct_size;
-    PresetMatter matter;
-    std::uint32_t width;
-    std::uint32_t height;
-    double frame_ms;
-
-    PresetOptions() noexcept { detail::defaults(*this, bhr_preset_options_init); }
-    BhrPresetOptions c() const noexcept { return detail::as_c<BhrPresetOptions>(*this); }
 };
 
 /// BhrSky, with the defaults of bhr_sky_init.
