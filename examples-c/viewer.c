@@ -364,7 +364,8 @@ static int is_software(const BhrContext *context) {
 static void set_goal(BhrPresetOptions *options, const Viewer *v, const Settings *s) {
     options->width = v->size[0];
     options->height = v->size[1];
-    options->frame_ms = 1000.0 / (s->rate > 0.0 ? s->rate : display_rate());
+    const double rate = s->rate > 0.0 ? s->rate : display_rate();
+    options->frame_ms = rate > 0.0 ? fmax(1e-3, fmin(1000.0 / rate, 1e9)) : 0.0; /* 0: the library's */
     if (s->frames != 0 && options->matter == BHR_PRESET_MATTER_AUTO) {
         options->matter = BHR_PRESET_MATTER_THIN; /* the same frames on every machine */
     }
