@@ -3,6 +3,7 @@
 //! the same bytes whole or in parts.
 
 use crate::frames::{Lent, both, cpu, differing, floats, gpu, picture, tiled};
+use crate::random::runs_all;
 use crate::volumes::one_of_each;
 use bhr::image::PixelFormat;
 use bhr::scene::{Camera, Disk, HotSpot, Projection, Scene, Sky, View, Volume, VolumeResolution};
@@ -82,7 +83,9 @@ fn errors(exact: &[f32], found: &[f32]) -> Vec<f32> {
 #[test]
 fn half_is_as_full_within_its_bound() {
     let mut renderer = cpu();
-    for (name, scene) in scenes() {
+    // The bounds hold at this size; the torus is here with turbulence.
+    let everyday = ["soft disk", "halo beside a thin disk", "spots", "fisheye", "turbulent torus"];
+    for (name, scene) in scenes().into_iter().filter(|(name, _)| runs_all() || everyday.contains(name)) {
         let bare = Scene { sky: Sky::black(), ..scene };
         let [full, found] = [bare.clone(), half(&bare)].map(|scene| {
             renderer.scene = scene;
@@ -143,7 +146,7 @@ fn views_are_within_the_bound() {
 /// frames without matter, whatever its resolution.
 #[test]
 fn parts_have_the_bytes_of_the_whole() {
-    let size = [101, 67];
+    let size = if runs_all() { [101, 67] } else { [61, 41] };
     for (tracer, mut renderer) in both() {
         for (name, scene) in scenes() {
             let mut scene = half(&scene);
