@@ -42,6 +42,10 @@ const Choice PRESETS[] = {{"cinematic", BHR_PRESET_CINEMATIC},
                           {"observatory", BHR_PRESET_OBSERVATORY},
                           {"teaching", BHR_PRESET_TEACHING},
                           {NULL, 0}};
+const Choice PRESET_MATTERS[] = {{"auto", BHR_PRESET_MATTER_AUTO},
+                                 {"thin", BHR_PRESET_MATTER_THIN},
+                                 {"deep", BHR_PRESET_MATTER_DEEP},
+                                 {NULL, 0}};
 const Choice TONE_MAPS[] = {
     {"none", BHR_TONE_MAP_NONE}, {"aces", BHR_TONE_MAP_ACES}, {"agx", BHR_TONE_MAP_AGX}, {NULL, 0}};
 const Choice COLOUR_MAPS[] = {{"none", BHR_COLOUR_MAP_NONE}, {"afmhot", BHR_COLOUR_MAP_AFMHOT}, {NULL, 0}};

@@ -25,8 +25,8 @@ typedef struct Choice {
 } Choice;
 
 /* ---- names ---- */
-extern const Choice BACKENDS[], METHODS[], VOLUME_RESOLUTIONS[], MOTIONS[], PRESETS[], TONE_MAPS[], COLOUR_MAPS[],
-    VIEWS[], PROJECTIONS[];
+extern const Choice BACKENDS[], METHODS[], VOLUME_RESOLUTIONS[], MOTIONS[], PRESETS[], PRESET_MATTERS[], TONE_MAPS[],
+    COLOUR_MAPS[], VIEWS[], PROJECTIONS[];
 const char *choice_name(const Choice *choices, int32_t value); /* "?" for none of them */
 
 /* ---- reports ---- */

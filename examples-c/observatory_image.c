@@ -56,6 +56,16 @@ static int read_frequencies(Images *images, const char *text) {
                             "each 1 to 1e5, with commas between them\n", text, MOST_FREQUENCIES);
             return EXIT_USAGE;
         }
+        for (uint32_t i = 0; i < images->frequency_count; i++) {
+            char name[32], other[32];
+            snprintf(name, sizeof name, "%g", ghz);
+            snprintf(other, sizeof other, "%g", images->frequencies[i]);
+            if (strcmp(name, other) == 0) {
+                fprintf(stderr, "observatory: --frequency has %.17g and %.17g GHz, whose files would both be named %s; "
+                                "they must differ in the first six digits\n", images->frequencies[i], ghz, name);
+                return EXIT_USAGE;
+            }
+        }
         images->frequencies[images->frequency_count++] = ghz;
         if (*rest++ == '\0') {
             return 0;

@@ -49,6 +49,8 @@ int main(int argc, char **argv) {
         {"--size", OPTION_SIZE, options.size, "WxH", "of the window; a display may scale it", nullptr, nullptr},
         {"--backend", OPTION_CHOICE, &backend, nullptr, "what traces the light", BACKENDS, nullptr},
         {"--preset", OPTION_CHOICE, &options.preset, nullptr, "the look that it begins with", PRESETS, nullptr},
+        {"--matter", OPTION_CHOICE, &options.matter, nullptr,
+         "of presets: a thin disk, a volume, or the volume where it is fast", PRESET_MATTERS, nullptr},
         {"--paused", OPTION_FLAG, &options.paused, nullptr, "begins with the scene's time at rest", nullptr, nullptr},
         {"--bare", OPTION_FLAG, &options.bare, nullptr, "nothing but the picture, at the window's size",
          nullptr, nullptr},

@@ -62,12 +62,10 @@ BhrStatus scene_init(Scene *scene, const SceneOptions *options) {
                             options->elevation * PI / 180.0);
 }
 
-BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset) {
+/* Disk, sky, film and effects, as the context has them. */
+static BhrStatus read_look(Scene *scene, BhrContext *context) {
     int32_t   present;
-    BhrStatus status = bhr_set_preset(context, preset);
-    if (status >= 0) {
-        status = bhr_get_disk(context, &scene->disk, &present);
-    }
+    BhrStatus status = bhr_get_disk(context, &scene->disk, &present);
     if (status >= 0) {
         scene->has_disk = present;
         status = bhr_get_sky(context, &scene->sky);
@@ -77,6 +75,20 @@ BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset) 
         status = bhr_get_film(context, &scene->film);
     }
     return status >= 0 ? bhr_get_effects(context, &scene->effects) : status;
+}
+
+BhrStatus scene_set_preset(Scene *scene, BhrContext *context, BhrPreset preset) {
+    const BhrStatus status = bhr_set_preset(context, preset);
+    return status >= 0 ? read_look(scene, context) : status;
+}
+
+BhrStatus scene_set_preset_with(Scene *scene, BhrContext *context, BhrPreset preset, const BhrPresetOptions *options,
+                                BhrPresetMatter *out_matter) {
+    BhrStatus status = bhr_set_preset_with(context, preset, options, out_matter);
+    if (status >= 0) {
+        status = bhr_get_volumes(context, scene->volumes, sizeof(BhrVolume), BHR_MAX_VOLUMES, &scene->volume_count);
+    }
+    return status >= 0 ? read_look(scene, context) : status;
 }
 
 BhrStatus scene_apply(const Scene *scene, BhrContext *context) {
@@ -137,6 +149,10 @@ void camera_turn(BhrCamera *camera, double right, double up) {
 int scene_changes_with_time(const Scene *scene) {
     const int shows_matter = scene->view == BHR_VIEW_LIGHT || scene->view == BHR_VIEW_OPTICAL_DEPTH ||
                              scene->view == BHR_VIEW_INTENSITY;
+    int moves = scene->hot_spot_count > 0;
+    for (uint32_t i = 0; i < scene->volume_count; i++) {
+        moves |= scene->volumes[i].turbulence > 0.0;
+    }
     return (scene->has_disk && scene->disk.turbulence > 0.0 && scene->view == BHR_VIEW_LIGHT) ||
-           (scene->hot_spot_count > 0 && shows_matter);
+           (moves && shows_matter);
 }

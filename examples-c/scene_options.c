@@ -35,6 +35,8 @@ typedef struct SceneOption {
 /* A new field of a struct of the library is one line here. */
 static const SceneOption TABLE[] = {
     {"--preset", SCENE_PRESET, OPTION_CHOICE, AT(preset), NULL, NULL, "a look; other options change it", PRESETS},
+    {"--matter", SCENE_PRESET, OPTION_CHOICE, AT(preset_options.matter), NULL, NULL,
+     "of the preset: a thin disk, a volume, or the volume where it is fast", PRESET_MATTERS},
 
     {"--mass", SCENE_HOLE, OPTION_DOUBLE, AT(scene.mass), "M", "above 0", "in scene lengths: the scale", NULL},
     {"--spin", SCENE_HOLE, OPTION_DOUBLE, AT(scene.spin), "A", "-0.999 to 0.999", "a / M", NULL},
@@ -151,7 +153,9 @@ BhrStatus scene_input_init(SceneInput *input) {
     for (int i = 0; i < 3; i++) {
         input->position[i] = input->forward[i] = NAN;
     }
-    return scene_defaults(&input->scene);
+    const BhrStatus status = bhr_preset_options_init(&input->preset_options, sizeof input->preset_options);
+    input->preset_options.matter = BHR_PRESET_MATTER_THIN;
+    return status >= 0 ? scene_defaults(&input->scene) : status;
 }
 
 void scene_input_begin(SceneInput *input, const SceneOptions *begin) {
@@ -202,7 +206,10 @@ static int read_matter(SceneInput *input, const char *program) {
     char      name[128];
     Scene    *scene = &input->scene;
     snprintf(name, sizeof name, "%.100s: --volume", program);
-    const int result = volumes_read(name, &input->volumes, 1.0, scene->volumes, BHR_MAX_VOLUMES, &scene->volume_count);
+    /* Without the option the preset's volumes stay. */
+    const int result = input->volumes.count == 0 ? 0
+                                                 : volumes_read(name, &input->volumes, 1.0, scene->volumes,
+                                                                BHR_MAX_VOLUMES, &scene->volume_count);
     snprintf(name, sizeof name, "%.100s: --hot-spot", program);
     return result != 0 ? result
                        : hot_spots_read(name, &input->hot_spots, scene->hot_spots, BHR_MAX_HOT_SPOTS,
@@ -212,7 +219,8 @@ static int read_matter(SceneInput *input, const char *program) {
 int scene_input_finish(SceneInput *input, BhrContext *context, const Options *options, int argc, char **argv) {
     BhrStatus status = BHR_OK;
     if (input->preset != NO_PRESET) {
-        status = scene_set_preset(&input->scene, context, input->preset);
+        status = scene_set_preset_with(&input->scene, context, input->preset, &input->preset_options,
+                                       &input->preset_matter);
         if (status < 0) {
             return report_failure("set the preset", status);
         }

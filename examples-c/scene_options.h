@@ -27,6 +27,8 @@
 typedef struct SceneInput {
     Scene       scene;
     int32_t     preset;                        /* BHR_PRESET_* or NO_PRESET */
+    BhrPresetOptions preset_options;           /* the preset's matter; THIN, but where a program says otherwise */
+    BhrPresetMatter  preset_matter;            /* once finished: whichever it has */
     double      distance, azimuth, elevation;  /* about the hole: in M, degrees */
     double      position[3], forward[3];       /* in M; NaN: by those above, and towards the hole */
     double      time;                          /* in M */

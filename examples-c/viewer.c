@@ -218,14 +218,18 @@ static void update_title(Viewer *v) {
     if (elapsed < TITLE_PERIOD || bhr_hole_info(v->context, &info) < 0 || bhr_frame_stats(v->context, &stats) < 0) {
         return;
     }
-    char title[192], rate[32], gpu[32], scale[32] = "";
+    char title[224], rate[32], gpu[32], scale[32] = "", look[32] = "";
     snprintf(rate, sizeof rate, v->frames_untitled > 0 ? "%.0f fps" : "at rest", v->frames_untitled / elapsed);
     snprintf(gpu, sizeof gpu, stats.gpu_ns != 0 ? "GPU %.2f ms" : "GPU -", (double)stats.gpu_ns * 1e-6);
     if (is_moving(v) && v->governor.enabled && v->governor.scale < 1.0) {
         snprintf(scale, sizeof scale, "   traced at %.0f %%", 100.0 * v->governor.scale);
     }
-    snprintf(title, sizeof title, "bhr   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s", rate, gpu,
-             v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, scale);
+    if (v->preset != NO_PRESET) {
+        snprintf(look, sizeof look, "   %s, %s", choice_name(PRESETS, v->preset),
+                 choice_name(PRESET_MATTERS, v->preset_matter));
+    }
+    snprintf(title, sizeof title, "bhr   %s   %s   M %.4g   a %+.3f M   r %.4g M   d\xcf\x84/dt %.4f%s%s", rate, gpu,
+             v->scene.mass, v->scene.spin, info.camera_radius / v->scene.mass, info.camera_time_rate, look, scale);
     glfwSetWindowTitle(v->window, title);
     v->titled_at = v->now;
     v->frames_untitled = 0;
@@ -356,7 +360,19 @@ static int is_software(const BhrContext *context) {
     return bhr_context_adapter(context, &adapter) >= 0 && (adapter.flags & BHR_ADAPTER_SOFTWARE);
 }
 
+/* The goal of --matter auto: the window, at the display's rate. */
+static void set_goal(BhrPresetOptions *options, const Viewer *v, const Settings *s) {
+    options->width = v->size[0];
+    options->height = v->size[1];
+    const double rate = s->rate > 0.0 ? s->rate : display_rate();
+    options->frame_ms = rate > 0.0 ? fmax(1e-3, fmin(1000.0 / rate, 1e9)) : 0.0; /* 0: the library's */
+    if (s->frames != 0 && options->matter == BHR_PRESET_MATTER_AUTO) {
+        options->matter = BHR_PRESET_MATTER_THIN; /* the same frames on every machine */
+    }
+}
+
 static int set_first_scene(Viewer *v, const Settings *s) {
+    set_goal(&s->input->preset_options, v, s);
     if (scene_input_finish(s->input, v->context, s->options, s->argc, s->argv) != 0) {
         return 0;
     }
@@ -371,6 +387,8 @@ static int set_first_scene(Viewer *v, const Settings *s) {
     v->first = v->good = v->scene;
     v->tried_view = v->scene.view;
     v->tried_projection = v->scene.camera.projection;
+    v->preset_options = s->input->preset_options;
+    v->preset_matter = s->input->preset_matter;
     v->preset = s->input->preset; /* the key goes on from there; from none to the first */
     v->matter = -1; /* the key's first is the first kind */
     v->pilot.motion = motion;
@@ -463,6 +481,7 @@ static int run(int argc, char **argv) {
         return report_failure("begin", status);
     }
     scene_input_begin(&input, &SCENE_DEFAULTS);
+    input.preset_options.matter = BHR_PRESET_MATTER_AUTO;
     options_add(&options, first, COUNT_OF(first));
     options_add_scene(&options, &input, ALL_OF_SCENE & ~SCENE_QUALITY); /* the quality follows the rate */
     options_add(&options, last, COUNT_OF(last));

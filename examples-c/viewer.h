@@ -38,6 +38,8 @@ typedef struct Viewer {
     Mouse   mouse;
     int     windowed[4]; /* position and size to come back to from the full screen */
     int32_t tried_view, tried_projection, preset, matter; /* the cycling keys pass over what is refused */
+    BhrPresetOptions preset_options;  /* the matter that presets have */
+    BhrPresetMatter  preset_matter;   /* that this one has */
     char    said[SAID];  /* by the last key; printed when bhr has accepted the change */
 
     double   now;           /* wall_seconds() of this turn of the loop */

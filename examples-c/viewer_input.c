@@ -189,11 +189,13 @@ static void toggle_adaptive(Viewer *v, double unused) {
 static void cycle_preset(Viewer *v, double unused) {
     (void)unused;
     v->preset = (v->preset + 1) % (BHR_PRESET_TEACHING + 1);
-    BhrStatus status = scene_set_preset(&v->scene, v->context, v->preset);
+    BhrStatus status =
+        scene_set_preset_with(&v->scene, v->context, v->preset, &v->preset_options, &v->preset_matter);
     if (status < 0) {
         report_failure("set the preset", status);
+        return;
     }
-    SAY(v, "preset: %s", choice_name(PRESETS, v->preset));
+    SAY(v, "preset: %s, %s matter", choice_name(PRESETS, v->preset), choice_name(PRESET_MATTERS, v->preset_matter));
 }
 
 static void cycle_tone_map(Viewer *v, double unused) {

@@ -692,9 +692,12 @@ typedef int32_t BhrVolumeShape;
 #define BHR_VOLUME_HALO 2
 
 /**
- * Two hollow cones that close up with distance, as parabolas do, R^2 ~ r: n = (r / radius)^-slope e^(-((|c| - cos
- * psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. For a jet that
- * flows outwards set flow = BHR_FLOW_OUTFLOW as well: the default is KEPLERIAN. Since 0.2.0.
+ * A hollow jet along the axis and one opposite: matter in the wall of a cone about the axis. At r = radius the wall is
+ * at the angle opening from the axis; nearer to the hole the cone is wider, farther out it is narrower, as a parabola
+ * is: psi = opening sqrt(radius / r), at most pi / 2. thickness says how thick the wall is, slope how fast the matter
+ * thins out: n = (r / radius)^-slope e^(-((|c| - cos psi) / thickness)^2 / 2), with soft edges. The shape alone moves
+ * nothing: matter that flows along the jet has flow = BHR_FLOW_OUTFLOW; with the default, KEPLERIAN, it orbits.
+ * Since 0.2.0.
  */
 #define BHR_VOLUME_JET 3
 
@@ -707,8 +710,9 @@ typedef int32_t BhrFlow;
 /**
  * On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there (Cunningham 1975,
  * ApJ 202, 788); off the plane with the angular and the radial velocity of the plane at the same r. sub_keplerian is
- * the share of the circular orbit's angular momentum that the matter has. infall mixes in matter that falls from rest
- * at infinity: dph/dt and dr/d(tau) are (1 - infall) times those of this flow and infall times those of the other.
+ * the share of the circular orbit's angular momentum that the matter has: with less it turns more slowly. infall goes
+ * from these orbits, 0, to matter that falls from rest at infinity, 1: between them the angular velocity dph/dt is
+ * (1 - infall) times that of the orbit plus infall times that of the fall, and so is the radial one, dr/d(tau).
  * Since 0.2.0.
  */
 #define BHR_FLOW_KEPLERIAN 0
@@ -719,9 +723,12 @@ typedef int32_t BhrFlow;
 #define BHR_FLOW_ANGULAR_MOMENTUM 1
 
 /**
- * Outwards from rest at r = inner_radius = s, inwards inside it: v_r = speed (r^2 - s^2) / (r^2 + s^2). It turns with
- * the hole, whatever BHR_VOLUME_RETROGRADE: v_ph = sqrt(1 - v_r^2) x / (1 + x^2), x = Omega sqrt(g_phph), with the
- * angular velocity of the field lines of Blandford and Znajek (1977), Omega = a / (4 r+). A model. Since 0.2.0.
+ * Away from the hole, the faster the farther, as the matter of a jet: beyond r = inner_radius = s it moves outwards,
+ * far away at speed (in c); at s it stands still; nearer to the hole it falls in: v_r = speed (r^2 - s^2) / (r^2 +
+ * s^2). A spinning hole turns it, in the hole's own sense whatever BHR_VOLUME_RETROGRADE says: v_ph = sqrt(1 - v_r^2)
+ * x / (1 + x^2), x = Omega sqrt(g_phph), with the angular velocity of the field lines of Blandford and Znajek
+ * (1977, MNRAS 179, 433), Omega = a / (4 r+). It is a model with the right limits, no solution of equations of motion.
+ * Since 0.2.0.
  */
 #define BHR_FLOW_OUTFLOW 2
 
@@ -747,8 +754,8 @@ typedef struct BhrVolume {
     BhrVolumeShape shape; /**< BHR_VOLUME_DISK (default), _TORUS, _HALO, _JET. */
     BhrFlow flow;         /**< BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW. */
     /**
-     * In M, 0 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter that
-     * moves as flags say.
+     * In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter
+     * that moves as flags say.
      */
     double inner_radius;
     /**
@@ -773,14 +780,20 @@ typedef struct BhrVolume {
     /** POWER_LAW: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1. */
     double tint[3];
     /**
-     * 0 .. 1e6: the luminance of opaque matter of `temperature` at rest, as BhrDisk has it; of a power law, that of
-     * 1 M of density 1 at rest. Default 1.
+     * A factor on the light, 0 .. 1e6: it changes how bright the matter is, but neither its colour nor how much it
+     * absorbs. 1 is the luminance of white in a picture without exposure and tone map. Thermal: the luminance of
+     * matter of `temperature` at rest that is so thick that nothing shines through. Power law: that of a layer of 1 M
+     * of density 1 at rest which absorbs nothing; one twice as deep is twice as bright. Default 1.
      */
     double brightness;
-    double sub_keplerian;    /**< KEPLERIAN: 0 .. 1. Default 1. */
-    double infall;           /**< KEPLERIAN: 0 circular (default) .. 1 free fall. */
+    double sub_keplerian; /**< KEPLERIAN: the share of the orbit's angular momentum, 0 .. 1. Default 1. */
+    /**
+     * KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall. What falls moves away from an
+     * observer on the near side and towards one on the far side, and its light is shifted by that.
+     */
+    double infall;
     double angular_momentum; /**< ANGULAR_MOMENTUM: 0 .. 1. Default 1. */
-    double speed;            /**< OUTFLOW: far away, in units of c, 0 .. 0.995. Default 0.9. */
+    double speed;            /**< OUTFLOW: the velocity far away in units of c, 0 .. 0.995. Default 0.9. */
     /**
      * 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit:
      * a pattern P = e^(turbulence G) over its mean, G being noise of mean 0 and about variance 1. Seen with its
@@ -1181,8 +1194,9 @@ BHR_NODISCARD BhrStatus bhr_set_time(BhrContext *context, double time);
  * A named look: values for disk, sky, film and effects that setters can then change. Since 0.2.0.
  *
  * Each preset sets all of BhrDisk, all of BhrFilm, the effects, and flags and brightness of BhrSky. Hole, camera,
- * volumes, hot spots, time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host
- * that shows its own map sets BHR_SKY_MAP again. An empty cell has the first column's value.
+ * hot spots, time, view, quality, region, and the sky's orientation, seed and map stay as they are: a host that shows
+ * its own map sets BHR_SKY_MAP again. bhr_set_preset_with can also show matter with depth, a volume, in place of the
+ * thin disk. An empty cell has the first column's value.
  *
  * ```text
  * field                  if empty     CINEMATIC    PHYSICAL     OBSERVATORY  TEACHING
@@ -1237,8 +1251,88 @@ typedef int32_t BhrPreset;
  */
 #define BHR_PRESET_TEACHING 3
 
-/** Gives the scene a look: the values of BhrPreset. Since 0.2.0. Errors: INVALID_ARGUMENT for an unknown preset. */
+/** The matter that bhr_set_preset_with shows. Since 0.2.0. */
+typedef int32_t BhrPresetMatter;
+
+/** DEEP where the adapter is fast enough for it, else THIN. Since 0.2.0. */
+#define BHR_PRESET_MATTER_AUTO 0
+
+/** The thin disk, as bhr_set_preset. Since 0.2.0. */
+#define BHR_PRESET_MATTER_THIN 1
+
+/**
+ * One volume instead of the disk; sky, film and effects are as BhrPreset states. An empty cell has the first column's
+ * value, and every field of BhrVolume that is not here that of bhr_volume_init. TEACHING, whose colours are the
+ * frequency shifts of one plane, has no such look and stays THIN. Since 0.2.0.
+ *
+ * ```text
+ * field                     if empty     CINEMATIC    PHYSICAL     OBSERVATORY
+ * volume.flags              0                                      POWER_LAW
+ * volume.shape              DISK                                   TORUS
+ * volume.inner_radius       0 (ISCO)
+ * volume.outer_radius       17                                     20
+ * volume.radius             8                                      5
+ * volume.width              2
+ * volume.thickness          0.05                                   0.4
+ * volume.slope              0.7
+ * volume.absorption         3                                      0.05
+ * volume.temperature        4800                      9000
+ * volume.temperature_slope  0.35                      0.75
+ * volume.spectral_index     1
+ * volume.brightness         1            1.4          7            0.6
+ * volume.sub_keplerian      1                                      0.8
+ * volume.infall             0                                      0.2
+ * volume.turbulence         0            1
+ * ```
+ */
+#define BHR_PRESET_MATTER_DEEP 2
+
+/** How bhr_set_preset_with chooses. Since 0.2.0. */
+typedef struct BhrPresetOptions {
+    uint32_t struct_size;   /**< sizeof(BhrPresetOptions). */
+    BhrPresetMatter matter; /**< BHR_PRESET_MATTER_AUTO (default), _THIN, _DEEP. */
+    /** AUTO: the width of the frames that are to be rendered, in pixels, 1 .. 1048576; 0 means the default, 1920. */
+    uint32_t width;
+    uint32_t height; /**< AUTO: their height, in pixels, 1 .. 1048576; 0 means the default, 1080. */
+    /** AUTO: the time that such a frame may take, in milliseconds, 0.001 .. 1e9; 0 means the default, 16. */
+    double frame_ms;
+} BhrPresetOptions;
+
+/**
+ * Gives the scene a look: the values of BhrPreset, with the thin disk. A volume that bhr_set_preset_with set leaves
+ * with the look that it belongs to, unless it was changed since; volumes of the host's own stay. Since 0.2.0. Errors:
+ * INVALID_ARGUMENT for an unknown preset.
+ */
 BHR_NODISCARD BhrStatus bhr_set_preset(BhrContext *context, BhrPreset preset);
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_preset_options_init(BhrPresetOptions *options, size_t struct_size);
+
+/**
+ * Gives the scene a look, and decides its volumes as well: with DEEP they are that look's one, in place of the thin
+ * disk; with THIN there are none. Volumes that were set before are gone; hot spots stay. options NULL: all defaults.
+ * *out_matter becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now; out_matter may be NULL.
+ *
+ * THIN and DEEP give the same picture on every machine. AUTO measures, and may choose otherwise on another machine, or
+ * when the machine is busy: it renders the look with depth, as a new context's camera sees it, about a hole of
+ * spin 0.5, with the context's BhrQuality, and throws it away. Frames of 480 x 270 come first; where those take less
+ * than 4 ms larger ones follow, up to 1920 x 1080. The fastest of three counts, by the GPU's clock where BhrFrameStats
+ * has it (gpu_ns), else by the host's; after a second fewer do. DEEP is chosen if width x height pixels take at
+ * most frame_ms by that. Each preset is measured once in a context, and again when BhrQuality or, by
+ * bhr_context_recover, the device is another. That takes up to a second on a GPU, where programs are compiled first,
+ * and some seconds on the CPU tracer or a software driver. bhr_frame_stats does not count these frames and the
+ * progress callback is not told of them; the call waits for a job that is being rendered.
+ *
+ * Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for an unknown preset or matter, or a number outside its
+ * range; with AUTO also DEVICE_LOST and OUT_OF_MEMORY. The scene then stays as it was. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_set_preset_with(BhrContext *context,
+                                            BhrPreset preset,
+                                            const BhrPresetOptions *options,
+                                            BhrPresetMatter *out_matter);
 
 /* ---- quality ---- */
 
@@ -1708,24 +1802,30 @@ BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context,
 
 /* ---- the matter with depth along rays ---- */
 
-/** The matter with depth along a ray. It may grow at its end: bhr_transfer_rays is told its size. Since 0.2.0. */
+/**
+ * How the volumes and hot spots along a ray shine, and how much they absorb. nu_camera is the one frequency at which
+ * a picture shows power laws (BhrVolume). It may grow at its end: bhr_transfer_rays is told its size. Since 0.2.0.
+ */
 typedef struct BhrTransfer {
     BhrFate fate;      /**< BHR_FATE_*. */
     uint32_t reserved; /**< Reserved: 0. */
     /**
-     * I_nu at the camera's frequency, where matter with a power law sends 1 per M at density 1, whatever its
-     * brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid; of a ray that
-     * is BHR_FATE_UNRESOLVED it is the part as far as it was followed, and so is the light.
+     * The specific intensity I_nu of power laws at nu_camera where the ray begins, 0 and up. Its unit is the emission
+     * of 1 M of matter at density 1 that is at rest: 2 is as bright as 2 M of such matter which absorbs nothing. A
+     * host that knows that emission in W / (m^2 Hz sr) multiplies by it. brightness and tint do not count; thermal
+     * matter absorbs this light and adds none. NaN for a ray that is not valid. A ray that is BHR_FATE_UNRESOLVED has
+     * the part as far as it was followed, and so has its light.
      */
     double intensity;
     /**
-     * That of all volumes and hot spots, at the camera's frequency; above 300 only that it is more. NaN unless
-     * escaped: matter that falls piles up before the horizon without end, as far as light from there can tell.
+     * At nu_camera, of all volumes and hot spots together, without a unit, 0 and up: of light from behind them the
+     * share e^-optical_depth passes. Above 300 the number says only that it is more. NaN unless the ray is
+     * BHR_FATE_ESCAPED: towards the horizon an outside observer's rays pass ever more of the matter that falls in.
      */
     double optical_depth;
     /**
-     * The light of all volumes and hot spots, linear Rec. 709, with the effects that are set. NaN for a ray that is
-     * not valid.
+     * The light that a picture shows of all volumes and hot spots, linear Rec. 709 before exposure, with brightness,
+     * tint and the effects that are set. NaN for a ray that is not valid.
      */
     double light[3];
 } BhrTransfer;

@@ -3,6 +3,8 @@
 //! Rust face of the crate; `capi` wraps it in a lock. Chooses the adapter; knows no pixel layout beyond handing tiles
 //! to the target, and nothing of C.
 
+mod presets;
+
 use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
@@ -10,17 +12,19 @@ use crate::image::{Copiers, ImageMut, PixelFormat};
 use crate::job::{Job, JobRequest, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
-use crate::scene::{Hit, Ray, Region, Scene, Transfer, View};
+use crate::scene::{Hit, Preset, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
 use parking_lot::Mutex;
+use presets::DepthCost;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Weak};
 use std::time::Instant;
 
 pub use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, PASSES, Progress, StatsBoard, Tile, TileSink};
 pub use crate::tracers::adapters;
+pub use presets::MatterChoice;
 
 /// How to make a [`Renderer`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -47,6 +51,8 @@ pub struct Renderer {
     tracer: SharedTracer,
     stats: StatsBoard,
     copiers: Arc<Copiers>,
+    /// How long the presets' frames with depth take, as far as that was measured.
+    depth_costs: [Option<DepthCost>; Preset::COUNT],
     /// The threads for jobs, from the first job on.
     worker: Option<Worker>,
     /// Made for this renderer, and perhaps still there.
@@ -80,6 +86,7 @@ impl Renderer {
             tracer: Arc::new(Mutex::new(tracer)),
             stats: StatsBoard::default(),
             copiers: Arc::default(),
+            depth_costs: Default::default(),
             worker: None,
             surfaces: Vec::new(),
         })
@@ -157,6 +164,7 @@ impl Renderer {
         self.adapter = tracer.info().clone();
         self.runs_on = tracer.runs_on();
         self.tracer = Arc::new(Mutex::new(tracer));
+        self.depth_costs = Default::default();
         Ok(())
     }
 

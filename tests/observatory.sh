@@ -102,6 +102,8 @@ observatory_refusals() {
         refuses 2 'unknown option' gold --spin 0 && refuses 2 'unknown option' hotspot --beam 20 &&
         refuses 2 '1 to 8 numbers' image --frequency 230,,345 && refuses 2 '1 to 8 numbers' image --frequency nan &&
         refuses 2 '1 to 8 numbers' image --frequency 1,2,3,4,5,6,7,8,9 &&
+        refuses 2 'both be named 230' image --frequency 230,230.0001 &&
+        refuses 2 'both be named 86' image --frequency 230,86,345,86 &&
         refuses 2 'disk, torus, halo or jet' image --volume ball &&
         refuses 2 'no field' image --volume halo,size=3 && refuses 2 'a number' image --volume halo,radius=big &&
         refuses 2 'no power law' image --volume halo && refuses 2 'no field' hotspot --hot-spot width=1 &&

@@ -10,6 +10,7 @@ use bhr::capi::context::*;
 use bhr::capi::hole::*;
 use bhr::capi::image::*;
 use bhr::capi::job::*;
+use bhr::capi::preset::*;
 use bhr::capi::rays::*;
 use bhr::capi::render::*;
 use bhr::capi::stats::*;
@@ -18,7 +19,7 @@ use bhr::capi::surface::*;
 use bhr::capi::version::*;
 use bhr::capi::window::*;
 use std::ffi::CStr;
-use std::ptr::null_mut;
+use std::ptr::{null, null_mut};
 use x11rb::connection::Connection;
 use x11rb::protocol::xproto::{ConnectionExt, CreateWindowAux, ImageFormat, WindowClass};
 use x11rb::xcb_ffi::XCBConnection;
@@ -144,6 +145,12 @@ fn recovers(backend: BhrBackend) {
             assert!(message().contains("lost"), "{}", message());
             assert_eq!(context.trace(), BHR_ERROR_DEVICE_LOST);
             assert_eq!(context.order(&mut vec![0; BYTES]).unwrap_err(), BHR_ERROR_DEVICE_LOST);
+            // A look that would have to be timed, in a scene that stays as it is.
+            // SAFETY: the context lives, and the options and the choice may be NULL.
+            unsafe {
+                let status = bhr_set_preset_with(context.0, BHR_PRESET_OBSERVATORY, null(), null_mut());
+                assert_eq!(status, BHR_ERROR_DEVICE_LOST, "{}", message());
+            }
         }
         let frames = context.frames();
         // Calls that need no device go on.

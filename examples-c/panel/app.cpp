@@ -60,7 +60,9 @@ App::~App() {
 }
 
 std::string App::start() {
-    Result result = scene_.begin(options_.preset);
+    // --frames shows the same pictures on every machine.
+    const bool steady = options_.frames != 0 && options_.matter == BHR_PRESET_MATTER_AUTO;
+    Result     result = scene_.begin(options_.preset, steady ? BHR_PRESET_MATTER_THIN : options_.matter);
     if (result.ok()) {
         result = inspector_.create();
     }

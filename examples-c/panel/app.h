@@ -23,6 +23,7 @@ struct AppOptions {
     double      hold = -1.0;  // seconds to stay open, after those frames if there are some; < 0: until closed
     const char *screenshot = nullptr, *picture = nullptr; // files to write at the end
     BhrPreset   preset = NO_PRESET; // the look that it begins with
+    int32_t     matter = BHR_PRESET_MATTER_AUTO; // of presets; with --frames THIN instead
     int         bare = 0, paused = 0, verbose = 0;
 };
 

@@ -2,7 +2,9 @@
 // scene.cpp -- see scene.h.
 #include "scene.h"
 
-Result Scene::begin(BhrPreset preset) {
+Result Scene::begin(BhrPreset preset, BhrPresetMatter matter) {
+    preset_options_ = with_defaults(bhr_preset_options_init);
+    preset_options_.matter = matter;
     camera_ = with_defaults(bhr_camera_init);
     camera_.fov_y = 45.0 * DEGREE;
     read_back();
@@ -61,7 +63,16 @@ Result Scene::set_spin(double spin) {
 }
 
 Result Scene::set_preset(BhrPreset preset) {
-    return accepted(bhr_set_preset(context_, preset), true);
+    const Result result = accepted(bhr_set_preset_with(context_, preset, &preset_options_, &chosen_matter_), true);
+    if (result.ok()) {
+        preset_ = preset;
+    }
+    return result;
+}
+
+Result Scene::set_preset_matter(BhrPresetMatter matter) {
+    preset_options_.matter = matter;
+    return preset_ == NO_PRESET ? Result{} : set_preset(preset_);
 }
 
 Result Scene::set_axis(const double axis[3]) {

@@ -26,7 +26,8 @@ public:
     explicit Scene(BhrContext *context) : context_(context) {}
 
     // The scene that the panel begins with.
-    Result begin(BhrPreset preset); // or NO_PRESET
+    // NO_PRESET: the library's look; `matter`: the presets', then and later.
+    Result begin(BhrPreset preset, BhrPresetMatter matter);
 
     // The values in force.
     const Hole       &hole() const { return hole_; }
@@ -60,6 +61,10 @@ public:
     Result set_film(const BhrFilm &film);
     Result set_quality(const BhrQuality &quality);
     Result set_preset(BhrPreset preset);
+    Result set_preset_matter(BhrPresetMatter matter); // with the preset that was set last
+    // The matter that presets are to have, and the one that the last of them has.
+    BhrPresetMatter preset_matter() const { return preset_options_.matter; }
+    BhrPresetMatter chosen_matter() const { return chosen_matter_; }
     Result set_view(BhrView view);
     Result set_effects(uint32_t effects);
     Result set_time(double time);
@@ -68,6 +73,9 @@ public:
     Result advance_camera(double proper_time);
 
 private:
+    BhrPresetOptions preset_options_{};
+    BhrPreset        preset_ = NO_PRESET; // that was set last
+    BhrPresetMatter  chosen_matter_ = BHR_PRESET_MATTER_THIN;
     Result accepted(BhrStatus status, bool changes_rays);
     void   read_back();
 

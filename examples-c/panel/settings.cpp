@@ -415,6 +415,11 @@ void SettingsPanel::film(Scene &scene) {
     constexpr const char *presets[] = {"cinematic", "physical", "observatory", "teaching"};
     // None of them is in force once something else was changed: so none is shown as chosen.
     choice("preset", -1, presets, 4, BHR_PRESET_CINEMATIC, [&](int32_t preset) { return scene.set_preset(preset); });
+    // The name of AUTO says which it has chosen.
+    const bool  deep = scene.chosen_matter() == BHR_PRESET_MATTER_DEEP;
+    const char *matters[] = {deep ? "auto: deep" : "auto: thin", "thin", "deep"};
+    choice("its matter", scene.preset_matter(), matters, 3, BHR_PRESET_MATTER_AUTO,
+           [&](int32_t matter) { return scene.set_preset_matter(matter); });
     BhrFilm               film = scene.film();
     constexpr const char *tone_maps[] = {"none", "ACES", "AgX"};
     choice("tone map", film.tone_map, tone_maps, 3, BHR_TONE_MAP_NONE, [&](int32_t tone_map) {

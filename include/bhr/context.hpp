@@ -4,6 +4,7 @@
 #define BHR_CONTEXT_HPP
 
 #include "image.hpp"
+#include "preset.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -319,6 +320,16 @@ class Context {
     }
     Result<void> set_preset(Preset preset) {
         return detail::call([&] { return bhr_set_preset(get(), static_cast<BhrPreset>(preset)); });
+    }
+    /// bhr_set_preset_with: the matter that the scene has now, thin or deep.
+    Result<PresetMatter> set_preset_with(Preset preset, const PresetOptions &options) {
+        return detail::ask(PresetMatter::thin, [&](PresetMatter &matter) {
+            const BhrPresetOptions given = options.c();
+            BhrPresetMatter chosen = BHR_PRESET_MATTER_THIN;
+            const BhrStatus status = bhr_set_preset_with(get(), static_cast<BhrPreset>(preset), &given, &chosen);
+            matter = static_cast<PresetMatter>(chosen);
+            return status;
+        });
     }
     Result<void> set_quality(const Quality &quality) { return set(bhr_set_quality, quality.c()); }
     /// bhr_get_quality.

@@ -120,14 +120,6 @@ enum class ColourMap : std::int32_t {
     afmhot = BHR_COLOUR_MAP_AFMHOT,
 };
 
-/// BhrPreset.
-enum class Preset : std::int32_t {
-    cinematic = BHR_PRESET_CINEMATIC,
-    physical = BHR_PRESET_PHYSICAL,
-    observatory = BHR_PRESET_OBSERVATORY,
-    teaching = BHR_PRESET_TEACHING,
-};
-
 /// BhrMethod.
 enum class Method : std::int32_t {
     automatic = BHR_METHOD_AUTO,

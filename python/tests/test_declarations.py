@@ -29,6 +29,7 @@ ENUMS = {
     "BHR_COLOUR_MAP_": bhr.ColourMap,
     "BHR_EFFECT_": bhr.Effects,
     "BHR_PRESET_": bhr.Preset,
+    "BHR_PRESET_MATTER_": bhr.PresetMatter,
     "BHR_METHOD_": bhr.Method,
     "BHR_VOLUME_RESOLUTION_": bhr.VolumeResolution,
     "BHR_VIEW_": bhr.View,
@@ -58,6 +59,7 @@ LEFT_OUT = {
     "bhr_sky_init",
     "bhr_film_init",
     "bhr_quality_init",
+    "bhr_preset_options_init",
     "bhr_volume_init",
     "bhr_hot_spot_init",
     # Messages are read on the thread of the call that failed.
@@ -112,6 +114,7 @@ def test_every_field_is_there(struct):
 def test_every_struct_is_there():
     structs = set(re.findall(r"^typedef struct \w+ \{.*?^\} (\w+);", CODE, re.MULTILINE | re.DOTALL))
     others = {"BhrContextOptions", "BhrImage", "BhrRay", "BhrHit", "BhrCrossing", "BhrTransfer", "BhrWindow"}
+    others |= {"BhrPresetOptions"}  # arguments of a method
     assert structs == others | {struct.c_name for struct in STRUCTS}
 
 

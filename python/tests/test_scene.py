@@ -69,6 +69,17 @@ def test_presets(ctx):
         ctx.set_preset(17)
 
 
+def test_presets_with_depth(ctx):
+    assert ctx.set_preset_with(bhr.Preset.PHYSICAL, bhr.PresetMatter.DEEP) is bhr.PresetMatter.DEEP
+    assert ctx.disk is None and len(ctx.volumes) == 1
+    assert ctx.set_preset_with(bhr.Preset.TEACHING, bhr.PresetMatter.DEEP) is bhr.PresetMatter.THIN
+    assert ctx.disk is not None and len(ctx.volumes) == 0
+    assert ctx.set_preset_with(bhr.Preset.PHYSICAL, size=(8, 8), frame_ms=1e9) is bhr.PresetMatter.DEEP
+    assert ctx.set_preset_with(bhr.Preset.PHYSICAL, size=(8192, 8192), frame_ms=0.001) is bhr.PresetMatter.THIN
+    with pytest.raises(bhr.InvalidArgument, match="frame_ms"):
+        ctx.set_preset_with(bhr.Preset.PHYSICAL, frame_ms=-1.0)
+
+
 def test_structs_are_values(ctx):
     camera = ctx.camera
     with pytest.raises(dataclasses.FrozenInstanceError):

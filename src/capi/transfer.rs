@@ -12,7 +12,8 @@ use crate::scene::Transfer;
 use bytemuck::{Pod, Zeroable};
 use std::mem::size_of;
 
-/// The matter with depth along a ray. It may grow at its end: bhr_transfer_rays is told its size. Since 0.2.0.
+/// How the volumes and hot spots along a ray shine, and how much they absorb. nu_camera is the one frequency at which
+/// a picture shows power laws (BhrVolume). It may grow at its end: bhr_transfer_rays is told its size. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct BhrTransfer {
@@ -20,15 +21,18 @@ pub struct BhrTransfer {
     pub fate: BhrFate,
     /// Reserved: 0.
     pub reserved: u32,
-    /// I_nu at the camera's frequency, where matter with a power law sends 1 per M at density 1, whatever its
-    /// brightness and tint. Thermal matter absorbs it and adds nothing. NaN for a ray that is not valid; of a ray that
-    /// is BHR_FATE_UNRESOLVED it is the part as far as it was followed, and so is the light.
+    /// The specific intensity I_nu of power laws at nu_camera where the ray begins, 0 and up. Its unit is the emission
+    /// of 1 M of matter at density 1 that is at rest: 2 is as bright as 2 M of such matter which absorbs nothing. A
+    /// host that knows that emission in W / (m^2 Hz sr) multiplies by it. brightness and tint do not count; thermal
+    /// matter absorbs this light and adds none. NaN for a ray that is not valid. A ray that is BHR_FATE_UNRESOLVED has
+    /// the part as far as it was followed, and so has its light.
     pub intensity: f64,
-    /// That of all volumes and hot spots, at the camera's frequency; above 300 only that it is more. NaN unless
-    /// escaped: matter that falls piles up before the horizon without end, as far as light from there can tell.
+    /// At nu_camera, of all volumes and hot spots together, without a unit, 0 and up: of light from behind them the
+    /// share e^-optical_depth passes. Above 300 the number says only that it is more. NaN unless the ray is
+    /// BHR_FATE_ESCAPED: towards the horizon an outside observer's rays pass ever more of the matter that falls in.
     pub optical_depth: f64,
-    /// The light of all volumes and hot spots, linear Rec. 709, with the effects that are set. NaN for a ray that is
-    /// not valid.
+    /// The light that a picture shows of all volumes and hot spots, linear Rec. 709 before exposure, with brightness,
+    /// tint and the effects that are set. NaN for a ray that is not valid.
     pub light: [f64; 3],
 }
 

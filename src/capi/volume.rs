@@ -23,9 +23,12 @@ pub const BHR_VOLUME_TORUS: BhrVolumeShape = 1;
 /// About the hole: n = e^(-(r / radius)^2 / 2 - (c / thickness)^2 / 2), with thickness = 1e6 a sphere. It is the
 /// model of Gold et al. 2020 (ApJ 897, 148) with thickness = 1 / h. Since 0.2.0.
 pub const BHR_VOLUME_HALO: BhrVolumeShape = 2;
-/// Two hollow cones that close up with distance, as parabolas do, R^2 ~ r: n = (r / radius)^-slope e^(-((|c| - cos
-/// psi) / thickness)^2 / 2), psi = opening sqrt(radius / r) <= pi / 2, with soft edges. For a jet that
-/// flows outwards set flow = BHR_FLOW_OUTFLOW as well: the default is KEPLERIAN. Since 0.2.0.
+/// A hollow jet along the axis and one opposite: matter in the wall of a cone about the axis. At r = radius the wall is
+/// at the angle opening from the axis; nearer to the hole the cone is wider, farther out it is narrower, as a parabola
+/// is: psi = opening sqrt(radius / r), at most pi / 2. thickness says how thick the wall is, slope how fast the matter
+/// thins out: n = (r / radius)^-slope e^(-((|c| - cos psi) / thickness)^2 / 2), with soft edges. The shape alone moves
+/// nothing: matter that flows along the jet has flow = BHR_FLOW_OUTFLOW; with the default, KEPLERIAN, it orbits.
+/// Since 0.2.0.
 pub const BHR_VOLUME_JET: BhrVolumeShape = 3;
 
 /// How the matter of a volume moves, by what the local ZAMO measures. Every flow is slower than light everywhere.
@@ -33,15 +36,19 @@ pub const BHR_VOLUME_JET: BhrVolumeShape = 3;
 pub type BhrFlow = i32;
 /// On circles, inside the ISCO plunging with the energy and the angular momentum of the orbit there (Cunningham 1975,
 /// ApJ 202, 788); off the plane with the angular and the radial velocity of the plane at the same r. sub_keplerian is
-/// the share of the circular orbit's angular momentum that the matter has. infall mixes in matter that falls from rest
-/// at infinity: dph/dt and dr/d(tau) are (1 - infall) times those of this flow and infall times those of the other.
+/// the share of the circular orbit's angular momentum that the matter has: with less it turns more slowly. infall goes
+/// from these orbits, 0, to matter that falls from rest at infinity, 1: between them the angular velocity dph/dt is
+/// (1 - infall) times that of the orbit plus infall times that of the fall, and so is the radial one, dr/d(tau).
 /// Since 0.2.0.
 pub const BHR_FLOW_KEPLERIAN: BhrFlow = 0;
 /// -u_ph / u_t = angular_momentum R^(3/2) / (1 + R), without radial motion: the flow of Gold et al. 2020. Since 0.2.0.
 pub const BHR_FLOW_ANGULAR_MOMENTUM: BhrFlow = 1;
-/// Outwards from rest at r = inner_radius = s, inwards inside it: v_r = speed (r^2 - s^2) / (r^2 + s^2). It turns with
-/// the hole, whatever BHR_VOLUME_RETROGRADE: v_ph = sqrt(1 - v_r^2) x / (1 + x^2), x = Omega sqrt(g_phph), with the
-/// angular velocity of the field lines of Blandford and Znajek (1977), Omega = a / (4 r+). A model. Since 0.2.0.
+/// Away from the hole, the faster the farther, as the matter of a jet: beyond r = inner_radius = s it moves outwards,
+/// far away at speed (in c); at s it stands still; nearer to the hole it falls in: v_r = speed (r^2 - s^2) / (r^2 +
+/// s^2). A spinning hole turns it, in the hole's own sense whatever BHR_VOLUME_RETROGRADE says: v_ph = sqrt(1 - v_r^2)
+/// x / (1 + x^2), x = Omega sqrt(g_phph), with the angular velocity of the field lines of Blandford and Znajek
+/// (1977, MNRAS 179, 433), Omega = a / (4 r+). It is a model with the right limits, no solution of equations of motion.
+/// Since 0.2.0.
 pub const BHR_FLOW_OUTFLOW: BhrFlow = 2;
 
 /// BhrVolume.flags: the matter moves towards -ph. Since 0.2.0.
@@ -68,8 +75,8 @@ pub struct BhrVolume {
     pub shape: BhrVolumeShape,
     /// BHR_FLOW_KEPLERIAN (default), _ANGULAR_MOMENTUM, _OUTFLOW.
     pub flow: BhrFlow,
-    /// In M, 0 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter that
-    /// moves as flags say.
+    /// In M, 1e-6 .. 1e4. DISK, JET: the inner edge; OUTFLOW: where matter is at rest. Default 0: the ISCO of matter
+    /// that moves as flags say.
     pub inner_radius: f64,
     /// In M, greater than inner_radius, to 1e4. Nothing is beyond it, whatever the shape: a DISK or JET whose
     /// outer_radius is less than 0.9 times its inner edge, the ISCO among them, shows nothing. Default 17.
@@ -94,16 +101,19 @@ pub struct BhrVolume {
     pub spectral_index: f64,
     /// POWER_LAW: the colour of its light at every shift, linear Rec. 709, each 0 .. 1. Default 1, 1, 1.
     pub tint: [f64; 3],
-    /// 0 .. 1e6: the luminance of opaque matter of `temperature` at rest, as BhrDisk has it; of a power law, that of
-    /// 1 M of density 1 at rest. Default 1.
+    /// A factor on the light, 0 .. 1e6: it changes how bright the matter is, but neither its colour nor how much it
+    /// absorbs. 1 is the luminance of white in a picture without exposure and tone map. Thermal: the luminance of
+    /// matter of `temperature` at rest that is so thick that nothing shines through. Power law: that of a layer of 1 M
+    /// of density 1 at rest which absorbs nothing; one twice as deep is twice as bright. Default 1.
     pub brightness: f64,
-    /// KEPLERIAN: 0 .. 1. Default 1.
+    /// KEPLERIAN: the share of the orbit's angular momentum, 0 .. 1. Default 1.
     pub sub_keplerian: f64,
-    /// KEPLERIAN: 0 circular (default) .. 1 free fall.
+    /// KEPLERIAN: a share without a unit, from 0, orbits (default), to 1, free fall. What falls moves away from an
+    /// observer on the near side and towards one on the far side, and its light is shifted by that.
     pub infall: f64,
     /// ANGULAR_MOMENTUM: 0 .. 1. Default 1.
     pub angular_momentum: f64,
-    /// OUTFLOW: far away, in units of c, 0 .. 0.995. Default 0.9.
+    /// OUTFLOW: the velocity far away in units of c, 0 .. 0.995. Default 0.9.
     pub speed: f64,
     /// 0 .. 1: the contrast of structure that the matter carries along, and that is renewed within about an orbit:
     /// a pattern P = e^(turbulence G) over its mean, G being noise of mean 0 and about variance 1. Seen with its

@@ -121,6 +121,8 @@ pub(super) fn range(what: &str, name: &str, value: f64, [low, high]: [f64; 2]) -
 impl Volume {
     /// Most volumes of a scene.
     pub const MOST: usize = 4;
+    /// Least inner radius that is stated, M: the powers of its ratio to other radii are numbers of single precision.
+    pub const MIN_INNER: f64 = 1e-6;
     /// Largest radius, M.
     pub const MAX_RADIUS: f64 = 1e4;
     /// The narrowest ring, over its radius: narrower ones would need more samples than a ray takes.
@@ -130,7 +132,14 @@ impl Volume {
     /// hundredth of its radius.
     pub fn check(&self) -> Result<()> {
         let check = |name: &str, value: f64, limits: [f64; 2]| range("volume", name, value, limits);
-        check("inner_radius", self.inner_radius, [0.0, Self::MAX_RADIUS])?;
+        if self.inner_radius != 0.0 && !(Self::MIN_INNER..=Self::MAX_RADIUS).contains(&self.inner_radius) {
+            return Err(Error::argument(format!(
+                "volume inner_radius is {}; it must lie in [{}, {}], or be 0 for the ISCO",
+                Number(self.inner_radius),
+                Self::MIN_INNER,
+                Self::MAX_RADIUS
+            )));
+        }
         check("outer_radius", self.outer_radius, [0.0, Self::MAX_RADIUS])?;
         if self.outer_radius <= self.inner_radius {
             return Err(Error::argument(format!(

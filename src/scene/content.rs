@@ -74,6 +74,8 @@ pub struct Scene {
     /// Matter with depth, and hot spots.
     pub volumes: ArrayVec<Volume, { Volume::MOST }>,
     pub hot_spots: ArrayVec<HotSpot, { HotSpot::MOST }>,
+    /// The volume that the last preset set, if it did; the host may have changed or replaced it since.
+    pub preset_volume: Option<Volume>,
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
@@ -97,6 +99,7 @@ impl Default for Scene {
             disk: Some(Disk::default()),
             volumes: ArrayVec::new(),
             hot_spots: ArrayVec::new(),
+            preset_volume: None,
             sky: Sky::default(),
             sky_map: None,
             film: Film::default(),
@@ -119,11 +122,16 @@ impl Scene {
                 turbulence: Turbulence::new(&disk.disk, disk.u, disk.matter_spin, &self.when()).filter(|_| light),
                 ..disk
             });
-        let volumes = match light || depth {
-            true => self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW }),
-            false => Volumes::default(),
-        };
-        Emitters { disk, volumes }
+        Emitters { disk, volumes: self.shown_volumes() }
+    }
+
+    /// The part of [`Self::emitters`] that has depth.
+    pub fn shown_volumes(&self) -> Volumes {
+        let light = self.view == View::Light;
+        if !(light || self.view.shows_depth_only()) || (self.volumes.is_empty() && self.hot_spots.is_empty()) {
+            return Volumes::default();
+        }
+        self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW })
     }
 
     /// The matter with depth as it is at a time.

@@ -30,7 +30,7 @@ pub use film::{ColourMap, Film, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;
 pub use lensing::{KerrThreshold, Lensing};
-pub use preset::Preset;
+pub use preset::{Preset, PresetMatter};
 pub use quality::{LensTables, Method, Quality, VolumeResolution};
 pub use rays::{Crossing, Fate, Hit, MAX_CROSSINGS, Ray, Transfer};
 pub use sky::Sky;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Presets: named looks, each a set of values for disk, sky, film and effects that hosts may then change; and the plain
-//! scene, which tests begin with whatever the defaults are. Plain data; the values are documented for hosts in
-//! `capi::preset`.
+//! Presets: named looks, each a set of values for disk or volume, sky, film and effects that hosts may then change; and
+//! the plain scene, which tests begin with whatever the defaults are. Plain data; the values are documented for hosts
+//! in `capi::preset`.
 
 use super::{
-    Camera, ColourMap, Disk, DiskReference, Effects, EmissionLaw, Film, Hole, Motion, Projection, Quality, Scene, Sky,
-    ToneMap, View,
+    Camera, ColourMap, Disk, DiskReference, Effects, EmissionLaw, Film, FlowLaw, Hole, Motion, Projection, Quality,
+    Scene, Shape, Sky, ToneMap, View, Volume,
 };
 use glam::{DQuat, DVec3};
 
@@ -23,10 +23,27 @@ pub enum Preset {
     Teaching = 3,
 }
 
+/// The matter that a preset shows (`BHR_PRESET_MATTER_THIN`, `_DEEP`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PresetMatter {
+    /// The thin disk.
+    Thin,
+    /// A volume in its place.
+    Deep,
+}
+
 impl Preset {
-    /// Gives the scene this look: its disk, its film, its effects, and of its sky flags and brightness. Hole, camera,
-    /// time, quality, view and the sky's map, orientation and seed stay.
+    /// How many there are; their numbers are 0 and up.
+    pub const COUNT: usize = 4;
+
+    /// Gives the scene this look: its disk, its film, its effects, and of its sky flags and brightness. Volumes that a
+    /// preset has set, and that are still as it did, leave; others stay, as do hole, camera, hot spots, time, quality,
+    /// view and the sky's map, orientation and seed.
     pub fn apply(self, scene: &mut Scene) {
+        if scene.preset_volume.is_some_and(|volume| scene.volumes.as_slice() == [volume]) {
+            scene.volumes.clear();
+        }
+        scene.preset_volume = None;
         let (disk, film, effects, flags) = match self {
             Self::Cinematic => (Disk::default(), Film::default(), Effects::ALL, Sky::STARS | Sky::MILKY_WAY),
             Self::Physical => (
@@ -65,6 +82,53 @@ impl Preset {
         scene.effects = Effects(effects);
         scene.sky = Sky { flags, stars_brightness: 1.0, map_brightness: 1.0, ..scene.sky };
     }
+
+    /// The same, but for the volumes, which become those of the look: with `Deep` one in place of the thin disk, else
+    /// none. Returns `Thin` for a look that has none with depth.
+    pub fn apply_with(self, matter: PresetMatter, scene: &mut Scene) -> PresetMatter {
+        self.apply(scene);
+        scene.volumes.clear();
+        let Some(volume) = self.volume().filter(|_| matter == PresetMatter::Deep) else {
+            return PresetMatter::Thin;
+        };
+        scene.disk = None;
+        // There is room: it was cleared.
+        let _ = scene.volumes.try_push(volume);
+        scene.preset_volume = Some(volume);
+        PresetMatter::Deep
+    }
+
+    /// Whether the look has matter with depth.
+    pub fn has_depth(self) -> bool {
+        self.volume().is_some()
+    }
+
+    fn volume(self) -> Option<Volume> {
+        match self {
+            Self::Cinematic => Some(Volume { brightness: 1.4, turbulence: 1.0, ..Volume::plain() }),
+            // Temperatures of a thin disk, r^(-3/4) (Shakura and Sunyaev 1973, A&A 24, 337).
+            Self::Physical => {
+                Some(Volume { temperature: 9000.0, temperature_slope: 0.75, brightness: 7.0, ..Volume::plain() })
+            }
+            // As models of hot accretion about Sgr A* and M87* have it (Yuan and Narayan 2014, ARA&A 52, 529): thick,
+            // transparent at 230 GHz, slower than Kepler's orbits and falling in.
+            Self::Observatory => Some(Volume {
+                power_law: true,
+                shape: Shape::Torus,
+                outer_radius: 20.0,
+                radius: 5.0,
+                width: 2.0,
+                thickness: 0.4,
+                absorption: 0.05,
+                brightness: 0.6,
+                sub_keplerian: 0.8,
+                infall: 0.2,
+                ..Volume::plain()
+            }),
+            // Its colours are the frequency shifts of one plane, whose depth would mix them.
+            Self::Teaching => None,
+        }
+    }
 }
 
 // Every value is stated here, so that none changes when a default does. Fields that are added later keep their defaults
@@ -88,6 +152,40 @@ mod plain {
                 reference: DiskReference::Hottest,
                 edge_softness: 0.0,
                 emission_law: EmissionLaw::Isotropic,
+                ..Self::default()
+            }
+        }
+    }
+
+    impl Volume {
+        /// An even soft disk, from the ISCO to 17 M.
+        pub fn plain() -> Self {
+            Self {
+                retrograde: false,
+                power_law: false,
+                shape: Shape::Disk,
+                flow: FlowLaw::Keplerian,
+                inner_radius: 0.0,
+                outer_radius: 17.0,
+                radius: 8.0,
+                width: 2.0,
+                thickness: 0.05,
+                opening: 0.3,
+                slope: 0.7,
+                absorption: 3.0,
+                temperature: 4800.0,
+                temperature_slope: 0.35,
+                spectral_index: 1.0,
+                tint: [1.0; 3],
+                brightness: 1.0,
+                sub_keplerian: 1.0,
+                infall: 0.0,
+                angular_momentum: 1.0,
+                speed: 0.9,
+                turbulence: 0.0,
+                clumping: 1.8,
+                heating: 0.15,
+                seed: 0,
                 ..Self::default()
             }
         }
@@ -191,6 +289,44 @@ mod tests {
             assert_eq!(scene.quality, before.quality, "{preset:?}");
             assert_eq!((scene.sky.orientation, scene.sky.seed), (before.sky.orientation, 3), "{preset:?}");
         }
+    }
+
+    /// Looks with depth have a volume instead of the disk, and nothing else is another.
+    #[test]
+    fn depth_replaces_the_disk_alone() {
+        for preset in ALL {
+            let (mut thin, mut deep) = (odd(), odd());
+            deep.volumes.push(Volume::default());
+            preset.apply(&mut thin);
+            let matter = preset.apply_with(PresetMatter::Deep, &mut deep);
+            assert_eq!(preset.has_depth(), matter == PresetMatter::Deep, "{preset:?}");
+            assert_eq!(preset.has_depth(), deep.disk.is_none(), "{preset:?}");
+            assert_eq!(preset.has_depth(), deep.volumes.len() == 1, "{preset:?}");
+            deep.volumes.iter().for_each(|volume| volume.check().expect("a valid volume"));
+            let rest = |scene: &Scene| (scene.film, scene.effects, scene.sky.flags, scene.hole, scene.camera);
+            assert_eq!(rest(&deep), rest(&thin), "{preset:?}");
+            assert_eq!(preset.apply_with(PresetMatter::Thin, &mut deep), PresetMatter::Thin);
+            assert_eq!((deep.disk, deep.volumes.len()), (thin.disk, 0), "{preset:?}");
+        }
+    }
+
+    /// A preset takes away the volume of another; a volume of the host's, or one that it changed, stays.
+    #[test]
+    fn a_presets_volume_leaves_with_it() {
+        let mut scene = odd();
+        Preset::Cinematic.apply_with(PresetMatter::Deep, &mut scene);
+        Preset::Physical.apply(&mut scene);
+        assert!(scene.volumes.is_empty() && scene.disk.is_some());
+        Preset::Cinematic.apply_with(PresetMatter::Deep, &mut scene);
+        scene.volumes[0].absorption = 1.0;
+        let own = scene.volumes.clone();
+        Preset::Physical.apply(&mut scene);
+        assert_eq!(scene.volumes, own);
+        // The same values, set by the host, are the host's.
+        let mut scene = odd();
+        scene.volumes.push(Preset::Cinematic.volume().expect("a volume"));
+        Preset::Cinematic.apply(&mut scene);
+        assert_eq!(scene.volumes.len(), 1);
     }
 
     /// Whatever was set before, the same preset gives the same look, and each another one.

@@ -93,7 +93,7 @@ impl Scene {
 
     /// The rule by which pixels get their matter with depth from blocks. `None`: each sums its own.
     pub fn half_resolution(&self) -> Option<Evenness> {
-        let half = self.quality.volume_resolution == VolumeResolution::Half && self.emitters().needs().parts;
+        let half = self.quality.volume_resolution == VolumeResolution::Half && !self.shown_volumes().is_empty();
         let structured = self.volumes.iter().any(|volume| volume.turbulence > 0.0);
         let tolerance = if structured { STRUCTURE_TOLERANCE } else { TOLERANCE };
         // Light that the film shows as white is 1 after exposure.
@@ -115,8 +115,6 @@ impl Scene {
         let steps = steps.clamp(1, settings.max_steps.into());
         match self.half_resolution() {
             None => steps + matter,
-            // Structure is finer than blocks: with theirs there are about as many rays as without.
-            Some(_) if structured > 0 => 2 * steps + matter,
             // A quarter as many rays of blocks, and about as many of pixels.
             Some(_) => steps + (steps + matter) / 2,
         }

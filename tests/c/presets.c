@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* presets.c -- bhr_set_preset: the values that bhr.h states, and nothing else; setters change them; unknown ones are
- * refused. */
+/* presets.c -- bhr_set_preset and bhr_set_preset_with: the values that bhr.h states, and nothing else; setters change
+ * them; whose volumes leave with a look; a choice that is measured; bad input is refused. */
 #include "check.h"
 #include "refusals.h"
 
@@ -111,6 +111,178 @@ static void pictures(BhrContext *context) {
     CHECK(memcmp(again.frame, shown[1].frame, sizeof again.frame) == 0, "a preset has two pictures");
 }
 
+/* ---- matter with depth ---- */
+
+static BhrPresetOptions options_for(BhrPresetMatter matter) {
+    BhrPresetOptions options;
+    CHECK_OK(bhr_preset_options_init(&options, sizeof options));
+    CHECK(options.struct_size == sizeof options && options.matter == BHR_PRESET_MATTER_AUTO && options.width == 1920 &&
+              options.height == 1080 && options.frame_ms == 16.0,
+          "other defaults than bhr.h states");
+    options.matter = matter;
+    return options;
+}
+
+/* The second table of bhr.h. */
+static BhrVolume volume_of(BhrPreset preset) {
+    BhrVolume volume;
+    CHECK_OK(bhr_volume_init(&volume, sizeof volume));
+    volume.turbulence = 0.0;
+    switch (preset) {
+    case BHR_PRESET_CINEMATIC: volume.brightness = 1.4, volume.turbulence = 1.0; break;
+    case BHR_PRESET_PHYSICAL:
+        volume.temperature = 9000.0, volume.temperature_slope = 0.75, volume.brightness = 7.0;
+        break;
+    default:
+        volume.flags = BHR_VOLUME_POWER_LAW, volume.shape = BHR_VOLUME_TORUS;
+        volume.outer_radius = 20.0, volume.radius = 5.0, volume.thickness = 0.4, volume.absorption = 0.05;
+        volume.brightness = 0.6, volume.sub_keplerian = 0.8, volume.infall = 0.2;
+        break;
+    }
+    return volume;
+}
+
+/* A volume instead of the disk, and all else as without; the same picture each time. */
+static void looks_with_depth(BhrContext *context) {
+    const BhrPresetOptions deep = options_for(BHR_PRESET_MATTER_DEEP), thin = options_for(BHR_PRESET_MATTER_THIN);
+    for (size_t i = 0; i < COUNT_OF(LOOKS); i++) {
+        const BhrPreset preset = LOOKS[i].preset;
+        const int       has_depth = preset != BHR_PRESET_TEACHING;
+        static Watch    without, with, again;
+        BhrPresetMatter matter = 77;
+        CHECK_OK(bhr_set_preset_with(context, preset, &thin, &matter));
+        CHECK(matter == BHR_PRESET_MATTER_THIN, "preset %d: THIN gives %d", (int)preset, (int)matter);
+        watch_begin(&without, context);
+        CHECK(without.disk_present == 1 && without.volume_count == 0, "preset %d: THIN is not thin", (int)preset);
+        CHECK_OK(bhr_set_preset(context, preset));
+        CHECK(check_unchanged(&without, __FILE__, __LINE__, "bhr_set_preset"), "THIN is another look");
+        CHECK_OK(bhr_set_preset_with(context, preset, &deep, &matter));
+        CHECK(matter == (has_depth ? BHR_PRESET_MATTER_DEEP : BHR_PRESET_MATTER_THIN), "preset %d: DEEP gives %d",
+              (int)preset, (int)matter);
+        watch_begin(&with, context);
+        CHECK(with.disk_present == !has_depth && with.volume_count == (uint32_t)has_depth, "preset %d: its matter",
+              (int)preset);
+        CHECK(memcmp(&with.film, &without.film, sizeof with.film) == 0 &&
+                  memcmp(&with.sky, &without.sky, sizeof with.sky) == 0,
+              "preset %d: film or sky change with depth", (int)preset);
+        CHECK((memcmp(with.frame, without.frame, sizeof with.frame) == 0) == !has_depth, "preset %d: the picture",
+              (int)preset);
+        if (has_depth) {
+            const BhrVolume stated = volume_of(preset);
+            CHECK(memcmp(&with.volumes[0], &stated, sizeof stated) == 0, "preset %d: the volume", (int)preset);
+        }
+        set_odd_scene(context);
+        CHECK_OK(bhr_set_mass(context, without.mass));
+        CHECK_OK(bhr_set_spin(context, without.spin));
+        CHECK_OK(bhr_set_sky(context, &without.sky));
+        CHECK_OK(bhr_set_preset_with(context, preset, &deep, NULL)); /* out_matter may be NULL */
+        watch_begin(&again, context);
+        CHECK(memcmp(again.frame, with.frame, sizeof with.frame) == 0, "preset %d: two pictures", (int)preset);
+    }
+}
+
+/* A volume that a preset set leaves with its look, also after it was read and set as it is; the host's own stay. */
+static void whose_volumes(BhrContext *context) {
+    const BhrPresetOptions deep = options_for(BHR_PRESET_MATTER_DEEP), thin = options_for(BHR_PRESET_MATTER_THIN);
+    const BhrVolume        own = volume_of(BHR_PRESET_OBSERVATORY);
+    BhrVolume              volume;
+    uint32_t               count;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &deep, NULL));
+    CHECK_OK(bhr_get_volumes(context, &volume, sizeof volume, 1, &count));
+    CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, count));
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_CINEMATIC));
+    CHECK_OK(bhr_get_volumes(context, NULL, 0, 0, &count));
+    CHECK(count == 0, "a preset's volume stays after its look");
+    CHECK_OK(bhr_set_volumes(context, &own, sizeof own, 1));
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
+    CHECK_OK(bhr_get_volumes(context, &volume, sizeof volume, 1, &count));
+    CHECK(count == 1 && memcmp(&volume, &own, sizeof own) == 0, "bhr_set_preset takes the host's volume");
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &deep, NULL));
+    CHECK_OK(bhr_get_volumes(context, &volume, sizeof volume, 1, &count));
+    volume.absorption = 1.0;
+    CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, 1));
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
+    CHECK_OK(bhr_get_volumes(context, NULL, 0, 0, &count));
+    CHECK(count == 1, "bhr_set_preset takes a volume that the host changed");
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_PHYSICAL, &thin, NULL));
+    CHECK_OK(bhr_get_volumes(context, NULL, 0, 0, &count));
+    CHECK(count == 0, "THIN leaves a volume");
+}
+
+/* AUTO takes depth where there is time for it, by frames that nothing counts. */
+static void choices(BhrContext *context) {
+    BhrPresetOptions options = options_for(BHR_PRESET_MATTER_AUTO);
+    BhrPresetMatter  matter = 77;
+    BhrFrameStats    before = {.struct_size = sizeof before}, after = before;
+    CHECK_OK(bhr_frame_stats(context, &before));
+    options.frame_ms = 1e9, options.width = options.height = 1;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_DEEP, "a pixel in 11 days is thin");
+    options.frame_ms = 1e-3, options.width = options.height = 1u << 20;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_THIN, "2^40 pixels in a microsecond are deep");
+    options.frame_ms = 1e9, options.width = options.height = 0;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &options, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_DEEP, "1920 x 1080 in 11 days is thin");
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, NULL, &matter)); /* known by now */
+    CHECK(matter == BHR_PRESET_MATTER_DEEP || matter == BHR_PRESET_MATTER_THIN, "no choice: %d", (int)matter);
+    CHECK_OK(bhr_frame_stats(context, &after));
+    CHECK(after.frame_index == before.frame_index, "frames that were timed are counted");
+}
+
+static void refused_options(BhrContext *context) {
+    static const double   times[] = {-1.0, 9e-4, 1.1e9, NAN, INFINITY, -INFINITY};
+    static const uint32_t sides[] = {(1u << 20) + 1, UINT32_MAX};
+    static const int32_t  matters[] = {-1, 3, INT32_MIN, INT32_MAX};
+    static const uint32_t sizes[] = {0, 4, sizeof(BhrPresetOptions) - 1, 1u << 20, UINT32_MAX};
+    struct {
+        BhrPresetOptions known;
+        unsigned char    tail[8];
+    } grown;
+    Watch            watch;
+    BhrPresetOptions options = options_for(BHR_PRESET_MATTER_DEEP);
+    BhrPresetMatter  matter = 77;
+    watch_begin(&watch, context);
+#define REFUSED(words)                                                                                                 \
+    CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, words,                                                           \
+                  bhr_set_preset_with(context, BHR_PRESET_PHYSICAL, &options, &matter));                               \
+    CHECK(matter == 0, "out_matter is %d after an error", (int)matter);                                                \
+    options = options_for(BHR_PRESET_MATTER_DEEP), matter = 77
+    for (size_t i = 0; i < COUNT_OF(times); i++) {
+        options.frame_ms = times[i];
+        REFUSED("frame_ms");
+    }
+    for (size_t i = 0; i < COUNT_OF(sides); i++) {
+        options.width = sides[i];
+        REFUSED("width");
+        options.height = sides[i];
+        REFUSED("height");
+    }
+    for (size_t i = 0; i < COUNT_OF(matters); i++) {
+        options.matter = matters[i];
+        REFUSED("matter");
+    }
+    for (size_t i = 0; i < COUNT_OF(sizes); i++) {
+        options.struct_size = sizes[i];
+        REFUSED("struct_size");
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_preset_options_init(&options, sizes[i]));
+    }
+    options = options_for(BHR_PRESET_MATTER_DEEP);
+    CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "preset", bhr_set_preset_with(context, 4, &options, NULL));
+    CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "preset", bhr_set_preset_with(context, -1, NULL, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_preset_with(NULL, 0, &options, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "options", bhr_preset_options_init(NULL, sizeof options));
+    /* A longer struct of a later release, as long as what this one does not know is 0. */
+    memset(&grown, 0, sizeof grown);
+    grown.known = options, grown.known.struct_size = sizeof grown;
+    grown.tail[7] = 1;
+    CHECK_REFUSED(&watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size",
+                  bhr_set_preset_with(context, BHR_PRESET_PHYSICAL, &grown.known, NULL));
+    grown.tail[7] = 0;
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_PHYSICAL, &grown.known, &matter));
+    CHECK(matter == BHR_PRESET_MATTER_DEEP, "a longer struct gives %d", (int)matter);
+}
+
 static void refusals(BhrContext *context) {
     static const int32_t unknown[] = {-1, 4, 99, INT32_MIN, INT32_MAX};
     Watch                watch;
@@ -152,6 +324,10 @@ int main(int argc, char **argv) {
     BhrContext *context = check_context(backend);
     pictures(context);
     refusals(context);
+    refused_options(context);
+    looks_with_depth(context);
+    whose_volumes(context);
+    choices(context);
     states_what_the_header_states(context);
     bhr_context_destroy(context);
     return check_end();

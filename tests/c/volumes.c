@@ -161,6 +161,39 @@ static void numbers(Watch *watch, BhrContext *context) {
                   bhr_set_hot_spots(context, &spot, sizeof spot, 1));
 }
 
+/* An inner edge that is stated is no less than 1e-6. Even matter from far inside the horizon is the same however far
+ * in it begins. */
+static void inner_edges(Watch *watch, BhrBackend backend) {
+    enum { WIDTH = 48, HEIGHT = 27, BYTES = WIDTH * HEIGHT * 4 };
+    static const double  bad[] = {1e-39, 5e-324, 1e-7, 9.9e-7, -1e-39};
+    static const double  good[] = {1.0, 1e-3, 1e-6};
+    static unsigned char none[BYTES], pictures[COUNT_OF(good)][BYTES];
+    BhrContext          *context = check_context(backend);
+    BhrVolume            volume = a_volume();
+    BhrImage             image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, none, BYTES);
+    volume.slope = volume.temperature_slope = volume.turbulence = 0.0;
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        volume.inner_radius = bad[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "inner_radius",
+                      bhr_set_volumes(watch->context, &volume, sizeof volume, 1));
+    }
+    CHECK_OK(bhr_set_disk(context, NULL));
+    CHECK_OK(bhr_render_image(context, &image));
+    for (size_t i = 0; i < COUNT_OF(good); i++) {
+        int differ = 0;
+        volume.inner_radius = good[i];
+        image.pixels = pictures[i];
+        CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, 1));
+        CHECK_OK(bhr_render_image(context, &image));
+        for (size_t k = 0; k < BYTES; k++) {
+            differ += abs(pictures[i][k] - pictures[0][k]) > 1;
+        }
+        CHECK(differ == 0, "%d bytes differ with an inner edge at %g", differ, good[i]);
+        CHECK(memcmp(pictures[i], none, BYTES) != 0, "no matter is shown with an inner edge at %g", good[i]);
+    }
+    bhr_context_destroy(context);
+}
+
 static void flags_and_kinds(Watch *watch, BhrContext *context) {
     static const int32_t unknown[] = {-1, 4, 99, INT32_MIN, INT32_MAX};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
@@ -406,9 +439,11 @@ static void jobs(Watch *watch, BhrContext *context) {
 }
 
 int main(int argc, char **argv) {
-    BhrContext  *context = check_context(check_begin(argc, argv));
-    static Watch watch;
+    const BhrBackend backend = check_begin(argc, argv);
+    BhrContext      *context = check_context(backend);
+    static Watch     watch;
     watch_unusual_scene(&watch, context);
+    inner_edges(&watch, backend);
     arrays(&watch, context);
     shorter_struct(context);
     CHECK_OK(bhr_set_volumes(context, watch.volumes, sizeof watch.volumes[0], watch.volume_count));

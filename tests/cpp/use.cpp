@@ -149,6 +149,15 @@ static void scene() {
     EXPECT(context.set_quality(quality) && context.quality().value().method == bhr::Method::rk4);
     EXPECT(context.quality().value().volume_resolution == bhr::VolumeResolution::half);
     EXPECT(context.set_preset(bhr::Preset::teaching) && context.film().value().tone_map == bhr::ToneMap::none);
+    bhr::PresetOptions options;
+    EXPECT(options.matter == bhr::PresetMatter::automatic && options.width == 1920 && options.frame_ms == 16.0);
+    options.matter = bhr::PresetMatter::deep;
+    EXPECT(context.set_preset_with(bhr::Preset::physical, options).value() == bhr::PresetMatter::deep);
+    EXPECT(!context.disk().value() && context.volumes().value().size() == 1);
+    EXPECT(context.set_preset_with(bhr::Preset::teaching, options).value() == bhr::PresetMatter::thin);
+    options.frame_ms = -1.0;
+    EXPECT(context.set_preset_with(bhr::Preset::physical, options).status() == bhr::StatusCode::invalid_argument);
+    EXPECT(context.disk().value() && context.volumes().value().empty());
     EXPECT(context.set_sky(std::nullopt) && context.sky().value().flags == bhr::SkyFlags::none);
     const bhr::Result<void> refused = context.set_preset(static_cast<bhr::Preset>(99));
     EXPECT(!refused && refused.status() == bhr::StatusCode::invalid_argument);

@@ -185,6 +185,7 @@ static void scene_call(BhrContext *context) {
     BhrCamera camera;
     BhrDisk   disk;
     BhrSky    sky;
+    BhrPresetOptions options;
     BhrFilm   film;
     BhrVolume  volumes[2];
     BhrHotSpot spots[2];
@@ -241,7 +242,14 @@ static void scene_call(BhrContext *context) {
         check(bhr_set_film(context, &film));
         break;
     case 8: check(bhr_set_time(context, number())); break;
-    case 9: check(bhr_set_preset(context, constant(BHR_PRESET_TEACHING))); break;
+    case 9: /* AUTO would take a while */
+        check(bhr_set_preset(context, constant(BHR_PRESET_TEACHING)));
+        bhr_preset_options_init(&options, sizeof options);
+        options.struct_size = mostly(sizeof options, byte());
+        options.matter = BHR_PRESET_MATTER_THIN + byte() % 3;
+        options.frame_ms = number();
+        check(bhr_set_preset_with(context, constant(BHR_PRESET_TEACHING), &options, NULL));
+        break;
     case 10: check(bhr_set_view(context, constant(BHR_VIEW_INTENSITY))); break;
     case 11: check(bhr_set_effects(context, byte())); break;
     case 12: check(bhr_metric_at(context, vector, gamma)); break;

@@ -118,6 +118,19 @@ viewer_takes_keys() {
         viewer_until 60 viewer_title_says 'a +0.000' && viewer_close
 }
 
+# A preset has the matter that --matter says, with auto the one that the rate allows, and the title says which.
+viewer_chooses_matter() {
+    viewer_open --size 160x90 --preset physical --matter deep &&
+        viewer_until 60 viewer_title_says 'physical, deep' || return 1
+    xdotool key y && viewer_until 60 viewer_says 'preset: observatory, deep matter' || return 1
+    xdotool key y && viewer_until 60 viewer_says 'preset: teaching, thin matter' &&
+        viewer_until 60 viewer_title_says 'teaching, thin' && viewer_close || return 1
+    viewer_open --size 160x90 --preset physical --rate 0.01 &&
+        viewer_until 60 viewer_title_says 'physical, deep' && viewer_close || return 1
+    viewer_open --size 160x90 --preset physical --rate 5e5 &&
+        viewer_until 60 viewer_title_says 'physical, thin' && viewer_close
+}
+
 # Dragging turns the picture, the wheel brings the hole nearer, W flies on to it.
 viewer_takes_mouse() {
     # At rest nothing but the mouse changes the picture.

@@ -168,6 +168,14 @@ class Preset(enum.IntEnum):
     TEACHING = 3
 
 
+class PresetMatter(enum.IntEnum):
+    """The matter that a preset shows: a thin disk, or a volume in its place."""
+
+    AUTO = 0
+    THIN = 1
+    DEEP = 2
+
+
 class VolumeResolution(enum.IntEnum):
     """The rays that matter with depth is summed along."""
 

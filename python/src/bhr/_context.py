@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Backend, Effects, Format, Preset, Status, View
+from ._constants import Backend, Effects, Format, Preset, PresetMatter, Status, View
 from ._ffi import ffi
 from ._frame import Frame
 from ._gate import Gate, end_orphans, log_level
@@ -294,6 +294,26 @@ class Context:
     def set_preset(self, preset: Preset) -> None:
         """Gives disk, sky, film and effects the values of a named look."""
         self._set(lib.bhr_set_preset, Preset(preset))
+
+    def set_preset_with(
+        self,
+        preset: Preset,
+        matter: PresetMatter = PresetMatter.AUTO,
+        *,
+        size: tuple[int, int] = (0, 0),
+        frame_ms: float = 0.0,
+    ) -> PresetMatter:
+        """Gives the scene a named look and decides its volumes: THIN, none and the disk; DEEP, one in place of the
+        disk; AUTO, whichever a frame of `size` in `frame_ms` allows, which is measured once. Returns which it is. 0
+        stands for the defaults, (1920, 1080) and 16."""
+        options = new("BhrPresetOptions")
+        options.matter = PresetMatter(matter)
+        options.width, options.height = size
+        options.frame_ms = frame_ms
+        chosen = ffi.new("BhrPresetMatter *")
+        with self._gate as context:
+            check(lib.bhr_set_preset_with(context, Preset(preset), options, chosen))
+        return PresetMatter(chosen[0])
 
     @property
     def time(self) -> float:

@@ -100,7 +100,7 @@ impl Device {
     fn upload(&self, what: &str, record: impl FnOnce(&mut wgpu::CommandEncoder)) -> Result<()> {
         // Messages wait until the uploads are free.
         let _holding = hold();
-        let mut uploads = self.uploads.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut uploads = self.uploads.commands.lock().unwrap_or_else(PoisonError::into_inner);
         let encoder = match uploads.take() {
             Some(encoder) => encoder,
             None => self.encoder("uploads")?,

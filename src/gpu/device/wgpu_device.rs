@@ -54,12 +54,22 @@ pub struct Device {
 
 /// Commands that fill buffers and textures, and go before those of the next submission.
 #[derive(Default)]
-pub(in crate::gpu) struct Uploads(pub(in crate::gpu) Mutex<Option<wgpu::CommandEncoder>>);
+pub(in crate::gpu) struct Uploads {
+    pub(in crate::gpu) commands: Mutex<Option<wgpu::CommandEncoder>>,
+    /// How many submissions failed that uploads went before.
+    lost: AtomicU64,
+}
 
 impl Uploads {
     /// Takes the commands that are to be submitted first.
     pub fn take(&self) -> Option<wgpu::CommandEncoder> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+        self.commands.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+
+    /// A number that changes when a submission fails and what was written for it is lost: whoever writes something
+    /// once writes it again when the number is another.
+    pub fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
     }
 }
 
@@ -294,8 +304,14 @@ impl Device {
     /// [`Self::scoped`].
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
-        let encoders = self.uploads.take().into_iter().chain([encoder]);
-        self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)))
+        let uploads = self.uploads.take();
+        let carried = uploads.is_some();
+        let encoders = uploads.into_iter().chain([encoder]);
+        let submitted = self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)));
+        if submitted.is_err() && carried {
+            self.uploads.lost.fetch_add(1, Ordering::Relaxed);
+        }
+        submitted
     }
 
     /// Waits until `submission` has run and the callbacks of its buffers were called.

@@ -3,13 +3,12 @@
 //! (records/edges.wgsl, refine/refine.wgsl). Knows kernels and their groups, no records and no light.
 
 use super::tiles::MAX_BATCH;
-use crate::error::{Error, Result};
-use crate::gpu::device::buffer::Buffer;
+use crate::error::Result;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage, list_groups};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{FilmVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant};
-use wgpu::BufferUsages as Usage;
+use crate::gpu::lens::pixel_list::PixelList;
 
 /// `Edges` of records/edges.wgsl: bytes before the pixels, two counts for each sample of a submission.
 const HEAD: u64 = 8 * MAX_BATCH as u64;
@@ -19,9 +18,12 @@ const HEAD: u64 = 8 * MAX_BATCH as u64;
 const PIXELS_PER_GROUP: u32 = 512;
 
 /// The list; it grows and stays.
-#[derive(Default)]
-pub struct EdgeList {
-    buffer: Option<Buffer>,
+pub struct EdgeList(PixelList);
+
+impl Default for EdgeList {
+    fn default() -> Self {
+        Self(PixelList::new("edges", HEAD, Self::BYTES_PER_PIXEL))
+    }
 }
 
 impl EdgeList {
@@ -31,25 +33,17 @@ impl EdgeList {
 
     /// Makes room for the pixels of a tile.
     pub fn prepare(&mut self, device: &Device, tile: [u32; 2]) -> Result<()> {
-        let size = HEAD + u64::from(tile[0]) * u64::from(tile[1]) * Self::BYTES_PER_PIXEL;
-        if self.buffer.as_ref().is_none_or(|b| b.size() < size) {
-            self.buffer = None;
-            self.buffer = Some(device.buffer("edges", size, Usage::STORAGE | Usage::COPY_DST)?);
-        }
-        Ok(())
+        self.0.prepare(device, tile)
     }
 
     /// Empties it.
     pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(buffer) = &self.buffer {
-            encoder.clear_buffer(buffer, 0, Some(HEAD));
-        }
+        self.0.reset(encoder);
     }
 
     /// As group 3 of the kernels that write and read it.
     pub fn group(&self, device: &Device, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindGroup> {
-        let buffer = self.buffer.as_ref().ok_or_else(|| Error::internal("a list of edges without a buffer"))?;
-        device.bind(layout, &[buffer.as_entire_binding()])
+        device.bind(layout, &[self.0.resource()?])
     }
 }
 

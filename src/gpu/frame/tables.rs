@@ -37,6 +37,8 @@ pub struct Tables {
     filaments: FilamentTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
+    /// `Uploads::lost` when they were made: after another number nobody knows what they hold.
+    lost_uploads: u64,
 }
 
 /// The pictures that are kept when the stars change.
@@ -74,7 +76,8 @@ impl Tables {
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
-        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, profile_spin: None })
+        let lost_uploads = device.uploads.lost();
+        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, profile_spin: None, lost_uploads })
     }
 
     /// Brings the tables up to the scene's stars, maps and disk. `map_sampler`: a sampler is to filter maps. Errors:
@@ -86,7 +89,12 @@ impl Tables {
         map_sampler: bool,
     ) -> Result<&'a mut Self> {
         let stars = scene.stars()?;
-        let made = match tables.take() {
+        let held = tables.take().filter(|held| held.lost_uploads == device.uploads.lost());
+        if held.is_none() {
+            // Groups that hold tables from before.
+            device.bindings.clear();
+        }
+        let made = match held {
             Some(held) if Arc::ptr_eq(&held.stars, &stars) => held,
             // The old stars go first: both together need not fit.
             Some(held) => {
@@ -144,5 +152,60 @@ impl Tables {
         device.write_rows(&self.light, PROFILE_ROW, bytemuck::cast_slice(&row))?;
         self.profile_spin = Some(spin);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::error::ErrorKind;
+    use crate::gpu::{Adapter, FrameTarget, GpuTracer, Search, adapters};
+    use crate::image::PixelFormat;
+    use crate::scene::{Region, Scene, Volume};
+    use crate::tracer::{Backend, FrameRequest, Tile};
+    use wgpu::BufferUsages;
+
+    fn adapter() -> Adapter {
+        adapters(Search::Only(Backend::Vulkan), false).into_iter().next().expect("a Vulkan adapter; lavapipe will do")
+    }
+
+    /// A submission that fails takes with it what was written for it: tables, streaks, filaments and uniforms are all
+    /// written again.
+    #[test]
+    fn what_a_failed_submission_was_to_write_is_written_again() {
+        const SIDE: u32 = 48;
+        let mut scene = Scene::default();
+        scene.volumes.push(Volume { outer_radius: 12.0, ..Volume::default() });
+        let region = Region { full_width: SIDE, full_height: SIDE, x: 0, y: 0 };
+        let request =
+            FrameRequest { width: SIDE, height: SIDE, region, format: PixelFormat::Rgba8Srgb, transparent: false };
+        let picture = |tracer: &mut GpuTracer| {
+            let mut bytes = vec![0; (4 * SIDE * SIDE) as usize];
+            let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
+                for (y, row) in (tile.y..).zip(pixels.chunks(bytes_per_row)) {
+                    let at = (4 * (y * SIDE + tile.x)) as usize;
+                    bytes[at..][..4 * tile.width as usize].copy_from_slice(&row[..4 * tile.width as usize]);
+                }
+                Ok(())
+            };
+            tracer.render(&scene, &request, &mut sink, &mut |_| true).unwrap();
+            bytes
+        };
+        let expected = picture(&mut GpuTracer::new(adapter()).unwrap());
+        let mut tracer = GpuTracer::new(adapter()).unwrap();
+        let small = tracer.device().buffer("small", 16, BufferUsages::COPY_SRC | BufferUsages::COPY_DST).unwrap();
+        let mut overrun = |encoder: &mut wgpu::CommandEncoder| {
+            encoder.copy_buffer_to_buffer(&small, 0, &small, 64, 64);
+            Ok(())
+        };
+        let mut frame = tracer.begin(&scene, &request, FrameTarget::Host).unwrap();
+        // The frame's last step is the one that fails.
+        let error = loop {
+            match tracer.submit_and(&mut frame, &mut overrun) {
+                Ok(step) => drop(step.expect("a step that fails")),
+                Err(error) => break error,
+            }
+        };
+        assert_eq!(error.kind, ErrorKind::Internal, "{error}");
+        assert!(picture(&mut tracer) == expected, "the next frame differs from that of a new tracer");
     }
 }

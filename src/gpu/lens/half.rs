@@ -2,15 +2,14 @@
 //! Matter with depth at half resolution on the GPU: the records of blocks, the list of pixels that they do not tell,
 //! and the kernels that make and use them (`emit::half` has the rule). Knows no scene and no light.
 
+use super::pixel_list::PixelList;
 use super::records::{Shared, TracedRecords, pixel_group};
 use crate::emit::half::{BLOCK, STENCIL};
-use crate::error::{Error, Result};
-use crate::gpu::device::buffer::Buffer;
+use crate::error::Result;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage, list_groups};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::TraceVariant;
-use wgpu::BufferUsages as Usage;
 
 /// Bytes of `OwnRays` of traced/own_rays.wgsl before the pixels.
 const HEAD: u64 = 16 * 4;
@@ -20,10 +19,15 @@ const HEAD: u64 = 16 * 4;
 const PIXELS_PER_GROUP: u32 = 128;
 
 /// The records of blocks and the list of pixels; they grow and stay.
-#[derive(Default)]
 pub struct HalfBlocks {
     records: TracedRecords,
-    list: Option<Buffer>,
+    list: PixelList,
+}
+
+impl Default for HalfBlocks {
+    fn default() -> Self {
+        Self { records: Default::default(), list: PixelList::new("rays of their own", HEAD, Self::BYTES_PER_PIXEL) }
+    }
 }
 
 /// The kernels that give the pixels of a tile their media, once they are traced without.
@@ -52,19 +56,12 @@ impl HalfBlocks {
     /// Makes room for the blocks of a tile with so many layers.
     pub fn prepare(&mut self, device: &Device, tile: [u32; 2], layers: u32) -> Result<()> {
         self.records.prepare(device, tile.map(most_blocks), layers)?;
-        let size = HEAD + u64::from(tile[0]) * u64::from(tile[1]) * Self::BYTES_PER_PIXEL;
-        if self.list.as_ref().is_none_or(|list| list.size() < size) {
-            self.list = None;
-            self.list = Some(device.buffer("rays of their own", size, Usage::STORAGE | Usage::COPY_DST)?);
-        }
-        Ok(())
+        self.list.prepare(device, tile)
     }
 
     /// Empties the list.
     pub fn reset(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let Some(list) = &self.list {
-            encoder.clear_buffer(list, 0, Some(HEAD));
-        }
+        self.list.reset(encoder);
     }
 
     /// `pixels`: the textures of the pixels' own records.
@@ -77,8 +74,7 @@ impl HalfBlocks {
         shared: &Shared<'_>,
     ) -> Result<HalfStages> {
         let blocks = self.records.resources()?;
-        let list = self.list.as_ref().ok_or_else(|| Error::internal("blocks of pixels without a list"))?;
-        let list = [list.as_entire_binding()];
+        let list = [self.list.resource()?];
         let ([_, meta, disk], [_, block_meta, block_disk]) = (pixels.clone(), blocks.clone());
         let fills = [shared.frame.clone(), shared.pass.clone(), meta, block_meta, block_disk, disk];
         let [trace_blocks, fill, listed] = keys(variant);

@@ -3,5 +3,6 @@
 
 pub(in crate::gpu) mod half;
 pub(in crate::gpu) mod kerr;
+pub(in crate::gpu) mod pixel_list;
 pub(in crate::gpu) mod records;
 pub(in crate::gpu) mod schwarzschild;
