@@ -21,9 +21,6 @@
 
 // Cells of even matter for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
 const FINENESS: f32 = 1.7;
-// Where a pixel's light is the mean of so many rays or more, each has this share of the layers that structure wants.
-const MANY_RAYS: u32 = 16u;
-const MANY_SHARE: f32 = 0.7;
 
 // The angle about the hole that the ray has swept so far.
 var<private> ray_swept: f32;

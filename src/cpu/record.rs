@@ -59,15 +59,20 @@ impl<'a> Recorder<'a> {
 
     /// The record of position (x, y) of the full frame, without footprints.
     pub fn trace(&self, x: f64, y: f64) -> Record {
-        self.trace_with(x, y, self.emitters.needs().parts)
+        self.trace_among(x, y, 1)
+    }
+
+    /// The same, one of `rays` of a pixel.
+    pub fn trace_among(&self, x: f64, y: f64, rays: u32) -> Record {
+        self.trace_with(x, y, self.emitters.needs().parts, rays)
     }
 
     /// The same without the matter along the ray.
     pub fn trace_bare(&self, x: f64, y: f64) -> Record {
-        self.trace_with(x, y, false)
+        self.trace_with(x, y, false, 1)
     }
 
-    fn trace_with(&self, x: f64, y: f64, parts: bool) -> Record {
+    fn trace_with(&self, x: f64, y: f64, parts: bool, rays: u32) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.aberrate(self.lens.look_direction(x, y));
         let (constants, traced, media) = if parts {
@@ -76,7 +81,7 @@ impl<'a> Recorder<'a> {
             // Aberration makes angles as much smaller as frequencies larger.
             let pixel_angle = self.lens.mapping.pixel_angle * frequency_ratio;
             let static_lapse = observer.frame.static_lapse();
-            let seen = Seen { frequency_ratio, static_lapse, pixel_angle, swept: 0.0 };
+            let seen = Seen { frequency_ratio, static_lapse, pixel_angle, swept: 0.0, rays };
             let mut along = MediaAlong { emitters, seen, plane_u, media, medium };
             let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);
             (constants, traced, along.finish())

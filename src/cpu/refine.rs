@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::scene::observer::Lens;
 use crate::scene::record::Record;
 use crate::scene::refine::{
-    CURVE_SAMPLES, Crossings, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH, SEARCH_STEPS, Strips,
+    CURVE_SAMPLES, Crossings, EDGE_SAMPLES, EVEN_LEVEL, Edge, FARTHEST, LEVEL_STEP, SEARCH_REACH, SEARCH_STEPS, Strips,
     beside_quarter, covered, quarter_place,
 };
 use arrayvec::ArrayVec;
@@ -63,7 +63,7 @@ impl<'a> Refiner<'a> {
     /// `None`: what the samples show cannot change evenly from one to the next.
     fn light_of_quarters(&self, shader: &Shader<'_>, at: [f64; 2]) -> Option<[f64; 4]> {
         let places = [0, 1, 2, 3].map(|index| place_about(at, quarter_place(index)));
-        let records = places.map(|place| self.sample(place));
+        let records = places.map(|place| self.sample(place, EDGE_SAMPLES));
         if self.are_ragged(&records) {
             return None;
         }
@@ -80,22 +80,22 @@ impl<'a> Refiner<'a> {
             let cell = strips.cell(index);
             let distance = level.at(strips.foot(&cell).map(|c| c - 0.5)) / slope;
             *place = (place_about(at, strips.corrected(&cell, distance)), cell.weight);
-            records.push(self.sample(place.0));
+            records.push(self.sample(place.0, CURVE_SAMPLES));
         }
         let beside = |index| strips.beside(index);
         let samples = Samples { records: &records, beside: &beside };
         self.mean(shader, &samples, |index| places[(index % CURVE_SAMPLES) as usize])
     }
 
-    /// The record at a place, without footprints.
-    fn sample(&self, [x, y]: [f64; 2]) -> Record {
+    /// The record at a place, one of `rays` of its pixel, without footprints.
+    fn sample(&self, [x, y]: [f64; 2], rays: u32) -> Record {
         match &self.plane {
             RecordSource::LensLookup(lookup) => {
                 let mut record = Record::captured();
                 lookup.sample(x, y, &mut record);
                 record
             }
-            RecordSource::Traced(recorder) => recorder.trace(x, y),
+            RecordSource::Traced(recorder) => recorder.trace_among(x, y, rays),
         }
     }
 

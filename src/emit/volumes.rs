@@ -38,6 +38,9 @@ pub(crate) const MARGIN_U: f64 = 0.02;
 pub(crate) const MARGIN_COS: f64 = 0.015;
 /// Within a step 1/r may become larger than at its ends by this factor.
 pub(crate) const MARGIN_STEP: f64 = 1.1;
+/// Where a pixel's light is the mean of so many rays or more, each has this share of the layers that structure wants.
+pub(crate) const MANY_RAYS: u32 = 16;
+pub(crate) const MANY_SHARE: f64 = 0.7;
 /// Layers for each cell of even matter.
 pub(crate) const LAYERS: f64 = 2.0;
 /// The most bends between two places: those of all volumes.
@@ -54,6 +57,8 @@ pub struct Seen {
     pub pixel_angle: f64,
     /// The angle about the hole that the ray has swept so far.
     pub swept: f64,
+    /// How many rays of a pixel it is one of.
+    pub rays: u32,
 }
 
 impl Seen {
@@ -362,7 +367,10 @@ impl Sum<'_, '_> {
         let [low, high] = cut.share;
         let layers = self.volumes.accuracy.layers && cut.places > 0.0;
         let wanted = match layers {
-            true => cut.places.max(LAYERS * cut.cells),
+            true => {
+                let share = if self.seen.rays >= MANY_RAYS { MANY_SHARE } else { 1.0 };
+                (share * cut.places).max(LAYERS * cut.cells)
+            }
             // Three places a cell. Structure is rough: finer cells gain less there than the sixth order in them.
             false => (cut.cells * fineness).max(cut.places / 3.0 * fineness.sqrt()),
         };

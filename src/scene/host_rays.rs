@@ -28,7 +28,7 @@ pub fn transfer_ray(scene: &Scene, settings: &Settings, emitters: &Emitters, ray
         return Transfer { fate: Fate::Captured, intensity: 0.0, light: [0.0; 3], ..nothing };
     };
     let (frequency_ratio, static_lapse) = (ray.frequency_ratio, frame.static_lapse());
-    let seen = Seen { frequency_ratio, static_lapse, pixel_angle: 0.0, swept: 0.0 };
+    let seen = Seen { frequency_ratio, static_lapse, pixel_angle: 0.0, swept: 0.0, rays: 1 };
     let (media, medium) = (Media::new(), Medium::default());
     let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium };
     let traced = trace_visited(&constants, &state, settings, &mut along);

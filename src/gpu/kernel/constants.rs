@@ -201,6 +201,8 @@ fn all() -> Vec<(&'static str, String)> {
         DARK_PICTURE: f32 = matter::Accuracy::PICTURE.dark;
         CLUMPED: f32 = matter::CLUMPED;
         LAYERS: f32 = volumes::LAYERS;
+        MANY_RAYS: u32 = volumes::MANY_RAYS;
+        MANY_SHARE: f32 = volumes::MANY_SHARE;
         WORTH: f32 = clouds::WORTH;
         LEAST_WORTH: f32 = clouds::LEAST_WORTH;
         ABSORPTION_INDEX: f32 = glow::ABSORPTION_INDEX;
