@@ -1381,10 +1381,11 @@ typedef int32_t BhrVolumeResolution;
  * twelve blocks about it by cubic interpolation. The pixel's own ray is summed instead where one of their rays had
  * another fate than the pixel's or met other images of the disk; and where linear interpolation, which is one order
  * less exact than what is shown, may be off by more than 1/64 (1/16 in scenes with turbulent matter) of the light (of
- * its brightest colour), of the share of light from behind that passes, or of the view's value. Light below 0.004 of white counts as 0.004, a share below
- * 0.05 as 0.05, an optical depth below 0.001 as 0.001. The rest of a pixel, and the rays of pixels that an edge runs
- * through, are as with FULL. What is narrower than a block, as a thin image or fine turbulence, may lie between the
- * rays and be missed: in a turbulent picture of 320 x 180 nine of ten pixels were within 1/30, all but 0.1 % within 1/6.
+ * its brightest colour), of the share of light from behind that passes, or of the view's value. Light below 0.004 of
+ * white counts as 0.004, a share below 0.05 as 0.05, an optical depth below 0.001 as 0.001. The rest of a pixel, and
+ * the rays of pixels that an edge runs through, are as with FULL. What is narrower than a block, as a thin image or
+ * fine turbulence, may lie between the rays and be missed: in a turbulent picture of 320 x 180 nine of ten pixels were
+ * within 1/30 of those with FULL, all but 0.1 % within 1/6.
  * The same scene gives the same bytes, whole or in parts; both tracers do so. BhrFrameStats counts the steps of the
  * pixels' rays only. Since 0.2.0.
  */
