@@ -33,6 +33,21 @@ pub struct BhrJob {
     message: LastMessage,
     /// The context's.
     broken: Arc<AtomicBool>,
+    /// Whether pixels of the host's are written, so that the job's end waits for it.
+    writes_memory: bool,
+}
+
+/// The job of a frame for a target on the GPU.
+pub(super) fn of_target(job: Job, context: &BhrContext, progress: Option<Callback>) -> BhrJob {
+    BhrJob {
+        job,
+        progress,
+        progress_gate: context.progress_gate.clone(),
+        sink: context.sink(),
+        message: LastMessage::new(),
+        broken: context.broken.clone(),
+        writes_memory: false,
+    }
 }
 
 impl BhrJob {
@@ -106,7 +121,8 @@ pub unsafe extern "C" fn bhr_render_image_async(
             let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
             let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region)?;
             let message = LastMessage::new();
-            let job = BhrJob { job, progress: state.progress, progress_gate, sink, message, broken };
+            let progress = state.progress;
+            let job = BhrJob { job, progress, progress_gate, sink, message, broken, writes_memory: true };
             out.set(Box::into_raw(Box::new(job)));
             Ok(())
         })
@@ -157,7 +173,7 @@ fn cancel(function: &str, job: &BhrJob) {
 }
 
 /// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
-/// host's again. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
+/// host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
 /// bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
@@ -172,6 +188,9 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     }
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
+    if !job.writes_memory {
+        return;
+    }
     cancel(NAME, &job);
     // Nobody is left to hear of the job's own failure.
     let _ = job.job.wait(None, &mut |_| true);

@@ -7,8 +7,10 @@ pub(in crate::gpu) mod bindings;
 pub(in crate::gpu) mod buffer;
 #[doc(hidden)]
 pub mod driver_lock;
+pub(in crate::gpu) mod external;
 pub(in crate::gpu) mod gl_guard;
 pub(in crate::gpu) mod gl_thread;
+pub(in crate::gpu) mod handover;
 pub(in crate::gpu) mod loader;
 pub(in crate::gpu) mod pipeline;
 pub(in crate::gpu) mod readback;
@@ -16,4 +18,6 @@ pub(in crate::gpu) mod specialise;
 pub(in crate::gpu) mod texture;
 pub(in crate::gpu) mod timer;
 pub(in crate::gpu) mod upload;
+#[cfg(not(target_vendor = "apple"))]
+pub(in crate::gpu) mod vulkan;
 pub(in crate::gpu) mod wgpu_device;

@@ -18,6 +18,7 @@ pub(in crate::gpu) mod setup;
 pub(in crate::gpu) mod sky_maps;
 pub(in crate::gpu) mod stages;
 pub(in crate::gpu) mod steps;
+pub(in crate::gpu) mod rows;
 mod streaks;
 pub(in crate::gpu) mod submission;
 pub(in crate::gpu) mod tables;

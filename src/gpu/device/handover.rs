@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Submissions, and who may touch the queue: bhr's threads take turns, and on a host's device they take the host's
+//! lock too. Semaphores that a submission waits for or signals are kept until it has run. Knows no frames.
+
+use super::external::{Handover, QueueLock, SemaphoreUse};
+use super::wgpu_device::Device;
+use crate::error::Result;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// The turns that threads take with a queue, and the semaphores that are in use.
+pub struct QueueTurns {
+    turn: Mutex<()>,
+    host: Option<Arc<QueueLock>>,
+    in_use: Mutex<VecDeque<(wgpu::SubmissionIndex, Vec<SemaphoreUse>)>>,
+}
+
+/// While it lives, no other thread touches the queue.
+pub struct Turn<'a> {
+    // The host's lock is released before bhr's.
+    _host: Option<HostTurn<'a>>,
+    _turn: MutexGuard<'a, ()>,
+}
+
+/// While it lives, the host's lock is held.
+pub struct HostTurn<'a>(&'a QueueLock);
+
+impl<'a> HostTurn<'a> {
+    pub fn new(lock: &'a QueueLock) -> Self {
+        (lock.lock)();
+        Self(lock)
+    }
+}
+
+impl Drop for HostTurn<'_> {
+    fn drop(&mut self) {
+        (self.0.unlock)();
+    }
+}
+
+impl QueueTurns {
+    pub fn new(host: Option<Arc<QueueLock>>) -> Self {
+        Self { turn: Mutex::default(), host, in_use: Mutex::default() }
+    }
+
+    /// To be taken around every call that reaches the queue: submissions, presents, and what makes wgpu submit.
+    pub fn take(&self) -> Turn<'_> {
+        let turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        Turn { _host: self.host.as_deref().map(HostTurn::new), _turn: turn }
+    }
+
+    fn in_use(&self) -> MutexGuard<'_, VecDeque<(wgpu::SubmissionIndex, Vec<SemaphoreUse>)>> {
+        self.in_use.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets go of all semaphores: nothing is under way.
+    pub fn settle(&self) {
+        let all = std::mem::take(&mut *self.in_use());
+        drop(all);
+    }
+
+    /// Keeps all semaphores for ever: the work that uses them never ends.
+    pub fn abandon(&self) {
+        std::mem::forget(std::mem::take(&mut *self.in_use()));
+    }
+}
+
+impl Device {
+    /// Starts what was written since the last submission, and then what `encoders` have recorded, once all of `waits`
+    /// have been signalled; then signals `signals`. Errors: as [`Self::scoped`]; nothing was submitted then.
+    pub fn submit_handed<const N: usize>(
+        &self,
+        encoders: [wgpu::CommandEncoder; N],
+        waits: &[SemaphoreUse],
+        signals: &[SemaphoreUse],
+    ) -> Result<wgpu::SubmissionIndex> {
+        self.submit_all(encoders.into(), waits, signals)
+    }
+
+    /// [`Self::submit_handed`] with the commands that take a target over and give it back.
+    pub(in crate::gpu) fn submit_handover(
+        &self,
+        encoder: Option<wgpu::CommandEncoder>,
+        handover: &Handover<'_>,
+    ) -> Result<wgpu::SubmissionIndex> {
+        #[cfg(not(target_vendor = "apple"))]
+        if let Some(parts) = &self.vulkan {
+            use super::vulkan::barrier;
+            let mut encoders = Vec::with_capacity(3);
+            if let Some(target) = handover.takes {
+                let mut taking = self.encoder("taking a target")?;
+                self.scoped("taking a target", |_| barrier::take(parts, &mut taking, target))?;
+                encoders.push(taking);
+            }
+            encoders.extend(encoder);
+            if let Some(target) = handover.gives {
+                let mut giving = self.encoder("giving a target")?;
+                self.scoped("giving a target", |_| barrier::give(parts, &mut giving, target))?;
+                encoders.push(giving);
+            }
+            return self.submit_all(encoders, handover.waits, handover.signals);
+        }
+        self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals)
+    }
+
+    fn submit_all(
+        &self,
+        encoders: Vec<wgpu::CommandEncoder>,
+        waits: &[SemaphoreUse],
+        signals: &[SemaphoreUse],
+    ) -> Result<wgpu::SubmissionIndex> {
+        let queue = self.queue()?;
+        // Mistakes in what was recorded come to light here, before anything is staged.
+        let encoders = self.uploads.take().into_iter().chain(encoders);
+        let commands = self.scoped("recording work", |_| {
+            encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>()
+        })?;
+        let submitted = {
+            let _turn = self.turns.take();
+            self.stage(queue, waits, signals);
+            let submitted = self.scoped("submitting work", |_| queue.submit(commands));
+            if submitted.is_err() {
+                self.unstage(queue, waits, signals);
+            }
+            submitted?
+        };
+        if !waits.is_empty() || !signals.is_empty() {
+            let used = waits.iter().chain(signals).cloned().collect();
+            let mut in_use = self.turns.in_use();
+            in_use.push_back((submitted.clone(), used));
+            let mut done = Vec::new();
+            while let Some((first, _)) = in_use.front()
+                && self.is_done(first).unwrap_or(false)
+            {
+                done.extend(in_use.pop_front());
+            }
+            drop(in_use);
+            drop(done);
+        }
+        Ok(submitted)
+    }
+
+    #[cfg(not(target_vendor = "apple"))]
+    fn stage(&self, queue: &wgpu::Queue, waits: &[SemaphoreUse], signals: &[SemaphoreUse]) {
+        if waits.is_empty() && signals.is_empty() {
+            return;
+        }
+        // SAFETY: semaphores are added, which live until the submission has run.
+        let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+        for SemaphoreUse { semaphore, value } in waits {
+            hal.add_wait_semaphore(semaphore.raw(), *value, ash::vk::PipelineStageFlags::ALL_COMMANDS);
+        }
+        for SemaphoreUse { semaphore, value } in signals {
+            // A timeline that has gone further already must not go back.
+            if value.is_none_or(|value| semaphore.submits(value)) {
+                hal.add_signal_semaphore(semaphore.raw(), *value);
+            }
+        }
+    }
+
+    /// After a submission that was refused: what it did not take must not go with the next one.
+    #[cfg(not(target_vendor = "apple"))]
+    fn unstage(&self, queue: &wgpu::Queue, waits: &[SemaphoreUse], signals: &[SemaphoreUse]) {
+        if waits.is_empty() && signals.is_empty() {
+            return;
+        }
+        // SAFETY: semaphores are removed.
+        let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+        for SemaphoreUse { semaphore, .. } in waits {
+            hal.remove_wait_semaphore(semaphore.raw());
+        }
+        for SemaphoreUse { semaphore, .. } in signals {
+            hal.remove_signal_semaphore(semaphore.raw());
+        }
+    }
+
+    #[cfg(target_vendor = "apple")]
+    fn stage(&self, _: &wgpu::Queue, _: &[SemaphoreUse], _: &[SemaphoreUse]) {}
+
+    #[cfg(target_vendor = "apple")]
+    fn unstage(&self, _: &wgpu::Queue, _: &[SemaphoreUse], _: &[SemaphoreUse]) {}
+}
