@@ -58,11 +58,7 @@ const MOST_SEMAPHORES: u32 = 8;
 ///
 /// # Safety
 /// `list` is NULL or has `count` entries, whose semaphores are NULL or alive during `'a`.
-unsafe fn read_uses<'a>(
-    list: *const BhrSemaphoreValue,
-    count: u32,
-    name: &str,
-) -> Result<Vec<(&'a Semaphore, u64)>> {
+unsafe fn read_uses<'a>(list: *const BhrSemaphoreValue, count: u32, name: &str) -> Result<Vec<(&'a Semaphore, u64)>> {
     if count > MOST_SEMAPHORES {
         return Err(Error::argument(format!("sync {name}_count is {count}; it must lie in [0, {MOST_SEMAPHORES}]")));
     }
@@ -112,18 +108,18 @@ unsafe fn render(
     }
 }
 
-/// Renders the scene as it is now into a target. Returns when the frame is submitted, wholly, so that the GPU will make
-/// it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more than 32
-/// steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is being
-/// submitted, and for programs that are compiled (bhr_prepare). sync NULL: no semaphores; then the host waits with the
-/// job. out_job NULL: no job; else the job ends when the GPU has made the frame, with bhr_job_wait and bhr_job_stats as
-/// of images. bhr_job_cancel does not stop what is submitted, and bhr_job_destroy neither cancels it nor waits for it.
-/// At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region) counts. Any thread, not inside
-/// callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for a target or semaphore of another
-/// context, a semaphore that is twice in a list, and a signal whose value does not grow; INVALID_STATE for too many
-/// unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach; SURFACE_LOST for a target or
-/// semaphore whose context was recovered; DEVICE_LOST. After an error no semaphore is waited for or signalled, unless
-/// steps were submitted: then all are. Since 0.2.0.
+/// Renders the scene as it is now into a target. Returns when the frame is submitted, wholly, so that the GPU will
+/// make it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more
+/// than 32 steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is
+/// being submitted, and for programs that are compiled (bhr_prepare). sync NULL: no semaphores; then the host waits
+/// with the job. out_job NULL: no job; else the job ends when the GPU has made the frame, with bhr_job_wait and
+/// bhr_job_stats as of images. bhr_job_cancel does not stop what is submitted, and bhr_job_destroy neither cancels
+/// it nor waits for it. At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region)
+/// counts. Any thread, not inside callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for a
+/// target or semaphore of another context, a semaphore that is twice in a list, and a signal whose value does not
+/// grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach;
+/// SURFACE_LOST for a target or semaphore whose context was recovered; DEVICE_LOST. After an error no semaphore is
+/// waited for or signalled, unless steps were submitted: then all are. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_target(
     context: *mut BhrContext,
@@ -137,10 +133,10 @@ pub unsafe extern "C" fn bhr_render_target(
 
 /// The same as a job of bhr's threads, in their order, as bhr_render_image_async: the scene, the region and the
 /// semaphores are taken as they are now, and the call returns at once. Only TIMELINE semaphores: a BINARY one is
-/// INVALID_ARGUMENT, because its signal must have been submitted before the host may wait for it. bhr_job_cancel stops
-/// what is not submitted. Whatever becomes of the frame, its semaphores are waited for and signalled when its turn
-/// comes, unless the device is lost. bhr_job_destroy neither cancels nor waits. out_job NULL: no job. Errors: as
-/// bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
+/// INVALID_ARGUMENT, because its signal must have been submitted before the host may wait for it. bhr_job_cancel
+/// stops what is not submitted. Whatever becomes of the frame, its semaphores are waited for and signalled when its
+/// turn comes, unless the device is lost. bhr_job_destroy neither cancels nor waits. out_job NULL: no job. Errors:
+/// as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_target_async(
     context: *mut BhrContext,

@@ -51,8 +51,9 @@ pub struct BhrTargetOptions {
     pub struct_size: u32,
     /// Default IMAGE.
     pub kind: BhrTargetKind,
-    /// BHR_FORMAT_*. Default RGBA8_SRGB: an image is VK_FORMAT_R8G8B8A8_UNORM and holds sRGB codes, and the host may view
-    /// it as _SRGB, because images are made with MUTABLE_FORMAT. Images of BGRA8_SRGB are filled by a copy on the GPU.
+    /// BHR_FORMAT_*. Default RGBA8_SRGB: an image is VK_FORMAT_R8G8B8A8_UNORM and holds sRGB codes, and the host
+    /// may view it as _SRGB, because images are made with MUTABLE_FORMAT. Images of BGRA8_SRGB are filled by a copy
+    /// on the GPU.
     pub format: BhrFormat,
     /// Pixels, 1 .. 2^20.
     pub width: u32,
@@ -60,10 +61,11 @@ pub struct BhrTargetOptions {
     pub height: u32,
     /// BHR_IMAGE_TRANSPARENT, and BHR_TARGET_COPY for wrapped images. Default 0.
     pub flags: u32,
-    /// The one kind of handle that the target's memory is passed by; 0 (default): none, for hosts on the same VkDevice
-    /// (bhr_target_vulkan).
+    /// The one kind of handle that the target's memory is passed by; 0 (default): none, for hosts on the same
+    /// VkDevice (bhr_target_vulkan).
     pub handle_type: BhrHandleType,
-    /// VkImageLayout that frames leave an image in; 0 (default): VK_IMAGE_LAYOUT_GENERAL (1), as OpenGL and CUDA want it.
+    /// VkImageLayout that frames leave an image in; 0 (default): VK_IMAGE_LAYOUT_GENERAL (1), as OpenGL and CUDA
+    /// want it.
     pub layout: i32,
     /// BUFFER: bytes from row to row, a multiple of 4; 0 (default): packed. Bytes between rows are not written.
     pub row_stride: u64,
@@ -118,7 +120,9 @@ impl BhrTargetOptions {
         let row_stride = match (image, self.row_stride) {
             (_, 0) => packed,
             (true, stride) => {
-                return Err(Error::argument(format!("options row_stride is {stride}; an IMAGE has none: it must be 0")));
+                return Err(Error::argument(format!(
+                    "options row_stride is {stride}; an IMAGE has none: it must be 0"
+                )));
             }
             (false, stride) if stride < packed || !stride.is_multiple_of(4) || stride > u32::MAX.into() => {
                 return Err(Error::argument(format!(
@@ -134,8 +138,8 @@ impl BhrTargetOptions {
     }
 }
 
-/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for
-/// NULL or a wrong struct_size. Since 0.2.0.
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_options_init(options: *mut BhrTargetOptions, struct_size: usize) -> BhrStatus {
     // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
@@ -242,11 +246,7 @@ pub(super) unsafe fn read_handle(handle: *const BhrHandle) -> Result<BhrHandle> 
 ///
 /// # Safety
 /// `target` is NULL or was made by this file and is not destroyed.
-unsafe fn on_target(
-    function: &str,
-    target: *const BhrTarget,
-    body: impl FnOnce(&Target) -> Result<()>,
-) -> BhrStatus {
+unsafe fn on_target(function: &str, target: *const BhrTarget, body: impl FnOnce(&Target) -> Result<()>) -> BhrStatus {
     // SAFETY: this function's contract.
     let Some(target) = (unsafe { target.as_ref() }) else {
         return outside_callbacks::<()>(function, || Err(is_null("target")));
@@ -285,10 +285,10 @@ pub(super) unsafe fn make(
     }
 }
 
-/// Makes a target in memory of bhr's. End *out_target with bhr_target_destroy. Errors: INVALID_ARGUMENT for NULL, a bad
-/// option, or a layout that an image cannot be left in; UNSUPPORTED for what the device cannot make or share (format,
-/// kind, handle_type or side, which the message says), and always on the CPU tracer, OpenGL, Metal and Direct3D 12;
-/// OUT_OF_MEMORY; DEVICE_LOST. Since 0.2.0.
+/// Makes a target in memory of bhr's. End *out_target with bhr_target_destroy. Errors: INVALID_ARGUMENT for NULL, a
+/// bad option, or a layout that an image cannot be left in; UNSUPPORTED for what the device cannot make or share
+/// (format, kind, handle_type or side, which the message says), and always on the CPU tracer, OpenGL, Metal and
+/// Direct3D 12; OUT_OF_MEMORY; DEVICE_LOST. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_create(
     context: *mut BhrContext,
@@ -296,18 +296,17 @@ pub unsafe extern "C" fn bhr_target_create(
     out_target: *mut *mut BhrTarget,
 ) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
-    unsafe {
-        make("bhr_target_create", context, options, out_target, false, |_, _, _| Ok(TargetOrigin::New))
-    }
+    unsafe { make("bhr_target_create", context, options, out_target, false, |_, _, _| Ok(TargetOrigin::New)) }
 }
 
-/// Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's), memory
-/// what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags and
-/// vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the target's size
-/// and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST. OPAQUE_FD: the
-/// descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and dedicated do not count.
-/// Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or is no memory, and for memory
-/// that is too small, ill placed, or of a type that the target cannot have. Since 0.2.0.
+/// Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's),
+/// memory what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags
+/// and vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the
+/// target's size and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST.
+/// OPAQUE_FD: the descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and
+/// dedicated do not count. Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or
+/// is no memory, and for memory that is too small, ill placed, or of a type that the target cannot have. Since
+/// 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_import(
     context: *mut BhrContext,
@@ -401,9 +400,9 @@ pub unsafe extern "C" fn bhr_target_info(target: *const BhrTarget, info: *mut Bh
     }
 }
 
-/// Gives a new handle of the target's memory, which is the host's: to be imported by what takes it over, or closed. The
-/// memory lives until both sides have let go of it. Errors: INVALID_ARGUMENT for NULL; INVALID_STATE for a target that
-/// was not made for export; SURFACE_LOST; DEVICE_LOST. Since 0.2.0.
+/// Gives a new handle of the target's memory, which is the host's: to be imported by what takes it over, or closed.
+/// The memory lives until both sides have let go of it. Errors: INVALID_ARGUMENT for NULL; INVALID_STATE for a
+/// target that was not made for export; SURFACE_LOST; DEVICE_LOST. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_export(target: *mut BhrTarget, out_handle: *mut BhrHandle) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -418,8 +417,9 @@ pub unsafe extern "C" fn bhr_target_export(target: *mut BhrTarget, out_handle: *
     }
 }
 
-/// Gives the VkImage or the VkBuffer of a target, and 0 for the other, to a host on the same VkDevice. They live as long
-/// as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since 0.2.0.
+/// Gives the VkImage or the VkBuffer of a target, and 0 for the other, to a host on the same VkDevice. They live as
+/// long as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since
+/// 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_vulkan(
     target: *const BhrTarget,
@@ -438,9 +438,9 @@ pub unsafe extern "C" fn bhr_target_vulkan(
     }
 }
 
-/// Ends a target and returns at once; its memory goes when the GPU has done with it. NULL is a no-op; its context may be
-/// gone. No other thread may use the target any more. From inside a callback it does nothing: bhr_error_message then
-/// says so. Since 0.2.0.
+/// Ends a target and returns at once; its memory goes when the GPU has done with it. NULL is a no-op; its context
+/// may be gone. No other thread may use the target any more. From inside a callback it does nothing:
+/// bhr_error_message then says so. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_destroy(target: *mut BhrTarget) {
     const NAME: &str = "bhr_target_destroy";

@@ -145,8 +145,8 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
 }
 
 /// Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
-/// bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its length,
-/// 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
+/// bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its
+/// length, 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_error_message(job: *const BhrJob, buffer: *mut c_char, size: usize) -> usize {
     // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
@@ -163,7 +163,8 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
     }
 }
 
-/// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was lost.
+/// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was
+/// lost.
 fn cancel(function: &str, job: &BhrJob) {
     let cancelled = guarded(|| {
         job.job.cancel();
@@ -173,8 +174,8 @@ fn cancel(function: &str, job: &BhrJob) {
 }
 
 /// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
-/// host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
-/// bhr_error_message then says so.
+/// host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any
+/// more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     const NAME: &str = "bhr_job_destroy";

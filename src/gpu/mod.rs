@@ -18,14 +18,14 @@ pub use device::adapter::{Adapter, Search, absence, adapters, check_built, forge
 pub use device::buffer::Buffer;
 #[doc(hidden)]
 pub use device::driver_lock;
+pub use device::external::{
+    AdapterIds, FrameSync, GpuSemaphore, GpuTarget, HOST_POINTER, HostVulkan, MemoryInfo, NOT_RUN, OPAQUE_FD,
+    QueueLock, Release, ReleaseGuard, Requirements, SemaphoreKind, SemaphoreOrigin, SemaphoreUse, Sharing,
+    TargetOrigin, TargetResource, TargetShape, host_adapter, shares_nothing, vulkan_requirements,
+};
 #[cfg(test)]
 pub(crate) use device::gl_thread::GlThread;
 pub(crate) use device::gl_thread::park;
-pub use device::external::{
-    AdapterIds, FrameSync, GpuSemaphore, GpuTarget, HOST_POINTER, HostVulkan, MemoryInfo, NOT_RUN, OPAQUE_FD, QueueLock,
-    Release, ReleaseGuard, Requirements, SemaphoreKind, SemaphoreOrigin, SemaphoreUse, Sharing, TargetOrigin,
-    TargetResource, TargetShape, host_adapter, shares_nothing, vulkan_requirements,
-};
 pub use device::pipeline::{Kernel, Loops, ProvenFinite};
 pub use device::readback::{MappedReadback, PendingReadback, Readback};
 pub use device::texture::Texture;

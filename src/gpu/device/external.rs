@@ -141,7 +141,12 @@ pub enum TargetOrigin {
     /// The host's own pixels.
     Pointer(*mut c_void, MemoryInfo),
     /// A VkImage of the host's, on its own device.
-    Image { image: u64, usage: u32, copy: bool, release: Arc<ReleaseGuard> },
+    Image {
+        image: u64,
+        usage: u32,
+        copy: bool,
+        release: Arc<ReleaseGuard>,
+    },
 }
 
 /// The memory behind a target, as another device must import it: the fields of `BhrTargetInfo`.

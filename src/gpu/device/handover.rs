@@ -112,9 +112,8 @@ impl Device {
         let queue = self.queue()?;
         // Mistakes in what was recorded come to light here, before anything is staged.
         let encoders = self.uploads.take().into_iter().chain(encoders);
-        let commands = self.scoped("recording work", |_| {
-            encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>()
-        })?;
+        let commands =
+            self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
         let submitted = {
             let _turn = self.turns.take();
             self.stage(queue, waits, signals);

@@ -188,9 +188,7 @@ impl FrameBuffers {
             FrameTarget::Buffer(buffer, rows) => {
                 Ok(PixelOutput::Rows(writer.target()?.clone(), (*film.buffer).clone(), buffer.clone(), rows))
             }
-            FrameTarget::Copied(_) => {
-                group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed)
-            }
+            FrameTarget::Copied(_) => group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed),
             FrameTarget::Host if variants.rows => {
                 Ok(PixelOutput::Staged(writer.target()?.clone(), (*film.buffer).clone()))
             }

@@ -109,7 +109,8 @@ impl FrameBuffers {
         let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
         self.edges.reset(&mut encoder);
         let writes = stages.glare.is_some() || step.develops.is_some();
-        let output = if writes { Some(stages.output.group(device, to, step.develops.unwrap_or(step.shades))?) } else { None };
+        let output =
+            if writes { Some(stages.output.group(device, to, step.develops.unwrap_or(step.shades))?) } else { None };
         let timer = &mut self.timer;
         let mut passes = ArrayVec::new();
         let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {

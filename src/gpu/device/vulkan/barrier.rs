@@ -12,11 +12,9 @@ use wgpu::hal::api::Vulkan;
 /// How kernels, or copies, reach a target's image, as wgpu believes it to be between frames.
 fn written(resource: &TargetResource) -> (vk::ImageLayout, vk::PipelineStageFlags, vk::AccessFlags) {
     match resource {
-        TargetResource::Copied(_) => (
-            vk::ImageLayout::TRANSFER_DST_OPTIMAL,
-            vk::PipelineStageFlags::TRANSFER,
-            vk::AccessFlags::TRANSFER_WRITE,
-        ),
+        TargetResource::Copied(_) => {
+            (vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE)
+        }
         TargetResource::Written(..) | TargetResource::Buffer(_) => {
             (vk::ImageLayout::GENERAL, vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE)
         }
@@ -31,11 +29,8 @@ fn colour() -> vk::ImageSubresourceRange {
 pub(in crate::gpu) fn take(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, target: &GpuTarget) {
     let (layout, stage, access) = written(&target.resource);
     let any = vk::PipelineStageFlags::ALL_COMMANDS;
-    let families = if target.leaves {
-        [vk::QUEUE_FAMILY_EXTERNAL, parts.family]
-    } else {
-        [vk::QUEUE_FAMILY_IGNORED; 2]
-    };
+    let families =
+        if target.leaves { [vk::QUEUE_FAMILY_EXTERNAL, parts.family] } else { [vk::QUEUE_FAMILY_IGNORED; 2] };
     record(encoder, |commands| match &target.resource {
         TargetResource::Buffer(_) => {
             let barrier = vk::BufferMemoryBarrier::default()
@@ -77,11 +72,8 @@ pub(in crate::gpu) fn give(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
     } else {
         vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE
     };
-    let families = if target.leaves {
-        [parts.family, vk::QUEUE_FAMILY_EXTERNAL]
-    } else {
-        [vk::QUEUE_FAMILY_IGNORED; 2]
-    };
+    let families =
+        if target.leaves { [parts.family, vk::QUEUE_FAMILY_EXTERNAL] } else { [vk::QUEUE_FAMILY_IGNORED; 2] };
     record(encoder, |commands| match &target.resource {
         TargetResource::Buffer(_) => {
             let barrier = vk::BufferMemoryBarrier::default()

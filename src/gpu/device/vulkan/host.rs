@@ -247,7 +247,14 @@ pub(in crate::gpu) fn adapter(host: HostVulkan, release: &Arc<ReleaseGuard>) -> 
         }
     }
     let HostVulkan { queue_family, queue_index, lock, .. } = host;
-    let device = HostDevice { device: host.device as u64, queue_family, queue_index, extensions, lock, release: release.clone() };
+    let device = HostDevice {
+        device: host.device as u64,
+        queue_family,
+        queue_index,
+        extensions,
+        lock,
+        release: release.clone(),
+    };
     Adapter::of_host(raw, instance, Some(device))
 }
 

@@ -243,10 +243,9 @@ pub(super) fn copied(fd: i32) -> Result<std::os::fd::OwnedFd> {
     }
     let error = std::io::Error::last_os_error();
     match error.raw_os_error() {
-        Some(libc::EMFILE | libc::ENFILE) => Err(Error::new(
-            crate::error::ErrorKind::OutOfMemory,
-            format!("handle fd {fd} cannot be kept: {error}"),
-        )),
+        Some(libc::EMFILE | libc::ENFILE) => {
+            Err(Error::new(crate::error::ErrorKind::OutOfMemory, format!("handle fd {fd} cannot be kept: {error}")))
+        }
         _ => Err(Error::argument(format!("handle fd is {fd}, which is not open: {error}"))),
     }
 }
@@ -379,8 +378,7 @@ impl Device {
     fn own_image(&self, parts: &VulkanParts, shape: TargetShape, origin: TargetOrigin) -> Result<GpuTarget> {
         parts.check_handle(&shape, !matches!(origin, TargetOrigin::New))?;
         let format = vk_format(shape.format);
-        let stored = wgpu_format(shape.format).1
-            && parts.has_images(format, image_usage(true), IMAGE_FLAGS);
+        let stored = wgpu_format(shape.format).1 && parts.has_images(format, image_usage(true), IMAGE_FLAGS);
         let (mut usage, mut flags) = (image_usage(stored).as_raw(), IMAGE_FLAGS.as_raw());
         let handle = match shape.handle {
             0 => vk::ExternalMemoryHandleTypeFlags::empty(),
@@ -389,7 +387,10 @@ impl Device {
         if let TargetOrigin::Descriptor(_, info) = &origin {
             (usage, flags) = (info.vk_usage, info.vk_flags);
             if info.vk_tiling != vk::ImageTiling::OPTIMAL.as_raw() as u32 {
-                return Err(Error::unsupported(format!("memory vk_tiling is {}; known is OPTIMAL (0)", info.vk_tiling)));
+                return Err(Error::unsupported(format!(
+                    "memory vk_tiling is {}; known is OPTIMAL (0)",
+                    info.vk_tiling
+                )));
             }
             if flags & !IMAGE_FLAGS.as_raw() != 0 {
                 return Err(Error::unsupported(format!(
@@ -428,7 +429,9 @@ impl Device {
                 made.import(fd, &info)?;
                 MemoryInfo { vk_format: own.vk_format, ..info }
             }
-            TargetOrigin::Pointer(..) => return Err(Error::unsupported("pointers of the host's are for BUFFER targets")),
+            TargetOrigin::Pointer(..) => {
+                return Err(Error::unsupported("pointers of the host's are for BUFFER targets"));
+            }
             _ => MemoryInfo { memory_type: made.allocate(shape.handle == OPAQUE_FD)?, ..own },
         };
         let (raw, memory) = made.pass_on();
@@ -464,13 +467,9 @@ impl Device {
             },
         };
         let release: hal::DropCallback = Box::new(move || drop(release));
-        let resource =
-            self.wrapped(raw, &shape, written, Some(release), hal::vulkan::TextureMemory::External)?;
-        let info = MemoryInfo {
-            vk_format: vk_format(shape.format).as_raw() as u32,
-            vk_usage: usage,
-            ..Default::default()
-        };
+        let resource = self.wrapped(raw, &shape, written, Some(release), hal::vulkan::TextureMemory::External)?;
+        let info =
+            MemoryInfo { vk_format: vk_format(shape.format).as_raw() as u32, vk_usage: usage, ..Default::default() };
         Ok(GpuTarget::new(self, resource, shape, info, [raw, 0], false))
     }
 

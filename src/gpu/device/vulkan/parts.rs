@@ -63,8 +63,10 @@ impl VulkanParts {
         let mut host = vk::PhysicalDeviceExternalMemoryHostPropertiesEXT::default();
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut timeline = vk::PhysicalDeviceTimelineSemaphoreProperties::default();
-        let mut all =
-            vk::PhysicalDeviceProperties2::default().push_next(&mut host).push_next(&mut driver).push_next(&mut timeline);
+        let mut all = vk::PhysicalDeviceProperties2::default()
+            .push_next(&mut host)
+            .push_next(&mut driver)
+            .push_next(&mut timeline);
         // SAFETY: version 1.2 has the call, and each struct is one that it knows or passes over.
         unsafe { instance.get_physical_device_properties2(physical, &mut all) };
         let has = |name: &CStr| extensions.contains(&name);
@@ -89,7 +91,8 @@ impl VulkanParts {
     /// The handles that targets and semaphores can be passed by.
     pub fn sharing(&self) -> Sharing {
         let format = vk::Format::R8G8B8A8_UNORM;
-        let image = self.image_sharing(format, image_usage(true), IMAGE_FLAGS, vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD);
+        let image =
+            self.image_sharing(format, image_usage(true), IMAGE_FLAGS, vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD);
         let buffer = self.buffer_sharing(vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD);
         let from_host = self.buffer_sharing(vk::ExternalMemoryHandleTypeFlags::HOST_ALLOCATION_EXT);
         let exports = vk::ExternalMemoryFeatureFlags::EXPORTABLE;
@@ -134,7 +137,12 @@ impl VulkanParts {
     }
 
     /// Whether the device makes images of a kind at all.
-    pub(super) fn has_images(&self, format: vk::Format, usage: vk::ImageUsageFlags, flags: vk::ImageCreateFlags) -> bool {
+    pub(super) fn has_images(
+        &self,
+        format: vk::Format,
+        usage: vk::ImageUsageFlags,
+        flags: vk::ImageCreateFlags,
+    ) -> bool {
         let (kind, tiling) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL);
         // SAFETY: plain values.
         unsafe {
@@ -177,8 +185,7 @@ impl VulkanParts {
 
 /// How images are used: by copies and samplers, and by kernels where the format can be stored to.
 pub(super) fn image_usage(stored: bool) -> vk::ImageUsageFlags {
-    let usage =
-        vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
+    let usage = vk::ImageUsageFlags::SAMPLED | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST;
     if stored { usage | vk::ImageUsageFlags::STORAGE } else { usage }
 }
 
