@@ -135,8 +135,10 @@ pub unsafe extern "C" fn bhr_render_target(
 /// semaphores are taken as they are now, and the call returns at once. Only TIMELINE semaphores: a BINARY one is
 /// INVALID_ARGUMENT, because its signal must have been submitted before the host may wait for it. bhr_job_cancel
 /// stops what is not submitted. Whatever becomes of the frame, its semaphores are waited for and signalled when its
-/// turn comes, unless the device is lost. bhr_job_destroy neither cancels nor waits. out_job NULL: no job. Errors:
-/// as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
+/// turn comes, unless the device is lost. A host on whose own queue bhr works (bhr_context_create_vulkan) must not
+/// submit to that queue what waits for a frame before the frame is submitted, because a queue goes in order: it
+/// waits on the CPU first, or uses bhr_render_target. bhr_job_destroy neither cancels nor waits. out_job NULL: no
+/// job. Errors: as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_target_async(
     context: *mut BhrContext,

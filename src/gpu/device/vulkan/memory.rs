@@ -3,6 +3,8 @@
 //! made here and frees it after its last use on the GPU.
 
 use super::failed;
+#[cfg(unix)]
+use super::descriptor::{CopiedDescriptor, check_descriptor};
 use super::parts::{BUFFER_USAGE, IMAGE_FLAGS, VulkanParts, image_usage};
 use crate::error::{Error, Result};
 use crate::gpu::device::external::{
@@ -148,12 +150,11 @@ impl<'a> Made<'a> {
 
     #[cfg(unix)]
     fn import(&mut self, fd: i32, info: &MemoryInfo) -> Result<()> {
-        use std::os::fd::{AsRawFd, IntoRawFd};
         self.check_memory(info)?;
         check_descriptor(fd, info.allocation_size, self.parts.llvmpipe)?;
-        let copy = copied(fd)?;
+        let copy = CopiedDescriptor::new(fd)?;
         let handle = vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD;
-        let mut import = vk::ImportMemoryFdInfoKHR::default().handle_type(handle).fd(copy.as_raw_fd());
+        let mut import = vk::ImportMemoryFdInfoKHR::default().handle_type(handle).fd(copy.number());
         let mut dedicated = vk::MemoryDedicatedAllocateInfo::default().buffer(self.buffer).image(self.image);
         let allocate = vk::MemoryAllocateInfo::default()
             .allocation_size(info.allocation_size)
@@ -167,7 +168,7 @@ impl<'a> Made<'a> {
             Error::new(error.kind, format!("handle fd {fd} is not taken as memory: {error}"))
         })?;
         // The driver has taken it over.
-        let _ = copy.into_raw_fd();
+        copy.taken();
         self.memory = memory;
         self.bind(info.offset)
     }
@@ -229,49 +230,6 @@ impl Drop for Made<'_> {
             self.parts.device.free_memory(self.memory, None);
         }
     }
-}
-
-/// A descriptor of the host's, for bhr to keep. Errors: INVALID_ARGUMENT for one that is not open; OUT_OF_MEMORY.
-#[cfg(unix)]
-pub(super) fn copied(fd: i32) -> Result<std::os::fd::OwnedFd> {
-    use std::os::fd::FromRawFd;
-    // SAFETY: a plain system call on a number.
-    let copy = unsafe { libc::fcntl(fd, libc::F_DUPFD_CLOEXEC, 3) };
-    if copy >= 0 {
-        // SAFETY: it was opened just now, by nobody else.
-        return Ok(unsafe { std::os::fd::OwnedFd::from_raw_fd(copy) });
-    }
-    let error = std::io::Error::last_os_error();
-    match error.raw_os_error() {
-        Some(libc::EMFILE | libc::ENFILE) => {
-            Err(Error::new(crate::error::ErrorKind::OutOfMemory, format!("handle fd {fd} cannot be kept: {error}")))
-        }
-        _ => Err(Error::argument(format!("handle fd is {fd}, which is not open: {error}"))),
-    }
-}
-
-/// Errors: INVALID_ARGUMENT for a descriptor that cannot be memory. (llvmpipe's is a regular file; it reads from any,
-/// and waits for ever for a pipe's bytes.)
-#[cfg(unix)]
-fn check_descriptor(fd: i32, size: u64, llvmpipe: bool) -> Result<()> {
-    // SAFETY: any bytes are a stat.
-    let mut found = unsafe { std::mem::zeroed::<libc::stat>() };
-    // SAFETY: a plain system call on a number, and a struct that lives here.
-    if unsafe { libc::fstat(fd, &mut found) } != 0 {
-        let error = std::io::Error::last_os_error();
-        return Err(Error::argument(format!("handle fd is {fd}, which is not open: {error}")));
-    }
-    let kind = found.st_mode & libc::S_IFMT;
-    if [libc::S_IFIFO, libc::S_IFSOCK, libc::S_IFDIR].contains(&kind) || (llvmpipe && kind != libc::S_IFREG) {
-        return Err(Error::argument(format!("handle fd {fd} is no memory: a pipe, a socket or a folder")));
-    }
-    if llvmpipe && u64::try_from(found.st_size).unwrap_or(0) < size {
-        return Err(Error::argument(format!(
-            "memory allocation_size is {size}; what is behind handle fd {fd} has {} bytes",
-            found.st_size
-        )));
-    }
-    Ok(())
 }
 
 impl VulkanParts {

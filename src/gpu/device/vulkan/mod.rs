@@ -3,6 +3,8 @@
 //! memory, and semaphores. All unsafe code for them is in this folder. Knows no frames.
 
 pub(in crate::gpu) mod barrier;
+#[cfg(unix)]
+mod descriptor;
 pub(in crate::gpu) mod host;
 pub(in crate::gpu) mod memory;
 pub(in crate::gpu) mod parts;

@@ -73,20 +73,19 @@ impl GpuSemaphore {
 
     #[cfg(unix)]
     fn import(&self, fd: i32) -> Result<()> {
-        use std::os::fd::{AsRawFd, IntoRawFd};
-        let copy = super::memory::copied(fd)?;
+        let copy = super::descriptor::CopiedDescriptor::new(fd)?;
         let fns = self.parts.semaphore_fd.as_ref().ok_or_else(|| Error::internal("no semaphores by descriptor"))?;
         let import = vk::ImportSemaphoreFdInfoKHR::default()
             .semaphore(self.raw)
             .handle_type(vk::ExternalSemaphoreHandleTypeFlags::OPAQUE_FD)
-            .fd(copy.as_raw_fd());
+            .fd(copy.number());
         // SAFETY: the semaphore was made just now and nobody uses it; the descriptor is bhr's own copy.
         unsafe { fns.import_semaphore_fd(&import) }.map_err(|error| {
             let error = failed("vkImportSemaphoreFdKHR", error);
             Error::new(ErrorKind::InvalidArgument, format!("handle fd {fd} is no semaphore of this driver: {error}"))
         })?;
         // The driver has taken it over.
-        let _ = copy.into_raw_fd();
+        copy.taken();
         Ok(())
     }
 
