@@ -338,7 +338,7 @@ static void bad_frames(BhrBackend backend) {
     uint32_t          taken = 0;
     BhrSemaphoreValue gate = {timeline, 11}, last = {timeline, 12};
     sync = (BhrSync){.struct_size = sizeof sync, .wait_count = 1, .waits = &gate, .signal_count = 1, .signals = &last};
-    while ((status = bhr_render_target(context, target, &sync, NULL)) == BHR_OK && taken < 100)
+    while ((status = bhr_render_target_async(context, target, &sync, NULL)) == BHR_OK && taken < 100)
         taken++, last.value++;
     CHECK(status == BHR_ERROR_INVALID_STATE && taken >= 60 && taken <= 64, "status %d after %u", status, taken);
     CHECK_OK(bhr_semaphore_signal(timeline, 11));

@@ -3,16 +3,27 @@
 //! lock too. Semaphores that a submission waits for or signals are kept until it has run. Knows no frames.
 
 use super::external::{Handover, QueueLock, SemaphoreUse};
-use super::wgpu_device::Device;
+use super::wgpu_device::{Device, hangs_after};
 use crate::error::Result;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Waiting goes in pieces of this, between which the device may be lost.
+#[cfg(not(target_vendor = "apple"))]
+const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
 /// The turns that threads take with a queue, and the semaphores that are in use.
 pub struct QueueTurns {
     turn: Mutex<()>,
     host: Option<Arc<QueueLock>>,
-    in_use: Mutex<VecDeque<(wgpu::SubmissionIndex, Vec<SemaphoreUse>)>>,
+    in_use: Mutex<VecDeque<InUse>>,
+}
+
+/// The semaphores of a submission that may not have run.
+struct InUse {
+    submission: wgpu::SubmissionIndex,
+    waits: Vec<SemaphoreUse>,
+    _signals: Vec<SemaphoreUse>,
 }
 
 /// While it lives, no other thread touches the queue.
@@ -49,7 +60,7 @@ impl QueueTurns {
         Turn { _host: self.host.as_deref().map(HostTurn::new), _turn: turn }
     }
 
-    fn in_use(&self) -> MutexGuard<'_, VecDeque<(wgpu::SubmissionIndex, Vec<SemaphoreUse>)>> {
+    fn in_use(&self) -> MutexGuard<'_, VecDeque<InUse>> {
         self.in_use.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -114,6 +125,7 @@ impl Device {
         let encoders = self.uploads.take().into_iter().chain(encoders);
         let commands =
             self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
+        self.wait_for_waits()?;
         let submitted = {
             let _turn = self.turns.take();
             self.stage(queue, waits, signals);
@@ -124,12 +136,12 @@ impl Device {
             submitted?
         };
         if !waits.is_empty() || !signals.is_empty() {
-            let used = waits.iter().chain(signals).cloned().collect();
             let mut in_use = self.turns.in_use();
-            in_use.push_back((submitted.clone(), used));
+            let (submission, waits) = (submitted.clone(), waits.to_vec());
+            in_use.push_back(InUse { submission, waits, _signals: signals.to_vec() });
             let mut done = Vec::new();
-            while let Some((first, _)) = in_use.front()
-                && self.is_done(first).unwrap_or(false)
+            while let Some(first) = in_use.front()
+                && self.is_done(&first.submission).unwrap_or(false)
             {
                 done.extend(in_use.pop_front());
             }
@@ -137,6 +149,32 @@ impl Device {
             drop(done);
         }
         Ok(submitted)
+    }
+
+    /// With Mesa's llvmpipe (22.3), whose vkQueueSubmit blocks, for ever if it comes to that, while a submission before
+    /// waits for a timeline: waits for those here. Errors: DEVICE_LOST after the time of a hang.
+    #[cfg(not(target_vendor = "apple"))]
+    fn wait_for_waits(&self) -> Result<()> {
+        if !self.vulkan.as_ref().is_some_and(|parts| parts.llvmpipe) {
+            return Ok(());
+        }
+        let deadline = std::time::Instant::now() + hangs_after();
+        let open = self.turns.in_use().iter().flat_map(|one| one.waits.clone()).collect::<Vec<_>>();
+        for SemaphoreUse { semaphore, value } in open {
+            let Some(value) = value else { continue };
+            while !semaphore.wait(value, WAIT_SLICE)? {
+                self.check()?;
+                if std::time::Instant::now() >= deadline {
+                    self.lose_hung();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[cfg(target_vendor = "apple")]
+    fn wait_for_waits(&self) -> Result<()> {
+        Ok(())
     }
 
     #[cfg(not(target_vendor = "apple"))]

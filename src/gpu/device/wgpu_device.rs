@@ -25,7 +25,7 @@ const HANG_AFTER: Duration = Duration::from_secs(60);
 /// The same in milliseconds, which tests make shorter.
 static HANGS_AFTER: AtomicU64 = AtomicU64::new(HANG_AFTER.as_millis() as u64);
 
-fn hangs_after() -> Duration {
+pub(super) fn hangs_after() -> Duration {
     Duration::from_millis(HANGS_AFTER.load(Ordering::Relaxed))
 }
 
@@ -338,13 +338,18 @@ impl Device {
                     self.learn_loss()?;
                 }
                 Err(wgpu::PollError::Timeout) if Instant::now() >= deadline => {
-                    self.health.hung.store(true, Ordering::Relaxed);
-                    self.health.lose(&format!("it did not finish within {} s", hangs_after().as_secs()));
+                    self.lose_hung();
                 }
                 Err(wgpu::PollError::Timeout) => {}
             }
             self.check()?;
         }
+    }
+
+    /// A submission takes too long: the device is lost, and nobody waits for it any more.
+    pub(super) fn lose_hung(&self) {
+        self.health.hung.store(true, Ordering::Relaxed);
+        self.health.lose(&format!("it did not finish within {} s", hangs_after().as_secs()));
     }
 
     /// After a submission was dropped silently, which wgpu does only when its device is gone. Errors: `DeviceLost` if

@@ -61,8 +61,7 @@ fn stat(fd: i32) -> std::io::Result<libc::stat> {
 /// Errors: INVALID_ARGUMENT for a descriptor that cannot be memory. (llvmpipe's is a regular file; it reads from any,
 /// and waits for ever for a pipe's bytes.)
 pub(super) fn check_descriptor(fd: i32, size: u64, llvmpipe: bool) -> Result<()> {
-    let found =
-        stat(fd).map_err(|error| Error::argument(format!("handle fd is {fd}, which is not open: {error}")))?;
+    let found = stat(fd).map_err(|error| Error::argument(format!("handle fd is {fd}, which is not open: {error}")))?;
     let kind = found.st_mode & libc::S_IFMT;
     if [libc::S_IFIFO, libc::S_IFSOCK, libc::S_IFDIR].contains(&kind) || (llvmpipe && kind != libc::S_IFREG) {
         return Err(Error::argument(format!("handle fd {fd} is no memory: a pipe, a socket or a folder")));

@@ -2,9 +2,9 @@
 //! The memory of targets: made and exported, imported from the host, or a VkImage of the host's own. wgpu owns what is
 //! made here and frees it after its last use on the GPU.
 
-use super::failed;
 #[cfg(unix)]
 use super::descriptor::{CopiedDescriptor, check_descriptor};
+use super::failed;
 use super::parts::{BUFFER_USAGE, IMAGE_FLAGS, VulkanParts, image_usage};
 use crate::error::{Error, Result};
 use crate::gpu::device::external::{

@@ -36,7 +36,7 @@ pub struct VulkanParts {
     pub(super) pointer_alignment: u64,
     pub(super) largest_image: u32,
     /// Mesa's llvmpipe, whose imports read a header from the descriptor, and wait for ever where there is none.
-    pub(super) llvmpipe: bool,
+    pub(in crate::gpu) llvmpipe: bool,
 }
 
 impl VulkanParts {
