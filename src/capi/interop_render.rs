@@ -111,7 +111,8 @@ unsafe fn render(
 /// Renders the scene as it is now into a target. Returns when the frame is submitted, wholly, so that the GPU will
 /// make it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more
 /// than 32 steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is
-/// being submitted, and for programs that are compiled (bhr_prepare). sync NULL: no semaphores; then the host waits
+/// being submitted, for programs that are compiled (bhr_prepare), and, with Mesa's llvmpipe, for the waits of
+/// earlier frames. sync NULL: no semaphores; then the host waits
 /// with the job. out_job NULL: no job; else the job ends when the GPU has made the frame, with bhr_job_wait and
 /// bhr_job_stats as of images. bhr_job_cancel does not stop what is submitted, and bhr_job_destroy neither cancels
 /// it nor waits for it. At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region)
