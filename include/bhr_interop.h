@@ -345,7 +345,8 @@ typedef struct BhrSync {
  * Renders the scene as it is now into a target. Returns when the frame is submitted, wholly, so that the GPU will
  * make it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more
  * than 32 steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is
- * being submitted, and for programs that are compiled (bhr_prepare). sync NULL: no semaphores; then the host waits
+ * being submitted, for programs that are compiled (bhr_prepare), and, with Mesa's llvmpipe, for the waits of
+ * earlier frames. sync NULL: no semaphores; then the host waits
  * with the job. out_job NULL: no job; else the job ends when the GPU has made the frame, with bhr_job_wait and
  * bhr_job_stats as of images. bhr_job_cancel does not stop what is submitted, and bhr_job_destroy neither cancels
  * it nor waits for it. At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region)
@@ -365,8 +366,10 @@ BHR_NODISCARD BhrStatus bhr_render_target(BhrContext *context,
  * semaphores are taken as they are now, and the call returns at once. Only TIMELINE semaphores: a BINARY one is
  * INVALID_ARGUMENT, because its signal must have been submitted before the host may wait for it. bhr_job_cancel
  * stops what is not submitted. Whatever becomes of the frame, its semaphores are waited for and signalled when its
- * turn comes, unless the device is lost. bhr_job_destroy neither cancels nor waits. out_job NULL: no job. Errors:
- * as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
+ * turn comes, unless the device is lost. A host on whose own queue bhr works (bhr_context_create_vulkan) must not
+ * submit to that queue what waits for a frame before the frame is submitted, because a queue goes in order: it
+ * waits on the CPU first, or uses bhr_render_target. bhr_job_destroy neither cancels nor waits. out_job NULL: no
+ * job. Errors: as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_render_target_async(BhrContext *context,
                                                 BhrTarget *target,

@@ -19,15 +19,16 @@ pub use device::buffer::Buffer;
 #[doc(hidden)]
 pub use device::driver_lock;
 pub use device::external::{
-    AdapterIds, FrameSync, GpuSemaphore, GpuTarget, HOST_POINTER, HostVulkan, MemoryInfo, NOT_RUN, OPAQUE_FD,
-    QueueLock, Release, ReleaseGuard, Requirements, SemaphoreKind, SemaphoreOrigin, SemaphoreUse, Sharing,
-    TargetOrigin, TargetResource, TargetShape, host_adapter, shares_nothing, vulkan_requirements,
+    AdapterIds, HOST_POINTER, HostVulkan, MemoryInfo, NOT_RUN, OPAQUE_FD, QueueLock, Release, ReleaseGuard,
+    Requirements, SemaphoreKind, SemaphoreOrigin, Sharing, TargetOrigin, TargetShape, shares_nothing,
 };
 #[cfg(test)]
 pub(crate) use device::gl_thread::GlThread;
 pub(crate) use device::gl_thread::park;
 pub use device::pipeline::{Kernel, Loops, ProvenFinite};
 pub use device::readback::{MappedReadback, PendingReadback, Readback};
+pub use device::semaphores::{FrameSync, GpuSemaphore, SemaphoreUse};
+pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requirements};
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};

@@ -43,7 +43,7 @@ impl Renderer {
         }
     }
 
-    /// What the device shares, and by what others know its adapter. Errors: DEVICE_LOST.
+    /// The handles that the device shares, and by what others know its adapter. Errors: DEVICE_LOST.
     pub fn sharing(&self) -> Result<(Sharing, AdapterIds)> {
         self.check_device()?;
         Ok(match &self.runs_on {

@@ -1,79 +1,26 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Submissions, and who may touch the queue: bhr's threads take turns, and on a host's device they take the host's
-//! lock too. Semaphores that a submission waits for or signals are kept until it has run. Knows no frames.
+//! Submissions, and what goes with them where a host shares a target: the commands that take it over and give it back,
+//! and the semaphores of a frame. Knows no frames.
 
-use super::external::{Handover, QueueLock, SemaphoreUse};
+use super::semaphores::SemaphoreUse;
+use super::sharing::GpuTarget;
+use super::turns::InUse;
 use super::wgpu_device::{Device, hangs_after};
 use crate::error::Result;
-use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Waiting goes in pieces of this, between which the device may be lost.
 #[cfg(not(target_vendor = "apple"))]
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
-/// The turns that threads take with a queue, and the semaphores that are in use.
-pub struct QueueTurns {
-    turn: Mutex<()>,
-    host: Option<Arc<QueueLock>>,
-    in_use: Mutex<VecDeque<InUse>>,
-}
-
-/// The semaphores of a submission that may not have run.
-struct InUse {
-    submission: wgpu::SubmissionIndex,
-    waits: Vec<SemaphoreUse>,
-    _signals: Vec<SemaphoreUse>,
-}
-
-/// While it lives, no other thread touches the queue.
-pub struct Turn<'a> {
-    // The host's lock is released before bhr's.
-    _host: Option<HostTurn<'a>>,
-    _turn: MutexGuard<'a, ()>,
-}
-
-/// While it lives, the host's lock is held.
-pub struct HostTurn<'a>(&'a QueueLock);
-
-impl<'a> HostTurn<'a> {
-    pub fn new(lock: &'a QueueLock) -> Self {
-        (lock.lock)();
-        Self(lock)
-    }
-}
-
-impl Drop for HostTurn<'_> {
-    fn drop(&mut self) {
-        (self.0.unlock)();
-    }
-}
-
-impl QueueTurns {
-    pub fn new(host: Option<Arc<QueueLock>>) -> Self {
-        Self { turn: Mutex::default(), host, in_use: Mutex::default() }
-    }
-
-    /// To be taken around every call that reaches the queue: submissions, presents, and what makes wgpu submit.
-    pub fn take(&self) -> Turn<'_> {
-        let turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
-        Turn { _host: self.host.as_deref().map(HostTurn::new), _turn: turn }
-    }
-
-    fn in_use(&self) -> MutexGuard<'_, VecDeque<InUse>> {
-        self.in_use.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Lets go of all semaphores: nothing is under way.
-    pub fn settle(&self) {
-        let all = std::mem::take(&mut *self.in_use());
-        drop(all);
-    }
-
-    /// Keeps all semaphores for ever: the work that uses them never ends.
-    pub fn abandon(&self) {
-        std::mem::forget(std::mem::take(&mut *self.in_use()));
-    }
+/// The part of a frame's handover that goes with one submission.
+#[derive(Default)]
+pub struct Handover<'a> {
+    /// A target that this submission is the first of its frame to write.
+    pub(in crate::gpu) takes: Option<&'a GpuTarget>,
+    /// A target that it is the last to write.
+    pub(in crate::gpu) gives: Option<&'a GpuTarget>,
+    pub(in crate::gpu) waits: &'a [SemaphoreUse],
+    pub(in crate::gpu) signals: &'a [SemaphoreUse],
 }
 
 impl Device {

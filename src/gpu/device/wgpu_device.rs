@@ -6,7 +6,7 @@
 use super::adapter::{Adapter, device_descriptor};
 use super::driver_lock;
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
-use super::handover::{HostTurn, QueueTurns};
+use super::turns::{HostTurn, QueueTurns};
 #[cfg(not(target_vendor = "apple"))]
 use super::vulkan::{self, parts::VulkanParts};
 use crate::deferred::hold;

@@ -8,7 +8,7 @@ use super::uniforms::FrameUniform;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
-use crate::gpu::device::external::{GpuTarget, TargetResource};
+use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::kernel::variant::{FilmVariant, ShadeVariant, StoredFormat};
 use crate::gpu::lens::records::RecordSetup;

@@ -4,7 +4,7 @@
 //! what [`give`] does to a layout, [`take`] undoes before the next frame.
 
 use super::parts::VulkanParts;
-use crate::gpu::device::external::{GpuTarget, TargetResource};
+use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use ash::vk;
 use ash::vk::Handle;
 use wgpu::hal::api::Vulkan;

@@ -8,8 +8,9 @@ use super::failed;
 use super::parts::{BUFFER_USAGE, IMAGE_FLAGS, VulkanParts, image_usage};
 use crate::error::{Error, Result};
 use crate::gpu::device::external::{
-    GpuTarget, HOST_POINTER, MemoryInfo, NOT_RUN, OPAQUE_FD, ReleaseGuard, TargetOrigin, TargetResource, TargetShape,
+    HOST_POINTER, MemoryInfo, NOT_RUN, OPAQUE_FD, ReleaseGuard, TargetOrigin, TargetShape,
 };
+use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::wgpu_device::Device;
 use crate::image::PixelFormat;
 use ash::vk;
