@@ -149,7 +149,8 @@ int main(int argc, char **argv) {
     vk(vkBindBufferMemory(device, buffer, visible, 0), "the buffer's memory");
     VkCommandPoolCreateInfo     pool_info = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
     VkCommandPool               pool;
-    VkCommandBufferAllocateInfo one = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, .commandBufferCount = 1};
+    VkCommandBufferAllocateInfo one = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                       .commandBufferCount = 1};
     VkCommandBufferBeginInfo    begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                          .flags = VK_COMMAND_BUFFER_USAGE_SIMULTANEOUS_USE_BIT};
     VkBufferImageCopy           whole = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
@@ -162,8 +163,8 @@ int main(int argc, char **argv) {
     vk(vkAllocateCommandBuffers(device, &one, &commands), "commands");
     vk(vkBeginCommandBuffer(commands, &begin), "commands");
     vkCmdCopyImageToBuffer(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, buffer, 1, &whole);
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0, NULL, 0,
-                         NULL);
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0, NULL,
+                         0, NULL);
     vk(vkEndCommandBuffer(commands), "commands");
 
     uint64_t value = 0;
@@ -173,7 +174,11 @@ int main(int argc, char **argv) {
         bhr(bhr_camera_orbit(&camera, 24, 0.05 * frame, 0.12), "an orbit");
         bhr(bhr_set_camera(context, &camera), "the camera");
         BhrSemaphoreValue wait = {shared, value}, signal = {shared, value + 1};
-        BhrSync sync = {.struct_size = sizeof sync, .wait_count = 1, .signal_count = 1, .waits = &wait, .signals = &signal};
+        BhrSync           sync = {.struct_size = sizeof sync,
+                                  .wait_count = 1,
+                                  .signal_count = 1,
+                                  .waits = &wait,
+                                  .signals = &signal};
         bhr(bhr_render_target(context, target, &sync, NULL), "a frame");
         uint64_t                      rendered = value + 1, read = value + 2;
         VkTimelineSemaphoreSubmitInfo values = {.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO,

@@ -13,7 +13,7 @@
  *   The host's device: bhr works on the host's VkDevice, in the host's own images: bhr_vulkan_requirements,
  *   bhr_context_create_vulkan, bhr_target_wrap_vulkan. The host must enable what bhr asks for, and lock its queue.
  *
- * Who waits for whom
+ * Order of work
  *   A frame is submitted by bhr_render_target and runs on the GPU after every wait of its BhrSync; then it signals.
  *   Nobody waits on the CPU. The host waits for the signal before it reads the target, and signals in its turn when
  *   it has read it, which is what the next frame into this target waits for. With two or three targets in turn

@@ -43,7 +43,7 @@ impl<T> OnDevice<T> {
             }
         };
         if let Ok((thing, device)) = ended {
-            // What hosts wrap has to be gone when this returns, not when another frame is made.
+            // The images that hosts wrap have to be gone when this returns, not when another frame is made.
             device.bindings_forgotten();
             drop(thing);
             drop(device);

@@ -167,7 +167,8 @@ static void bad_handles(const BhrInteropInfo *info) {
     BhrTargetInfo    real = {.struct_size = sizeof real};
     BhrHandle        exported;
     int              pipes[2], sockets[2];
-    int              file = open("/proc/self/exe", O_RDONLY), folder = open("/", O_RDONLY), null = open("/dev/null", O_RDWR);
+    int              file = open("/proc/self/exe", O_RDONLY), folder = open("/", O_RDONLY);
+    int              null = open("/dev/null", O_RDWR);
     CHECK_OK(bhr_target_create(context, &options, &source));
     CHECK_OK(bhr_target_info(source, &real));
     CHECK_OK(bhr_target_export(source, &exported));
@@ -301,7 +302,8 @@ static void bad_frames(BhrBackend backend) {
     CHECK_FAILS(BAD, "twice", bhr_render_target(context, target, &wrong, NULL));
     wrong = (BhrSync){.struct_size = sizeof wrong, .signal_count = 1, .signals = &far};
     CHECK_FAILS(BAD, "another context", bhr_render_target(context, target, &wrong, NULL));
-    wrong = (BhrSync){.struct_size = sizeof wrong, .wait_count = 1, .waits = &two[1], .signal_count = 1, .signals = two};
+    wrong = (BhrSync){.struct_size = sizeof wrong, .signal_count = 1, .signals = two};
+    wrong.wait_count = 1, wrong.waits = &two[1];
     CHECK_FAILS(BAD, "grow", bhr_render_target(context, target, &wrong, NULL));
     wrong = (BhrSync){.struct_size = sizeof wrong, .signal_count = 1, .signals = &dual};
     CHECK_FAILS(BAD, "BINARY", bhr_render_target_async(context, target, &wrong, NULL));

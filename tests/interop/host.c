@@ -131,10 +131,10 @@ static void frames_into(BhrContext *context, BhrContext *own, size_t at, uint64_
     CHECK(image == (uint64_t)picture.image && buffer == 0, "another image");
     for (uint64_t frame = 0; frame < frames; frame++) {
         BhrSemaphoreValue wait = {semaphore, 2 * frame}, signal = {semaphore, 2 * frame + 1};
-        BhrSync           sync = {.struct_size = sizeof sync, .wait_count = frame > 0, .signal_count = 1, .waits = &wait,
-                                  .signals = &signal};
+        BhrSync           sync = {.struct_size = sizeof sync, .wait_count = frame > 0, .signal_count = 1};
         VkTurn turn = {timeline, timeline, 2 * frame + 1, 2 * frame + 2, lock, unlock};
         double time = 2.0 * (double)frame;
+        sync.waits = &wait, sync.signals = &signal;
         CHECK_OK(bhr_set_time(context, time));
         /* Every other frame as a job; as both use one queue, what waits for it must not be submitted before it. */
         CHECK_OK(frame % 2 ? bhr_render_target_async(context, target, &sync, NULL)

@@ -32,7 +32,7 @@ pub struct VulkanParts {
     pub(super) host_memory: Option<ext::external_memory_host::Device>,
     /// The most that a timeline may grow at once.
     pub(super) timeline_step: u64,
-    /// What a pointer of the host's must be a multiple of.
+    /// The alignment of a pointer of the host's.
     pub(super) pointer_alignment: u64,
     pub(super) largest_image: u32,
     /// Mesa's llvmpipe, whose imports read a header from the descriptor, and wait for ever where there is none.
@@ -215,7 +215,7 @@ pub(in crate::gpu) fn ids(adapter: &wgpu::Adapter) -> Option<AdapterIds> {
     })
 }
 
-/// What opening a device gave.
+/// The outcome of opening a device.
 type Opened = Result<(wgpu::Device, wgpu::Queue), String>;
 
 /// On Vulkan: opens a device as wgpu would, with the extensions of [`WANTED`] that the adapter has. `None`: another
