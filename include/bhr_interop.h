@@ -78,7 +78,7 @@ typedef uint32_t BhrHandleType;
 #define BHR_HANDLE_HOST_POINTER 64u
 
 /**
- * What the device of a context can share. All bits 0: the CPU tracer, OpenGL, Metal, Direct3D 12, or a driver
+ * The ways in which a context's device can share. All bits 0: the CPU tracer, OpenGL, Metal, Direct3D 12, or a driver
  * without the extensions; use bhr_render_image. Since 0.2.0.
  */
 typedef struct BhrInteropInfo {
@@ -120,7 +120,7 @@ BHR_NODISCARD BhrStatus bhr_adapter_find(const uint8_t *uuid, const uint8_t *lui
  */
 typedef struct BhrTarget BhrTarget;
 
-/** What a target is made of. */
+/** The substance of a target. */
 typedef int32_t BhrTargetKind;
 
 /** A 2-D image, tiled as the driver likes: for sampling and drawing. */
@@ -168,7 +168,7 @@ typedef struct BhrTargetOptions {
  */
 BHR_NODISCARD BhrStatus bhr_target_options_init(BhrTargetOptions *options, size_t struct_size);
 
-/** What the other side must know to import a target. Since 0.2.0. */
+/** The numbers with which the other side imports a target. Since 0.2.0. */
 typedef struct BhrTargetInfo {
     uint32_t struct_size; /**< sizeof(BhrTargetInfo), set by the caller. */
     BhrTargetKind kind;   /**< BHR_TARGET_*. */
@@ -324,7 +324,7 @@ void bhr_semaphore_destroy(BhrSemaphore *semaphore);
 
 /** A semaphore and a value of it. Since 0.2.0. */
 typedef struct BhrSemaphoreValue {
-    BhrSemaphore *semaphore; /**< Of the context that renders. */
+    BhrSemaphore *semaphore; /**< One of the context that renders. */
     uint64_t value;          /**< TIMELINE: the value to wait for, or to signal. BINARY: ignored. */
 } BhrSemaphoreValue;
 
@@ -391,7 +391,7 @@ typedef void (*BhrQueueLockFn)(void *user);
 typedef void (*BhrReleaseFn)(void *user);
 
 /**
- * What an instance and a device must have so that bhr can work on them. All that it points to is the library's and
+ * The needs of bhr on an instance and a device of the host's. All that it points to is the library's and
  * never freed. Since 0.2.0.
  */
 typedef struct BhrVulkanRequirements {
@@ -417,7 +417,7 @@ typedef struct BhrVulkanRequirements {
 /** A Vulkan device of the host's. Cleared (memset) and filled in by the host. Since 0.2.0. */
 typedef struct BhrVulkanDevice {
     uint32_t struct_size; /**< sizeof(BhrVulkanDevice). */
-    uint32_t api_version; /**< What vkCreateInstance was told, not what the loader has. */
+    uint32_t api_version; /**< VkApplicationInfo.apiVersion as vkCreateInstance was told, not what the loader has. */
     BhrGetInstanceProcAddr get_instance_proc_addr; /**< vkGetInstanceProcAddr. */
     void *instance; /**< VkInstance. */
     void *physical_device; /**< VkPhysicalDevice. */

@@ -106,13 +106,16 @@ impl Target {
 pub struct Semaphore {
     on: OnDevice<GpuSemaphore>,
     pub kind: SemaphoreKind,
+    /// Whether it is a VkSemaphore of the host's.
+    is_hosts: bool,
 }
 
 impl Semaphore {
     /// Errors: as `Device::semaphore`.
     pub fn new(device: Arc<Device>, kind: SemaphoreKind, origin: SemaphoreOrigin) -> Result<Self> {
+        let is_hosts = matches!(origin, SemaphoreOrigin::Host(_));
         let made = device.semaphore(kind, origin)?;
-        Ok(Self { on: OnDevice::new("semaphore", made, device), kind })
+        Ok(Self { on: OnDevice::new("semaphore", made, device), kind, is_hosts })
     }
 
     /// A new descriptor of it, the caller's. Errors: INVALID_STATE; SURFACE_LOST.
@@ -163,6 +166,12 @@ impl Semaphore {
 
     /// Ends it, for a reason: later calls are SURFACE_LOST.
     pub fn end(&self, reason: &'static str) {
+        if self.is_hosts {
+            let _ = self.on.with(|semaphore, device| {
+                device.forget_waits(semaphore);
+                Ok(())
+            });
+        }
         self.on.end(reason);
     }
 }

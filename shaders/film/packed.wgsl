@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Writes the pixels of a tile into the buffer that a frame's last kernel writes for the host: packed ones, to be copied,
-// or the rows of a whole frame. (The uniforms of group 2 come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
+// Writes the pixels of a tile into the buffer that a frame's last kernel writes for the host: packed ones, to be
+// copied, or the rows of a whole frame. (The uniforms of group 2 come after those of a lens: the other way round Mesa
+// 22.3's lavapipe crashes.)
 
 #import film/film
 #import film/params

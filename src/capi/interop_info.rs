@@ -31,7 +31,7 @@ pub const BHR_HANDLE_APPLE: BhrHandleType = 32u32;
 /// are read after the frame's job or signal.
 pub const BHR_HANDLE_HOST_POINTER: BhrHandleType = 64u32;
 
-/// What the device of a context can share. All bits 0: the CPU tracer, OpenGL, Metal, Direct3D 12, or a driver
+/// The ways in which a context's device can share. All bits 0: the CPU tracer, OpenGL, Metal, Direct3D 12, or a driver
 /// without the extensions; use bhr_render_image. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]

@@ -18,7 +18,7 @@ use std::ptr::null;
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrSemaphoreValue {
-    /// Of the context that renders.
+    /// One of the context that renders.
     pub semaphore: *mut BhrSemaphore,
     /// TIMELINE: the value to wait for, or to signal. BINARY: ignored.
     pub value: u64,

@@ -32,7 +32,7 @@ pub struct BhrTarget {
     message: Arc<LastMessage>,
 }
 
-/// What a target is made of.
+/// The substance of a target.
 pub type BhrTargetKind = i32;
 /// A 2-D image, tiled as the driver likes: for sampling and drawing.
 pub const BHR_TARGET_IMAGE: BhrTargetKind = 0;
@@ -126,7 +126,7 @@ impl BhrTargetOptions {
             }
             (false, stride) if stride < packed || !stride.is_multiple_of(4) || stride > u32::MAX.into() => {
                 return Err(Error::argument(format!(
-                    "options row_stride is {stride}; a row has {packed} bytes, and it must be a multiple of 4 below 2^32"
+                    "options row_stride is {stride}; it must hold {packed} bytes and be a multiple of 4 below 2^32"
                 )));
             }
             (false, stride) => stride,
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn bhr_target_options_init(options: *mut BhrTargetOptions,
     anywhere("bhr_target_options_init", || unsafe { versioned::init(options, "options", struct_size) })
 }
 
-/// What the other side must know to import a target. Since 0.2.0.
+/// The numbers with which the other side imports a target. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrTargetInfo {

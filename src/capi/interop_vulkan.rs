@@ -24,7 +24,7 @@ pub type BhrQueueLockFn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 /// must not call bhr.
 pub type BhrReleaseFn = Option<unsafe extern "C" fn(user: *mut c_void)>;
 
-/// What an instance and a device must have so that bhr can work on them. All that it points to is the library's and
+/// The needs of bhr on an instance and a device of the host's. All that it points to is the library's and
 /// never freed. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -71,7 +71,7 @@ unsafe impl Versioned for BhrVulkanRequirements {
 pub struct BhrVulkanDevice {
     /// sizeof(BhrVulkanDevice).
     pub struct_size: u32,
-    /// What vkCreateInstance was told, not what the loader has.
+    /// VkApplicationInfo.apiVersion as vkCreateInstance was told, not what the loader has.
     pub api_version: u32,
     /// vkGetInstanceProcAddr.
     pub get_instance_proc_addr: BhrGetInstanceProcAddr,

@@ -309,7 +309,7 @@ static void bad_frames(BhrBackend backend) {
     CHECK_FAILS(BAD, "BINARY", bhr_render_target_async(context, target, &wrong, NULL));
     wrong.wait_count = 1, wrong.waits = &dual;
     CHECK_FAILS(BAD, "BINARY", bhr_render_target(context, target, &wrong, NULL));
-    /* What was refused waits for nothing and signals nothing. */
+    /* Refused frames wait for nothing and signal nothing. */
     CHECK(bhr_semaphore_wait(timeline, 6, 0) == BHR_NOT_READY, "a refused frame has signalled");
     sync.waits = &old, sync.wait_count = 1, sync.signals = two;
     CHECK_OK(bhr_render_target(context, target, &sync, NULL));

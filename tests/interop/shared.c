@@ -42,7 +42,7 @@ static BhrTargetOptions options_of(size_t at, BhrTargetKind kind, uint64_t strid
     return options;
 }
 
-/* What bhr_render_image makes of the present scene. */
+/* The picture that bhr_render_image makes of the present scene. */
 static void expect(size_t at, uint32_t flags) {
     BhrImage image;
     CHECK_OK(bhr_image_init(&image, sizeof image));

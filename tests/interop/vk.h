@@ -44,7 +44,7 @@ void vk_open_device(Vk *vk);
 void vk_open_required(Vk *vk, const BhrVulkanRequirements *required);
 void vk_close(Vk *vk);
 
-/* What bhr_context_create_vulkan is told of it. */
+/* The device as bhr_context_create_vulkan is told of it. */
 BhrVulkanDevice vk_for_bhr(const Vk *vk);
 
 uint32_t vk_memory_type(const Vk *vk, uint32_t bits, VkMemoryPropertyFlags flags);

@@ -181,7 +181,7 @@ pub(in crate::gpu) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
-/// What a device is opened with: timestamps and mappable storage buffers if the adapter has them, and no other feature.
+/// A device is opened with timestamps and mappable storage buffers if the adapter has them, and no other feature.
 pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let offered = adapter.limits();
     let limits = wgpu::Limits {

@@ -23,7 +23,7 @@ pub struct Sharing {
     pub export_buffers: u32,
     pub import_images: u32,
     pub import_buffers: u32,
-    /// Of timelines, and of binary ones.
+    /// Those of timelines, and those of binary semaphores.
     pub semaphores: [u32; 2],
 }
 
@@ -181,6 +181,6 @@ pub enum SemaphoreOrigin {
 /// Why nothing is shared. Errors: UNSUPPORTED.
 pub fn shares_nothing<T>(backend: Backend) -> Result<T> {
     Err(Error::unsupported(format!(
-        "frames that stay on the GPU need a device of Vulkan 1.2, and this context is on {backend}; use bhr_render_image"
+        "frames that stay on the GPU need a device of Vulkan 1.2, this context is on {backend}; use bhr_render_image"
     )))
 }

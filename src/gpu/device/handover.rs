@@ -2,11 +2,12 @@
 //! Submissions, and what goes with them where a host shares a target: the commands that take it over and give it back,
 //! and the semaphores of a frame. Knows no frames.
 
-use super::semaphores::SemaphoreUse;
+use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::sharing::GpuTarget;
 use super::turns::InUse;
 use super::wgpu_device::{Device, hangs_after};
 use crate::error::Result;
+use std::sync::Arc;
 
 /// Waiting goes in pieces of this, between which the device may be lost.
 #[cfg(not(target_vendor = "apple"))]
@@ -83,19 +84,31 @@ impl Device {
             submitted?
         };
         if !waits.is_empty() || !signals.is_empty() {
-            let mut in_use = self.turns.in_use();
             let (submission, waits) = (submitted.clone(), waits.to_vec());
-            in_use.push_back(InUse { submission, waits, _signals: signals.to_vec() });
-            let mut done = Vec::new();
-            while let Some(first) = in_use.front()
-                && self.is_done(&first.submission).unwrap_or(false)
-            {
-                done.extend(in_use.pop_front());
-            }
-            drop(in_use);
-            drop(done);
+            self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec() });
+            self.let_go_of_done();
         }
         Ok(submitted)
+    }
+
+    /// Lets go of the semaphores of submissions that have run.
+    fn let_go_of_done(&self) {
+        let mut done = Vec::new();
+        let mut in_use = self.turns.in_use();
+        while let Some(first) = in_use.front()
+            && self.is_done(&first.submission).unwrap_or(false)
+        {
+            done.extend(in_use.pop_front());
+        }
+        drop(in_use);
+        drop(done);
+    }
+
+    /// A host's own semaphore ends, which no submission under way keeps: it is not asked any more.
+    pub fn forget_waits(&self, semaphore: &Arc<GpuSemaphore>) {
+        for one in self.turns.in_use().iter_mut() {
+            one.waits.retain(|wait| !Arc::ptr_eq(&wait.semaphore, semaphore));
+        }
     }
 
     /// With Mesa's llvmpipe (22.3), whose vkQueueSubmit blocks, for ever if it comes to that, while a submission before
@@ -105,6 +118,7 @@ impl Device {
         if !self.vulkan.as_ref().is_some_and(|parts| parts.llvmpipe) {
             return Ok(());
         }
+        self.let_go_of_done();
         let deadline = std::time::Instant::now() + hangs_after();
         let open = self.turns.in_use().iter().flat_map(|one| one.waits.clone()).collect::<Vec<_>>();
         for SemaphoreUse { semaphore, value } in open {

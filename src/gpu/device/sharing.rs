@@ -124,7 +124,7 @@ impl Device {
     }
 }
 
-/// What instances must have (without a physical device), or devices. Errors: INVALID_ARGUMENT; UNSUPPORTED.
+/// The requirements of instances (without a physical device), or of devices. Errors: INVALID_ARGUMENT; UNSUPPORTED.
 #[cfg(not(target_vendor = "apple"))]
 pub fn vulkan_requirements(host: Option<&HostVulkan>) -> Result<Requirements> {
     match host {

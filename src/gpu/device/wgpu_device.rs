@@ -57,7 +57,7 @@ pub struct Device {
     pub(in crate::gpu) shaders: super::specialise::Shaders,
     pub(in crate::gpu) bindings: super::bindings::BindGroupCache,
     pub(in crate::gpu) uploads: Uploads,
-    /// Who may touch the queue now.
+    /// The turns that threads take with the queue.
     pub(in crate::gpu) turns: QueueTurns,
     /// Whether the device is a host's own.
     is_hosts: bool,

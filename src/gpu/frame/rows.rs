@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The places of a tile's pixels in the buffer that kernels write them to: the packed pixels of one tile, or the rows of
-//! a whole frame. Plain numbers.
+//! The places of a tile's pixels in the buffer that kernels write them to: the packed pixels of one tile, or the rows
+//! of a whole frame. Plain numbers.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::wgpu_device::Device;

@@ -45,7 +45,7 @@ pub(in crate::gpu) fn take(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
             }
         }
         TargetResource::Written(..) | TargetResource::Copied(_) => {
-            // What is discarded needs no owner before.
+            // Pixels that are discarded need no owner before.
             let barrier = vk::ImageMemoryBarrier::default()
                 .image(vk::Image::from_raw(target.raw))
                 .subresource_range(colour())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! File descriptors of hosts: copies for the driver to take over, and a look at what is behind one before a driver reads
-//! from it. Knows no Vulkan.
+//! File descriptors of hosts: copies for the driver to take over, and a look at what is behind one before a driver
+//! reads from it. Knows no Vulkan.
 
 use crate::error::{Error, ErrorKind, Result};
 

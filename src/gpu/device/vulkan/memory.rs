@@ -523,7 +523,7 @@ fn written_by(format: PixelFormat, usage: u32) -> Result<bool> {
         return Ok(false);
     }
     Err(Error::unsupported(format!(
-        "memory vk_usage is {:#x}; an image of format {format} needs STORAGE where it can be stored to, or TRANSFER_DST",
+        "memory vk_usage is {:#x}; an image of {format} needs STORAGE where it can be stored to, else TRANSFER_DST",
         usage.as_raw()
     )))
 }

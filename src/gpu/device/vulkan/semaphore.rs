@@ -23,7 +23,7 @@ pub struct GpuSemaphore {
     values: Mutex<Values>,
 }
 
-/// What a timeline is to become.
+/// The values that a timeline is to have.
 #[derive(Default)]
 struct Values {
     /// The largest value that a frame was asked to signal.
