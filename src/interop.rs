@@ -14,10 +14,13 @@ use std::time::{Duration, Instant};
 /// Waiting for a semaphore goes in pieces of this, between which it may end.
 const WAIT_SLICE: Duration = Duration::from_millis(20);
 
+/// A thing and its device, which goes after it.
+type Kept<T> = (Arc<T>, Arc<Device>);
+
 /// Something that a device has, until it ends.
 struct OnDevice<T> {
-    /// `Err`: why it ended. The thing goes before its device.
-    inner: RwLock<Result<(Arc<T>, Arc<Device>), &'static str>>,
+    /// `Err`: why it ended.
+    inner: RwLock<Result<Kept<T>, &'static str>>,
     name: &'static str,
 }
 
