@@ -74,7 +74,7 @@ fn presenting(spin: f64) {
         turn(&mut scene, i);
         let stats = tracer.render(&scene, &request(FULL_HD), &mut |_, _, _| Ok(()), &mut |_| true).expect("a frame");
         let start = Instant::now();
-        let mut frame = tracer.begin(&scene, &request(FULL_HD), FrameTarget::Screen(&screen)).expect("a frame");
+        let mut frame = tracer.begin(&scene, &request(FULL_HD), FrameTarget::screen(&screen)).expect("a frame");
         let mut of_screen = frame.stats();
         let mut steps = Vec::new();
         let mut time = None;

@@ -362,7 +362,7 @@ BHR_NODISCARD BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapte
  * sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
  * device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns
  * DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost, and the call may
- * be tried again.
+ * be tried again; UNSUPPORTED on a device of the host's (bhr_context_create_vulkan).
  */
 BHR_NODISCARD BhrStatus bhr_context_recover(BhrContext *context);
 
@@ -1601,8 +1601,8 @@ BHR_NODISCARD BhrStatus bhr_job_wait(BhrJob *job, uint64_t timeout_ns, double *o
 
 /**
  * Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
- * bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its length,
- * 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
+ * bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its
+ * length, 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
  */
 size_t bhr_job_error_message(const BhrJob *job, char *buffer, size_t size);
 
@@ -1614,8 +1614,8 @@ void bhr_job_cancel(BhrJob *job);
 
 /**
  * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
- * host's again. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
- * bhr_error_message then says so.
+ * host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any
+ * more. From inside a callback it does nothing: bhr_error_message then says so.
  */
 void bhr_job_destroy(BhrJob *job);
 

@@ -7,6 +7,7 @@ mod worker;
 pub use worker::{MAX_UNFINISHED, Worker};
 
 use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
+use crate::gpu::{FrameSync, GpuTarget};
 use crate::image::ImageMut;
 use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, Progress, StatsBoard};
@@ -46,7 +47,7 @@ impl Job {
     }
 
     /// Asks the job to stop: work that is not yet begun is not done any more. The job ends at once if its turn has not
-    /// come.
+    /// come; but one with a target on the GPU waits for its turn, as its signals come after those of the jobs before.
     pub fn cancel(&self) {
         self.shared.cancelled.store(true, Ordering::Relaxed);
         if let Some(job_request) = self.queue.upgrade().and_then(|queue| queue.withdraw(&self.shared))
@@ -107,12 +108,20 @@ impl Shared {
     }
 }
 
+/// The place that a job's pixels go to.
+pub enum JobTarget {
+    /// The host's memory.
+    Memory(ImageMut<'static>),
+    /// A target on the GPU, with the semaphores of the frame, whose signals are given whatever becomes of it.
+    Shared(Arc<GpuTarget>, FrameSync),
+}
+
 /// A frame to be made, and the job that hears of it. Its target is written until the job has its outcome, and never
 /// after.
 pub struct JobRequest {
     pub scene: Scene,
     pub request: FrameRequest,
-    pub target: ImageMut<'static>,
+    pub target: JobTarget,
     pub tracer: SharedTracer,
     pub stats: StatsBoard,
     shared: Arc<Shared>,
@@ -123,7 +132,7 @@ impl JobRequest {
     pub fn new(
         scene: Scene,
         request: FrameRequest,
-        target: ImageMut<'static>,
+        target: JobTarget,
         tracer: SharedTracer,
         stats: StatsBoard,
     ) -> Self {
@@ -132,7 +141,7 @@ impl JobRequest {
 
     /// The job's end. The target is its owner's again.
     fn finish(self, outcome: Result<FrameStats>) {
-        let touched = self.target.is_touched();
+        let touched = matches!(&self.target, JobTarget::Memory(image) if image.is_touched());
         let outcome = outcome.map(|stats| self.stats.publish(stats, self.requested.elapsed())).map_err(|mut error| {
             if touched {
                 error.message += PARTLY_WRITTEN;

@@ -3,7 +3,7 @@
 //!
 //! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.
 //! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background. [`surface`]:
-//!   its frames in the host's windows.
+//!   its frames in the host's windows. [`interop`]: pictures and semaphores on the GPU that hosts share.
 //! - `tracers`: the tracers behind one face. `cpu`, `gpu`: the two of them, with one behaviour: scene -> pixels.
 //! - [`window`]: the host's windows, as their platforms know them.
 //! - [`tracer`]: what tracers take and give: requests, tiles, numbers, adapters.
@@ -26,6 +26,7 @@ pub mod error;
 pub mod film;
 pub mod gpu;
 pub mod image;
+pub mod interop;
 pub mod job;
 pub mod physics;
 mod random;

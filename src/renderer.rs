@@ -9,7 +9,8 @@ use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
-use crate::job::{Job, JobRequest, Worker};
+use crate::interop::{Semaphore, Target};
+use crate::job::{Job, JobRequest, JobTarget, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
 use crate::scene::{Hit, Preset, Ray, Region, Scene, Transfer, View};
@@ -21,6 +22,10 @@ use presets::DepthCost;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Weak};
 use std::time::Instant;
+
+mod shared;
+
+pub use shared::{HostSync, Submits};
 
 pub use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, PASSES, Progress, StatsBoard, Tile, TileSink};
 pub use crate::tracers::adapters;
@@ -57,12 +62,18 @@ pub struct Renderer {
     worker: Option<Worker>,
     /// Made for this renderer, and perhaps still there.
     surfaces: Vec<Weak<Surface>>,
+    targets: Vec<Weak<Target>>,
+    semaphores: Vec<Weak<Semaphore>>,
 }
 
 impl Drop for Renderer {
     fn drop(&mut self) {
-        // Windows go before the device that presents to them.
-        let ended = catch_unwind(AssertUnwindSafe(|| self.end_surfaces("its context was destroyed")));
+        // Windows, and what hosts share, go before the device that presents to them, and after the frames in them.
+        let ended = catch_unwind(AssertUnwindSafe(|| {
+            self.worker = None;
+            self.end_surfaces("its context was destroyed");
+            self.end_shared("its context was destroyed");
+        }));
         // A panic that went on from here would drop the rest on its way, where another panic ends the process.
         if let Err(panic) = ended {
             std::mem::forget(panic);
@@ -77,8 +88,11 @@ impl Renderer {
     pub fn new(options: RendererOptions) -> Result<Self> {
         let tracer = Self::open(&options)?;
         // The window need not be there any more when the device is opened again.
-        let options = RendererOptions { compatible_window: None, ..options };
-        Ok(Self {
+        Ok(Self::on(tracer, RendererOptions { compatible_window: None, ..options }))
+    }
+
+    fn on(tracer: Tracer, options: RendererOptions) -> Self {
+        Self {
             scene: Scene::default(),
             options,
             adapter: tracer.info().clone(),
@@ -89,7 +103,9 @@ impl Renderer {
             depth_costs: Default::default(),
             worker: None,
             surfaces: Vec::new(),
-        })
+            targets: Vec::new(),
+            semaphores: Vec::new(),
+        }
     }
 
     fn open(options: &RendererOptions) -> Result<Tracer> {
@@ -157,10 +173,20 @@ impl Renderer {
 
     /// Opens the device anew after it was lost, on the adapter it was on if that is still there; the scene stays. Jobs
     /// that were requested before fail, surfaces are lost.
+    ///
+    /// Errors: UNSUPPORTED on a host's device, which bhr cannot make anew.
     pub fn recover(&mut self) -> Result<()> {
+        if let RunsOn::Gpu(_, device) = &self.runs_on
+            && device.is_hosts()
+        {
+            return Err(Error::unsupported(
+                "the context is on a device of the host's; destroy it and make it on a new device",
+            ));
+        }
         gpu::forget_drivers();
         let tracer = self.reopen()?;
         self.end_surfaces("its context was recovered; make it again");
+        self.end_shared("its context was recovered; make it again");
         self.adapter = tracer.info().clone();
         self.runs_on = tracer.runs_on();
         self.tracer = Arc::new(Mutex::new(tracer));
@@ -391,6 +417,7 @@ impl Renderer {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),
         };
+        let target = JobTarget::Memory(target);
         worker.enqueue(JobRequest::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
     }
 

@@ -519,7 +519,7 @@ impl Screen {
         let Tracer::Gpu(tracer) = &mut *tracer else {
             return Err(Error::internal("a window of a GPU on another tracer"));
         };
-        let mut frame = tracer.begin(show_request.scene, &request, FrameTarget::Screen(texture))?;
+        let mut frame = tracer.begin(show_request.scene, &request, FrameTarget::screen(texture))?;
         let mut stats = frame.stats();
         let mut steps = VecDeque::new();
         while let Some(step) = tracer.submit_and(&mut frame, &mut fill)? {

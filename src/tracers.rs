@@ -4,7 +4,7 @@
 
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{self, Adapter, GlTracer, GpuTracer, Search};
+use crate::gpu::{self, Adapter, AdapterIds, GlTracer, GpuTracer, Search};
 use crate::scene::Scene;
 use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, Progress, TileSink};
 use parking_lot::Mutex;
@@ -15,6 +15,13 @@ use std::sync::Arc;
 pub fn adapters() -> Vec<AdapterInfo> {
     let mut list = gpu::adapters(Search::All, false).into_iter().map(|a| a.info).collect::<Vec<_>>();
     list.push(crate::cpu::adapter_info());
+    list
+}
+
+/// By what other interfaces know each of [`adapters`], in that order.
+pub fn adapter_ids() -> Vec<AdapterIds> {
+    let mut list = gpu::adapters(Search::All, false).iter().map(Adapter::ids).collect::<Vec<_>>();
+    list.push(AdapterIds::default());
     list
 }
 

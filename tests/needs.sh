@@ -50,6 +50,8 @@ missing_window_packages() {
     compiles cc c SDL2/SDL.h || printf '%s\n' libsdl2-dev
     compiles c++ c++ GL/gl.h || printf '%s\n' libgl-dev
     compiles c++ c++ imgui/imgui.h || printf '%s\n' libimgui-dev
+    compiles cc c vulkan/vulkan.h || printf '%s\n' libvulkan-dev
+    compiles cc c EGL/egl.h || printf '%s\n' libegl-dev
     has_validation || printf '%s\n' vulkan-validationlayers
 }
 

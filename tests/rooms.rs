@@ -19,7 +19,7 @@ const ROOMS: [&[&str]; 15] = [
     &["tracer"],
     &["window"],
     &["cpu", "gpu"],
-    &["tracers"],
+    &["interop", "tracers"],
     &["job", "surface"],
     &["renderer"],
     &["capi"],

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Writes the packed pixels of a tile, rows without gaps, into the buffer that a frame's last kernel writes for the
-// host. (The uniforms of group 2 come after those of a lens: the other way round Mesa 22.3's lavapipe crashes.)
+// Writes the pixels of a tile into the buffer that a frame's last kernel writes for the host: packed ones, to be
+// copied, or the rows of a whole frame. (The uniforms of group 2 come after those of a lens: the other way round Mesa
+// 22.3's lavapipe crashes.)
 
 #import film/film
 #import film/params
@@ -12,10 +13,9 @@
 fn write_pixel(id: vec2<u32>, radiance: vec4<f32>) {
     let place = vec2<u32>(pass_.origin + vec2<i32>(id) + 1);
     let words = develop(radiance, place.x, place.y);
-    let i = id.y * (pass_.size.x - 2u) + id.x;
+    let first = pass_.pixels_first + id.y * pass_.pixels_row + pixel_words() * id.x;
     // This is no loop over words[k]: with one, frames at spin 0.9 take 11 % longer (H200).
     if has_several_words() {
-        let first = pixel_words() * i;
         pixels[first] = words.x;
         pixels[first + 1u] = words.y;
         if is_rgba32f() {
@@ -23,6 +23,6 @@ fn write_pixel(id: vec2<u32>, radiance: vec4<f32>) {
             pixels[first + 3u] = words.w;
         }
     } else {
-        pixels[i] = words.x;
+        pixels[first] = words.x;
     }
 }

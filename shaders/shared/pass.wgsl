@@ -21,6 +21,12 @@ struct Pass {
     refined: u32,
     // Where in the full frame the texture of a frame's light begins (film/light.wgsl).
     light_origin: vec2<i32>,
+    // The tile's first pixel in the image that the frame is written to (film/screen.wgsl).
+    image_origin: vec2<u32>,
+    // The place of the tile's first pixel in the buffer that it is written to (film/packed.wgsl), and the distance of
+    // its rows, in words.
+    pixels_first: u32,
+    pixels_row: u32,
 }
 
 // The shift from this sample to the place looked at, pixels: 0 but where refine/refine.wgsl spreads samples over a

@@ -17,8 +17,10 @@ use super::version::BHR_ABI_VERSION;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::{HostVulkan, ReleaseGuard};
 use crate::renderer::{Renderer, RendererOptions};
 use crate::scene::Region;
+use crate::tracer::Backend;
 use ::log::LevelFilter;
 use parking_lot::Mutex;
 use std::ffi::{c_char, c_void};
@@ -200,10 +202,45 @@ fn check_abi(abi_version: u32) -> Result<()> {
     ))
 }
 
+/// On a device of the host's. Errors: as `bhr_context_create_vulkan`.
+///
+/// # Safety
+/// `options` is NULL or valid.
+pub(super) unsafe fn create_on_host(
+    abi_version: u32,
+    options: *const BhrContextOptions,
+    host: HostVulkan,
+    release: &Arc<ReleaseGuard>,
+) -> Result<Box<BhrContext>> {
+    check_abi(abi_version)?;
+    // SAFETY: this function's contract.
+    let given = match options.is_null() {
+        true => BhrContextOptions::defaults(),
+        false => unsafe { versioned::read(options, "options") }?,
+    };
+    // SAFETY: as above.
+    let (options, level) = unsafe { given.check() }?;
+    if !matches!(options.backend, None | Some(Backend::Vulkan)) {
+        let backend = given.backend;
+        return Err(Error::argument(format!("options backend is {backend}; here it must be AUTO (0) or VULKAN (2)")));
+    }
+    if options.adapter_index.is_some() || options.validation || options.compatible_window.is_some() {
+        return Err(Error::argument(
+            "options must have adapter_index -1, no BHR_CONTEXT_VALIDATION and compatible_window NULL here: the host's \
+             instance decides",
+        ));
+    }
+    create_with(given.register_log(level), || Renderer::on_host(options, host, release))
+}
+
 fn create(options: RendererOptions, log: Option<Registered>) -> Result<Box<BhrContext>> {
+    create_with(log, || Renderer::new(options))
+}
+
+fn create_with(log: Option<Registered>, make: impl FnOnce() -> Result<Renderer>) -> Result<Box<BhrContext>> {
     let scope = log::Scope::enter(log.as_ref().map(Registered::sink));
     // Outside this scope the new callback would not hear why there is no context.
-    let renderer = Renderer::new(options).inspect_err(|error| ::log::error!(target: "bhr", "no context: {error}"))?;
+    let renderer = make().inspect_err(|error| ::log::error!(target: "bhr", "no context: {error}"))?;
     let adapter = renderer.adapter();
     ::log::info!(target: "bhr", "context on {} ({})", adapter.name, adapter.backend);
     drop(scope);
@@ -226,11 +263,17 @@ pub unsafe extern "C" fn bhr_context_adapter(context: *const BhrContext, info: *
 /// sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
 /// device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns
 /// DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost, and the call may
-/// be tried again.
+/// be tried again; UNSUPPORTED on a device of the host's (bhr_context_create_vulkan).
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_recover(context: *mut BhrContext) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe { on_context("bhr_context_recover", context, |state| state.renderer.recover()) }
+}
+
+/// For tests: from now on a submission that takes longer than this has hung, instead of 60 s.
+#[doc(hidden)]
+pub fn hangs_after(time: std::time::Duration) {
+    crate::gpu::set_hangs_after(time);
 }
 
 /// Destroys the GPU device under a context, as a driver may at any time: for tests of the recovery.

@@ -94,7 +94,7 @@ impl BhrImage {
     }
 }
 
-fn format(value: BhrFormat) -> Result<PixelFormat> {
+pub(super) fn format(value: BhrFormat) -> Result<PixelFormat> {
     Ok(match value {
         BHR_FORMAT_RGBA8_SRGB => PixelFormat::Rgba8Srgb,
         BHR_FORMAT_BGRA8_SRGB => PixelFormat::Bgra8Srgb,

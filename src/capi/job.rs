@@ -33,6 +33,21 @@ pub struct BhrJob {
     message: LastMessage,
     /// The context's.
     broken: Arc<AtomicBool>,
+    /// Whether pixels of the host's are written, so that the job's end waits for it.
+    writes_memory: bool,
+}
+
+/// The job of a frame for a target on the GPU.
+pub(super) fn of_target(job: Job, context: &BhrContext, progress: Option<Callback>) -> BhrJob {
+    BhrJob {
+        job,
+        progress,
+        progress_gate: context.progress_gate.clone(),
+        sink: context.sink(),
+        message: LastMessage::new(),
+        broken: context.broken.clone(),
+        writes_memory: false,
+    }
 }
 
 impl BhrJob {
@@ -106,7 +121,8 @@ pub unsafe extern "C" fn bhr_render_image_async(
             let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
             let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region)?;
             let message = LastMessage::new();
-            let job = BhrJob { job, progress: state.progress, progress_gate, sink, message, broken };
+            let progress = state.progress;
+            let job = BhrJob { job, progress, progress_gate, sink, message, broken, writes_memory: true };
             out.set(Box::into_raw(Box::new(job)));
             Ok(())
         })
@@ -129,8 +145,8 @@ pub unsafe extern "C" fn bhr_job_wait(job: *mut BhrJob, timeout_ns: u64, out_fra
 }
 
 /// Copies the message of the last call that failed on this job, whichever thread it was on, into buffer, as
-/// bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its length,
-/// 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
+/// bhr_context_error_message does: after a bhr_job_wait that told of a failure, why the job failed. Returns its
+/// length, 0 for NULL. Any thread, inside callbacks too; it waits for no other call. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_error_message(job: *const BhrJob, buffer: *mut c_char, size: usize) -> usize {
     // SAFETY: NULL or alive, and size writable bytes, by the header's conventions.
@@ -147,7 +163,8 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
     }
 }
 
-/// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was lost.
+/// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was
+/// lost.
 fn cancel(function: &str, job: &BhrJob) {
     let cancelled = guarded(|| {
         job.job.cancel();
@@ -157,8 +174,8 @@ fn cancel(function: &str, job: &BhrJob) {
 }
 
 /// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
-/// host's again. NULL is a no-op. No other thread may use the job any more. From inside a callback it does nothing:
-/// bhr_error_message then says so.
+/// host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any
+/// more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     const NAME: &str = "bhr_job_destroy";
@@ -172,6 +189,9 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     }
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
+    if !job.writes_memory {
+        return;
+    }
     cancel(NAME, &job);
     // Nobody is left to hear of the job's own failure.
     let _ = job.job.wait(None, &mut |_| true);

@@ -18,14 +18,20 @@ pub use device::adapter::{Adapter, Search, absence, adapters, check_built, forge
 pub use device::buffer::Buffer;
 #[doc(hidden)]
 pub use device::driver_lock;
+pub use device::external::{
+    AdapterIds, HOST_POINTER, HostVulkan, MemoryInfo, NOT_RUN, OPAQUE_FD, QueueLock, Release, ReleaseGuard,
+    Requirements, SemaphoreKind, SemaphoreOrigin, Sharing, TargetOrigin, TargetShape, shares_nothing,
+};
 #[cfg(test)]
 pub(crate) use device::gl_thread::GlThread;
 pub(crate) use device::gl_thread::park;
 pub use device::pipeline::{Kernel, Loops, ProvenFinite};
 pub use device::readback::{MappedReadback, PendingReadback, Readback};
+pub use device::semaphores::{FrameSync, GpuSemaphore, SemaphoreUse};
+pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requirements};
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
-pub use device::wgpu_device::{Device, Loss};
+pub use device::wgpu_device::{Device, Loss, set_hangs_after};
 pub use frame::begun::{BegunFrame, ExtraCommands};
 pub use frame::setup::FrameTarget;
 pub use frame::submission::Submission;

@@ -4,10 +4,11 @@
 //! submission. Frames end in the order in which they were requested. Only the first thread holds a tracer; the second
 //! needs nothing that anybody holds for longer than a few instructions, so that it always gets on.
 
-use super::{Job, JobRequest, Shared, lock};
+use super::{Job, JobRequest, JobTarget, Shared, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{BegunFrame, Device, FrameTarget, Submission};
+use crate::gpu::{BegunFrame, Device, FrameSync, FrameTarget, GpuTracer, Submission};
+use crate::interop;
 use crate::thread_scope::{self, ThreadScope};
 use crate::tracer::{FrameStats, Tile};
 use crate::tracers::Tracer;
@@ -45,6 +46,23 @@ struct RunningFrame {
     count: u64,
 }
 
+/// Submissions that a frame which is submitted on the host's thread may be ahead of those that are finished.
+const MOST_AHEAD: usize = 32;
+
+/// A request that counts as taken, until it is passed on or given up.
+struct TakenRequest<'a> {
+    queue: &'a JobQueue,
+    job_request: Option<JobRequest>,
+}
+
+impl Drop for TakenRequest<'_> {
+    fn drop(&mut self) {
+        if self.job_request.take().is_some() {
+            lock(&self.queue.state).taken -= 1;
+        }
+    }
+}
+
 /// The state that host and threads share.
 #[derive(Default)]
 pub(super) struct JobQueue {
@@ -53,6 +71,22 @@ pub(super) struct JobQueue {
     to_submit: Condvar,
     /// Signalled when an event came, or the end.
     to_finish: Condvar,
+}
+
+impl State {
+    /// Errors: INVALID_STATE when too many jobs are unfinished; INTERNAL when one panicked before.
+    fn check_room(&self) -> Result<()> {
+        if self.closed {
+            return Err(Error::internal("a thread that renders in the background failed before"));
+        }
+        let unfinished = self.waiting.len() + self.taken;
+        if unfinished >= MAX_UNFINISHED {
+            return Err(Error::state(format!(
+                "{unfinished} jobs are unfinished, as many as a context takes; wait for one or cancel it"
+            )));
+        }
+        Ok(())
+    }
 }
 
 #[derive(Default)]
@@ -121,18 +155,44 @@ impl Worker {
     pub fn enqueue(&self, job_request: JobRequest) -> Result<Job> {
         let job = Job { shared: job_request.shared.clone(), queue: Arc::downgrade(&self.queue) };
         let mut state = lock(&self.queue.state);
-        if state.closed {
-            return Err(Error::internal("a thread that renders in the background failed before"));
-        }
-        let unfinished = state.waiting.len() + state.taken;
-        if unfinished >= MAX_UNFINISHED {
-            return Err(Error::state(format!(
-                "{unfinished} jobs are unfinished, as many as a context takes; wait for one or cancel it"
-            )));
-        }
+        state.check_room()?;
         state.waiting.push_back(job_request);
         self.queue.to_submit.notify_one();
         Ok(job)
+    }
+
+    /// Errors: INVALID_STATE when too many jobs are unfinished; INTERNAL when one panicked before.
+    pub fn check_room(&self) -> Result<()> {
+        lock(&self.queue.state).check_room()
+    }
+
+    /// Submits a frame for a target on the GPU on the calling thread, before the jobs that wait for their turn; the
+    /// job that it is ends when the frame has run. After an error nothing was submitted, or its signals were.
+    ///
+    /// Errors: as [`Self::enqueue`]; UNSUPPORTED for other tracers; INVALID_ARGUMENT for a signal whose value does not
+    /// grow; as [`GpuTracer::begin`] and [`GpuTracer::submit`].
+    pub fn submit_now(&self, job_request: JobRequest) -> Result<Job> {
+        let shared = job_request.shared.clone();
+        let job = Job { shared: shared.clone(), queue: Arc::downgrade(&self.queue) };
+        let mut guard = job_request.tracer.lock_arc();
+        {
+            let mut state = lock(&self.queue.state);
+            state.check_room()?;
+            state.taken += 1;
+        }
+        let mut taken = TakenRequest { queue: &self.queue, job_request: Some(job_request) };
+        let begun = match (&mut *guard, &taken.job_request) {
+            (Tracer::Gpu(tracer), Some(job_request)) => begin_asked(tracer, job_request),
+            (tracer, _) => crate::gpu::shares_nothing(tracer.info().backend),
+        };
+        let (frame, device) = begun?;
+        let Some(job_request) = taken.job_request.take() else {
+            return Err(Error::internal("a frame without its request"));
+        };
+        self.queue.send(RunningFrame::event(job_request, &frame, &device));
+        let submitted =
+            FrameSubmitter { guard: Some(guard), frame, device, background: false }.submit(&self.queue, &shared);
+        submitted.map(|()| job)
     }
 }
 
@@ -150,7 +210,10 @@ impl JobQueue {
     /// The request of a job whose turn has not come.
     pub(super) fn withdraw(&self, job: &Arc<Shared>) -> Option<JobRequest> {
         let mut state = lock(&self.state);
-        let place = state.waiting.iter().position(|job_request| Arc::ptr_eq(&job_request.shared, job))?;
+        let is_it = |job_request: &JobRequest| {
+            Arc::ptr_eq(&job_request.shared, job) && matches!(job_request.target, JobTarget::Memory(_))
+        };
+        let place = state.waiting.iter().position(is_it)?;
         state.waiting.remove(place)
     }
 
@@ -175,9 +238,9 @@ impl JobQueue {
     }
 
     /// Waits until another step may be submitted. Errors: INTERNAL when the finishing thread has failed.
-    fn wait_for_room(&self) -> Result<()> {
+    fn wait_for_room(&self, ahead: usize) -> Result<()> {
         let mut state = lock(&self.state);
-        while state.steps >= AHEAD && !state.broken {
+        while state.steps >= ahead && !state.broken {
             state = self.to_submit.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
         match state.broken {
@@ -249,14 +312,19 @@ fn submit_all(queue: &JobQueue) {
 
 /// Submits a frame to the GPU; on the CPU and with GL, makes it.
 fn submit(queue: &JobQueue, mut job_request: JobRequest) {
-    if let Err(error) = job_request.shared.check_cancelled() {
-        return queue.send(Event::Whole(Box::new(job_request), Err(error)));
+    let cancelled = job_request.shared.check_cancelled();
+    if let (Err(error), JobTarget::Memory(_)) = (&cancelled, &job_request.target) {
+        return queue.send(Event::Whole(Box::new(job_request), Err(error.clone())));
     }
     let mut guard = job_request.tracer.lock_arc();
     let begun = match &mut *guard {
-        Tracer::Gpu(tracer) => tracer
-            .begin(&job_request.scene, &job_request.request, FrameTarget::Host)
-            .map(|frame| (frame, tracer.device())),
+        Tracer::Gpu(tracer) => {
+            let begun = cancelled.and_then(|()| begin(tracer, &job_request));
+            if let (Err(_), JobTarget::Shared(_, sync)) = (&begun, &job_request.target) {
+                give_signals(&tracer.device(), sync);
+            }
+            begun
+        }
         Tracer::Cpu(_) | Tracer::Gl(_) => {
             let rendered = render_whole(&mut guard, &mut job_request);
             // Whoever waits for the tracer gets it before the next job does.
@@ -267,21 +335,57 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     match begun {
         Err(error) => queue.send(Event::Whole(Box::new(job_request), Err(error))),
         Ok((frame, device)) => {
-            let (stats, count, shared, _device) =
-                (frame.stats(), frame.count(), job_request.shared.clone(), device.clone());
-            queue.send(Event::Begun(Box::new(RunningFrame { job_request, device, stats, done: 0, count })));
-            let submitted = FrameSubmitter { guard: Some(guard), frame, _device }.submit(queue, &shared);
-            if let Err(error) = submitted {
-                queue.send(Event::Failed(error));
-            }
+            let shared = job_request.shared.clone();
+            queue.send(RunningFrame::event(job_request, &frame, &device));
+            // The job tells of a failure.
+            let _ = FrameSubmitter { guard: Some(guard), frame, device, background: true }.submit(queue, &shared);
         }
+    }
+}
+
+/// Prepares a frame for its target. Errors: as [`GpuTracer::begin`].
+fn begin(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
+    let target = match &job_request.target {
+        JobTarget::Memory(_) => FrameTarget::Host,
+        JobTarget::Shared(target, _) => FrameTarget::shared(target)?,
+    };
+    let mut frame = tracer.begin(&job_request.scene, &job_request.request, target)?;
+    if let JobTarget::Shared(target, sync) = &job_request.target {
+        frame.hand_over(target.clone(), sync.clone());
+    }
+    Ok((frame, tracer.device()))
+}
+
+/// The same once its signals are known to grow. Errors: INVALID_ARGUMENT.
+fn begin_asked(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
+    let JobTarget::Shared(_, sync) = &job_request.target else {
+        return Err(Error::internal("a frame for the host's memory on the host's thread"));
+    };
+    interop::check_signals(sync)?;
+    let begun = begin(tracer, job_request)?;
+    if let Err(error) = interop::ask_signals(sync) {
+        tracer.forget();
+        return Err(error);
+    }
+    Ok(begun)
+}
+
+/// Waits and signals in the place of a frame that is not made. A device that is lost signals nothing.
+fn give_signals(device: &Device, sync: &FrameSync) {
+    if sync.waits.is_empty() && sync.signals.is_empty() {
+        return;
+    }
+    if let Err(error) = device.submit_handed([], &sync.waits, &sync.signals) {
+        log::warn!("the signals of a frame that failed cannot be given: {error}");
     }
 }
 
 /// Makes a frame without overlap with the next one: the CPU is busy, and GL is one thread's.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
-    let (scene, request, target, shared) =
-        (&job_request.scene, &job_request.request, &mut job_request.target, job_request.shared.clone());
+    let (scene, request, shared) = (&job_request.scene, &job_request.request, job_request.shared.clone());
+    let JobTarget::Memory(target) = &mut job_request.target else {
+        return Err(Error::internal("a target on the GPU for another tracer"));
+    };
     let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
         target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
     };
@@ -302,14 +406,33 @@ struct FrameSubmitter {
     guard: Option<ArcMutexGuard<RawMutex, Tracer>>,
     frame: BegunFrame,
     /// Dropped after the frame.
-    _device: Arc<Device>,
+    device: Arc<Device>,
+    /// Whether the submitting thread makes it, else one of the host's, which is not to wait for the GPU.
+    background: bool,
 }
 
 impl FrameSubmitter {
-    /// Submits the steps. Errors: CANCELLED; as [`crate::gpu::GpuTracer::submit`].
+    /// Submits the steps. After a failure the signals of a target are given all the same, but of a frame on the host's
+    /// thread only once it has waited. Errors: CANCELLED; as [`GpuTracer::submit`]; the job ends with them too.
     fn submit(mut self, queue: &JobQueue, shared: &Shared) -> Result<()> {
+        let submitted = self.submit_steps(queue, shared);
+        if let Err(error) = &submitted {
+            if let Err(error) = self.frame.give_signals(&self.device, self.background) {
+                log::warn!("the signals of a frame that failed cannot be given: {error}");
+            }
+            // While the tracer is held: after that another frame may begin.
+            queue.send(Event::Failed(error.clone()));
+        }
+        submitted
+    }
+
+    fn submit_steps(&mut self, queue: &JobQueue, shared: &Shared) -> Result<()> {
         while !self.frame.is_submitted() {
-            queue.wait_for_room()?;
+            if self.background {
+                queue.wait_for_room(AHEAD)?;
+            } else if self.frame.submitted() >= MOST_AHEAD as u64 {
+                queue.wait_for_room(MOST_AHEAD)?;
+            }
             shared.check_cancelled()?;
             let Some(Tracer::Gpu(tracer)) = self.guard.as_deref_mut() else {
                 return Err(Error::internal("a frame of the GPU on another tracer"));
@@ -357,6 +480,12 @@ fn finish_all(queue: &JobQueue) {
 }
 
 impl RunningFrame {
+    /// The first event of a frame.
+    fn event(job_request: JobRequest, frame: &BegunFrame, device: &Arc<Device>) -> Event {
+        let (stats, count) = (frame.stats(), frame.count());
+        Event::Begun(Box::new(Self { job_request, device: device.clone(), stats, done: 0, count }))
+    }
+
     /// Waits for the oldest step and takes its pixels. `None`: the frame has ended.
     fn finish_step(mut self, queue: &JobQueue, step: Submission) -> Option<Self> {
         match self.take_pixels(step) {
@@ -376,10 +505,14 @@ impl RunningFrame {
     }
 
     fn take_pixels(&mut self, step: Submission) -> Result<()> {
-        self.job_request.shared.check_cancelled()?;
         let target = &mut self.job_request.target;
-        let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
-            target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
+        // On the GPU what is submitted is made.
+        if let JobTarget::Memory(_) = target {
+            self.job_request.shared.check_cancelled()?;
+        }
+        let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| match target {
+            JobTarget::Memory(image) => image.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes),
+            JobTarget::Shared(..) => Err(Error::internal("pixels of a target on the GPU came to the host")),
         };
         step.finish(&self.device, &mut self.stats, &mut sink)?;
         self.done += 1;

@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 pub const HEADER: &str = include_str!("../../include/bhr.h");
+pub const INTEROP: &str = include_str!("../../include/bhr_interop.h");
 
 /// The repository as cargo names it when it runs the test: it may have been moved since the test was built.
 pub fn root() -> PathBuf {

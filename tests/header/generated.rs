@@ -2,8 +2,8 @@
 //! include/bhr.h is the header that cbindgen makes from `src/capi`, one section per source file, and every dialect of C
 //! and C++ takes it without a warning.
 
-use crate::c_header::{HEADER, compiler, functions, library, root, run, scratch};
-use std::collections::BTreeMap;
+use crate::c_header::{HEADER, INTEROP, compiler, functions, library, root, run, scratch};
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::process::Command;
 
@@ -34,6 +34,27 @@ const SECTIONS: [(&str, &str); 24] = [
     ("transfer", "the matter with depth along rays"),
     ("stats", "numbers about the last finished frame"),
 ];
+
+/// The same of include/bhr_interop.h.
+const INTEROP_SECTIONS: [(&str, &str); 5] = [
+    ("interop_info", "what can be shared"),
+    ("interop_target", "targets"),
+    ("interop_semaphore", "semaphores"),
+    ("interop_render", "rendering into targets"),
+    ("interop_vulkan", "the host's Vulkan device"),
+];
+
+/// Between the preface of include/bhr_interop.h and its first section.
+const INTEROP_OPENING: &str = r#"
+#ifndef BHR_INTEROP_H
+#define BHR_INTEROP_H
+
+#include "bhr.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+"#;
 
 /// Between the preface and the first section.
 const OPENING: &str = r#"
@@ -77,17 +98,27 @@ const MAX_LINE: usize = 120;
 /// With BHR_UPDATE_HEADER set, this is the command that brings include/bhr.h up to date.
 #[test]
 fn the_committed_header_is_the_generated_one() {
-    let (committed, generated) = (root().join("include/bhr.h"), generate());
+    is_up_to_date("include/bhr.h", &generate());
+}
+
+/// The same of include/bhr_interop.h.
+#[test]
+fn the_committed_interop_header_is_the_generated_one() {
+    is_up_to_date("include/bhr_interop.h", &generate_interop());
+}
+
+fn is_up_to_date(path: &str, generated: &str) {
+    let committed = root().join(path);
     if std::env::var_os("BHR_UPDATE_HEADER").is_some() {
-        std::fs::write(&committed, &generated).unwrap();
+        std::fs::write(&committed, generated).unwrap();
     }
     let text = std::fs::read_to_string(&committed).unwrap_or_default();
     for (number, line) in (1..).zip(text.lines()) {
-        assert!(line.chars().count() <= MAX_LINE, "include/bhr.h:{number} has more than {MAX_LINE} columns: {line}");
+        assert!(line.chars().count() <= MAX_LINE, "{path}:{number} has more than {MAX_LINE} columns: {line}");
     }
     assert!(
         text == generated,
-        "include/bhr.h is not what the sources say; bring it up to date with\n\
+        "{path} is not what the sources say; bring it up to date with\n\
          BHR_UPDATE_HEADER=1 cargo test --profile checked --locked --test header committed"
     );
 }
@@ -102,8 +133,8 @@ fn every_dialect_takes_the_header() {
         [("use.c", false, ["c99", "c11", "c17"], c_only), ("use.cpp", true, ["c++11", "c++17", "c++20"], cpp_only)]
     {
         let source = folder.join(name);
-        // Twice, for the guard; used, for the linkage.
-        let include = "#include \"bhr.h\"\n";
+        // Twice, for the guards; used, for the linkage.
+        let include = "#include \"bhr_interop.h\"\n#include \"bhr.h\"\n";
         let text = format!("{include}{include}uint32_t used(void);\nuint32_t used(void) {{ return bhr_version(); }}\n");
         std::fs::write(&source, text).unwrap();
         for dialect in dialects {
@@ -147,12 +178,12 @@ fn ignored_statuses_are_warned_of_on_request() {
 #[test]
 fn cpp_programs_link_to_the_plain_names() {
     let folder = scratch("header_linkage");
-    let names = functions(HEADER);
+    let names = functions(HEADER).into_iter().chain(functions(INTEROP)).collect::<BTreeSet<_>>();
     let list = names.iter().map(|name| format!("    reinterpret_cast<void (*)()>({name}),\n")).collect::<String>();
     let source = folder.join("all.cpp");
     std::fs::write(
         &source,
-        format!("#include \"bhr.h\"\nextern void (*const all[])();\nvoid (*const all[])() = {{\n{list}}};\n"),
+        format!("#include \"bhr_interop.h\"\nextern void (*const all[])();\nvoid (*const all[])() = {{\n{list}}};\n"),
     )
     .unwrap();
     let object = folder.join("all.o");
@@ -196,12 +227,25 @@ fn plain(name: &str) -> String {
 // ---- making it ----
 
 pub fn generate() -> String {
-    let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).unwrap();
+    let mut config = config("cbindgen.toml");
     let preface = config.header.take().unwrap_or_default();
-    let mut header = format!("{}\n{OPENING}", preface.trim());
-    for (file, title) in SECTIONS {
+    with_sections(format!("{}\n{OPENING}", preface.trim()), &SECTIONS, &config)
+}
+
+pub fn generate_interop() -> String {
+    let preface = config("cbindgen-interop.toml").header.unwrap_or_default();
+    let config = cbindgen::Config { header: None, ..config("cbindgen.toml") };
+    with_sections(format!("{}\n{INTEROP_OPENING}", preface.trim()), &INTEROP_SECTIONS, &config)
+}
+
+fn config(file: &str) -> cbindgen::Config {
+    cbindgen::Config::from_file(root().join(file)).unwrap()
+}
+
+fn with_sections(mut header: String, sections: &[(&str, &str)], config: &cbindgen::Config) -> String {
+    for (file, title) in sections {
         let path = root().join("src/capi").join(file).with_extension("rs");
-        header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, &config));
+        header += &format!("\n/* ---- {title} ---- */\n\n{}\n", section(&path, config));
     }
     header + CLOSING
 }

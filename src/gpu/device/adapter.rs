@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Finds the adapters that wgpu can compute on, and puts them in order. Opens no device and knows nothing of tracing.
 
+use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
 use super::{driver_lock, loader};
 use crate::error::{Error, Result};
@@ -27,11 +28,40 @@ pub enum Search {
 pub struct Adapter {
     pub info: AdapterInfo,
     handle: Handle,
+    /// The host's device, on which alone the adapter may be used.
+    host: Option<HostDevice>,
 }
 
 impl Adapter {
     pub(in crate::gpu) fn raw(&self) -> Result<&wgpu::Adapter> {
         self.handle.raw.as_ref().ok_or_else(|| Error::internal("the adapter is being dropped"))
+    }
+
+    /// An adapter of a host's instance, which no list keeps. Errors: UNSUPPORTED with the reason when it cannot run the
+    /// tracer.
+    #[cfg(not(target_vendor = "apple"))]
+    pub(in crate::gpu) fn of_host(
+        raw: wgpu::Adapter,
+        instance: wgpu::Instance,
+        host: Option<HostDevice>,
+    ) -> Result<Self> {
+        match checked(raw, Some(instance), None) {
+            Ok(found) => Ok(Self { host, ..found.adapter }),
+            Err(reason) => Err(Error::unsupported(format!("the device cannot be used: {reason}"))),
+        }
+    }
+
+    pub(in crate::gpu) fn host(&self) -> Option<&HostDevice> {
+        self.host.as_ref()
+    }
+
+    /// By what other interfaces know it. Zeros where that is not known.
+    pub fn ids(&self) -> AdapterIds {
+        #[cfg(not(target_vendor = "apple"))]
+        if self.info.backend == Backend::Vulkan {
+            return self.raw().ok().and_then(super::vulkan::parts::ids).unwrap_or_default();
+        }
+        AdapterIds::default()
     }
 
     /// The instance that makes surfaces for windows; `None` for GL, whose instances are tied to a display.
@@ -151,6 +181,34 @@ pub(in crate::gpu) fn required_limits() -> wgpu::Limits {
     wgpu::Limits::downlevel_defaults()
 }
 
+/// A device is opened with timestamps and mappable storage buffers if the adapter has them, and no other feature.
+pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let offered = adapter.limits();
+    let limits = wgpu::Limits {
+        max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
+        max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
+        max_texture_dimension_2d: offered.max_texture_dimension_2d.min(MAX_TEXTURE_SIDE),
+        ..required_limits()
+    };
+    wgpu::DeviceDescriptor {
+        label: Some("bhr"),
+        required_features: adapter.features()
+            & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS),
+        required_limits: limits,
+        memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
+        ..Default::default()
+    }
+}
+
+/// Largest buffer and storage binding asked for: what a tile of the largest frames needs, not what the adapter could.
+const MAX_BUFFER_SIZE: u64 = 256 << 20;
+
+/// Largest side of a texture asked for: that of a window.
+const MAX_TEXTURE_SIDE: u32 = 16384;
+
+/// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
+const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
+
 /// The adapters of Vulkan, Metal and D3D12, without and with validation, as the first search found them. Kept for the
 /// life of the process: opening a context then takes 2 ms instead of 14 (lavapipe), drivers are not loaded and unloaded
 /// under the host, and what a driver prints to stderr while it is searched (Mesa, without XDG_RUNTIME_DIR) comes once.
@@ -269,22 +327,30 @@ fn usable(
     gl: Option<(Arc<GlThread>, DisplayAge)>,
 ) -> Option<RankedAdapter> {
     let found = raw.get_info();
-    let pass_over = |reason: String| {
-        log::info!("adapter {} ({}) passed over: {reason}", found.name, found.backend);
-        None
-    };
+    checked(raw, instance, gl)
+        .inspect_err(|reason| log::info!("adapter {} ({}) passed over: {reason}", found.name, found.backend))
+        .ok()
+}
+
+/// Errors: the reason why it cannot run the tracer.
+fn checked(
+    raw: wgpu::Adapter,
+    instance: Option<wgpu::Instance>,
+    gl: Option<(Arc<GlThread>, DisplayAge)>,
+) -> Result<RankedAdapter, String> {
+    let found = raw.get_info();
     let Some(backend) = backend(found.backend) else {
-        return pass_over("bhr does not use this interface".into());
+        return Err("bhr does not use this interface".into());
     };
     if !raw.get_downlevel_capabilities().flags.contains(wgpu::DownlevelFlags::COMPUTE_SHADERS) {
-        return pass_over("it has no compute shaders".into());
+        return Err("it has no compute shaders".into());
     }
     let mut lacking = None;
     required_limits().check_limits_with_fail_fn(&raw.limits(), true, |name, needed, offered| {
         lacking = Some(format!("its {name} is {offered}, bhr needs {needed}"));
     });
     if let Some(reason) = lacking {
-        return pass_over(reason);
+        return Err(reason);
     }
     let driver = [found.driver.as_str(), found.driver_info.as_str()];
     let kind =
@@ -299,7 +365,7 @@ fn usable(
         name: found.name,
     };
     let handle = Handle { raw: Some(raw), instance, gl };
-    Some(RankedAdapter { rank: rank(kind, backend), adapter: Adapter { info, handle } })
+    Ok(RankedAdapter { rank: rank(kind, backend), adapter: Adapter { info, handle, host: None } })
 }
 
 /// Whether a renderer's name in GL, which tells no kinds apart, is that of a software one. (wgpu knows the first two.)

@@ -16,7 +16,32 @@ pub struct Buffer {
     total: Arc<AtomicU64>,
 }
 
+/// Bytes that [`Device::bytes`] counts as long as this lives.
+pub struct Counted {
+    bytes: u64,
+    total: Arc<AtomicU64>,
+}
+
+impl Counted {
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+impl Drop for Counted {
+    fn drop(&mut self) {
+        self.total.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
 impl Device {
+    /// Counts bytes that are not wgpu's.
+    pub(in crate::gpu) fn counted(&self, bytes: u64) -> Counted {
+        let total = self.byte_count();
+        total.fetch_add(bytes, Ordering::Relaxed);
+        Counted { bytes, total }
+    }
+
     /// A buffer of `size` bytes, rounded up to a multiple of 4, filled with zeros.
     ///
     /// Errors: `Unsupported` when `usage` does not allow the size on this adapter, the message naming both; `Internal`

@@ -131,6 +131,8 @@ impl PendingReadback {
         let (sender, outcome) = mpsc::sync_channel(1);
         let buffer = self.staging.buffer()?;
         self.mapped = Some(outcome);
+        // wgpu may submit what it has left to.
+        let _turn = device.turns.take();
         device.scoped("mapping a buffer", |_| {
             buffer.map_async(wgpu::MapMode::Read, 0..self.size, move |result| {
                 // Nobody listens any more when the wait failed.

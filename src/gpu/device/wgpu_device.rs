@@ -3,9 +3,12 @@
 //! into wgpu that can fail go through [`Device::scoped`], [`Device::submit`] or [`Device::wait`]. Knows nothing of
 //! scenes.
 
-use super::adapter::{Adapter, required_limits};
+use super::adapter::{Adapter, device_descriptor};
 use super::driver_lock;
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
+use super::turns::{HostTurn, QueueTurns};
+#[cfg(not(target_vendor = "apple"))]
+use super::vulkan::{self, parts::VulkanParts};
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result, panic_text};
 use crate::tracer::Backend;
@@ -19,17 +22,21 @@ use std::time::{Duration, Instant};
 /// driver may need more.
 const HANG_AFTER: Duration = Duration::from_secs(60);
 
+/// The same in milliseconds, which tests make shorter.
+static HANGS_AFTER: AtomicU64 = AtomicU64::new(HANG_AFTER.as_millis() as u64);
+
+pub(super) fn hangs_after() -> Duration {
+    Duration::from_millis(HANGS_AFTER.load(Ordering::Relaxed))
+}
+
+/// For tests: from now on a submission that takes longer than this has hung.
+#[doc(hidden)]
+pub fn set_hangs_after(time: Duration) {
+    HANGS_AFTER.store(time.as_millis() as u64, Ordering::Relaxed);
+}
+
 /// How long to wait in one piece before looking whether the device was lost meanwhile.
 const WAIT_SLICE: Duration = Duration::from_secs(1);
-
-/// Largest buffer and storage binding asked for: what a tile of the largest frames needs, not what the adapter could.
-const MAX_BUFFER_SIZE: u64 = 256 << 20;
-
-/// Largest side of a texture asked for: that of a window.
-const MAX_TEXTURE_SIDE: u32 = 16384;
-
-/// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
-const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);
 
 /// An open device with its queue. One thread at a time should use it; its buffers and pipelines may outlive it, but
 /// then the driver's device ends with the last of them, outside [`driver_lock`]: who keeps them keeps the device too,
@@ -50,6 +57,30 @@ pub struct Device {
     pub(in crate::gpu) shaders: super::specialise::Shaders,
     pub(in crate::gpu) bindings: super::bindings::BindGroupCache,
     pub(in crate::gpu) uploads: Uploads,
+    /// The turns that threads take with the queue.
+    pub(in crate::gpu) turns: QueueTurns,
+    /// Whether the device is a host's own.
+    is_hosts: bool,
+    #[cfg(not(target_vendor = "apple"))]
+    pub(in crate::gpu) vulkan: Option<Arc<VulkanParts>>,
+}
+
+/// Opens the adapter's device, or takes the host's. Errors: a text.
+fn opened(
+    adapter: &Adapter,
+    raw: &wgpu::Adapter,
+    descriptor: &wgpu::DeviceDescriptor<'_>,
+) -> Result<(wgpu::Device, wgpu::Queue), String> {
+    #[cfg(not(target_vendor = "apple"))]
+    if let Some(host) = adapter.host() {
+        let _turn = host.lock.as_deref().map(HostTurn::new);
+        return vulkan::host::open(raw, host, descriptor);
+    } else if adapter.info.backend == Backend::Vulkan
+        && let Some(opened) = vulkan::parts::open(raw, descriptor)
+    {
+        return opened;
+    }
+    pollster::block_on(raw.request_device(descriptor)).map_err(|error| error.to_string())
 }
 
 /// Commands that fill buffers and textures, and go before those of the next submission.
@@ -70,6 +101,11 @@ impl Uploads {
     /// once writes it again when the number is another.
     pub fn lost(&self) -> u64 {
         self.lost.load(Ordering::Relaxed)
+    }
+
+    /// A submission failed that uploads went before.
+    pub(super) fn lose(&self) {
+        self.lost.fetch_add(1, Ordering::Relaxed);
     }
 }
 
@@ -92,23 +128,10 @@ impl Device {
     /// Errors: `OutOfMemory`, or `NoAdapter` with the driver's reason, also when the driver panics.
     pub fn open(adapter: &Adapter) -> Result<Self> {
         let raw = adapter.raw()?;
-        let offered = raw.limits();
-        let limits = wgpu::Limits {
-            max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
-            max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
-            max_texture_dimension_2d: offered.max_texture_dimension_2d.min(MAX_TEXTURE_SIDE),
-            ..required_limits()
-        };
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("bhr"),
-            required_features: raw.features()
-                & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::MAPPABLE_PRIMARY_BUFFERS),
-            required_limits: limits.clone(),
-            memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: MEMORY_BLOCK },
-            ..Default::default()
-        };
+        let descriptor = device_descriptor(raw);
+        let limits = descriptor.required_limits.clone();
         let driver = driver_lock::lock();
-        let opened = catch_unwind(AssertUnwindSafe(|| pollster::block_on(raw.request_device(&descriptor))));
+        let opened = catch_unwind(AssertUnwindSafe(|| opened(adapter, raw, &descriptor)));
         drop(driver);
         let refused = |why: &dyn std::fmt::Display| {
             Error::new(ErrorKind::NoAdapter, format!("{} gives no device: {why}", adapter.info.name))
@@ -119,7 +142,13 @@ impl Device {
         raw.on_uncaptured_error(Arc::new(move |error| of_errors.stray(error)));
         let of_loss = health.clone();
         raw.set_device_lost_callback(move |reason, message| of_loss.lose(&format!("{reason:?} {message}")));
+        #[cfg(not(target_vendor = "apple"))]
+        let vulkan = VulkanParts::of(&raw).map(Arc::new);
         Ok(Self {
+            #[cfg(not(target_vendor = "apple"))]
+            vulkan,
+            turns: QueueTurns::new(adapter.host().and_then(|host| host.lock.clone())),
+            is_hosts: adapter.host().is_some(),
             raw: ManuallyDrop::new(raw),
             queue: Some(queue),
             backend: adapter.info.backend,
@@ -152,6 +181,11 @@ impl Device {
 
     pub(in crate::gpu) fn backend(&self) -> Backend {
         self.backend
+    }
+
+    /// Whether the device is a host's own.
+    pub fn is_hosts(&self) -> bool {
+        self.is_hosts
     }
 
     /// Whether the device can time its passes.
@@ -303,22 +337,14 @@ impl Device {
     /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as
     /// [`Self::scoped`].
     pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
-        let queue = self.queue()?;
-        let uploads = self.uploads.take();
-        let carried = uploads.is_some();
-        let encoders = uploads.into_iter().chain([encoder]);
-        let submitted = self.scoped("submitting work", |_| queue.submit(encoders.map(wgpu::CommandEncoder::finish)));
-        if submitted.is_err() && carried {
-            self.uploads.lost.fetch_add(1, Ordering::Relaxed);
-        }
-        submitted
+        self.submit_handed([encoder], &[], &[])
     }
 
     /// Waits until `submission` has run and the callbacks of its buffers were called.
     ///
     /// Errors: `DeviceLost`, also when the device hangs for 60 s.
     pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<()> {
-        let deadline = Instant::now() + HANG_AFTER;
+        let deadline = Instant::now() + hangs_after();
         loop {
             let wait = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(WAIT_SLICE) };
             match self.poll(wait)? {
@@ -327,13 +353,18 @@ impl Device {
                     self.learn_loss()?;
                 }
                 Err(wgpu::PollError::Timeout) if Instant::now() >= deadline => {
-                    self.health.hung.store(true, Ordering::Relaxed);
-                    self.health.lose(&format!("it did not finish within {} s", HANG_AFTER.as_secs()));
+                    self.lose_hung();
                 }
                 Err(wgpu::PollError::Timeout) => {}
             }
             self.check()?;
         }
+    }
+
+    /// A submission takes too long: the device is lost, and nobody waits for it any more.
+    pub(super) fn lose_hung(&self) {
+        self.health.hung.store(true, Ordering::Relaxed);
+        self.health.lose(&format!("it did not finish within {} s", hangs_after().as_secs()));
     }
 
     /// After a submission was dropped silently, which wgpu does only when its device is gone. Errors: `DeviceLost` if
@@ -401,7 +432,7 @@ impl Device {
 
     /// Waits until nothing runs on it any more, so that dropping it does not, or until that is known to be in vain.
     fn drain(&self) {
-        let deadline = Instant::now() + HANG_AFTER;
+        let deadline = Instant::now() + hangs_after();
         let all = || self.poll(wgpu::PollType::Wait { submission_index: None, timeout: Some(WAIT_SLICE) });
         while !self.health.hung.load(Ordering::Relaxed) && matches!(all(), Ok(Err(wgpu::PollError::Timeout))) {
             self.health.hung.store(Instant::now() >= deadline, Ordering::Relaxed);
@@ -418,9 +449,12 @@ impl Drop for Device {
             self.bindings.clear();
             drop(self.uploads.take());
             if self.health.hung.load(Ordering::Relaxed) {
-                // Dropping it would wait for the work that never ends.
+                // Dropping it would wait for the work that never ends, which uses its semaphores.
                 std::mem::forget(queue);
+                self.turns.abandon();
             } else {
+                self.turns.settle();
+                let _turn = self.turns.take();
                 drop(queue);
             }
             // SAFETY: it is taken here alone, once, and not used any more.

@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A frame whose steps are being submitted, and what is known of it meanwhile.
 
+use super::rows::FrameRows;
+use super::setup::FrameTarget;
 use super::stages::Stages;
 use super::steps::{Step, Steps};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
+use crate::gpu::device::handover::Handover;
+use crate::gpu::device::semaphores::{FrameSync, SemaphoreUse};
+use crate::gpu::device::sharing::GpuTarget;
+use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
 use crate::scene::Projection;
-use crate::tracer::{FrameRequest, FrameStats};
+use crate::tracer::{FrameRequest, FrameStats, Tile};
+use std::sync::Arc;
 
 /// A frame that is prepared and whose steps are being submitted, one after another and before those of any other frame.
 pub struct BegunFrame {
     pub(in crate::gpu) stages: Stages,
     pub(in crate::gpu) request: FrameRequest,
     pub(in crate::gpu) target: PixelTarget,
+    pub(in crate::gpu) delivery: Delivery,
+    /// The target that the host shares, and the semaphores that go with it; as far as they are not submitted yet.
+    pub(in crate::gpu) handed: Option<Handed>,
     pub(in crate::gpu) samples: u32,
     pub(in crate::gpu) projection: Projection,
     pub(in crate::gpu) source: RecordSource,
@@ -23,13 +33,110 @@ pub struct BegunFrame {
     pub(in crate::gpu) submitted: u64,
 }
 
+/// The place that finished tiles go to.
+pub enum Delivery {
+    /// To the host.
+    Host,
+    /// Where kernels write them, into an image.
+    Image,
+    /// The same, in the rows of a buffer.
+    Rows(FrameRows),
+    /// Into a texture, by a copy.
+    Copied(wgpu::Texture),
+}
+
+/// A target that the host shares, on its way to a frame and back.
+pub struct Handed {
+    target: Arc<GpuTarget>,
+    sync: FrameSync,
+    /// A step that writes the target was submitted, with the waits.
+    taken: bool,
+}
+
+impl Delivery {
+    pub fn of(target: FrameTarget<'_>) -> Self {
+        match target {
+            FrameTarget::Host => Self::Host,
+            FrameTarget::Image(..) => Self::Image,
+            FrameTarget::Buffer(_, rows) => Self::Rows(rows),
+            FrameTarget::Copied(texture) => Self::Copied(texture.clone()),
+        }
+    }
+
+    /// Whether tiles need a buffer of their own, from which they are copied.
+    pub fn is_packed(&self) -> bool {
+        matches!(self, Self::Host | Self::Copied(_))
+    }
+
+    /// The most rows of a tile. Errors: UNSUPPORTED for rows that no kernel reaches.
+    pub fn most_rows(&self, device: &Device) -> Result<u32> {
+        match self {
+            Self::Rows(rows) => rows.most_rows(device),
+            _ => Ok(u32::MAX),
+        }
+    }
+
+    /// Bytes from row to row of a packed tile.
+    pub fn pitch(&self, tile: Tile, pixel_bytes: usize) -> u32 {
+        let row = tile.width * pixel_bytes as u32;
+        match self {
+            Self::Copied(_) => row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT),
+            _ => row,
+        }
+    }
+}
+
+impl Handed {
+    /// The part that goes with a submission. `writes`: it writes the target; `last` of the frame.
+    pub fn handover(&self, writes: bool, last: bool) -> Handover<'_> {
+        let begins = !self.taken && (writes || last);
+        Handover {
+            takes: begins.then_some(&*self.target),
+            gives: last.then_some(&*self.target),
+            waits: if begins { &self.sync.waits } else { &[] },
+            signals: if last { &self.sync.signals } else { &[] },
+        }
+    }
+
+    pub fn submitted(&mut self, writes: bool) {
+        self.taken |= writes;
+    }
+
+    /// The semaphores of a frame that ends before its last step, or before its first.
+    pub fn without_frame(&self) -> Handover<'_> {
+        let waits: &[SemaphoreUse] = if self.taken { &[] } else { &self.sync.waits };
+        Handover { takes: None, gives: None, waits, signals: &self.sync.signals }
+    }
+}
+
 /// Records further commands into the last submission of a frame.
 pub type ExtraCommands<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
 
 impl BegunFrame {
+    /// The frame waits for the semaphores before it writes the target, and signals when it has.
+    pub fn hand_over(&mut self, target: Arc<GpuTarget>, sync: FrameSync) {
+        self.handed = Some(Handed { target, sync, taken: false });
+    }
+
+    /// After a failure: gives the signals all the same, unless no step has taken the target over yet and `always` is
+    /// false. Errors: whatever the device reports.
+    pub fn give_signals(&mut self, device: &Device, always: bool) -> Result<()> {
+        match self.handed.take() {
+            Some(handed) if (always || handed.taken) && !self.is_submitted() => {
+                device.submit_handover(None, &handed.without_frame()).map(drop)
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// The number of steps.
     pub fn count(&self) -> u64 {
         self.steps.count()
+    }
+
+    /// The number of steps that are submitted.
+    pub fn submitted(&self) -> u64 {
+        self.submitted
     }
 
     /// Whether no step is left.

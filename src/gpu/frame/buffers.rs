@@ -153,7 +153,10 @@ impl FrameBuffers {
             let TextureKind { format, dimension } = RADIANCE;
             let summed = if size.several_samples { size.tile } else { [1, 1] };
             let radiance = || device.texture("radiance", format, dimension, summed, 1);
-            let bytes = (u64::from(size.tile[0]) * u64::from(size.tile[1]) * size.pixel_bytes).max(4);
+            // Rows begin where copies into textures may.
+            let pitch = (u64::from(size.tile[0]) * size.pixel_bytes)
+                .next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT.into());
+            let bytes = (pitch * u64::from(size.tile[1])).max(4);
             self.sized = Some(SizedBuffers {
                 size,
                 radiance: [radiance()?, radiance()?],

@@ -150,7 +150,7 @@ impl GpuTracer {
         let next = neighbours(scene).into_iter().filter_map(|next| self.set_up(&next, request, target).ok());
         // Hosts that began with another format may come to the usual one.
         let usual = FrameRequest { format: PixelFormat::Rgba8Srgb, ..*request };
-        let usual = (target != PixelTarget::Screen).then(|| self.set_up(scene, &usual, target).ok()).flatten();
+        let usual = (!target.is_image()).then(|| self.set_up(scene, &usual, target).ok()).flatten();
         let next = next.chain(usual);
         let mut keys = Vec::<KernelKey>::new();
         for key in next.flat_map(|setup| setup.kernels().into_iter().rev()) {

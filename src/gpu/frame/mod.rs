@@ -13,6 +13,7 @@ pub(in crate::gpu) mod matter;
 pub(in crate::gpu) mod rays;
 pub(in crate::gpu) mod refine;
 pub(in crate::gpu) mod render;
+pub(in crate::gpu) mod rows;
 pub(in crate::gpu) mod settings;
 pub(in crate::gpu) mod setup;
 pub(in crate::gpu) mod sky_maps;

@@ -4,7 +4,7 @@
 //! has run, so that readback overlaps the work of the next steps and frames. Knows no host memory: finished tiles go
 //! to the sink.
 
-use super::begun::{BegunFrame, ExtraCommands};
+use super::begun::{BegunFrame, Delivery, ExtraCommands};
 use super::bloom::LIGHT_BYTES;
 use super::buffers::Size;
 use super::refine::EdgeList;
@@ -87,7 +87,7 @@ impl GpuTracer {
     ) -> Result<()> {
         let mut keys = self.set_up(scene, request, self.host_pixels(scene))?.kernels();
         if let Some(window) = window {
-            keys.extend(self.set_up(scene, window, PixelTarget::Screen)?.kernels());
+            keys.extend(self.set_up(scene, window, PixelTarget::SCREEN)?.kernels());
         }
         let batch = self.kernels.begin(&keys);
         self.kernels.finish(batch)?;
@@ -99,7 +99,7 @@ impl GpuTracer {
     /// How many pipelines are not there that such a frame would run in a window; for tests. Errors: as
     /// `Renderer::render`.
     pub fn missing_on_screen(&self, scene: &Scene, request: &FrameRequest) -> Result<usize> {
-        Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::Screen)?.kernels()).len())
+        Ok(self.kernels.missing(&self.set_up(scene, request, PixelTarget::SCREEN)?.kernels()).len())
     }
 
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as
@@ -114,14 +114,16 @@ impl GpuTracer {
 
     fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
         let kind = match target {
-            FrameTarget::Screen(_) => PixelTarget::Screen,
+            FrameTarget::Image(_, format) => PixelTarget::Image(format),
+            FrameTarget::Buffer(..) | FrameTarget::Copied(_) => PixelTarget::Packed,
             FrameTarget::Host => self.host_pixels(scene),
         };
+        let delivery = Delivery::of(target);
         let mut setup = self.set_up(scene, request, kind)?;
         let needed = setup.kernels();
         let batch = self.kernels.begin(&needed);
         let samples = setup.samples;
-        let pixel_bytes = if kind == PixelTarget::Screen { 0 } else { request.format.bytes_per_pixel() as u64 };
+        let pixel_bytes = if delivery.is_packed() { request.format.bytes_per_pixel() as u64 } else { 0 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
         // in a view of nothing but the shadow's edge.
@@ -132,11 +134,12 @@ impl GpuTracer {
         };
         // Packed pixels have two staging buffers.
         let bytes = setup.record_setup.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
-        let steps = self.steps(scene, request, &setup, bytes, ray_steps);
+        let most_rows = delivery.most_rows(&self.device)?;
+        let steps = self.steps(scene, request, &setup, (bytes, ray_steps), most_rows);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         setup.uniform.map_sizes = tables.map_sizes();
-        let packed = if kind == PixelTarget::Packed { pixel_bytes } else { 0 };
+        let packed = if kind == PixelTarget::Packed && delivery.is_packed() { pixel_bytes } else { 0 };
         let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
             self.buffers.bloom.prepare(&self.device, bloom, light)?;
@@ -151,13 +154,32 @@ impl GpuTracer {
         let projection = scene.camera.projection;
         let request = *request;
         self.anticipate(scene, &request, kind, needed);
-        Ok(BegunFrame { stages, request, target: kind, samples, projection, source, steps, bloom, submitted: 0 })
+        Ok(BegunFrame {
+            stages,
+            request,
+            target: kind,
+            delivery,
+            handed: None,
+            samples,
+            projection,
+            source,
+            steps,
+            bloom,
+            submitted: 0,
+        })
     }
 
-    /// `bytes` that a pixel of a tile takes, and steps of its ray.
-    fn steps(&self, scene: &Scene, request: &FrameRequest, setup: &Setup, bytes: u64, ray_steps: u64) -> Steps {
+    /// `bytes` that a pixel of a tile takes, and steps of its ray; `most_rows` of a tile.
+    fn steps(
+        &self,
+        scene: &Scene,
+        request: &FrameRequest,
+        setup: &Setup,
+        (bytes, ray_steps): (u64, u64),
+        most_rows: u32,
+    ) -> Steps {
         let longest = self.device.limits().max_texture_dimension_2d;
-        let side = longest.min(MAX_TILE_SIDE);
+        let side = longest.min(MAX_TILE_SIDE).min(most_rows.saturating_add(2));
         let (samples, size) = (setup.samples, [request.width, request.height]);
         // Software takes a good part of a second for a sample: a frame that is cancelled ends after the next one.
         let batch = if self.adapter.info.software { 1 } else { samples };

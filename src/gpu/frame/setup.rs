@@ -3,11 +3,14 @@
 //! Plain data; configure.rs fills it from a scene.
 
 use super::clouds::CloudsUniform;
+use super::rows::FrameRows;
 use super::uniforms::FrameUniform;
+use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
+use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::texture::Texture;
-use crate::gpu::kernel::variant::{FilmVariant, ShadeVariant};
+use crate::gpu::kernel::variant::{FilmVariant, ShadeVariant, StoredFormat};
 use crate::gpu::lens::records::RecordSetup;
 
 /// How a frame's shading is compiled.
@@ -27,8 +30,34 @@ pub(in crate::gpu) struct ShadingVariants {
 pub enum FrameTarget<'a> {
     /// To the host, through staging buffers.
     Host,
-    /// Into a texture as large as the frame: a window's.
-    Screen(&'a Texture),
+    /// Into an image as large as the frame: a window's texture, or one that the host shares.
+    Image(&'a wgpu::TextureView, StoredFormat),
+    /// Into the rows of a buffer.
+    Buffer(&'a wgpu::Buffer, FrameRows),
+    /// Into a texture as large as the frame, by a copy of each tile.
+    Copied(&'a wgpu::Texture),
+}
+
+impl<'a> FrameTarget<'a> {
+    pub fn screen(texture: &'a Texture) -> Self {
+        Self::Image(&texture.view, StoredFormat::Rgba8)
+    }
+
+    /// The place that the host shares. Errors: INTERNAL.
+    pub fn shared(target: &'a GpuTarget) -> Result<Self> {
+        let shape = &target.shape;
+        Ok(match &target.resource {
+            TargetResource::Buffer(buffer) => {
+                let pixel_bytes = shape.format.bytes_per_pixel() as u64;
+                Self::Buffer(buffer, FrameRows { row_stride: shape.row_stride, pixel_bytes, size: buffer.size() })
+            }
+            TargetResource::Written(_, view) => {
+                let format = StoredFormat::of(shape.format);
+                Self::Image(view, format.ok_or_else(|| Error::internal("an image that kernels cannot write"))?)
+            }
+            TargetResource::Copied(texture) => Self::Copied(texture),
+        })
+    }
 }
 
 /// A frame's setup, made before its tiles run.

@@ -5,6 +5,7 @@
 use super::bloom::BloomStages;
 use super::buffers::{CachedUniform, FrameBuffers};
 use super::refine::RefineStage;
+use super::rows::{FrameRows, TilePlace};
 use super::setup::{FrameTarget, Setup};
 use super::steps::Step;
 use super::submission::PIXELS;
@@ -15,6 +16,7 @@ use crate::gpu::kernel::kernels::{Compiled, Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::RecordSource;
 use crate::gpu::lens::records::{RecordSetup, RecordStages, Shared};
+use crate::tracer::Tile;
 use std::slice;
 
 /// Workgroups that share the deferred pixels: enough for a large GPU's few thousand, and on a software driver, where
@@ -72,6 +74,8 @@ pub enum PixelOutput {
     Fixed(wgpu::BindGroup),
     /// In the submission's staging buffer: the group's layout, and the film.
     Staged(wgpu::BindGroupLayout, wgpu::Buffer),
+    /// In the rows of a buffer that holds the whole frame: the group's layout, the film, the buffer.
+    Rows(wgpu::BindGroupLayout, wgpu::Buffer, wgpu::Buffer, FrameRows),
 }
 
 impl RecordConsumer {
@@ -178,9 +182,13 @@ impl FrameBuffers {
             device.bind(writer.target()?, &[film.buffer.as_entire_binding(), pixels])
         };
         let pixel_output = |writer: &Compiled, film: &CachedUniform| match target {
-            FrameTarget::Screen(texture) => {
-                group(writer, film, wgpu::BindingResource::TextureView(&texture.view)).map(PixelOutput::Fixed)
+            FrameTarget::Image(view, _) => {
+                group(writer, film, wgpu::BindingResource::TextureView(view)).map(PixelOutput::Fixed)
             }
+            FrameTarget::Buffer(buffer, rows) => {
+                Ok(PixelOutput::Rows(writer.target()?.clone(), (*film.buffer).clone(), buffer.clone(), rows))
+            }
+            FrameTarget::Copied(_) => group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed),
             FrameTarget::Host if variants.rows => {
                 Ok(PixelOutput::Staged(writer.target()?.clone(), (*film.buffer).clone()))
             }
@@ -247,10 +255,16 @@ impl Stages {
 }
 
 impl PixelOutput {
-    /// `staging`: the submission's.
-    pub fn group(&self, device: &Device, staging: &wgpu::Buffer) -> Result<wgpu::BindGroup> {
+    /// `staging`: the submission's; `tile`: the one that becomes pixels.
+    pub fn group(&self, device: &Device, staging: &wgpu::Buffer, tile: Tile) -> Result<wgpu::BindGroup> {
         match self {
             Self::Fixed(group) => Ok(group.clone()),
+            Self::Rows(layout, film, buffer, rows) => {
+                let TilePlace { offset, size, .. } = rows.place(device, tile);
+                let size = size.and_then(std::num::NonZeroU64::new);
+                let pixels = wgpu::BufferBinding { buffer, offset, size };
+                device.bind(layout, &[film.as_entire_binding(), wgpu::BindingResource::Buffer(pixels)])
+            }
             Self::Staged(layout, film) => {
                 let pixels = wgpu::BufferBinding { buffer: staging, offset: PIXELS, size: None };
                 device.bind(layout, &[film.as_entire_binding(), wgpu::BindingResource::Buffer(pixels)])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
 
-use super::begun::{BegunFrame, ExtraCommands};
+use super::begun::{BegunFrame, Delivery, ExtraCommands};
 use super::buffers::FrameBuffers;
 use super::uniforms::PassUniform;
 use crate::error::{Error, Result};
@@ -68,11 +68,20 @@ impl FrameBuffers {
         let begins = frame.submitted == 0;
         let stages = &frame.stages;
         let stride = uniform_stride::<PassUniform>(device);
+        let pixel_size = frame.request.format.bytes_per_pixel();
         let shaded = step.samples.clone().zip(0..).map(|(sample, slot)| (step.shades, sample, slot));
         // The first is what is developed, which with bloom may be another tile than the shaded one.
         let developed = (step.develops.unwrap_or(step.shades), 0, 0);
         let of = |(tile, sample, i)| {
-            pass_of(&frame.request, tile, (sample, frame.samples), frame.projection, i, step.light_origin)
+            let pass = pass_of(&frame.request, tile, (sample, frame.samples), frame.projection, i, step.light_origin);
+            let [pixels_first, pixels_row] = match &frame.delivery {
+                Delivery::Rows(rows) => {
+                    let place = rows.place(device, tile);
+                    [place.first, place.row]
+                }
+                delivery => [0, delivery.pitch(tile, pixel_size) / 4],
+            };
+            PassUniform { pixels_first, pixels_row, ..pass }
         };
         let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
         let passes = [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice));
@@ -82,8 +91,8 @@ impl FrameBuffers {
         }
         let size_of_tile = [step.shades.width, step.shades.height];
         check_groups(device, pixel_groups(size_of_tile.map(|side| side + 2)))?;
-        let developed = step.develops.filter(|_| frame.target != PixelTarget::Screen);
-        let row_bytes = developed.map_or(0, |tile| tile.width as usize * frame.request.format.bytes_per_pixel());
+        let developed = step.develops.filter(|_| matches!(frame.delivery, Delivery::Host));
+        let row_bytes = developed.map_or(0, |tile| tile.width as usize * pixel_size);
         let pixel_bytes = developed.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
         let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
         let staging = match frame.target {
@@ -100,7 +109,8 @@ impl FrameBuffers {
         let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
         self.edges.reset(&mut encoder);
         let writes = stages.glare.is_some() || step.develops.is_some();
-        let output = if writes { Some(stages.output.group(device, to)?) } else { None };
+        let output =
+            if writes { Some(stages.output.group(device, to, step.develops.unwrap_or(step.shades))?) } else { None };
         let timer = &mut self.timer;
         let mut passes = ArrayVec::new();
         let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
@@ -125,7 +135,7 @@ impl FrameBuffers {
                 });
             }
             if let Some(tile) = step.develops {
-                let output = glare.output.group(device, to)?;
+                let output = glare.output.group(device, to, tile)?;
                 in_pass(PassKind::Development, "develop", &mut |pass| {
                     pass.set_bind_group(2, &output, &[]);
                     glare.develop.dispatch(pass, 0, [tile.width, tile.height]);
@@ -140,11 +150,23 @@ impl FrameBuffers {
         if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, pixel_bytes > 0) {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
+        if let (Some(sized), Delivery::Copied(texture), Some(tile)) = (&self.sized, &frame.delivery, step.develops) {
+            copy_tile(&mut encoder, &sized.packed, frame.delivery.pitch(tile, pixel_size), texture, tile);
+        }
         let mut copied = staging.filled(size);
-        if frame.submitted + 1 == frame.count() {
+        let last = frame.submitted + 1 == frame.count();
+        if last {
             then(&mut encoder)?;
         }
-        let submission = device.submit(encoder)?;
+        let develops = step.develops.is_some();
+        let submission = match &mut frame.handed {
+            None => device.submit(encoder)?,
+            Some(handed) => {
+                let submission = device.submit_handover(Some(encoder), &handed.handover(develops, last))?;
+                handed.submitted(develops);
+                submission
+            }
+        };
         copied.request(device)?;
         frame.submitted += 1;
         let head = size.min(PIXELS);
@@ -209,6 +231,25 @@ fn bands(tile: Tile, row_bytes: usize) -> impl Iterator<Item = Band> {
     })
 }
 
+/// Copies a packed tile, whose rows are `pitch` bytes apart, to its place in a texture.
+fn copy_tile(
+    encoder: &mut wgpu::CommandEncoder,
+    packed: &wgpu::Buffer,
+    pitch: u32,
+    texture: &wgpu::Texture,
+    tile: Tile,
+) {
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(pitch), rows_per_image: None };
+    let to = wgpu::TexelCopyTextureInfo {
+        texture,
+        mip_level: 0,
+        origin: wgpu::Origin3d { x: tile.x, y: tile.y, z: 0 },
+        aspect: wgpu::TextureAspect::All,
+    };
+    let size = wgpu::Extent3d { width: tile.width, height: tile.height, depth_or_array_layers: 1 };
+    encoder.copy_buffer_to_texture(wgpu::TexelCopyBufferInfo { buffer: packed, layout }, to, size);
+}
+
 /// A part of the numbers that a submission left in its staging buffer.
 fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
     let found = bytes.get(begin as usize..(begin + size) as usize);
@@ -235,6 +276,9 @@ pub fn pass_of(
         slot,
         refined: EDGE_SAMPLES,
         light_origin: light_origin.map(|v| v as i32),
+        image_origin: [tile.x, tile.y],
+        pixels_first: 0,
+        pixels_row: 0,
     }
 }
 

@@ -78,6 +78,9 @@ pub struct PassUniform {
     /// `EDGE_SAMPLES` or `CURVE_SAMPLES`.
     pub refined: u32,
     pub light_origin: [i32; 2],
+    pub image_origin: [u32; 2],
+    pub pixels_first: u32,
+    pub pixels_row: u32,
 }
 
 #[cfg(test)]
@@ -88,7 +91,8 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
         max_crossings, rain, effects, view, pattern, map_sizes, projection,
         medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands, depth_u, matter_count,
         matter_delay, matter);
-    let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin);
+    let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin,
+        image_origin, pixels_first, pixels_row);
     [frame, pass]
 }
 

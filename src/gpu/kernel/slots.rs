@@ -2,7 +2,7 @@
 //! The bindings of kernels: their kinds, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 
-use super::variant::{FilmVariant, PixelTarget, RecordSource};
+use super::variant::{FilmVariant, PixelTarget, RecordSource, StoredFormat};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 
 /// The kind of a binding.
@@ -97,7 +97,15 @@ impl FilmVariant {
     /// The group of film/film.wgsl and what writes the pixels.
     pub(in crate::gpu) fn slots(self) -> Vec<Slot> {
         let pixels = match self.target {
-            PixelTarget::Screen => Slot::TextureWrite(SCREEN),
+            PixelTarget::Image(format) => Slot::TextureWrite(TextureKind {
+                format: match format {
+                    StoredFormat::Rgba8 => SCREEN.format,
+                    StoredFormat::Rgba16F => wgpu::TextureFormat::Rgba16Float,
+                    StoredFormat::Rgba32F => wgpu::TextureFormat::Rgba32Float,
+                    StoredFormat::R32F => wgpu::TextureFormat::R32Float,
+                },
+                dimension: SCREEN.dimension,
+            }),
             PixelTarget::Packed | PixelTarget::Rows => Slot::Write,
             PixelTarget::Light => Slot::TextureWrite(LIGHT),
         };

@@ -113,14 +113,45 @@ pub enum PixelKind {
 /// Where the last kernel of a frame writes pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PixelTarget {
-    /// Into a window's texture.
-    Screen,
-    /// Into a buffer on the device, packed.
+    /// Into an image on the device: a window's texture, or one that the host shares.
+    Image(StoredFormat),
+    /// Into a buffer on the device: packed, or the rows of a whole frame.
     Packed,
     /// Into a buffer in the host's memory, packed, row by row.
     Rows,
     /// Not pixels yet: exposed light, for bloom to spread.
     Light,
+}
+
+/// Formats of images that kernels write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StoredFormat {
+    Rgba8,
+    Rgba16F,
+    Rgba32F,
+    R32F,
+}
+
+impl PixelTarget {
+    /// A window's texture.
+    pub const SCREEN: Self = Self::Image(StoredFormat::Rgba8);
+
+    pub fn is_image(self) -> bool {
+        matches!(self, Self::Image(_))
+    }
+}
+
+impl StoredFormat {
+    /// `None` for formats that not every device stores to.
+    pub fn of(format: PixelFormat) -> Option<Self> {
+        Some(match format {
+            PixelFormat::Rgba8Srgb => Self::Rgba8,
+            PixelFormat::Rgba16F => Self::Rgba16F,
+            PixelFormat::Rgba32F => Self::Rgba32F,
+            PixelFormat::R32F => Self::R32F,
+            PixelFormat::Bgra8Srgb => return None,
+        })
+    }
 }
 
 /// The value of a constant whose choice the kernel asks the uniform for while it runs.
@@ -143,10 +174,10 @@ impl FilmVariant {
         Self { pixels: Some(pixels), false_colour: !shows_light, tone_map, colour_map, target }
     }
 
-    /// The same for every tone map and colour map, and, but in windows, which have one kind of pixels, for every
+    /// The same for every tone map and colour map, and, but in images, which have one kind of pixels, for every
     /// format. Views other than light have no tone map.
     pub fn of_any(self) -> Self {
-        let pixels = self.pixels.filter(|_| self.target == PixelTarget::Screen);
+        let pixels = self.pixels.filter(|_| self.target.is_image());
         let tone_map = self.false_colour.then_some(ToneMap::None);
         Self { pixels, tone_map, colour_map: self.false_colour.then_some(ColourMap::None), ..self }
     }
@@ -176,14 +207,14 @@ impl FilmVariant {
     pub(in crate::gpu) fn scattered(self) -> Self {
         match self.target {
             PixelTarget::Rows => Self { target: PixelTarget::Packed, ..self },
-            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => self,
+            PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => self,
         }
     }
 
     /// Threads of a workgroup of the kernels that write pixels.
     pub(in crate::gpu) fn group(self) -> [u32; 2] {
         match self.target {
-            PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => GROUP,
+            PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => GROUP,
             PixelTarget::Rows => ROWS_GROUP,
         }
     }

@@ -3,7 +3,7 @@
 //! devices.
 
 use super::fragments::join;
-use super::variant::{FilmVariant, PixelTarget, RecordSource};
+use super::variant::{FilmVariant, PixelTarget, RecordSource, StoredFormat};
 use crate::error::Result;
 
 impl RecordSource {
@@ -40,7 +40,10 @@ impl PixelTarget {
     /// The fragment that writes pixels there.
     fn fragment(self) -> &'static str {
         match self {
-            Self::Screen => "film/screen",
+            Self::Image(StoredFormat::Rgba8) => "film/screen",
+            Self::Image(StoredFormat::Rgba16F) => "film/image_rgba16f",
+            Self::Image(StoredFormat::Rgba32F) => "film/image_rgba32f",
+            Self::Image(StoredFormat::R32F) => "film/image_r32f",
             Self::Packed => "film/packed",
             Self::Rows => "film/packed_rows",
             Self::Light => "film/light",
@@ -72,7 +75,7 @@ pub fn export(source: RecordSource) -> Result<String> {
 
 pub fn develop(film: FilmVariant, glare: bool) -> Result<String> {
     let driver = match film.target {
-        PixelTarget::Screen | PixelTarget::Packed | PixelTarget::Light => "film/develop",
+        PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => "film/develop",
         PixelTarget::Rows => "film/develop_rows",
     };
     join(&[driver, if glare { "bloom/glare" } else { "film/summed" }, film.target.fragment()])
@@ -116,11 +119,14 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("count", kernel("traced/count")),
         ("present", kernel("window/present")),
         ("develop", develop(film(PixelTarget::Packed), false)),
-        ("develop for a window", develop(film(PixelTarget::Screen), false)),
+        ("develop for a window", develop(film(PixelTarget::SCREEN), false)),
+        ("develop for an image of RGBA16F", develop(film(PixelTarget::Image(StoredFormat::Rgba16F)), false)),
+        ("develop for an image of RGBA32F", develop(film(PixelTarget::Image(StoredFormat::Rgba32F)), false)),
+        ("develop for an image of R32F", develop(film(PixelTarget::Image(StoredFormat::R32F)), false)),
         ("develop by rows", develop(film(PixelTarget::Rows), false)),
         ("develop for bloom", develop(FilmVariant::of_light(), false)),
         ("develop with glare", develop(film(PixelTarget::Packed), true)),
-        ("develop with glare for a window", develop(film(PixelTarget::Screen), true)),
+        ("develop with glare for a window", develop(film(PixelTarget::SCREEN), true)),
         ("develop with glare by rows", develop(film(PixelTarget::Rows), true)),
         ("bloom, gather", kernel("bloom/gather")),
         ("bloom, gather pixels", kernel("bloom/base")),
@@ -133,9 +139,9 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
             refine(RecordSource::Schwarzschild { delay: true, moving: true }, Some(film(PixelTarget::Packed))),
         ),
         ("refine, Kerr lens", refine(kerr(true), Some(film(PixelTarget::Packed)))),
-        ("refine for a window", refine(kerr(true), Some(film(PixelTarget::Screen)))),
+        ("refine for a window", refine(kerr(true), Some(film(PixelTarget::SCREEN)))),
         ("refine one of several samples", refine(kerr(true), None)),
-        ("shade only for a window", shade_only(kerr(false), film(PixelTarget::Screen))),
+        ("shade only for a window", shade_only(kerr(false), film(PixelTarget::SCREEN))),
         ("shade only by rows", shade_only(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", kernel("lens/schwarzschild_ends")),
         ("spin-0 lens, columns", kernel("lens/schwarzschild_columns")),

@@ -145,6 +145,7 @@ impl Swapchain {
             alpha_mode: self.alpha,
             view_formats: Vec::new(),
         };
+        let _turn = self.device.turns.take();
         self.device.guarded("sizing a window's images", |device| self.surface.configure(device, &configuration))?;
         self.configured = Some(mode);
         Ok(())
@@ -195,6 +196,7 @@ impl Swapchain {
     /// Shows an image whose filling has been submitted. Errors: as [`Device::scoped`].
     pub fn show(&self, image: wgpu::SurfaceTexture) -> Result<()> {
         let queue = self.device.queue()?;
+        let _turn = self.device.turns.take();
         self.device.guarded("presenting", |_| queue.present(image))
     }
 }

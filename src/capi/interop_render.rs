@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Rendering into targets, with the semaphores that a frame waits for and signals.
+
+use super::call::on_context;
+use super::context::BhrContext;
+use super::interop_semaphore::BhrSemaphore;
+use super::interop_target::BhrTarget;
+use super::job::{self, BhrJob};
+use super::pointer::{Out, check_reserved, is_null};
+use super::status::BhrStatus;
+use super::versioned::{self, POINTER, Versioned};
+use crate::error::{Error, Result};
+use crate::interop::Semaphore;
+use crate::renderer::{HostSync, Submits};
+use std::ptr::null;
+
+/// A semaphore and a value of it. Since 0.2.0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrSemaphoreValue {
+    /// One of the context that renders.
+    pub semaphore: *mut BhrSemaphore,
+    /// TIMELINE: the value to wait for, or to signal. BINARY: ignored.
+    pub value: u64,
+}
+
+/// The semaphores that a frame waits for before it writes its target, and those that it signals when it has. Since
+/// 0.2.0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrSync {
+    /// sizeof(BhrSync).
+    pub struct_size: u32,
+    /// Entries of waits, 0 .. 8.
+    pub wait_count: u32,
+    /// Entries of signals, 0 .. 8.
+    pub signal_count: u32,
+    /// Reserved: 0.
+    pub reserved: u32,
+    /// All of them are waited for; NULL where wait_count is 0.
+    pub waits: *const BhrSemaphoreValue,
+    /// All of them are signalled; NULL where signal_count is 0.
+    pub signals: *const BhrSemaphoreValue,
+}
+
+// SAFETY: repr(C), size first, no padding, integers and nullable pointers.
+unsafe impl Versioned for BhrSync {
+    const NAME: &'static str = "BhrSync";
+    const SIZES: &'static [usize] = &[16 + 2 * POINTER];
+    fn defaults() -> Self {
+        Self { struct_size: 0, wait_count: 0, signal_count: 0, reserved: 0, waits: null(), signals: null() }
+    }
+}
+
+const MOST_SEMAPHORES: u32 = 8;
+
+/// A list of the host's.
+///
+/// # Safety
+/// `list` is NULL or has `count` entries, whose semaphores are NULL or alive during `'a`.
+unsafe fn read_uses<'a>(list: *const BhrSemaphoreValue, count: u32, name: &str) -> Result<Vec<(&'a Semaphore, u64)>> {
+    if count > MOST_SEMAPHORES {
+        return Err(Error::argument(format!("sync {name}_count is {count}; it must lie in [0, {MOST_SEMAPHORES}]")));
+    }
+    if count > 0 && list.is_null() {
+        return Err(Error::argument(format!("sync {name}s is NULL and {name}_count {count}")));
+    }
+    (0..count as usize)
+        .map(|i| {
+            // SAFETY: this function's contract.
+            let one = unsafe { list.add(i).read_unaligned() };
+            // SAFETY: as above.
+            let semaphore = unsafe { one.semaphore.as_ref() };
+            let semaphore = semaphore.ok_or_else(|| is_null(&format!("sync {name}s[{i}] semaphore")))?;
+            Ok((&*semaphore.semaphore, one.value))
+        })
+        .collect()
+}
+
+/// # Safety
+/// All pointers are NULL or valid.
+unsafe fn render(
+    function: &str,
+    context: *mut BhrContext,
+    target: *mut BhrTarget,
+    sync: *const BhrSync,
+    out_job: *mut *mut BhrJob,
+    submits: Submits,
+) -> BhrStatus {
+    // SAFETY: this function's contract.
+    unsafe {
+        let out = Out::cleared(out_job);
+        on_context(function, context, |state| {
+            let target = target.as_ref().ok_or_else(|| is_null("target"))?;
+            let given = if sync.is_null() { BhrSync::defaults() } else { versioned::read(sync, "sync")? };
+            check_reserved(given.reserved, "sync")?;
+            let waits = read_uses(given.waits, given.wait_count, "wait")?;
+            let signals = read_uses(given.signals, given.signal_count, "signal")?;
+            let sync = HostSync { waits: &waits, signals: &signals };
+            let job = state.renderer.render_target(&target.target, state.region, &sync, submits)?;
+            if out_job.is_null() {
+                return Ok(());
+            }
+            let context = context.as_ref().ok_or_else(|| is_null("context"))?;
+            out.set(Box::into_raw(Box::new(job::of_target(job, context, state.progress))));
+            Ok(())
+        })
+    }
+}
+
+/// Renders the scene as it is now into a target. Returns when the frame is submitted, wholly, so that the GPU will
+/// make it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more
+/// than 32 steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is
+/// being submitted, for programs that are compiled (bhr_prepare), and, with Mesa's llvmpipe, for the waits of
+/// earlier frames. sync NULL: no semaphores; then the host waits
+/// with the job. out_job NULL: no job; else the job ends when the GPU has made the frame, with bhr_job_wait and
+/// bhr_job_stats as of images. bhr_job_cancel does not stop what is submitted, and bhr_job_destroy neither cancels
+/// it nor waits for it. At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region)
+/// counts. Any thread, not inside callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for a
+/// target or semaphore of another context, a semaphore that is twice in a list, and a signal whose value does not
+/// grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach;
+/// SURFACE_LOST for a target or semaphore whose context was recovered; DEVICE_LOST. After an error no semaphore is
+/// waited for or signalled, unless steps were submitted: then all are. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_render_target(
+    context: *mut BhrContext,
+    target: *mut BhrTarget,
+    sync: *const BhrSync,
+    out_job: *mut *mut BhrJob,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe { render("bhr_render_target", context, target, sync, out_job, Submits::Now) }
+}
+
+/// The same as a job of bhr's threads, in their order, as bhr_render_image_async: the scene, the region and the
+/// semaphores are taken as they are now, and the call returns at once. Only TIMELINE semaphores: a BINARY one is
+/// INVALID_ARGUMENT, because its signal must have been submitted before the host may wait for it. bhr_job_cancel
+/// stops what is not submitted. Whatever becomes of the frame, its semaphores are waited for and signalled when its
+/// turn comes, unless the device is lost. A host on whose own queue bhr works (bhr_context_create_vulkan) must not
+/// submit to that queue what waits for a frame before the frame is submitted, because a queue goes in order: it
+/// waits on the CPU first, or uses bhr_render_target. bhr_job_destroy neither cancels nor waits. out_job NULL: no
+/// job. Errors: as bhr_render_target, some of which come from bhr_job_wait instead. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_render_target_async(
+    context: *mut BhrContext,
+    target: *mut BhrTarget,
+    sync: *const BhrSync,
+    out_job: *mut *mut BhrJob,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe { render("bhr_render_target_async", context, target, sync, out_job, Submits::InBackground) }
+}

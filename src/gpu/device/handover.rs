@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Submissions, and what goes with them where a host shares a target: the commands that take it over and give it back,
+//! and the semaphores of a frame. Knows no frames.
+
+use super::semaphores::{GpuSemaphore, SemaphoreUse};
+use super::sharing::GpuTarget;
+use super::turns::InUse;
+use super::wgpu_device::{Device, hangs_after};
+use crate::error::Result;
+use std::sync::Arc;
+
+/// Waiting goes in pieces of this, between which the device may be lost.
+#[cfg(not(target_vendor = "apple"))]
+const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
+
+/// The part of a frame's handover that goes with one submission.
+#[derive(Default)]
+pub struct Handover<'a> {
+    /// A target that this submission is the first of its frame to write.
+    pub(in crate::gpu) takes: Option<&'a GpuTarget>,
+    /// A target that it is the last to write.
+    pub(in crate::gpu) gives: Option<&'a GpuTarget>,
+    pub(in crate::gpu) waits: &'a [SemaphoreUse],
+    pub(in crate::gpu) signals: &'a [SemaphoreUse],
+}
+
+impl Device {
+    /// Starts what was written since the last submission, and then what `encoders` have recorded, once all of `waits`
+    /// have been signalled; then signals `signals`. Errors: as [`Self::scoped`]; nothing was submitted then.
+    pub fn submit_handed<const N: usize>(
+        &self,
+        encoders: [wgpu::CommandEncoder; N],
+        waits: &[SemaphoreUse],
+        signals: &[SemaphoreUse],
+    ) -> Result<wgpu::SubmissionIndex> {
+        self.submit_all(encoders.into(), waits, signals)
+    }
+
+    /// [`Self::submit_handed`] with the commands that take a target over and give it back.
+    pub(in crate::gpu) fn submit_handover(
+        &self,
+        encoder: Option<wgpu::CommandEncoder>,
+        handover: &Handover<'_>,
+    ) -> Result<wgpu::SubmissionIndex> {
+        #[cfg(not(target_vendor = "apple"))]
+        if let Some(parts) = &self.vulkan {
+            use super::vulkan::barrier;
+            let mut encoders = Vec::with_capacity(3);
+            if let Some(target) = handover.takes {
+                let mut taking = self.encoder("taking a target")?;
+                self.scoped("taking a target", |_| barrier::take(parts, &mut taking, target))?;
+                encoders.push(taking);
+            }
+            encoders.extend(encoder);
+            if let Some(target) = handover.gives {
+                let mut giving = self.encoder("giving a target")?;
+                self.scoped("giving a target", |_| barrier::give(parts, &mut giving, target))?;
+                encoders.push(giving);
+            }
+            return self.submit_all(encoders, handover.waits, handover.signals);
+        }
+        self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals)
+    }
+
+    fn submit_all(
+        &self,
+        encoders: Vec<wgpu::CommandEncoder>,
+        waits: &[SemaphoreUse],
+        signals: &[SemaphoreUse],
+    ) -> Result<wgpu::SubmissionIndex> {
+        let queue = self.queue()?;
+        let uploads = self.uploads.take();
+        let carried = uploads.is_some();
+        let submitted = self.submit_recorded(queue, uploads.into_iter().chain(encoders), waits, signals);
+        if submitted.is_err() && carried {
+            self.uploads.lose();
+        }
+        submitted
+    }
+
+    fn submit_recorded(
+        &self,
+        queue: &wgpu::Queue,
+        encoders: impl Iterator<Item = wgpu::CommandEncoder>,
+        waits: &[SemaphoreUse],
+        signals: &[SemaphoreUse],
+    ) -> Result<wgpu::SubmissionIndex> {
+        // Mistakes in what was recorded come to light here, before anything is staged.
+        let commands =
+            self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
+        self.wait_for_waits()?;
+        let submitted = {
+            let _turn = self.turns.take();
+            self.stage(queue, waits, signals);
+            let submitted = self.scoped("submitting work", |_| queue.submit(commands));
+            if submitted.is_err() {
+                self.unstage(queue, waits, signals);
+            }
+            submitted?
+        };
+        if !waits.is_empty() || !signals.is_empty() {
+            let (submission, waits) = (submitted.clone(), waits.to_vec());
+            self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec() });
+            self.let_go_of_done();
+        }
+        Ok(submitted)
+    }
+
+    /// Lets go of the semaphores of submissions that have run.
+    fn let_go_of_done(&self) {
+        let mut done = Vec::new();
+        let mut in_use = self.turns.in_use();
+        while let Some(first) = in_use.front()
+            && self.is_done(&first.submission).unwrap_or(false)
+        {
+            done.extend(in_use.pop_front());
+        }
+        drop(in_use);
+        drop(done);
+    }
+
+    /// A host's own semaphore ends, which no submission under way keeps: it is not asked any more.
+    pub fn forget_waits(&self, semaphore: &Arc<GpuSemaphore>) {
+        for one in self.turns.in_use().iter_mut() {
+            one.waits.retain(|wait| !Arc::ptr_eq(&wait.semaphore, semaphore));
+        }
+    }
+
+    /// With Mesa's llvmpipe (22.3), whose vkQueueSubmit blocks, for ever if it comes to that, while a submission before
+    /// waits for a timeline: waits for those here. Errors: DEVICE_LOST after the time of a hang.
+    #[cfg(not(target_vendor = "apple"))]
+    fn wait_for_waits(&self) -> Result<()> {
+        if !self.vulkan.as_ref().is_some_and(|parts| parts.llvmpipe) {
+            return Ok(());
+        }
+        self.let_go_of_done();
+        let deadline = std::time::Instant::now() + hangs_after();
+        let open = self.turns.in_use().iter().flat_map(|one| one.waits.clone()).collect::<Vec<_>>();
+        for SemaphoreUse { semaphore, value } in open {
+            let Some(value) = value else { continue };
+            while !semaphore.wait(value, WAIT_SLICE)? {
+                self.check()?;
+                if std::time::Instant::now() >= deadline {
+                    self.lose_hung();
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[cfg(target_vendor = "apple")]
+    fn wait_for_waits(&self) -> Result<()> {
+        Ok(())
+    }
+
+    #[cfg(not(target_vendor = "apple"))]
+    fn stage(&self, queue: &wgpu::Queue, waits: &[SemaphoreUse], signals: &[SemaphoreUse]) {
+        if waits.is_empty() && signals.is_empty() {
+            return;
+        }
+        // SAFETY: semaphores are added, which live until the submission has run.
+        let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+        for SemaphoreUse { semaphore, value } in waits {
+            hal.add_wait_semaphore(semaphore.raw(), *value, ash::vk::PipelineStageFlags::ALL_COMMANDS);
+        }
+        for SemaphoreUse { semaphore, value } in signals {
+            // A timeline that has gone further already must not go back.
+            if value.is_none_or(|value| semaphore.submits(value)) {
+                hal.add_signal_semaphore(semaphore.raw(), *value);
+            }
+        }
+    }
+
+    /// After a submission that was refused: what it did not take must not go with the next one.
+    #[cfg(not(target_vendor = "apple"))]
+    fn unstage(&self, queue: &wgpu::Queue, waits: &[SemaphoreUse], signals: &[SemaphoreUse]) {
+        if waits.is_empty() && signals.is_empty() {
+            return;
+        }
+        // SAFETY: semaphores are removed.
+        let Some(hal) = (unsafe { queue.as_hal::<wgpu::hal::api::Vulkan>() }) else { return };
+        for SemaphoreUse { semaphore, .. } in waits {
+            hal.remove_wait_semaphore(semaphore.raw());
+        }
+        for SemaphoreUse { semaphore, .. } in signals {
+            hal.remove_signal_semaphore(semaphore.raw());
+        }
+    }
+
+    #[cfg(target_vendor = "apple")]
+    fn stage(&self, _: &wgpu::Queue, _: &[SemaphoreUse], _: &[SemaphoreUse]) {}
+
+    #[cfg(target_vendor = "apple")]
+    fn unstage(&self, _: &wgpu::Queue, _: &[SemaphoreUse], _: &[SemaphoreUse]) {}
+}

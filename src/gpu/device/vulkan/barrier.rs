@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The barriers before and after a frame that take a target over and give it back. They stand in command buffers of
+//! their own: wgpu refuses encoders that hold its commands and raw ones. Its trackers do not learn of them, so that
+//! what [`give`] does to a layout, [`take`] undoes before the next frame.
+
+use super::parts::VulkanParts;
+use crate::gpu::device::sharing::{GpuTarget, TargetResource};
+use ash::vk;
+use ash::vk::Handle;
+use wgpu::hal::api::Vulkan;
+
+/// How kernels, or copies, reach a target's image, as wgpu believes it to be between frames.
+fn written(resource: &TargetResource) -> (vk::ImageLayout, vk::PipelineStageFlags, vk::AccessFlags) {
+    match resource {
+        TargetResource::Copied(_) => {
+            (vk::ImageLayout::TRANSFER_DST_OPTIMAL, vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE)
+        }
+        TargetResource::Written(..) | TargetResource::Buffer(_) => {
+            (vk::ImageLayout::GENERAL, vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_WRITE)
+        }
+    }
+}
+
+fn colour() -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange::default().aspect_mask(vk::ImageAspectFlags::COLOR).level_count(1).layer_count(1)
+}
+
+/// Before a frame: makes the target bhr's. The pixels that were there are lost, the bytes between a buffer's rows not.
+pub(in crate::gpu) fn take(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, target: &GpuTarget) {
+    let (layout, stage, access) = written(&target.resource);
+    let any = vk::PipelineStageFlags::ALL_COMMANDS;
+    let families =
+        if target.leaves { [vk::QUEUE_FAMILY_EXTERNAL, parts.family] } else { [vk::QUEUE_FAMILY_IGNORED; 2] };
+    record(encoder, |commands| match &target.resource {
+        TargetResource::Buffer(_) => {
+            let barrier = vk::BufferMemoryBarrier::default()
+                .buffer(vk::Buffer::from_raw(target.raw))
+                .size(vk::WHOLE_SIZE)
+                .dst_access_mask(access)
+                .src_queue_family_index(families[0])
+                .dst_queue_family_index(families[1]);
+            // SAFETY: the buffer lives as long as the target; the command buffer is being recorded.
+            unsafe {
+                parts.device.cmd_pipeline_barrier(commands, any, stage, Default::default(), &[], &[barrier], &[]);
+            }
+        }
+        TargetResource::Written(..) | TargetResource::Copied(_) => {
+            // Pixels that are discarded need no owner before.
+            let barrier = vk::ImageMemoryBarrier::default()
+                .image(vk::Image::from_raw(target.raw))
+                .subresource_range(colour())
+                .old_layout(vk::ImageLayout::UNDEFINED)
+                .new_layout(layout)
+                .dst_access_mask(access)
+                .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+                .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED);
+            // SAFETY: as above, of the image.
+            unsafe {
+                parts.device.cmd_pipeline_barrier(commands, any, stage, Default::default(), &[], &[], &[barrier]);
+            }
+        }
+    });
+}
+
+/// After a frame: gives the target to whoever waits for the frame's signals, images in their layout.
+pub(in crate::gpu) fn give(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, target: &GpuTarget) {
+    let (layout, stage, access) = written(&target.resource);
+    // On the host's own device nobody else makes the writes visible but this barrier or the semaphore.
+    let then = vk::PipelineStageFlags::ALL_COMMANDS;
+    let reads = if target.leaves {
+        vk::AccessFlags::empty()
+    } else {
+        vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE
+    };
+    let families =
+        if target.leaves { [parts.family, vk::QUEUE_FAMILY_EXTERNAL] } else { [vk::QUEUE_FAMILY_IGNORED; 2] };
+    record(encoder, |commands| match &target.resource {
+        TargetResource::Buffer(_) => {
+            let barrier = vk::BufferMemoryBarrier::default()
+                .buffer(vk::Buffer::from_raw(target.raw))
+                .size(vk::WHOLE_SIZE)
+                .src_access_mask(access)
+                .dst_access_mask(reads)
+                .src_queue_family_index(families[0])
+                .dst_queue_family_index(families[1]);
+            // SAFETY: the buffer lives as long as the target; the command buffer is being recorded.
+            unsafe {
+                parts.device.cmd_pipeline_barrier(commands, stage, then, Default::default(), &[], &[barrier], &[]);
+            }
+        }
+        TargetResource::Written(..) | TargetResource::Copied(_) => {
+            let barrier = vk::ImageMemoryBarrier::default()
+                .image(vk::Image::from_raw(target.raw))
+                .subresource_range(colour())
+                .old_layout(layout)
+                .new_layout(vk::ImageLayout::from_raw(target.shape.layout))
+                .src_access_mask(access)
+                .dst_access_mask(reads)
+                .src_queue_family_index(families[0])
+                .dst_queue_family_index(families[1]);
+            // SAFETY: as above, of the image.
+            unsafe {
+                parts.device.cmd_pipeline_barrier(commands, stage, then, Default::default(), &[], &[], &[barrier]);
+            }
+        }
+    });
+}
+
+fn record(encoder: &mut wgpu::CommandEncoder, work: impl FnOnce(vk::CommandBuffer)) {
+    // SAFETY: the command buffer is used within the call only, and holds no commands of wgpu's.
+    unsafe {
+        encoder.as_hal_mut::<Vulkan, _, _>(|hal| {
+            if let Some(hal) = hal {
+                work(hal.raw_handle());
+            }
+        });
+    }
+}

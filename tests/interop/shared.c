@@ -1,0 +1,294 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* shared.c -- targets in shared memory: another VkDevice on the same GPU reads what bhr wrote, and bhr writes into what
+ * that device made. The bytes are those of bhr_render_image, in every format, with regions, strides, several samples,
+ * glare and many frames. No semaphores between devices, which lavapipe does not have; those are tested where they are.
+ * Arguments: vulkan [validate]. */
+#include "../c/check.h"
+#include "vk.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define WIDTH 157u
+#define HEIGHT 61u
+#define MOST_BYTES (WIDTH * HEIGHT * 16u)
+
+static unsigned char expected[MOST_BYTES], seen[4 * MOST_BYTES];
+static BhrContext   *context;
+static Vk            host;
+
+static const struct {
+    BhrFormat   format;
+    uint32_t    bytes;
+    VkFormat    vk;
+    const char *name;
+} formats[] = {{BHR_FORMAT_RGBA8_SRGB, 4, VK_FORMAT_R8G8B8A8_UNORM, "RGBA8"},
+               {BHR_FORMAT_BGRA8_SRGB, 4, VK_FORMAT_B8G8R8A8_UNORM, "BGRA8"},
+               {BHR_FORMAT_RGBA16F, 8, VK_FORMAT_R16G16B16A16_SFLOAT, "RGBA16F"},
+               {BHR_FORMAT_RGBA32F, 16, VK_FORMAT_R32G32B32A32_SFLOAT, "RGBA32F"},
+               {BHR_FORMAT_R32F, 4, VK_FORMAT_R32_SFLOAT, "R32F"}};
+
+static BhrTargetOptions options_of(size_t at, BhrTargetKind kind, uint64_t stride) {
+    BhrTargetOptions options;
+    CHECK_OK(bhr_target_options_init(&options, sizeof options));
+    options.kind = kind;
+    options.format = formats[at].format;
+    options.width = WIDTH;
+    options.height = HEIGHT;
+    options.handle_type = BHR_HANDLE_OPAQUE_FD;
+    options.row_stride = stride;
+    return options;
+}
+
+/* The picture that bhr_render_image makes of the present scene. */
+static void expect(size_t at, uint32_t flags) {
+    BhrImage image;
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    image.format = formats[at].format;
+    image.width = WIDTH;
+    image.height = HEIGHT;
+    image.pixels = expected;
+    image.byte_size = sizeof expected;
+    image.flags = flags;
+    memset(expected, 0xee, sizeof expected);
+    CHECK_OK(bhr_render_image(context, &image));
+}
+
+static void frame_into(BhrTarget *target) {
+    BhrJob *job;
+    if (!CHECK_OK(bhr_render_target(context, target, NULL, &job)))
+        return;
+    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+    BhrFrameStats stats = {.struct_size = sizeof stats};
+    CHECK_OK(bhr_job_stats(job, &stats));
+    CHECK(stats.rays >= WIDTH * HEIGHT, "%llu rays", (unsigned long long)stats.rays);
+    bhr_job_destroy(job);
+}
+
+/* Rows of `seen`, stride bytes apart, are those expected, and what is between them is `between`. */
+static void compare(size_t at, uint64_t stride, int between, const char *what) {
+    uint64_t row = (uint64_t)WIDTH * formats[at].bytes;
+    uint32_t wrong = 0, touched = 0;
+    for (uint32_t y = 0; y < HEIGHT; y++) {
+        wrong += memcmp(seen + y * stride, expected + y * row, row) != 0;
+        for (uint64_t i = row; between >= 0 && y + 1 < HEIGHT && i < stride; i++)
+            touched += seen[y * stride + i] != (unsigned char)between;
+    }
+    CHECK(wrong == 0, "%s, %s: %u rows of %u differ", formats[at].name, what, wrong, HEIGHT);
+    CHECK(touched == 0, "%s, %s: %u bytes between rows were written", formats[at].name, what, touched);
+}
+
+static VkPicture imported(BhrTarget *target, uint64_t bytes) {
+    BhrTargetInfo info = {.struct_size = sizeof info};
+    BhrHandle     handle;
+    CHECK_OK(bhr_target_info(target, &info));
+    CHECK_OK(bhr_target_export(target, &handle));
+    CHECK(handle.type == BHR_HANDLE_OPAQUE_FD && handle.fd >= 0, "type %u, fd %d", handle.type, handle.fd);
+    return vk_import(&host, &info, handle.fd, bytes);
+}
+
+/* bhr's memory, imported by the host. */
+static void exported(size_t at, BhrTargetKind kind, uint64_t stride, uint32_t flags, const char *what) {
+    uint64_t         row = (uint64_t)WIDTH * formats[at].bytes, step = stride ? stride : row;
+    uint64_t         bytes = step * (HEIGHT - 1) + row;
+    BhrTargetOptions options = options_of(at, kind, stride);
+    BhrTarget       *target;
+    options.flags = flags;
+    if (!CHECK_OK(bhr_target_create(context, &options, &target)))
+        return;
+    VkPicture picture = imported(target, bytes);
+    expect(at, flags);
+    frame_into(target);
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
+    compare(at, kind == BHR_TARGET_IMAGE ? row : step, -1, what);
+    /* The memory stays while the host has it. */
+    bhr_target_destroy(target);
+    memset(seen, 0, sizeof seen);
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
+    compare(at, kind == BHR_TARGET_IMAGE ? row : step, -1, "after bhr's end");
+    vk_drop(&host, &picture);
+}
+
+/* The host's memory, imported by bhr. */
+static void imported_by_bhr(size_t at, BhrTargetKind kind, uint64_t stride) {
+    uint64_t         row = (uint64_t)WIDTH * formats[at].bytes, step = stride ? stride : row;
+    uint64_t         bytes = step * (HEIGHT - 1) + row;
+    BhrTargetOptions options = options_of(at, kind, stride);
+    BhrHandle        handle = {BHR_HANDLE_OPAQUE_FD, -1, NULL};
+    BhrTarget       *target;
+    VkImageUsageFlags usage =
+        formats[at].format == BHR_FORMAT_BGRA8_SRGB ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : VK_IMAGE_USAGE_STORAGE_BIT;
+    VkPicture picture = kind == BHR_TARGET_IMAGE
+                            ? vk_make_image(&host, formats[at].vk, WIDTH, HEIGHT, usage, &handle.fd)
+                            : vk_make_buffer(&host, bytes, &handle.fd);
+    if (CHECK_OK(bhr_target_import(context, &options, &picture.info, &handle, &target))) {
+        expect(at, 0);
+        frame_into(target);
+        vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
+        compare(at, kind == BHR_TARGET_IMAGE ? row : step, -1, "the host's memory");
+        bhr_target_destroy(target);
+    }
+    vk_drop(&host, &picture);
+}
+
+/* The host's own pixels, where the device takes them; bytes between rows stay. */
+static void host_pixels(size_t at) {
+    size_t           room = 4 << 20;
+    uint64_t         stride = (uint64_t)WIDTH * formats[at].bytes + 20;
+    BhrTargetOptions options = options_of(at, BHR_TARGET_BUFFER, stride);
+    BhrTargetInfo    memory = {.struct_size = sizeof memory, .allocation_size = room};
+    BhrHandle        handle = {BHR_HANDLE_HOST_POINTER, -1, NULL};
+    BhrTarget       *target;
+    options.handle_type = BHR_HANDLE_HOST_POINTER;
+    void *pixels;
+    if (!CHECK(posix_memalign(&pixels, 65536, room) == 0, "no memory"))
+        return;
+    memset(pixels, 0x5a, room);
+    handle.handle = pixels;
+    if (CHECK_OK(bhr_target_import(context, &options, &memory, &handle, &target))) {
+        expect(at, 0);
+        frame_into(target);
+        memcpy(seen, pixels, stride * HEIGHT);
+        compare(at, stride, 0x5a, "the host's own pixels");
+        bhr_target_destroy(target);
+        handle.handle = (char *)pixels + 16;
+        CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "multiples of",
+                    bhr_target_import(context, &options, &memory, &handle, &target));
+    }
+    /* Freed when no frame uses them. */
+    CHECK_OK(bhr_render_image(context, &(BhrImage){.struct_size = sizeof(BhrImage),
+                                                   .format = BHR_FORMAT_RGBA8_SRGB,
+                                                   .width = 8,
+                                                   .height = 8,
+                                                   .pixels = seen,
+                                                   .byte_size = sizeof seen}));
+    free(pixels);
+}
+
+static void set_quality(uint32_t samples, double bloom) {
+    BhrQuality quality = {.struct_size = sizeof quality};
+    BhrFilm    film = {.struct_size = sizeof film};
+    CHECK_OK(bhr_get_quality(context, &quality));
+    CHECK_OK(bhr_get_film(context, &film));
+    quality.samples_per_pixel = samples;
+    film.bloom = bloom;
+    CHECK_OK(bhr_set_quality(context, &quality));
+    CHECK_OK(bhr_set_film(context, &film));
+}
+
+/* Frames of a scene that changes, into two targets by turns, several on their way at a time. */
+static void many_frames(uint32_t frames) {
+    BhrTarget   *targets[2];
+    BhrSemaphore *done;
+    VkPicture    pictures[2];
+    BhrTargetOptions options = options_of(2, BHR_TARGET_BUFFER, 0);
+    uint64_t     bytes = (uint64_t)WIDTH * HEIGHT * 8;
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
+    for (int i = 0; i < 2; i++) {
+        CHECK_OK(bhr_target_create(context, &options, &targets[i]));
+        pictures[i] = imported(targets[i], bytes);
+    }
+    for (uint32_t frame = 1; frame <= frames; frame++) {
+        BhrSemaphoreValue signal = {done, frame};
+        BhrSync           sync = {.struct_size = sizeof sync, .signal_count = 1, .signals = &signal};
+        CHECK_OK(bhr_set_time(context, 3.0 * frame));
+        if (frame % 2)
+            CHECK_OK(bhr_render_target(context, targets[frame % 2], &sync, NULL));
+        else
+            CHECK_OK(bhr_render_target_async(context, targets[frame % 2], &sync, NULL));
+        CHECK_OK(bhr_semaphore_wait(done, frame, UINT64_MAX));
+        if (frame % 10 == 0 || frame == frames) {
+            expect(2, 0);
+            vk_read(&host, &pictures[frame % 2], VK_QUEUE_FAMILY_EXTERNAL, 8, bytes, NULL, seen);
+            compare(2, WIDTH * 8, -1, "one of many frames");
+        }
+    }
+    for (int i = 0; i < 2; i++) {
+        bhr_target_destroy(targets[i]);
+        vk_drop(&host, &pictures[i]);
+    }
+    bhr_semaphore_destroy(done);
+}
+
+/* Made, exported, imported and destroyed again and again: no descriptor and no memory stays. */
+static void descriptors(void) {
+    uint64_t         bytes = (uint64_t)WIDTH * HEIGHT * 8;
+    BhrTargetOptions options = options_of(2, BHR_TARGET_BUFFER, 0);
+    int              before = open_descriptors();
+    BhrFrameStats    first = {.struct_size = sizeof first}, last = {.struct_size = sizeof last};
+    for (int i = 0; i < 60; i++) {
+        BhrTarget *target, *again;
+        BhrHandle  handle;
+        BhrTargetInfo info = {.struct_size = sizeof info};
+        options.kind = i % 2 ? BHR_TARGET_IMAGE : BHR_TARGET_BUFFER;
+        CHECK_OK(bhr_target_create(context, &options, &target));
+        CHECK_OK(bhr_target_info(target, &info));
+        VkPicture picture = imported(target, bytes);
+        CHECK_OK(bhr_target_export(target, &handle));
+        CHECK_OK(bhr_target_import(context, &options, &info, &handle, &again));
+        CHECK_OK(bhr_render_target(context, again, NULL, NULL)); /* in flight while all goes */
+        vk_drop(&host, &picture);
+        bhr_target_destroy(i % 3 ? target : again);
+        bhr_target_destroy(i % 3 ? again : target);
+        expect(0, 0);
+        CHECK_OK(bhr_frame_stats(context, i < 10 ? &first : &last));
+    }
+    CHECK(open_descriptors() == before, "%d descriptors before, %d after", before, open_descriptors());
+    CHECK(last.device_bytes <= first.device_bytes, "device memory: %llu bytes early, %llu late",
+          (unsigned long long)first.device_bytes, (unsigned long long)last.device_bytes);
+}
+
+int main(int argc, char **argv) {
+    BhrBackend backend = check_begin(argc, argv);
+    int        validate = argc > 2 && strcmp(argv[2], "validate") == 0;
+    BhrContextOptions made = check_options(backend);
+    if (validate)
+        made.flags |= BHR_CONTEXT_VALIDATION, made.log_fn = vk_log;
+    context = check_context_with(&made);
+    BhrInteropInfo info = {.struct_size = sizeof info};
+    CHECK_OK(bhr_interop_info(context, &info));
+    CHECK(info.export_buffers & info.import_buffers & BHR_HANDLE_OPAQUE_FD, "export %#x, import %#x",
+          info.export_buffers, info.import_buffers);
+    int32_t index;
+    CHECK_OK(bhr_adapter_find(info.device_uuid, NULL, &index));
+    CHECK(index >= 0, "index %d", index);
+    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
+    vk_open_device(&host);
+    set_quality(1, 0);
+    for (size_t at = 0; at < COUNT_OF(formats); at++) {
+        CHECK_OK(bhr_set_view(context, formats[at].format == BHR_FORMAT_R32F ? BHR_VIEW_REDSHIFT : BHR_VIEW_LIGHT));
+        exported(at, BHR_TARGET_BUFFER, 0, 0, "buffer");
+        exported(at, BHR_TARGET_BUFFER, (uint64_t)WIDTH * formats[at].bytes + 52, 0, "buffer with a stride");
+        exported(at, BHR_TARGET_IMAGE, 0, 0, "image");
+        imported_by_bhr(at, BHR_TARGET_BUFFER, (uint64_t)WIDTH * formats[at].bytes + 4);
+        imported_by_bhr(at, BHR_TARGET_IMAGE, 0);
+        if (info.import_buffers & BHR_HANDLE_HOST_POINTER)
+            host_pixels(at);
+    }
+    CHECK_OK(bhr_set_view(context, BHR_VIEW_LIGHT));
+    exported(0, BHR_TARGET_IMAGE, 0, BHR_IMAGE_TRANSPARENT, "transparent image");
+    for (size_t at = 0; at < 4; at++) {
+        set_quality(5, 0);
+        exported(at, BHR_TARGET_BUFFER, 0, 0, "5 samples, buffer");
+        exported(at, BHR_TARGET_IMAGE, 0, 0, "5 samples, image");
+        set_quality(1, at == 2 || at == 3 ? 0 : 0.3);
+        exported(at, BHR_TARGET_BUFFER, 0, 0, "glare, buffer");
+        exported(at, BHR_TARGET_IMAGE, 0, 0, "glare, image");
+    }
+    set_quality(1, 0);
+    BhrRegion region = {.struct_size = sizeof region, .full_width = 400, .full_height = 300, .x = 170, .y = 130};
+    CHECK_OK(bhr_set_region(context, &region));
+    for (size_t at = 0; at < 4; at++) {
+        exported(at, BHR_TARGET_BUFFER, 0, 0, "region, buffer");
+        exported(at, BHR_TARGET_IMAGE, 0, 0, "region, image");
+    }
+    CHECK_OK(bhr_set_region(context, NULL));
+    many_frames(100);
+    descriptors();
+    bhr_context_destroy(context);
+    vk_close(&host);
+    CHECK(vk_complaints == 0, "the validation layers had %d complaints", vk_complaints);
+    return check_end();
+}
