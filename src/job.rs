@@ -2,8 +2,10 @@
 //! Frames in the background: requests, each with its own copy of the scene, and all that their host knows of them. The
 //! threads of worker.rs make them. Knows no callbacks and nothing of C.
 
+mod outputs;
 mod worker;
 
+pub use outputs::{OutputFrame, OutputTarget};
 pub use worker::{MAX_UNFINISHED, Worker};
 
 use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
@@ -107,12 +109,27 @@ impl Shared {
     }
 }
 
+/// The place that a job's pixels go to.
+pub enum JobTarget {
+    Image(FrameRequest, ImageMut<'static>),
+    Outputs(OutputFrame<'static>),
+}
+
+impl JobTarget {
+    /// A pixel was written.
+    fn is_touched(&self) -> bool {
+        match self {
+            Self::Image(_, target) => target.is_touched(),
+            Self::Outputs(outputs) => outputs.is_touched(),
+        }
+    }
+}
+
 /// A frame to be made, and the job that hears of it. Its target is written until the job has its outcome, and never
 /// after.
 pub struct JobRequest {
     pub scene: Scene,
-    pub request: FrameRequest,
-    pub target: ImageMut<'static>,
+    pub target: JobTarget,
     pub tracer: SharedTracer,
     pub stats: StatsBoard,
     shared: Arc<Shared>,
@@ -120,14 +137,8 @@ pub struct JobRequest {
 }
 
 impl JobRequest {
-    pub fn new(
-        scene: Scene,
-        request: FrameRequest,
-        target: ImageMut<'static>,
-        tracer: SharedTracer,
-        stats: StatsBoard,
-    ) -> Self {
-        Self { scene, request, target, tracer, stats, shared: Arc::default(), requested: Instant::now() }
+    pub fn new(scene: Scene, target: JobTarget, tracer: SharedTracer, stats: StatsBoard) -> Self {
+        Self { scene, target, tracer, stats, shared: Arc::default(), requested: Instant::now() }
     }
 
     /// The job's end. The target is its owner's again.

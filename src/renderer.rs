@@ -7,10 +7,10 @@ use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
 use crate::image::{Copiers, ImageMut, PixelFormat};
-use crate::job::{Job, JobRequest, Worker};
+use crate::job::{Job, JobRequest, JobTarget, OutputFrame, OutputTarget, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
-use crate::scene::{Hit, Ray, Region, Scene, Transfer, View};
+use crate::scene::{Hit, MOST_OUTPUTS, Output, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
@@ -379,11 +379,80 @@ impl Renderer {
         self.scene.lens(&request.region)?;
         self.check_device()?;
         self.help_to_write(&mut target);
+        self.enqueue(JobTarget::Image(request, target))
+    }
+
+    fn enqueue(&mut self, target: JobTarget) -> Result<Job> {
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),
         };
-        worker.enqueue(JobRequest::new(self.scene.clone(), request, target, self.tracer.clone(), self.stats.clone()))
+        worker.enqueue(JobRequest::new(self.scene.clone(), target, self.tracer.clone(), self.stats.clone()))
+    }
+
+    /// The outputs, checked. Errors: INVALID_ARGUMENT for none, too many, images of several sizes, and formats that do
+    /// not go with the outputs; those of `request`.
+    fn output_frame<'a>(&self, mut targets: Vec<OutputTarget<'a>>, region: Option<Region>) -> Result<OutputFrame<'a>> {
+        let size = |target: &ImageMut<'_>| [target.width(), target.height()];
+        let Some([width, height]) = targets.first().map(|first| size(&first.target)) else {
+            return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
+        };
+        for (index, OutputTarget { output, target, transparent }) in targets.iter_mut().enumerate() {
+            if size(target) != [width, height] {
+                return Err(Error::argument(format!(
+                    "outputs[{index}] image is {} x {}; outputs[0] is {width} x {height}, and all must be of one size",
+                    target.width(),
+                    target.height()
+                )));
+            }
+            let (given, wanted) = (target.format(), output.format());
+            if let Some(wanted) = wanted.filter(|wanted| *wanted != given) {
+                return Err(Error::argument(format!("outputs[{index}] image format is {given}; it takes {wanted}")));
+            }
+            if *output == Output::Light {
+                self.request(given, [width, height], *transparent, region)?;
+            }
+            self.help_to_write(target);
+        }
+        let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
+        region.check_image(width, height)?;
+        Ok(OutputFrame::new(targets, region))
+    }
+
+    /// Renders the outputs of one frame; `region` as in [`Self::render`].
+    ///
+    /// Errors: as [`Self::render`]; INVALID_ARGUMENT for images of several sizes, or of formats that do not go with
+    /// their outputs.
+    pub fn render_outputs(
+        &mut self,
+        targets: Vec<OutputTarget<'_>>,
+        region: Option<Region>,
+        progress: &mut Progress<'_>,
+    ) -> Result<()> {
+        let start = Instant::now();
+        let mut frame = self.output_frame(targets, region)?;
+        let rendered = frame.render(&mut self.tracer.lock(), &self.scene, progress);
+        let stats = rendered.map_err(|mut error| {
+            if frame.is_touched() {
+                error.message += PARTLY_WRITTEN;
+            }
+            error
+        })?;
+        self.stats.publish(stats, start.elapsed());
+        Ok(())
+    }
+
+    /// Orders the outputs of a frame, as [`Self::render_in_background`] does a picture. Errors: as there, and as
+    /// [`Self::render_outputs`].
+    pub fn render_outputs_in_background(
+        &mut self,
+        targets: Vec<OutputTarget<'static>>,
+        region: Option<Region>,
+    ) -> Result<Job> {
+        let frame = self.output_frame(targets, region)?;
+        self.scene.lens(&frame.region())?;
+        self.check_device()?;
+        self.enqueue(JobTarget::Outputs(frame))
     }
 
     /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for

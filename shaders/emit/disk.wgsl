@@ -25,8 +25,13 @@ fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec
         structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
     }
     let profile = disk_profile(crossing.u);
-    let opacity = frame.disk.z * crossing.share * left_by_edges(crossing.u, profile);
+    let opacity = disk_opacity(crossing, profile);
     return vec4<f32>(open * opacity * structure * emission_law(mu) * disk_light(profile, shift), opacity);
+}
+
+// The share of the light from behind that a crossing hides where the disk's temperature is `profile`.
+fn disk_opacity(crossing: Crossing, profile: f32) -> f32 {
+    return frame.disk.z * crossing.share * left_by_edges(crossing.u, profile);
 }
 
 // The light at the angle of cosine `mu`, over that of an isotropic surface of the same flux (thin_disk.rs).

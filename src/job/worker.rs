@@ -4,7 +4,7 @@
 //! submission. Frames end in the order in which they were requested. Only the first thread holds a tracer; the second
 //! needs nothing that anybody holds for longer than a few instructions, so that it always gets on.
 
-use super::{Job, JobRequest, Shared, lock};
+use super::{Job, JobRequest, JobTarget, Shared, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{BegunFrame, Device, FrameTarget, Submission};
@@ -247,17 +247,17 @@ fn submit_all(queue: &JobQueue) {
     }
 }
 
-/// Submits a frame to the GPU; on the CPU and with GL, makes it.
+/// Submits a frame to the GPU; on the CPU and with GL, and of outputs, makes it.
 fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     if let Err(error) = job_request.shared.check_cancelled() {
         return queue.send(Event::Whole(Box::new(job_request), Err(error)));
     }
     let mut guard = job_request.tracer.lock_arc();
-    let begun = match &mut *guard {
-        Tracer::Gpu(tracer) => tracer
-            .begin(&job_request.scene, &job_request.request, FrameTarget::Host)
-            .map(|frame| (frame, tracer.device())),
-        Tracer::Cpu(_) | Tracer::Gl(_) => {
+    let begun = match (&mut *guard, &job_request.target) {
+        (Tracer::Gpu(tracer), JobTarget::Image(request, _)) => {
+            tracer.begin(&job_request.scene, request, FrameTarget::Host).map(|frame| (frame, tracer.device()))
+        }
+        (Tracer::Cpu(_) | Tracer::Gl(_), _) | (_, JobTarget::Outputs(_)) => {
             let rendered = render_whole(&mut guard, &mut job_request);
             // Whoever waits for the tracer gets it before the next job does.
             ArcMutexGuard::unlock_fair(guard);
@@ -278,18 +278,23 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     }
 }
 
-/// Makes a frame without overlap with the next one: the CPU is busy, and GL is one thread's.
+/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and outputs are several
+/// frames.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
-    let (scene, request, target, shared) =
-        (&job_request.scene, &job_request.request, &mut job_request.target, job_request.shared.clone());
-    let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
-        target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
-    };
+    let (scene, shared) = (&job_request.scene, job_request.shared.clone());
     let mut progress = |fraction: f64| {
         shared.report(fraction);
         !shared.cancelled.load(Ordering::Relaxed)
     };
-    let rendered = tracer.render(scene, request, &mut sink, &mut progress);
+    let rendered = match &mut job_request.target {
+        JobTarget::Image(request, target) => {
+            let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
+                target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
+            };
+            tracer.render(scene, request, &mut sink, &mut progress)
+        }
+        JobTarget::Outputs(outputs) => outputs.render(tracer, scene, &mut progress),
+    };
     rendered.map_err(|error| match error.kind {
         ErrorKind::Cancelled => Error::new(ErrorKind::Cancelled, "the job was cancelled"),
         _ => error,
@@ -377,7 +382,9 @@ impl RunningFrame {
 
     fn take_pixels(&mut self, step: Submission) -> Result<()> {
         self.job_request.shared.check_cancelled()?;
-        let target = &mut self.job_request.target;
+        let JobTarget::Image(_, target) = &mut self.job_request.target else {
+            return Err(Error::internal("a step of a frame without an image"));
+        };
         let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
         };

@@ -6,7 +6,6 @@ use super::film::Film;
 use super::hole::Hole;
 use super::quality::Quality;
 use super::sky::Sky;
-use crate::emit::Emitters;
 use crate::emit::bands::When;
 use crate::emit::disk::Disk;
 use crate::emit::effects::Effects;
@@ -16,6 +15,7 @@ use crate::emit::thin_disk::ThinDisk;
 use crate::emit::turbulence::Turbulence;
 use crate::emit::volume::Volume;
 use crate::emit::volumes::Volumes;
+use crate::emit::{Emitters, Needs};
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarIndex};
@@ -84,6 +84,8 @@ pub struct Scene {
     pub time: f64,
     pub quality: Quality,
     pub view: View,
+    /// The facts about rays that outputs ask for beside those that the emitters need (`Scene::for_outputs`).
+    pub also_needs: Needs,
     /// Stars instead of the sky's: for tests.
     #[doc(hidden)]
     pub given_stars: Option<Arc<StarIndex>>,
@@ -104,6 +106,7 @@ impl Default for Scene {
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
+            also_needs: Needs::default(),
             given_stars: None,
         }
     }
@@ -123,7 +126,7 @@ impl Scene {
             true => self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW }),
             false => Volumes::default(),
         };
-        Emitters { disk, volumes }
+        Emitters { disk, volumes, also: self.also_needs }
     }
 
     /// The matter with depth as it is at a time.
