@@ -6,7 +6,7 @@
 use crate::error::{Error, ErrorKind, Number, PARTLY_WRITTEN, Result};
 use crate::film::bloom::Bloom;
 use crate::gpu::{self, Adapter, Search};
-use crate::image::{Copiers, ImageMut, PixelFormat};
+use crate::image::{Attribute, Copiers, ImageMut, Layer, PixelFormat, save_layers};
 use crate::job::{Job, JobRequest, JobTarget, OutputFrame, OutputTarget, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
@@ -16,6 +16,7 @@ use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
 use parking_lot::Mutex;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::{Arc, Weak};
 use std::time::Instant;
 
@@ -390,33 +391,63 @@ impl Renderer {
         worker.enqueue(JobRequest::new(self.scene.clone(), target, self.tracer.clone(), self.stats.clone()))
     }
 
-    /// The outputs, checked. Errors: INVALID_ARGUMENT for none, too many, images of several sizes, and formats that do
-    /// not go with the outputs; those of `request`.
-    fn output_frame<'a>(&self, mut targets: Vec<OutputTarget<'a>>, region: Option<Region>) -> Result<OutputFrame<'a>> {
-        let size = |target: &ImageMut<'_>| [target.width(), target.height()];
-        let Some([width, height]) = targets.first().map(|first| size(&first.target)) else {
+    /// The part of the full frame that images of outputs hold. Errors: INVALID_ARGUMENT for images of several sizes, a
+    /// region that they overrun, and formats that do not go with the outputs.
+    fn check_outputs(&self, targets: &[OutputTarget<'_>], region: Option<Region>) -> Result<Region> {
+        let size = |target: &OutputTarget<'_>| [target.target.width(), target.target.height()];
+        let Some([width, height]) = targets.first().map(size) else {
             return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
         };
-        for (index, OutputTarget { output, target, transparent }) in targets.iter_mut().enumerate() {
-            if size(target) != [width, height] {
+        for (index, target) in targets.iter().enumerate() {
+            let [w, h] = size(target);
+            if [w, h] != [width, height] {
                 return Err(Error::argument(format!(
-                    "outputs[{index}] image is {} x {}; outputs[0] is {width} x {height}, and all must be of one size",
-                    target.width(),
-                    target.height()
+                    "outputs[{index}] image is {w} x {h}; outputs[0] has {width} x {height}, and all must be of one \
+                     size"
                 )));
             }
-            let (given, wanted) = (target.format(), output.format());
+            let (given, wanted) = (target.target.format(), target.output.format());
             if let Some(wanted) = wanted.filter(|wanted| *wanted != given) {
-                return Err(Error::argument(format!("outputs[{index}] image format is {given}; it takes {wanted}")));
+                return Err(Error::argument(format!(
+                    "outputs[{index}] image format is {given}; its kind takes {wanted}"
+                )));
             }
-            if *output == Output::Light {
-                self.request(given, [width, height], *transparent, region)?;
-            }
-            self.help_to_write(target);
         }
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
-        Ok(OutputFrame::new(targets, region))
+        Ok(region)
+    }
+
+    /// The outputs of a frame. Errors: as `check_outputs`; of the picture, those of `request`.
+    fn output_frame<'a>(&self, mut targets: Vec<OutputTarget<'a>>, region: Option<Region>) -> Result<OutputFrame<'a>> {
+        let checked = self.check_outputs(&targets, region)?;
+        for OutputTarget { output, target, transparent } in &mut targets {
+            if *output == Output::Light {
+                self.request(target.format(), [target.width(), target.height()], *transparent, region)?;
+            }
+            self.help_to_write(target);
+        }
+        Ok(OutputFrame::new(targets, checked))
+    }
+
+    /// Writes outputs to an EXR file, with all parameters of the scene as it is now. Errors: as `check_outputs` and
+    /// [`save_layers`].
+    pub fn save_outputs(&self, targets: &[OutputTarget<'_>], region: Option<Region>, path: &Path) -> Result<()> {
+        let region = self.check_outputs(targets, region)?;
+        let AdapterInfo { backend, name, driver, .. } = &self.adapter;
+        let about = [("version", env!("CARGO_PKG_VERSION").into()), ("backend", backend.to_string())];
+        let about = about.into_iter().chain([("adapter", name.clone()), ("driver", driver.clone())]);
+        let about = about.map(|(name, text)| (format!("bhr.{name}"), Attribute::Text(text)));
+        let attributes = about.chain(self.scene.parameters(&region)).collect::<Vec<_>>();
+        let layers = targets.iter().enumerate().map(|(index, OutputTarget { output, target, .. })| {
+            if *output == Output::Light && target.format() == PixelFormat::R32F {
+                return Err(Error::argument(format!(
+                    "outputs[{index}] image format is R32F: in files of layers a view's values are the kind VIEW"
+                )));
+            }
+            Ok(Layer { channels: output.channels(), image: target.as_image_ref() })
+        });
+        save_layers(&layers.collect::<Result<Vec<_>>>()?, &attributes, path)
     }
 
     /// Renders the outputs of one frame; `region` as in [`Self::render`].

@@ -11,6 +11,7 @@ pub mod host_rays;
 pub mod lensing;
 pub mod observer;
 pub mod output;
+mod parameters;
 pub mod preset;
 pub mod projection;
 pub mod quality;

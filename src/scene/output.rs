@@ -78,6 +78,30 @@ impl Output {
     }
 }
 
+impl Output {
+    /// The names of its values in files of layers; of the picture, those of its channels.
+    pub fn channels(self) -> Vec<String> {
+        let of = |layer: &str, names: &[&str]| names.iter().map(|name| format!("{layer}.{name}")).collect();
+        match self {
+            Self::Light => ["R", "G", "B", "A"].map(String::from).into(),
+            Self::View(view) => of(&view.name().to_lowercase(), &["Y"]),
+            Self::Ray(RayOutput { kind, index }) => {
+                let layer = |name: &str| if index == 0 { name.into() } else { format!("{name}{index}") };
+                match kind {
+                    RayOutputKind::Depth => of("depth", &["Z"]),
+                    RayOutputKind::Sky => of("sky", &["x", "y", "z", "g"]),
+                    RayOutputKind::Transmission => of("transmission", &["Y"]),
+                    RayOutputKind::Position => of(&layer("position"), &["x", "y", "z", "order"]),
+                    RayOutputKind::Disk => of(&layer("disk"), &["radius", "azimuth", "g", "delay"]),
+                    RayOutputKind::Redshift => of("redshift", &["Y"]),
+                    RayOutputKind::Order => of("order", &["Y"]),
+                    RayOutputKind::Deflection => of("deflection", &["Y"]),
+                }
+            }
+        }
+    }
+}
+
 impl RayOutput {
     /// Numbers of a pixel.
     pub fn words(self) -> usize {

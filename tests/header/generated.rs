@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 24] = [
+const SECTIONS: [(&str, &str); 25] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -29,6 +29,7 @@ const SECTIONS: [(&str, &str); 24] = [
     ("region", "parts of a larger frame"),
     ("render", "rendering into memory"),
     ("job", "rendering in the background"),
+    ("output", "outputs beside the picture"),
     ("surface", "rendering into windows"),
     ("rays", "rays: the same tracer, asked directly"),
     ("transfer", "the matter with depth along rays"),

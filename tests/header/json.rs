@@ -223,6 +223,7 @@ fn constants_say_what_they_are_for() {
         "BHR_ABI_VERSION",
         "BHR_MAX_VOLUMES",
         "BHR_MAX_HOT_SPOTS",
+        "BHR_MAX_OUTPUTS",
         "BHR_MAX_CROSSINGS",
     ];
     let json = committed();

@@ -196,6 +196,18 @@ class View(enum.IntEnum):
     INTENSITY = 7
 
 
+class OutputKind(enum.IntEnum):
+    """What a frame can have beside its picture; all but LIGHT is of the one ray through a pixel's centre."""
+
+    LIGHT = 0
+    DEPTH = 1
+    SKY = 2
+    TRANSMISSION = 3
+    POSITION = 4
+    DISK = 5
+    VIEW = 6
+
+
 class Fate(enum.IntEnum):
     """How a ray ends."""
 
