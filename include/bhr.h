@@ -1638,6 +1638,26 @@ BHR_NODISCARD BhrStatus bhr_save_outputs(const BhrContext *context,
                                          uint32_t count,
                                          const char *path);
 
+/* ---- the host's things before the camera ---- */
+
+/**
+ * Sets the host's things before the camera, for images of LIGHT that they are seen in: an image of R32F, as large as
+ * those images, that holds for each pixel the distance to the host's thing along its line of sight, in scene lengths
+ * (not along the forward axis, as depth buffers have it), and infinity where there is nothing. It is copied before
+ * return. NULL (default): none.
+ *
+ * Crossings of the disk of order 0 that lie beyond the distance, as straight as BHR_OUTPUT_DEPTH measures it, are left
+ * out. Where it is shorter than the way to the point of the line of sight that is nearest to the hole, the ray ends
+ * there: higher orders, the hole and the sky are left out as well, and BHR_IMAGE_TRANSPARENT's alpha is that of what
+ * lies before. So the picture goes over the host's, premultiplied. A thing behind the hole is hidden by what bends its
+ * light; it belongs into the sky (BHR_OUTPUT_SKY). Images of a region take distances for that region. Frames in
+ * windows, views and the other outputs do not regard it. While it is set, images of another size are
+ * INVALID_ARGUMENT, and scenes with volumes or hot spots UNSUPPORTED, when they are rendered. Errors: INVALID_ARGUMENT
+ * for a bad image, another format, NaN, or a distance below 0; OUT_OF_MEMORY; the occluder then stays as it was. Since
+ * 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_set_occluder(BhrContext *context, const BhrImage *distances);
+
 /* ---- rendering into windows ---- */
 
 /**

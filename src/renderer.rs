@@ -10,11 +10,12 @@ use crate::image::{Attribute, Copiers, ImageMut, Layer, PixelFormat, save_layers
 use crate::job::{Job, JobRequest, JobTarget, OutputFrame, OutputTarget, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
-use crate::scene::{Hit, MOST_OUTPUTS, Output, Ray, Region, Scene, Transfer, View};
+use crate::scene::{Hit, MOST_OUTPUTS, Occluder, Output, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
 use parking_lot::Mutex;
+use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::{Arc, Weak};
@@ -42,6 +43,8 @@ pub struct RendererOptions {
 pub struct Renderer {
     /// The scene that the next frame shows. A frame works on the scene as it is when the frame is asked for.
     pub scene: Scene,
+    /// The host's things before the camera, in images of their size; LIGHT only.
+    pub occluder: Option<Occluder>,
     options: RendererOptions,
     adapter: AdapterInfo,
     runs_on: RunsOn,
@@ -75,6 +78,7 @@ impl Renderer {
         let options = RendererOptions { compatible_window: None, ..options };
         Ok(Self {
             scene: Scene::default(),
+            occluder: None,
             options,
             adapter: tracer.info().clone(),
             runs_on: tracer.runs_on(),
@@ -318,7 +322,8 @@ impl Renderer {
         let mut sink = |tile: Tile, pixels: &[u8], bytes_per_row: usize| {
             target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, bytes_per_row)
         };
-        let rendered = self.tracer.lock().render(&self.scene, &request, &mut sink, progress);
+        let scene = self.behind(&request.region, [request.width, request.height])?;
+        let rendered = self.tracer.lock().render(&scene, &request, &mut sink, progress);
         let stats = rendered.map_err(|mut error| {
             if target.is_touched() {
                 error.message += PARTLY_WRITTEN;
@@ -344,7 +349,13 @@ impl Renderer {
         let request = self.request(format, size, transparent, region)?;
         let shown = format == PixelFormat::Rgba8Srgb && !transparent;
         let window = shown.then(|| frame_request(&self.scene, size, format));
-        self.tracer.lock().prepare(&self.scene, &request, window.as_ref(), progress)
+        let scene = self.behind(&request.region, size)?;
+        self.tracer.lock().prepare(&scene, &request, window.as_ref(), progress)
+    }
+
+    /// The scene with the occluder. Errors: as `Scene::behind`.
+    fn behind(&self, region: &Region, size: [u32; 2]) -> Result<Cow<'_, Scene>> {
+        self.scene.behind(self.occluder.as_ref(), size, region)
     }
 
     /// Prepares frames in windows of `size` only. Errors: as [`Self::render`].
@@ -380,15 +391,16 @@ impl Renderer {
         self.scene.lens(&request.region)?;
         self.check_device()?;
         self.help_to_write(&mut target);
-        self.enqueue(JobTarget::Image(request, target))
+        let scene = self.behind(&request.region, [request.width, request.height])?.into_owned();
+        self.enqueue(scene, JobTarget::Image(request, target))
     }
 
-    fn enqueue(&mut self, target: JobTarget) -> Result<Job> {
+    fn enqueue(&mut self, scene: Scene, target: JobTarget) -> Result<Job> {
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),
         };
-        worker.enqueue(JobRequest::new(self.scene.clone(), target, self.tracer.clone(), self.stats.clone()))
+        worker.enqueue(JobRequest::new(scene, target, self.tracer.clone(), self.stats.clone()))
     }
 
     /// The part of the full frame that images of outputs hold. Errors: INVALID_ARGUMENT for images of several sizes, a
@@ -462,7 +474,8 @@ impl Renderer {
     ) -> Result<()> {
         let start = Instant::now();
         let mut frame = self.output_frame(targets, region)?;
-        let rendered = frame.render(&mut self.tracer.lock(), &self.scene, progress);
+        let scene = self.behind(&frame.region(), frame.size())?;
+        let rendered = frame.render(&mut self.tracer.lock(), &scene, progress);
         let stats = rendered.map_err(|mut error| {
             if frame.is_touched() {
                 error.message += PARTLY_WRITTEN;
@@ -483,7 +496,8 @@ impl Renderer {
         let frame = self.output_frame(targets, region)?;
         self.scene.lens(&frame.region())?;
         self.check_device()?;
-        self.enqueue(JobTarget::Outputs(frame))
+        let scene = self.behind(&frame.region(), frame.size())?.into_owned();
+        self.enqueue(scene, JobTarget::Outputs(frame))
     }
 
     /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for

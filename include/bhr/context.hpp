@@ -386,6 +386,10 @@ class Context {
         return job;
     }
 
+    /// bhr_set_occluder; without a value: none.
+    Result<void> set_occluder(const std::optional<Image> &distances) {
+        return set_or_none(bhr_set_occluder, distances);
+    }
     /// bhr_render_outputs.
     Result<void> render_outputs(span<const Output> outputs) {
         const std::vector<BhrOutput> copies = copied<BhrOutput>(outputs);

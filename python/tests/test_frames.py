@@ -214,3 +214,19 @@ def test_outputs_beside_the_picture(any_ctx, tmp_path):
     for bad, words in [([], "count"), ([kinds.SKY] * 9, "count"), ([(kinds.DEPTH, 1)], "index")]:
         with pytest.raises(bhr.InvalidArgument, match=words):
             any_ctx.render_outputs(32, 18, bad)
+
+
+def test_things_before_the_camera(any_ctx):
+    whole = any_ctx.render(32, 18, transparent=True).array.copy()
+    distances = np.full((18, 32), np.inf, np.float32)
+    distances[:, :16] = 0.5
+    any_ctx.set_occluder(distances)
+    half = any_ctx.render(32, 18, transparent=True).array
+    assert not half[:, :16].any() and np.abs(half[:, 16:] - whole[:, 16:].astype(int)).max() <= 2
+    with pytest.raises(bhr.InvalidArgument, match="16 x 18"):
+        any_ctx.render(16, 18)
+    for bad in np.zeros((18, 32, 4), np.uint8), np.full((18, 32), np.nan, np.float32):
+        with pytest.raises(bhr.InvalidArgument):
+            any_ctx.set_occluder(bad)
+    any_ctx.set_occluder(None)
+    assert np.array_equal(any_ctx.render(32, 18, transparent=True).array, whole)

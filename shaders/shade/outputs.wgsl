@@ -61,12 +61,6 @@ fn to_scene(v: vec3<f32>) -> vec3<f32> {
     return outputs.scene_x.xyz * v.x + outputs.scene_y.xyz * v.y + outputs.scene_z.xyz * v.z;
 }
 
-// The place of a crossing, chart.
-fn crossing_place(crossing: Crossing) -> vec3<f32> {
-    let turn = sincos(crossing.place.azimuth);
-    return vec3<f32>(turn.y, turn.x, 0.0) / crossing.u;
-}
-
 // The bits of the number that stands for an order where there is no crossing.
 fn without_crossing(fate: u32) -> u32 {
     let in_sky = bitcast<u32>(-1.0);
@@ -79,7 +73,7 @@ fn depth_of(fate: u32, first: Crossing, n: vec3<f32>) -> u32 {
     let mass = outputs.scene_x.w;
     let r = 1.0 / frame.place.x;
     if first.u > 0.0 && first.order == 0u {
-        return bitcast<u32>(mass * length(crossing_place(first) - frame.e_r.xyz * r));
+        return bitcast<u32>(mass * crossing_distance(first));
     }
     return select(bitcast<u32>(mass * r * max(-n.x, 0.0)), INFINITE, first.u <= 0.0 && fate == FATE_ESCAPED);
 }

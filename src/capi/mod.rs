@@ -36,6 +36,7 @@ pub mod hole;
 pub mod image;
 pub mod job;
 pub mod log;
+pub mod occluder;
 pub mod output;
 pub mod preset;
 pub mod quality;

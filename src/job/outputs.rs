@@ -36,6 +36,11 @@ impl<'a> OutputFrame<'a> {
         self.region
     }
 
+    /// Columns and rows of each image.
+    pub fn size(&self) -> [u32; 2] {
+        self.targets.first().map_or([0, 0], |first| [first.target.width(), first.target.height()])
+    }
+
     /// A pixel was written.
     pub fn is_touched(&self) -> bool {
         self.targets.iter().any(|target| target.target.is_touched())

@@ -4,6 +4,7 @@
 use super::camera::Camera;
 use super::film::Film;
 use super::hole::Hole;
+use super::occluder::Occluder;
 use super::quality::Quality;
 use super::sky::Sky;
 use crate::emit::bands::When;
@@ -86,6 +87,8 @@ pub struct Scene {
     pub view: View,
     /// The facts about rays that outputs ask for beside those that the emitters need (`Scene::for_outputs`).
     pub also_needs: Needs,
+    /// The host's things before the camera, in a frame that is their size; LIGHT only. `None`: none.
+    pub occluder: Option<Occluder>,
     /// Stars instead of the sky's: for tests.
     #[doc(hidden)]
     pub given_stars: Option<Arc<StarIndex>>,
@@ -107,6 +110,7 @@ impl Default for Scene {
             quality: Quality::default(),
             view: View::Light,
             also_needs: Needs::default(),
+            occluder: None,
             given_stars: None,
         }
     }
@@ -126,7 +130,11 @@ impl Scene {
             true => self.volumes_at(self.when(), if light { Accuracy::PICTURE } else { Accuracy::VIEW }),
             false => Volumes::default(),
         };
-        Emitters { disk, volumes, also: self.also_needs }
+        let mut also = self.also_needs;
+        if light && self.occluder.is_some() {
+            (also.places, also.beyond) = (true, true);
+        }
+        Emitters { disk, volumes, also }
     }
 
     /// The matter with depth as it is at a time.

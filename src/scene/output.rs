@@ -3,9 +3,10 @@
 //! pixel's centre. Mirrored by shaders/shade/outputs.wgsl. Knows records, and not how they were made.
 
 use super::observer::Lens;
+use super::occluder::{distance, place};
 use super::record::Record;
 use super::{Scene, View, VolumeResolution};
-use crate::emit::{Crossing, Needs, PlaneLight};
+use crate::emit::{Needs, PlaneLight};
 use crate::error::Result;
 use crate::image::PixelFormat;
 use crate::physics::geodesic::Clock;
@@ -127,7 +128,7 @@ impl Scene {
     /// The scene whose records `outputs` are made from: one ray a pixel, which goes on behind what hides the rest where
     /// an output asks for that.
     pub fn for_outputs(&self, outputs: &[RayOutput]) -> Self {
-        let mut scene = Self { view: View::Light, ..self.clone() };
+        let mut scene = Self { view: View::Light, occluder: None, ..self.clone() };
         scene.quality.samples_per_pixel = 1;
         scene.quality.refines = false;
         scene.quality.volume_resolution = VolumeResolution::Full;
@@ -207,20 +208,11 @@ impl<'a> RayValues<'a> {
     fn depth(&self, here: &Record, x: f64, y: f64) -> f64 {
         let frame = &self.lens.observer.frame;
         match here.crossings.first() {
-            Some(crossing) if crossing.order == 0 => self.mass * (place(crossing) - frame.e_r * frame.r).length(),
+            Some(crossing) if crossing.order == 0 => self.mass * distance(crossing, frame.e_r * frame.r),
             None if here.fate == Fate::Escaped => f64::INFINITY,
-            _ => {
-                let (n, _) = self.lens.observer.aberrate(self.lens.look_direction(x, y));
-                self.mass * frame.r * (-n.x).max(0.0)
-            }
+            _ => self.mass * self.lens.closest_approach(x, y),
         }
     }
-}
-
-/// The place of a crossing, chart.
-fn place(crossing: &Crossing) -> DVec3 {
-    let (sin, cos) = crossing.place.azimuth.sin_cos();
-    DVec3::new(cos, sin, 0.0) / crossing.u
 }
 
 /// The number that stands for an order where there is no crossing: -1 the sky, -2 captured.

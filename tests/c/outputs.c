@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* outputs.c -- outputs beside the picture as a C host asks for them: rightly, with jobs, regions, rows of any stride and
- * files of layers; and wrongly in every field. A refusal leaves the context and the host's memory as they were. */
+/* outputs.c -- outputs beside the picture, and things before the camera, as a C host asks for them: rightly, with jobs,
+ * regions, rows of any stride and files of layers; and wrongly in every field. A refusal leaves the context and the
+ * host's memory as they were. */
 #include "check.h"
 
 #include <math.h>
@@ -70,14 +71,16 @@ static void every_kind(BhrContext *context) {
                                    (double)direction[2] * direction[2]);
         const int    escapes = direction[3] != 0.0f;
         CHECK(fabs(length - escapes) < 1e-5, "pixel %u: the sky's direction has length %g", (unsigned)i, length);
-        CHECK(left[i] >= 0.0f && left[i] <= (escapes ? 1.0f : 0.0f), "pixel %u: %g comes through", (unsigned)i, left[i]);
+        CHECK(left[i] >= 0.0f && left[i] <= (escapes ? 1.0f : 0.0f), "pixel %u: %g comes through", (unsigned)i,
+              left[i]);
         if (crossing[3] == 0.0f) {
             double sum = 0.0, r = 0.0;
             for (int k = 0; k < 3; k++) {
                 sum += pow(crossing[k] - camera.position[k], 2.0);
                 r += (double)crossing[k] * crossing[k];
             }
-            CHECK(fabs(sqrt(sum) - depth[i]) < 1e-3, "pixel %u: depth %g, place at %g", (unsigned)i, depth[i], sqrt(sum));
+            CHECK(fabs(sqrt(sum) - depth[i]) < 1e-3, "pixel %u: depth %g, place at %g", (unsigned)i, depth[i],
+                  sqrt(sum));
             CHECK(fabs(sqrt(r) - disk[4 * i]) < 1e-3, "pixel %u: radius %g, place at %g", (unsigned)i, disk[4 * i],
                   sqrt(r));
             CHECK(disk[4 * i + 2] == redshift[i], "pixel %u: g %g and %g", (unsigned)i, disk[4 * i + 2], redshift[i]);
@@ -90,8 +93,8 @@ static void every_kind(BhrContext *context) {
             captures++;
         }
     }
-    CHECK(hits > 30 && sights > 100 && captures > 3, "%u hits, %u sights, %u captures", (unsigned)hits, (unsigned)sights,
-          (unsigned)captures);
+    CHECK(hits > 30 && sights > 100 && captures > 3, "%u hits, %u sights, %u captures", (unsigned)hits,
+          (unsigned)sights, (unsigned)captures);
 }
 
 /* As a job, into rows with gaps from the bottom up, and of a part of the frame. */
@@ -128,9 +131,10 @@ static void ways(BhrContext *context) {
 
 /* The file's header names the channels and the parameters; its picture is LIGHT. */
 static void layers(BhrContext *context, const char *folder) {
-    static const char *const words[] = {"depth.Z",       "sky.g",        "transmission.Y", "position.order", "disk.delay",
-                                        "redshift.Y",    "bhr.version",  "bhr.adapter",    "bhr.hole.spin",  "bhr.disk.opacity",
-                                        "bhr.film.bloom", "bhr.quality.method"};
+    static const char *const words[] = {"depth.Z",        "sky.g",         "transmission.Y",   "position.order",
+                                        "disk.delay",     "redshift.Y",    "bhr.version",      "bhr.adapter",
+                                        "bhr.hole.spin",  "bhr.disk.seed", "bhr.disk.opacity", "bhr.film.bloom",
+                                        "bhr.camera.fov_y", "bhr.time",    "bhr.quality.method"};
     static unsigned char     head[16384];
     char                     path[512];
     snprintf(path, sizeof path, "%s/layers.exr", folder);
@@ -145,7 +149,8 @@ static void layers(BhrContext *context, const char *folder) {
         fclose(file);
     }
     /* OpenEXR's magic number; version 2, one part of scan lines, short names. */
-    CHECK(read > 4096 && memcmp(head, "\x76\x2f\x31\x01\x02\0\0\0", 8) == 0, "%u bytes of another kind", (unsigned)read);
+    CHECK(read > 4096 && memcmp(head, "\x76\x2f\x31\x01\x02\0\0\0", 8) == 0, "%u bytes of another kind",
+          (unsigned)read);
     for (size_t i = 0; i < COUNT_OF(words); i++) {
         int found = 0;
         for (size_t at = 0; at + strlen(words[i]) < read && !found; at++) {
@@ -259,7 +264,8 @@ static void arrays(Watch *watch) {
     }
     const BhrRegion region = {sizeof region, WIDTH + 1, HEIGHT, 2, 0, 0};
     CHECK_OK(bhr_set_region(context, &region));
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "region", bhr_render_outputs(context, &outputs[1], sizeof *outputs, 1, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "region",
+                bhr_render_outputs(context, &outputs[1], sizeof *outputs, 1, NULL));
     CHECK_OK(bhr_set_region(context, NULL));
     CHECK(all_untouched(blocks, sizeof blocks), "refused outputs were written to");
     BhrOutput output;
@@ -274,7 +280,8 @@ static void arrays(Watch *watch) {
     CHECK_OK(bhr_render_outputs(context, &larger[0].known, sizeof larger[0], 2, NULL));
     fresh();
     larger[1].later = 1;
-    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "not 0", bhr_render_outputs(context, &larger[0].known, sizeof larger[0], 2, NULL));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "not 0",
+                bhr_render_outputs(context, &larger[0].known, sizeof larger[0], 2, NULL));
     CHECK(all_untouched(blocks, sizeof blocks), "refused outputs were written to");
 }
 
@@ -293,6 +300,67 @@ static void impossible(BhrContext *context) {
     CHECK_FAILS(BHR_ERROR_INVALID_STATE, "horizon", bhr_render_outputs(context, outputs, sizeof *outputs, 7, &job));
     CHECK(job == NULL && all_untouched(blocks, sizeof blocks), "outputs of a camera that cannot be");
     CHECK_OK(bhr_set_camera(context, &good));
+}
+
+/* Things before the camera: all of the picture, half of it, none; and distances that are none. */
+static void occluders(Watch *watch) {
+    static float         distances[PIXELS];
+    static unsigned char whole[PIXELS * 4], seen[PIXELS * 4];
+    BhrContext          *context = watch->context;
+    BhrImage             picture = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, whole, sizeof whole);
+    BhrImage             given = image_of(BHR_FORMAT_R32F, WIDTH, HEIGHT, distances, sizeof distances);
+    picture.flags = BHR_IMAGE_TRANSPARENT;
+    CHECK_OK(bhr_render_image(context, &picture));
+    for (size_t i = 0; i < PIXELS; i++) {
+        distances[i] = i % WIDTH < WIDTH / 2 ? 0.0f : INFINITY;
+    }
+    CHECK_OK(bhr_set_occluder(context, &given));
+    memset(distances, 0, sizeof distances); /* it was copied */
+    picture.pixels = seen;
+    CHECK_OK(bhr_render_image(context, &picture));
+    size_t hidden = 0, differ = 0;
+    for (size_t i = 0; i < PIXELS * 4; i++) {
+        const int before = i / 4 % WIDTH < WIDTH / 2;
+        hidden += before && seen[i] != 0;
+        differ += !before && abs(seen[i] - whole[i]) > 2;
+    }
+    CHECK(hidden == 0 && differ < 20, "%u bytes seen behind things, %u changed beside them", (unsigned)hidden,
+          (unsigned)differ);
+    BhrJob *job = NULL;
+    memset(seen, UNTOUCHED, sizeof seen);
+    CHECK_OK(bhr_render_image_async(context, &picture, &job));
+    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+    bhr_job_destroy(job);
+    CHECK(seen[0] == 0, "a job does not regard things");
+    BhrImage smaller = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH - 1, HEIGHT, seen, sizeof seen);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "occluder is 40 x 24", bhr_render_image(context, &smaller));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "occluder", bhr_render_image_async(context, &smaller, &job));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "occluder", bhr_prepare(context, &smaller));
+    BhrVolume volume;
+    CHECK_OK(bhr_volume_init(&volume, sizeof volume));
+    CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, 1));
+    CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "volumes", bhr_render_image(context, &picture));
+    CHECK_OK(bhr_set_volumes(context, NULL, sizeof volume, 0));
+    CHECK_OK(bhr_set_occluder(context, NULL));
+    static const float bad[] = {-1.0f, -0.001f, -INFINITY, NAN};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        distances[WIDTH + 3] = bad[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "distance at (3, 1)", bhr_set_occluder(context, &given));
+    }
+    distances[WIDTH + 3] = 0.0f;
+    BhrImage wrong = given;
+    wrong.format = BHR_FORMAT_RGBA8_SRGB;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "R32F", bhr_set_occluder(context, &wrong));
+    wrong = given;
+    wrong.byte_size--;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "byte_size", bhr_set_occluder(context, &wrong));
+    wrong = given;
+    wrong.pixels = NULL;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "pixels", bhr_set_occluder(context, &wrong));
+    wrong = given;
+    wrong.struct_size = 3;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_set_occluder(context, &wrong));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_set_occluder(NULL, &given));
 }
 
 static int32_t stop(void *user, double fraction) {
@@ -319,6 +387,7 @@ int main(int argc, char **argv) {
     watch_begin(&watch, context);
     fields(&watch);
     arrays(&watch);
+    occluders(&watch);
     impossible(context);
     cancelled(context);
     bhr_context_destroy(context);

@@ -192,6 +192,7 @@ static void frames(const std::string &folder) {
     EXPECT(context.render_outputs(outputs));
     EXPECT(std::memcmp(pixels.data(), frame.bytes().data(), pixels.size()) == 0);
     EXPECT(sky.channel<float>(0, 0, 3) > 0.5f && order.channel<float>(0, 0) == -1.0f);
+    EXPECT(context.set_occluder(depth.image()) && context.render(image) && context.set_occluder(std::nullopt));
     bhr::Job beside = context.render_outputs_async(bhr::span<const bhr::Output>(outputs, 3)).value();
     EXPECT(beside.wait());
     EXPECT(!context.render_outputs({}) && bhr::max_outputs == 8);

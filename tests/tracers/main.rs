@@ -15,6 +15,7 @@ mod lens;
 mod light;
 mod matter;
 mod observers;
+mod occluder;
 mod outputs;
 mod pictures;
 mod pixels;

@@ -197,7 +197,7 @@ class View(enum.IntEnum):
 
 
 class OutputKind(enum.IntEnum):
-    """What a frame can have beside its picture; all but LIGHT is of the one ray through a pixel's centre."""
+    """The kinds of outputs of a frame; all but LIGHT are numbers of the one ray through a pixel's centre."""
 
     LIGHT = 0
     DEPTH = 1

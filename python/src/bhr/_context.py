@@ -326,6 +326,12 @@ class Context:
         self._set(lib.bhr_set_region, ffi.NULL if region is None else region.to_c())
         self._region = region
 
+    def set_occluder(self, distances: Frame | npt.NDArray[Any] | None) -> None:
+        """Sets the program's own things before the camera: distances along the pixels' lines of sight, float32 of shape
+        (height, width) as large as the frames to come, np.inf where there is nothing; None: none."""
+        frame = distances if isinstance(distances, Frame) or distances is None else Frame(distances)
+        self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image())
+
     # ---- frames ----
 
     def render(

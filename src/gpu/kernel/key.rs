@@ -303,6 +303,8 @@ fn shade_constants(shade: ShadeVariant) -> Vec<(&'static str, f64)> {
         ("VOLUMES", flag(shade.volumes)),
         projection_constant(shade.projection),
         ("REFINES", flag(shade.refines)),
+        ("TURBULENT", flag(shade.turbulent)),
+        ("OCCLUDED", flag(shade.occluded)),
     ]
 }
 

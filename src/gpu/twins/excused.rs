@@ -56,6 +56,11 @@ const OUTPUTS: Why = Tested(
     "outputs_are_what_rays_meet",
     "outputs of both tracers against rays integrated in f64, and what alpha leaves of the sky",
 );
+const OCCLUDER: Why = Tested(
+    "tests/tracers/occluder.rs",
+    "the_tracers_agree",
+    "pictures behind things of any shape, one tracer against the other",
+);
 const NO_VOLUMES: Why = Plumbing("a hook that does nothing where no emitter with depth is");
 const ENTRY: Why = Plumbing("a kernel: it hands what others compute from one to the next");
 const HOOK: Why = Plumbing("a hook: it calls the one function that this kernel has for it");
@@ -130,7 +135,9 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("refine/traced", "ray_record with_sky next_crossing more_crossings rewind_crossings", REFINED),
     ("shade/only", "take_light", HOOK),
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
-    ("shade/outputs", "crossing_place depth_of crossing_output ray_output", OUTPUTS),
+    ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
+    ("records/record", "crossing_place crossing_distance", OUTPUTS),
+    ("shade/shade", "set_occluder is_occluded", OCCLUDER),
     ("emit/plane", "plane_opacity", OUTPUTS),
     ("shade/record", "take_record seen_crossing seen_sky", HOOK),
     (
