@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The host's own things before the camera, as distances: what of a ray they leave. Mirrored by shaders/shade/shade.wgsl.
-//! Knows no pixels' colours.
+//! The host's own things before the camera, as distances, and the part of a ray that they leave. Mirrored by
+//! shaders/shade/shade.wgsl. Knows no pixels' colours.
 
 use super::{Region, Scene, View};
 use crate::allocate::with_room;
