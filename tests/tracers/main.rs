@@ -5,6 +5,7 @@
 
 mod bloom;
 mod cameras;
+mod composite;
 mod extremes;
 #[path = "../frames/mod.rs"]
 mod frames;
