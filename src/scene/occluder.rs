@@ -43,8 +43,7 @@ impl Occluder {
         for y in 0..height {
             for (bytes, x) in image.row(y).chunks_exact(4).zip(0..) {
                 let distance = bytemuck::pod_read_unaligned::<f32>(bytes);
-                // NaN as well.
-                if !(distance >= 0.0) {
+                if distance.is_nan() || distance < 0.0 {
                     let distance = Number(distance.into());
                     return Err(Error::argument(format!(
                         "occluder distance at ({x}, {y}) is {distance}; it must be 0 or more, infinity for nothing"

@@ -118,7 +118,7 @@ fn nothing_else_changes() {
         renderer.occluder = Some(occluder(SIZE, |_, _| f32::INFINITY));
         let same = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
         assert!(differing(&plain, &same) < 10, "{name}: {}", differing(&plain, &same));
-        let shape = |x: u32, y: u32| if (x / 9 + y / 11) % 2 == 0 { 50.0 } else { f32::INFINITY };
+        let shape = |x: u32, y: u32| if (x / 9 + y / 11).is_multiple_of(2) { 50.0 } else { f32::INFINITY };
         renderer.occluder = Some(occluder(SIZE, shape));
         let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
         renderer.occluder = Some(occluder([50, 20], |x, y| shape(x + 30, y + 25)));
