@@ -17,7 +17,7 @@ use std::sync::Arc;
 pub struct Occluder {
     pub width: u32,
     pub height: u32,
-    pub distances: Arc<[f32]>,
+    pub distances: Arc<Vec<f32>>,
     /// The place of the first pixel in the full frame.
     pub origin: [u32; 2],
 }
@@ -52,7 +52,7 @@ impl Occluder {
                 distances.push(distance);
             }
         }
-        Ok(Self { width, height, distances: distances.into(), origin: [0, 0] })
+        Ok(Self { width, height, distances: Arc::new(distances), origin: [0, 0] })
     }
 
     /// The distance at a position of the full frame, scene lengths: that of the pixel there, or of the one nearest to

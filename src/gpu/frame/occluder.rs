@@ -12,7 +12,7 @@ pub struct OccluderTexture {
     /// One texel until a scene has an occluder.
     texture: Texture,
     /// The distances that it holds.
-    held: Option<Weak<[f32]>>,
+    held: Option<Weak<Vec<f32>>>,
 }
 
 impl OccluderTexture {
@@ -25,7 +25,7 @@ impl OccluderTexture {
     pub fn update(&mut self, device: &Device, scene: &Scene) -> Result<()> {
         let Some(occluder) = &scene.occluder else { return Ok(()) };
         // The weak pointer keeps the address from being given to others.
-        if self.held.as_ref().is_some_and(|held| std::ptr::addr_eq(held.as_ptr(), Arc::as_ptr(&occluder.distances))) {
+        if self.held.as_ref().is_some_and(|held| std::ptr::eq(held.as_ptr(), Arc::as_ptr(&occluder.distances))) {
             return Ok(());
         }
         let (size, limit) = ([occluder.width, occluder.height], device.limits().max_texture_dimension_2d);
@@ -38,7 +38,7 @@ impl OccluderTexture {
             self.texture = device.table("occluder", OCCLUDER.format, size)?;
         }
         self.held = None;
-        device.write_rows(&self.texture, 0, bytemuck::cast_slice(&occluder.distances))?;
+        device.write_rows(&self.texture, 0, bytemuck::cast_slice(occluder.distances.as_slice()))?;
         self.held = Some(Arc::downgrade(&occluder.distances));
         Ok(())
     }
