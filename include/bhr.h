@@ -1619,6 +1619,141 @@ void bhr_job_cancel(BhrJob *job);
  */
 void bhr_job_destroy(BhrJob *job);
 
+/* ---- outputs beside the picture ---- */
+
+#define BHR_MAX_OUTPUTS 8u /**< Outputs of one call at most. Since 0.2.0. */
+
+/**
+ * A kind of output. All but LIGHT are numbers of the one ray through a pixel's centre: they are not filtered, and
+ * not to be averaged across edges. Scene lengths and axes; crossings are those within the disk's radii, in the
+ * order in which the ray from the camera meets them, so that without a disk there are none. Outside a fisheye's
+ * circle SKY and TRANSMISSION are 0, the others NaN. Since 0.2.0.
+ */
+typedef int32_t BhrOutputKind;
+
+/**
+ * The picture, or with BhrView another than LIGHT its values: what bhr_render_image makes, byte for byte, in any
+ * format that goes with the view. index: 0. Since 0.2.0.
+ */
+#define BHR_OUTPUT_LIGHT 0
+
+/**
+ * R32F: the distance from the camera to what the ray meets first. Of the direct image of the disk, a crossing of
+ * order 0, that is the straight line's length, |x_hit - x_camera|. Light of higher orders, and captured rays, pass
+ * the hole: the distance to the point of the line of sight that is nearest to the hole, 0 where it lies behind.
+ * Infinity where the ray escapes without a crossing. Volumes and hot spots have none. A host's linear depth is
+ * this times the cosine of the angle to its forward axis. index: 0. Since 0.2.0.
+ */
+#define BHR_OUTPUT_DEPTH 1
+
+/**
+ * RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
+ * infinity). All 0 where the ray is captured, or unresolved. It is known behind the disk, too: TRANSMISSION, or
+ * the picture's alpha, says how much of it is seen. A host samples its own surroundings along it. index: 0. Since
+ * 0.2.0.
+ */
+#define BHR_OUTPUT_SKY 2
+
+/**
+ * R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
+ * captured. With BHR_IMAGE_TRANSPARENT the picture's alpha is 1 less the mean of this over a pixel. index: 0.
+ * Since 0.2.0.
+ */
+#define BHR_OUTPUT_TRANSMISSION 3
+
+/**
+ * RGBA32F: x, y, z of crossing number index, and its order, 0 for the direct image. Without that crossing x, y, z
+ * are NaN, and the fourth is -1 where the ray escapes, -2 where it is captured, NaN where it is unresolved. Since
+ * 0.2.0.
+ */
+#define BHR_OUTPUT_POSITION 4
+
+/**
+ * RGBA32F: radius, azimuth, redshift and delay of crossing number index, as in BhrCrossing; NaN without that
+ * crossing. The delay is NaN for cameras at or inside the photon sphere that fall. Since 0.2.0.
+ */
+#define BHR_OUTPUT_DISK 5
+
+/**
+ * R32F: the value of the view whose BHR_VIEW_* index is, but not LIGHT. REDSHIFT, ORDER and DEFLECTION come from
+ * the same rays as other outputs; the others take as long as a frame of their own. Since 0.2.0.
+ */
+#define BHR_OUTPUT_VIEW 6
+
+/** An output and where it goes. Begin with bhr_output_init. Since 0.2.0. */
+typedef struct BhrOutput {
+    uint32_t struct_size; /**< sizeof(BhrOutput). */
+    BhrOutputKind kind; /**< BHR_OUTPUT_*. Default LIGHT. */
+    uint32_t index; /**< POSITION, DISK: the number of a crossing, 0 .. 15. VIEW: BHR_VIEW_*. Otherwise 0. Default 0. */
+    uint32_t reserved; /**< Reserved: 0. */
+    /** The image, in the format of its kind. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT only. */
+    const BhrImage *image;
+    void *target; /**< Reserved for images on the GPU: NULL. */
+} BhrOutput;
+
+/**
+ * Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+ * for NULL or a wrong struct_size. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_output_init(BhrOutput *output, size_t struct_size);
+
+/**
+ * Renders several outputs of the scene as it is now: count of them, packed, 1 .. BHR_MAX_OUTPUTS, whose images are
+ * of one size; the region, if one is set, is theirs. All outputs but LIGHT and some views come from one pass over
+ * the frame. LIGHT has the bytes that bhr_render_image makes. The others agree with bhr_trace_rays along
+ * bhr_camera_rays to 5e-5 (1 + |value|), but for fewer than one number in 500, of rays that wind about the hole,
+ * or pass the edge of the disk or of the shadow.
+ *
+ * out_job NULL: the call returns when all of it is there, and reports to the progress callback. Otherwise *out_job
+ * becomes a job as bhr_render_image_async makes them; images are then written until it is done or destroyed.
+ * output_size = sizeof(BhrOutput) as the caller was compiled; no output's struct_size may be larger. Errors: those
+ * of bhr_render_image, or of bhr_render_image_async; INVALID_ARGUMENT for a count, a size, a kind or an index
+ * outside its range, images of several sizes, a format that does not go with its kind, or a target. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_render_outputs(BhrContext *context,
+                                           const BhrOutput *outputs,
+                                           size_t output_size,
+                                           uint32_t count,
+                                           BhrJob **out_job);
+
+/**
+ * Writes outputs that bhr_render_outputs has made to an .exr file: one part of scan lines, 32-bit floats (16-bit
+ * ones of LIGHT in RGBA16F), ZIP, with the channels R, G, B, A (LIGHT), depth.Z, sky.x, .y, .z, .g,
+ * transmission.Y, position.x, .y, .z, .order, disk.radius, .azimuth, .g, .delay, and .Y of redshift, order,
+ * deflection, steps, metric, optical_depth, intensity (VIEW); of crossings beyond the first the layers are
+ * position1, disk1 and so on. Alpha is written as it is. Its attributes name the library's version, the backend,
+ * the adapter, and every parameter of the scene as it is now: bhr.version, bhr.hole.spin ... by the names of the
+ * structs' fields here. A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
+ * bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F; UNSUPPORTED for another extension,
+ * LIGHT in an 8-bit format, or a library that was built without EXR; IO; OUT_OF_MEMORY. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_save_outputs(const BhrContext *context,
+                                         const BhrOutput *outputs,
+                                         size_t output_size,
+                                         uint32_t count,
+                                         const char *path);
+
+/* ---- the host's things before the camera ---- */
+
+/**
+ * Sets the host's things before the camera, for images of LIGHT that they are seen in: an image of R32F, as large as
+ * those images, that holds for each pixel the distance to the host's thing along its line of sight, in scene lengths
+ * (not along the forward axis, as depth buffers have it), and infinity where there is nothing. It is copied before
+ * return. NULL (default): none.
+ *
+ * Crossings of the disk of order 0 that lie beyond the distance, as straight as BHR_OUTPUT_DEPTH measures it, are
+ * left out. Where it is shorter than the way to the point of the line of sight that is nearest to the hole, the
+ * ray ends there: higher orders, the hole and the sky are left out as well, and BHR_IMAGE_TRANSPARENT's alpha is
+ * that of what lies before. So the picture goes over the host's, premultiplied. A thing behind the hole is hidden
+ * by what bends its light; it belongs into the sky (BHR_OUTPUT_SKY). Lines of sight are straight here, and light
+ * is not: things are where light shows them to about M / r of their angle from the hole. Glare (BhrFilm.bloom)
+ * goes over things, too. Images of a region take distances for that region. Frames in windows, views and the other
+ * outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT, and scenes with volumes
+ * or hot spots UNSUPPORTED, when they are rendered. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
+ * or a distance below 0; OUT_OF_MEMORY; the occluder then stays as it was. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_set_occluder(BhrContext *context, const BhrImage *distances);
+
 /* ---- rendering into windows ---- */
 
 /**

@@ -2,8 +2,10 @@
 //! Frames in the background: requests, each with its own copy of the scene, and all that their host knows of them. The
 //! threads of worker.rs make them. Knows no callbacks and nothing of C.
 
+mod outputs;
 mod worker;
 
+pub use outputs::{OutputFrame, OutputTarget};
 pub use worker::{MAX_UNFINISHED, Worker};
 
 use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
@@ -111,16 +113,28 @@ impl Shared {
 /// The place that a job's pixels go to.
 pub enum JobTarget {
     /// The host's memory.
-    Memory(ImageMut<'static>),
+    Memory(FrameRequest, ImageMut<'static>),
+    /// The outputs of a frame, in the host's memory.
+    Outputs(OutputFrame<'static>),
     /// A target on the GPU, with the semaphores of the frame, whose signals are given whatever becomes of it.
-    Shared(Arc<GpuTarget>, FrameSync),
+    Shared(FrameRequest, Arc<GpuTarget>, FrameSync),
+}
+
+impl JobTarget {
+    /// A pixel of the host's was written.
+    fn is_touched(&self) -> bool {
+        match self {
+            Self::Memory(_, target) => target.is_touched(),
+            Self::Outputs(outputs) => outputs.is_touched(),
+            Self::Shared(..) => false,
+        }
+    }
 }
 
 /// A frame to be made, and the job that hears of it. Its target is written until the job has its outcome, and never
 /// after.
 pub struct JobRequest {
     pub scene: Scene,
-    pub request: FrameRequest,
     pub target: JobTarget,
     pub tracer: SharedTracer,
     pub stats: StatsBoard,
@@ -129,19 +143,13 @@ pub struct JobRequest {
 }
 
 impl JobRequest {
-    pub fn new(
-        scene: Scene,
-        request: FrameRequest,
-        target: JobTarget,
-        tracer: SharedTracer,
-        stats: StatsBoard,
-    ) -> Self {
-        Self { scene, request, target, tracer, stats, shared: Arc::default(), requested: Instant::now() }
+    pub fn new(scene: Scene, target: JobTarget, tracer: SharedTracer, stats: StatsBoard) -> Self {
+        Self { scene, target, tracer, stats, shared: Arc::default(), requested: Instant::now() }
     }
 
     /// The job's end. The target is its owner's again.
     fn finish(self, outcome: Result<FrameStats>) {
-        let touched = matches!(&self.target, JobTarget::Memory(image) if image.is_touched());
+        let touched = self.target.is_touched();
         let outcome = outcome.map(|stats| self.stats.publish(stats, self.requested.elapsed())).map_err(|mut error| {
             if touched {
                 error.message += PARTLY_WRITTEN;

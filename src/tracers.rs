@@ -5,8 +5,8 @@
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Adapter, AdapterIds, GlTracer, GpuTracer, Search};
-use crate::scene::Scene;
-use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, Progress, TileSink};
+use crate::scene::{RayOutput, Scene};
+use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, OutputSink, Progress, TileSink};
 use parking_lot::Mutex;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -55,6 +55,23 @@ impl Tracer {
             Self::Cpu(t) => t.render(scene, request, sink, progress),
             Self::Gpu(t) => t.render(scene, request, sink, progress),
             Self::Gl(t) => t.render(scene, request, sink, progress),
+        }
+    }
+
+    /// Gives the numbers that `outputs` want of the frame's rays, packed, 4 bytes each; `scene` is
+    /// `Scene::for_outputs` of them. The request's format does not matter. Errors: as `Renderer::render`.
+    pub fn render_outputs(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        outputs: &[RayOutput],
+        sink: &mut OutputSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        match self {
+            Self::Cpu(t) => t.render_outputs(scene, request, outputs, sink, progress),
+            Self::Gpu(t) => t.render_outputs(scene, request, outputs, sink, progress),
+            Self::Gl(t) => t.render_outputs(scene, request, outputs, sink, progress),
         }
     }
 

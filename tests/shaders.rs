@@ -134,6 +134,7 @@ const CROSSINGS: Because = Because("it counts crossings, of which the host allow
 const ORDERS: Because = Because("it counts crossings that a table holds, of which the host asks for 16 at most");
 const SAMPLES: Because = Because("it counts a pixel's samples, of which the host asks for 4 or 32");
 const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most");
+const OUTPUTS: Because = Because("it counts outputs, of which there are 8 at most (MOST_OUTPUTS)");
 const TURBULENCE: Because = Because("it counts bands or generations, 2 at most, or taps, 8 at most");
 const PIECES: Because = Because("it counts the pieces of a part of a ray, of which there are 96 at most");
 const MATTER: Because = Because("it counts volumes and hot spots, of which there are 12 at most");
@@ -243,6 +244,9 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("refine/refine", "strips_of", "for (var i = 1u; i < SEARCH_STEPS + 3u; i += 1u)", CONSTANT),
     ("refine/refine", "strips_of", "for (var i = 0u; i < 2u; i += 1u)", CONSTANT),
     ("refine/refine", "refine_sample", "for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u)", CROSSINGS),
+    ("shade/outputs", "take_record", "for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u)", CROSSINGS),
+    ("shade/outputs", "take_record", "for (var i = 0u; i < outputs.count; i += 1u)", OUTPUTS),
+    ("shade/outputs", "take_record", "for (var i = 0u; i < outputs.count; i += 1u)", OUTPUTS),
     (
         "shade/shade",
         "pixel_light",

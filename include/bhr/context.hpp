@@ -4,6 +4,7 @@
 #define BHR_CONTEXT_HPP
 
 #include "image.hpp"
+#include "output.hpp"
 #include "preset.hpp"
 
 #include <cmath>
@@ -396,6 +397,42 @@ class Context {
         return job;
     }
 
+    /// bhr_set_occluder; without a value: none.
+    Result<void> set_occluder(const std::optional<Image> &distances) {
+        return set_or_none(bhr_set_occluder, distances);
+    }
+    /// bhr_render_outputs.
+    Result<void> render_outputs(span<const Output> outputs) {
+        const std::vector<BhrOutput> copies = copied<BhrOutput>(outputs);
+        return detail::call([&] {
+            return bhr_render_outputs(get(), copies.data(), sizeof(BhrOutput), std::uint32_t(copies.size()), nullptr);
+        });
+    }
+    /// bhr_render_outputs with a job.
+    Result<Job> render_outputs_async(span<const Output> outputs) {
+        const detail::Call inside;
+        const std::vector<BhrOutput> copies = copied<BhrOutput>(outputs);
+        BhrJob *handle = nullptr;
+        const BhrStatus status =
+            bhr_render_outputs(get(), copies.data(), sizeof(BhrOutput), std::uint32_t(copies.size()), &handle);
+        if (status < 0) {
+            Error error = Error::last(status);
+            inside.rethrow();
+            return error;
+        }
+        Job job(handle, progress_);
+        inside.rethrow();
+        return job;
+    }
+    /// bhr_save_outputs.
+    Result<void> save_outputs(span<const Output> outputs, const std::string &path) const {
+        const std::vector<BhrOutput> copies = copied<BhrOutput>(outputs);
+        return detail::call([&] {
+            const std::uint32_t count = std::uint32_t(copies.size());
+            return bhr_save_outputs(get(), copies.data(), sizeof(BhrOutput), count, path.c_str());
+        });
+    }
+
     /// bhr_surface_create.
     Result<Surface> create_surface(const Window &window, std::uint32_t width, std::uint32_t height,
                                    PresentMode mode = PresentMode::vsync) {
@@ -498,13 +535,18 @@ class Context {
     static BhrRay *c_rays(Ray *rays) noexcept { return reinterpret_cast<BhrRay *>(rays); }
     static const BhrRay *c_rays(const Ray *rays) noexcept { return reinterpret_cast<const BhrRay *>(rays); }
 
-    template <class C, class T>
-    Result<void> set_list(BhrStatus (*setter)(BhrContext *, const C *, std::size_t, std::uint32_t),
-                          span<const T> list) {
+    template <class C, class T> static std::vector<C> copied(span<const T> list) {
         std::vector<C> copies;
         for (std::size_t i = 0; i < list.size(); i++) {
             copies.push_back(list.data()[i].c());
         }
+        return copies;
+    }
+
+    template <class C, class T>
+    Result<void> set_list(BhrStatus (*setter)(BhrContext *, const C *, std::size_t, std::uint32_t),
+                          span<const T> list) {
+        const std::vector<C> copies = copied<C>(list);
         return detail::call([&] {
             return setter(get(), copies.data(), sizeof(C), static_cast<std::uint32_t>(copies.size()));
         });

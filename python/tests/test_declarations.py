@@ -33,6 +33,7 @@ ENUMS = {
     "BHR_METHOD_": bhr.Method,
     "BHR_VOLUME_RESOLUTION_": bhr.VolumeResolution,
     "BHR_VIEW_": bhr.View,
+    "BHR_OUTPUT_": bhr.OutputKind,
     "BHR_FATE_": bhr.Fate,
     "BHR_FLOW_": bhr.Flow,
     "BHR_HOT_SPOT_": bhr.HotSpotFlags,
@@ -41,7 +42,7 @@ ENUMS = {
 #: Constants of C that Python has by other means: arguments, logging's levels, numpy's strides. Windows are left out.
 ELSEWHERE = re.compile(
     r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|MAX_CROSSINGS"
-    r"|MAX_VOLUMES|MAX_HOT_SPOTS|WINDOW_\w+|PRESENT_\w+)"
+    r"|MAX_VOLUMES|MAX_HOT_SPOTS|MAX_OUTPUTS|WINDOW_\w+|PRESENT_\w+)"
 )
 
 #: Functions for windows, which this package does not have; and what cffi or numpy do in their place.
@@ -62,6 +63,7 @@ LEFT_OUT = {
     "bhr_preset_options_init",
     "bhr_volume_init",
     "bhr_hot_spot_init",
+    "bhr_output_init",
     # Messages are read on the thread of the call that failed.
     "bhr_context_error_message",
     "bhr_job_error_message",
@@ -114,7 +116,7 @@ def test_every_field_is_there(struct):
 def test_every_struct_is_there():
     structs = set(re.findall(r"^typedef struct \w+ \{.*?^\} (\w+);", CODE, re.MULTILINE | re.DOTALL))
     others = {"BhrContextOptions", "BhrImage", "BhrRay", "BhrHit", "BhrCrossing", "BhrTransfer", "BhrWindow"}
-    others |= {"BhrPresetOptions"}  # arguments of a method
+    others |= {"BhrOutput", "BhrPresetOptions"}  # arguments of methods
     assert structs == others | {struct.c_name for struct in STRUCTS}
 
 

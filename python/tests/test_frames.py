@@ -198,3 +198,36 @@ def test_the_sky_may_be_a_picture(ctx):
     assert not ctx.render(32, 18).array[..., :3].any()
     with pytest.raises(bhr.InvalidArgument):
         ctx.set_sky_map(np.zeros((8, 16), np.float32))
+
+
+def test_outputs_beside_the_picture(any_ctx, tmp_path):
+    kinds = bhr.OutputKind
+    wanted = [kinds.LIGHT, kinds.DEPTH, kinds.SKY, (kinds.POSITION, 1), (kinds.VIEW, bhr.View.ORDER)]
+    file = tmp_path / "layers.exr"
+    light, depth, sky, second, order = any_ctx.render_outputs(32, 18, wanted, save=file)
+    assert np.array_equal(light.array, any_ctx.render(32, 18, format=bhr.Format.RGBA32F).array)
+    assert depth.array.shape == order.array.shape == (18, 32) and second.array.shape == (18, 32, 4)
+    escaped = (sky.array != 0).any(axis=2)
+    assert np.allclose(np.linalg.norm(sky.array[escaped][:, :3], axis=1), 1.0, atol=1e-5)
+    assert np.isinf(depth.array[order.array == -1]).all() and (depth.array[order.array == 0] < 60).all()
+    assert np.array_equal(bhr.load(file).array, light.array)
+    for bad, words in [([], "count"), ([kinds.SKY] * 9, "count"), ([(kinds.DEPTH, 1)], "index")]:
+        with pytest.raises(bhr.InvalidArgument, match=words):
+            any_ctx.render_outputs(32, 18, bad)
+
+
+def test_things_before_the_camera(any_ctx):
+    whole = any_ctx.render(32, 18, transparent=True).array.copy()
+    distances = np.full((18, 32), np.inf, np.float32)
+    distances[:, :16] = 0.5
+    any_ctx.set_occluder(distances)
+    half = any_ctx.render(32, 18, transparent=True).array
+    # Glare adds light, and leaves alpha as it is.
+    assert not half[:, :16, 3].any() and np.abs(half[:, 16:, 3] - whole[:, 16:, 3].astype(int)).max() <= 2
+    with pytest.raises(bhr.InvalidArgument, match="16 x 18"):
+        any_ctx.render(16, 18)
+    for bad in np.zeros((18, 32, 4), np.uint8), np.full((18, 32), np.nan, np.float32):
+        with pytest.raises(bhr.InvalidArgument):
+            any_ctx.set_occluder(bad)
+    any_ctx.set_occluder(None)
+    assert np.array_equal(any_ctx.render(32, 18, transparent=True).array, whole)

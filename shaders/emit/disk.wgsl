@@ -12,6 +12,9 @@
 #import shared/not_inlined
 #requires fn light_table(i: u32) -> vec4<f32>
 
+// False: crossings have their places for something else.
+override TURBULENT: bool = true;
+
 // How much of a crossing at u the disk covers: all or nothing.
 fn disk_covers(u: f32) -> f32 {
     return select(0.0, 1.0, u >= frame.disk_u.x && u <= frame.disk_u.y);
@@ -21,12 +24,17 @@ fn disk_covers(u: f32) -> f32 {
 // light behind that it hides. `mu`: |cosine| of the ray's angle to the normal, as the matter sees it.
 fn disk_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
     var structure = 1.0;
-    if FOOTPRINTS {
+    if FOOTPRINTS && TURBULENT {
         structure = turbulent_brightness(crossing.place, crossing.dx, crossing.dy);
     }
     let profile = disk_profile(crossing.u);
-    let opacity = frame.disk.z * crossing.share * left_by_edges(crossing.u, profile);
+    let opacity = disk_opacity(crossing, profile);
     return vec4<f32>(open * opacity * structure * emission_law(mu) * disk_light(profile, shift), opacity);
+}
+
+// The share of the light from behind that a crossing hides where the disk's temperature is `profile`.
+fn disk_opacity(crossing: Crossing, profile: f32) -> f32 {
+    return frame.disk.z * crossing.share * left_by_edges(crossing.u, profile);
 }
 
 // The light at the angle of cosine `mu`, over that of an isotropic surface of the same flux (thin_disk.rs).

@@ -11,3 +11,8 @@
 fn emitted_at_crossing(crossing: Crossing, shift: Shift, mu: f32, open: f32) -> vec4<f32> {
     return disk_at_crossing(crossing, shift, mu, open);
 }
+
+// The share of the light from behind that a crossing hides.
+fn plane_opacity(crossing: Crossing) -> f32 {
+    return disk_opacity(crossing, disk_profile(crossing.u));
+}

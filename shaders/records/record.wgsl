@@ -24,6 +24,7 @@
 #import constants
 #import shared/fate
 #import shared/frame
+#import shared/math
 
 // Where and when the light of a crossing left, or the change of it from pixel to pixel.
 struct EmissionPoint {
@@ -88,6 +89,17 @@ struct Crossing {
     dy: EmissionPoint,
     // How much of the pixel, or of a sample's cell of it, the disk covers here, 0 .. 1; shading sets it.
     share: f32,
+}
+
+// The place of a crossing whose azimuth is known, chart.
+fn crossing_place(crossing: Crossing) -> vec3<f32> {
+    let turn = sincos(crossing.place.azimuth);
+    return vec3<f32>(turn.y, turn.x, 0.0) / crossing.u;
+}
+
+// Its straight distance from the camera, M.
+fn crossing_distance(crossing: Crossing) -> f32 {
+    return length(crossing_place(crossing) - frame.e_r.xyz / frame.place.x);
 }
 
 // Whether an edge of the disk that shows runs through a pixel whose ray crosses the plane at 1/r = u, or u changes so

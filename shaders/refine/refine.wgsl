@@ -24,9 +24,9 @@
 
 // The structure of matter with depth: emit/clouds.wgsl, emit/filaments.wgsl.
 // No uniform: lavapipe crashes with a fourth (shared/not_inlined.wgsl).
-@group(0) @binding(9) var<storage, read> clouds: Clouds;
-@group(0) @binding(10) var filaments: texture_3d<f32>;
-@group(0) @binding(11) var filament_sampler: sampler;
+@group(0) @binding(10) var<storage, read> clouds: Clouds;
+@group(0) @binding(11) var filaments: texture_3d<f32>;
+@group(0) @binding(12) var filament_sampler: sampler;
 
 fn filament_texel(place: vec3<f32>, level: f32) -> f32 {
     return textureSampleLevel(filaments, filament_sampler, place, level).x;

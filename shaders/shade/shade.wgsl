@@ -3,6 +3,7 @@
 // made.
 
 #import constants
+#import camera/observer
 #import camera/projection
 #import emit/plane
 #import emit/shift
@@ -31,6 +32,8 @@
 @group(0) @binding(5) var sky_map: texture_2d<f32>;
 // Linear between texels and levels, around in u, to the border in v.
 @group(0) @binding(6) var map_sampler: sampler;
+// Distances of the host's things, scene lengths: with OCCLUDED a texel for each pixel of the image, else one.
+@group(0) @binding(9) var occluder: texture_2d<f32>;
 
 // Choices that a pipeline is made for; the host compiles one for each combination that it needs: lavapipe runs both
 // sides of every `if`.
@@ -41,6 +44,8 @@ override SHOWS_MAP: bool = true;
 override SHOWS_GRID: bool = true;
 override OPAQUE: bool = false;
 override REFINES: bool = true;
+// The host has things before the camera (src/scene/occluder.rs).
+override OCCLUDED: bool = false;
 
 fn light_table(i: u32) -> vec4<f32> {
     return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
@@ -58,6 +63,9 @@ fn sampled(map: texture_2d<f32>, place: vec2<f32>, level: f32) -> vec3<f32> {
 fn shade_record(id: vec2<u32>, record: Record) -> vec4<f32> {
     let seen = has_look_direction(pixel_place(id));
     if SHOWS_LIGHT {
+        if OCCLUDED {
+            set_occluder(pixel_place(id));
+        }
         return select(vec4<f32>(0.0), pixel_light(record), seen);
     }
     return vec4<f32>(select(no_value(), view_value(record, id), seen), 0.0, 0.0, 1.0);
@@ -75,6 +83,24 @@ fn to_sky(d: vec3<f32>) -> vec3<f32> {
 // The least patch of src/sky/stars.rs.
 fn least_patch() -> f32 {
     return frame.sky_z.w;
+}
+
+// The farthest that light of the direct image comes from, M, and whether the ray ends there: `Shown` of
+// src/scene/occluder.rs.
+var<private> occluder_farthest: f32;
+var<private> occluder_ends: bool;
+
+// Goes to the sample at `place` of the full frame.
+fn set_occluder(place: vec2<f32>) {
+    let size = vec2<i32>(textureDimensions(occluder));
+    let texel = clamp(vec2<i32>(floor(place)) - vec2<i32>(frame.occluder.xy), vec2<i32>(0), size - 1);
+    occluder_farthest = textureLoad(occluder, texel, 0).x / frame.occluder.z;
+    let n = aberrate(look_direction(place.x, place.y)).n;
+    occluder_ends = occluder_farthest < max(-n.x, 0.0) / frame.place.x;
+}
+
+fn is_occluded(crossing: Crossing) -> bool {
+    return select(occluder_ends, crossing_distance(crossing) > occluder_farthest, crossing.order == 0u);
 }
 
 // At the pixel shaded last: the share of the light from behind that matter lets pass, and the turn of the sky's
@@ -100,7 +126,10 @@ fn pixel_light(here: Record) -> vec4<f32> {
             given = k + 1u;
         }
         let mu = min(here.polar_momentum * crossing.u * crossing.g, 1.0);
-        let emission = emitted_at_crossing(crossing, crossing_shift(here, crossing), mu, open);
+        var emission = emitted_at_crossing(crossing, crossing_shift(here, crossing), mu, open);
+        if OCCLUDED && is_occluded(crossing) {
+            emission = vec4<f32>(0.0);
+        }
         light += emission.xyz;
         open *= 1.0 - emission.w;
         // Behind an opaque crossing no other is looked for. If the loop found at its begin that there is none, lavapipe
@@ -116,6 +145,10 @@ fn pixel_light(here: Record) -> vec4<f32> {
     }
     seen_through = open;
     seen_turn = 0.0;
+    if OCCLUDED && occluder_ends {
+        seen_through = 0.0;
+        return vec4<f32>(light, 1.0 - open);
+    }
     if here.fate == FATE_ESCAPED && open > 0.0 {
         let whole = seen_sky(here);
         seen_turn = turn_of(whole);

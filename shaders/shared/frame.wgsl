@@ -71,6 +71,8 @@ struct Frame {
     shown_edges: vec4<f32>,
     // Plunge of src/physics/plunge.rs: ISCO, E, a x, x; 0 where no matter plunges.
     plunge: vec4<f32>,
+    // The first pixel of the occluder in the full frame, M in scene lengths; 0.
+    occluder: vec4<f32>,
     // Bands of the turbulence: age, time from birth to birth (f32), number of the youngest generation; 0.
     bands: array<vec4<u32>, MOST_BANDS>,
     // 1/r, outer end first, outside which no matter with depth is; how many volumes and spots there are; delay of light

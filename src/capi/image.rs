@@ -170,7 +170,7 @@ pub unsafe extern "C" fn bhr_image_init(image: *mut BhrImage, struct_size: usize
 ///
 /// # Safety
 /// `path` is NULL or a C string.
-unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
+pub(super) unsafe fn path_of(path: *const c_char) -> Result<PathBuf> {
     if path.is_null() {
         return Err(is_null("path"));
     }

@@ -97,6 +97,11 @@ pub(super) unsafe fn on_job<T: entry::Success>(
     keep(status, Some(&job.message))
 }
 
+/// A job that writes into the host's memory, for the host to destroy.
+pub(super) fn new_job(context: &BhrContext, job: Job, progress: Option<Callback>) -> *mut BhrJob {
+    Box::into_raw(Box::new(BhrJob { writes_memory: true, ..of_target(job, context, progress) }))
+}
+
 /// Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
 /// as they are now; later setters neither change the job nor wait for it. Jobs of a context are made in their
 /// order, by a thread of the library, several under way at a time: one is copied to the host while the next is
@@ -113,17 +118,13 @@ pub unsafe extern "C" fn bhr_render_image_async(
     // SAFETY: NULL or valid, by the header's conventions; the target's block is the host's until the job is done.
     unsafe {
         let out = Out::cleared(out_job);
-        // Not NULL in the closure: `on_context` has refused that.
-        let shared = || context.as_ref().map(|c| (c.progress_gate.clone(), c.sink(), c.broken.clone()));
         on_context("bhr_render_image_async", context, |state| {
             out.required("out_job")?;
             let target = image::read(target, "target")?;
-            let (progress_gate, sink, broken) = shared().ok_or_else(|| is_null("context"))?;
             let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region)?;
-            let message = LastMessage::new();
-            let progress = state.progress;
-            let job = BhrJob { job, progress, progress_gate, sink, message, broken, writes_memory: true };
-            out.set(Box::into_raw(Box::new(job)));
+            // `on_context` has refused NULL.
+            let context = context.as_ref().ok_or_else(|| is_null("context"))?;
+            out.set(new_job(context, job, state.progress));
             Ok(())
         })
     }

@@ -16,6 +16,7 @@
 // The safety contract of every function here is the same, is the header's, and is written once, in `cbindgen.toml`.
 #![allow(clippy::missing_safety_doc)]
 
+mod array;
 mod call;
 mod callback;
 mod entry;
@@ -40,6 +41,8 @@ pub mod interop_target;
 pub mod interop_vulkan;
 pub mod job;
 pub mod log;
+pub mod occluder;
+pub mod output;
 pub mod preset;
 pub mod quality;
 pub mod rays;

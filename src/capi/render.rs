@@ -47,7 +47,7 @@ impl Report {
     }
 
     /// The last word, if it has not been said.
-    fn finish(&mut self) {
+    pub(super) fn finish(&mut self) {
         if self.told < 1.0 {
             self.tell(1.0);
         }

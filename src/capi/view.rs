@@ -5,6 +5,7 @@ use super::call::on_context;
 use super::context::BhrContext;
 use super::pointer::unknown;
 use super::status::BhrStatus;
+use crate::error::Result;
 use crate::scene::View;
 
 /// The quantity that pixels show. 8-bit formats and windows show it in false colour, without film; R32F holds its
@@ -45,23 +46,28 @@ pub const BHR_VIEW_OPTICAL_DEPTH: BhrView = 6;
 /// map, s = (log2(value) + 6) / 12: 1/64 .. 64. Since 0.2.0.
 pub const BHR_VIEW_INTENSITY: BhrView = 7;
 
+/// The view of this number, which messages call `name`.
+pub(super) fn view(number: BhrView, name: &str) -> Result<View> {
+    Ok(match number {
+        BHR_VIEW_LIGHT => View::Light,
+        BHR_VIEW_REDSHIFT => View::Redshift,
+        BHR_VIEW_ORDER => View::Order,
+        BHR_VIEW_DEFLECTION => View::Deflection,
+        BHR_VIEW_STEPS => View::Steps,
+        BHR_VIEW_METRIC => View::Metric,
+        BHR_VIEW_OPTICAL_DEPTH => View::OpticalDepth,
+        BHR_VIEW_INTENSITY => View::Intensity,
+        _ => return unknown(number, name, "BHR_VIEW_LIGHT (0) to BHR_VIEW_INTENSITY (7)"),
+    })
+}
+
 /// Sets the view. Default BHR_VIEW_LIGHT. Errors: INVALID_ARGUMENT for an unknown view.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_view(context: *mut BhrContext, view: BhrView) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         on_context("bhr_set_view", context, |state| {
-            state.renderer.scene.view = match view {
-                BHR_VIEW_LIGHT => View::Light,
-                BHR_VIEW_REDSHIFT => View::Redshift,
-                BHR_VIEW_ORDER => View::Order,
-                BHR_VIEW_DEFLECTION => View::Deflection,
-                BHR_VIEW_STEPS => View::Steps,
-                BHR_VIEW_METRIC => View::Metric,
-                BHR_VIEW_OPTICAL_DEPTH => View::OpticalDepth,
-                BHR_VIEW_INTENSITY => View::Intensity,
-                _ => return unknown(view, "view", "BHR_VIEW_LIGHT (0) to BHR_VIEW_INTENSITY (7)"),
-            };
+            state.renderer.scene.view = self::view(view, "view")?;
             Ok(())
         })
     }

@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// Steps that the rays of a tile may be expected to take, and its widest row: small enough for the caches and for
 /// prompt progress, large enough to keep every core busy.
 const TILE_STEPS: u64 = 20 << 15;
-const TILE_WIDTH: u32 = 1024;
+pub(super) const TILE_WIDTH: u32 = 1024;
 /// The same with matter at half resolution: nearer to a square, as more blocks are traced than the tile has.
 const TILE_WIDTH_HALF: u32 = 160;
 
@@ -108,7 +108,7 @@ impl CpuTracer {
 }
 
 /// Row by row from the top left. Errors: OUT_OF_MEMORY.
-fn tiles(request: &FrameRequest, steps: u64, widest: u32) -> Result<Vec<Tile>> {
+pub(super) fn tiles(request: &FrameRequest, steps: u64, widest: u32) -> Result<Vec<Tile>> {
     let pixels = (TILE_STEPS / steps).clamp(256, 1 << 15) as u32;
     let w = request.width.clamp(1, widest.min(pixels / 4));
     let h = pixels / w;
@@ -125,7 +125,7 @@ fn tiles(request: &FrameRequest, steps: u64, widest: u32) -> Result<Vec<Tile>> {
 
 impl<'a> Frame<'a> {
     /// Renders on the current pool. Errors: OUT_OF_MEMORY.
-    fn new(
+    pub(super) fn new(
         scene: &'a Scene,
         lens: &'a Lens,
         stars: Arc<StarIndex>,
@@ -158,7 +158,7 @@ impl<'a> Frame<'a> {
     }
 
     /// The steps of a ray on average; looking one up takes as long as one.
-    fn expected_steps(&self, scene: &Scene) -> u64 {
+    pub(super) fn expected_steps(&self, scene: &Scene) -> u64 {
         match self.source {
             RecordSource::Traced(_) => scene.expected_steps(),
             RecordSource::LensLookup(_) => 1,
@@ -180,7 +180,7 @@ impl<'a> Frame<'a> {
 
     /// Calls `take` with the record of each pixel of `tile` (its ray passing through the place `offset`, 0 .. 1, of
     /// the pixel), its place, and its item of `out`; the steps of all rays. Errors: OUT_OF_MEMORY.
-    fn with_records<T: Send>(
+    pub(super) fn with_records<T: Send>(
         &self,
         tile: Tile,
         offset: [f64; 2],

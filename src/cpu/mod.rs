@@ -6,6 +6,7 @@ mod delivery;
 mod frame;
 mod half;
 mod lens;
+mod outputs;
 mod rays;
 mod record;
 pub(crate) mod refine;
@@ -26,6 +27,8 @@ pub struct CpuTracer {
     adapter: AdapterInfo,
     pool: rayon::ThreadPool,
     lenses: Box<LensCache>,
+    /// The same of frames of outputs, which ask more of tables.
+    output_lenses: Box<LensCache>,
     /// The tables of the last frame, kept from frame to frame.
     stars: Option<Arc<StarIndex>>,
 }
@@ -62,7 +65,7 @@ impl CpuTracer {
             .map_err(|e| Error::new(ErrorKind::OutOfMemory, format!("could not start {count} threads: {e}")))?;
         // Once all of them run, they have what threads take at their start, which is not ours to refuse.
         pool.broadcast(|_| ());
-        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default(), stars: None })
+        Ok(Self { adapter: adapter_info(), pool, lenses: Box::default(), output_lenses: Box::default(), stars: None })
     }
 
     pub fn adapter(&self) -> &AdapterInfo {

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::physics::orbit::zamo_frequency;
 use crate::physics::trace::Fate;
 use crate::scene::observer::Lens;
+use crate::scene::occluder::Shown;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION};
 use crate::scene::{Scene, View};
 use crate::sky::{SkyMap, StarIndex, least_patch, shifted_map_light, under_grid};
@@ -50,15 +51,23 @@ impl<'a> Shader<'a> {
     /// shows nothing.
     pub fn shade_record(&self, here: &Record, x: f64, y: f64) -> [f64; 4] {
         match (self.scene.view, self.lens.mapping.has_look_direction(x, y)) {
-            (View::Light, true) => self.pixel_light(here),
+            (View::Light, true) => self.pixel_light(here, self.shown(x, y)),
             (View::Light, false) => [0.0; 4],
             (_, true) => [self.view_value(here, x, y), 0.0, 0.0, 1.0],
             (_, false) => [f64::NAN, 0.0, 0.0, 1.0],
         }
     }
 
-    /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share.
-    pub fn pixel_light(&self, here: &Record) -> [f64; 4] {
+    /// The part of the ray through (x, y) that the host's things leave; `None`: there are none.
+    fn shown(&self, x: f64, y: f64) -> Option<Shown> {
+        let occluder = self.scene.occluder.as_ref()?;
+        Some(Shown::new(occluder.at(x, y) / self.scene.hole.mass, self.lens.closest_approach(x, y)))
+    }
+
+    /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share. `shown`: the part of the ray that is seen; where
+    /// it ends, what is behind takes the sky's place.
+    pub fn pixel_light(&self, here: &Record, shown: Option<Shown>) -> [f64; 4] {
+        let eye = self.lens.observer.frame.e_r * self.lens.observer.frame.r;
         let mut light = [0.0; 3];
         let mut open = 1.0;
         let mut media = here.media.iter();
@@ -73,6 +82,9 @@ impl<'a> Shader<'a> {
             if open <= 0.0 {
                 break;
             }
+            if shown.is_some_and(|shown| !shown.shows(crossing, eye)) {
+                continue;
+            }
             let gravity = || nu_static_observer(self.lens, here.energy) / self.nu_zamo_in_plane(crossing.u, here);
             let mu = (here.polar_momentum * crossing.u * crossing.g).min(1.0);
             let emission =
@@ -81,6 +93,9 @@ impl<'a> Shader<'a> {
             open *= 1.0 - emission.opacity;
         }
         pass(&mut light, &mut open);
+        if shown.is_some_and(|shown| shown.ends) {
+            return [light[0], light[1], light[2], 1.0 - open];
+        }
         if here.fate != Fate::Escaped {
             return [light[0], light[1], light[2], 1.0];
         }

@@ -52,6 +52,22 @@ pub struct Needs {
     /// Whether the ray moves inwards or outwards at crossings: its frequency is not known without that to matter which
     /// does so itself.
     pub headings: bool,
+    /// The rest of a ray behind matter that hides it.
+    pub beyond: bool,
+}
+
+impl Needs {
+    /// All that either asks for.
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            places: self.places || other.places,
+            delays: self.delays || other.delays,
+            angles: self.angles || other.angles,
+            parts: self.parts || other.parts,
+            headings: self.headings || other.headings,
+            beyond: self.beyond || other.beyond,
+        }
+    }
 }
 
 /// The emitters of a scene, in units of M (`Scene::emitters`).
@@ -60,18 +76,22 @@ pub struct Emitters {
     /// `None`: the scene has no disk, or all of it lies where no matter shines.
     pub disk: Option<ThinDisk>,
     pub volumes: Volumes,
+    /// The facts that somebody beside the emitters asks for.
+    pub also: Needs,
 }
 
 impl Emitters {
     pub fn needs(&self) -> Needs {
         let turbulence = self.disk.and_then(|disk| disk.turbulence);
-        Needs {
+        let own = Needs {
             places: turbulence.is_some(),
             delays: turbulence.is_some_and(|turbulence| turbulence.needs_delay) || self.volumes.needs_delay(),
             angles: self.disk.is_some_and(|disk| disk.disk.emission_law != EmissionLaw::Isotropic),
             parts: !self.volumes.is_empty(),
             headings: self.disk.is_some_and(|disk| disk.least_profile.is_some()),
-        }
+            beyond: false,
+        };
+        own.and(self.also)
     }
 
     /// The range of 1/r, outer end first, in 1/M, in which crossings of the plane are kept: all emitters of the plane
@@ -91,9 +111,9 @@ impl Emitters {
         self.disk.map_or([0.0; 2], |disk| disk.fading_u())
     }
 
-    /// The interval of 1/r in which a crossing of the plane hides all that is behind it.
+    /// The interval of 1/r in which a crossing of the plane hides all that is behind it, if nobody asks for that.
     pub fn opaque_u(&self) -> Option<[f64; 2]> {
-        self.disk.and_then(|disk| disk.opaque_u())
+        self.disk.filter(|_| !self.also.beyond).and_then(|disk| disk.opaque_u())
     }
 
     /// Whether each crossing that is kept hides all that is behind it, so that one is enough.
@@ -135,5 +155,10 @@ impl PlaneLight {
             Some(disk) if crossing.share > 0.0 => disk.at_crossing(crossing, shift, mu, open),
             _ => Emission { light: [0.0; 3], opacity: 0.0 },
         }
+    }
+
+    /// The share of the light from behind that a crossing hides.
+    pub fn opacity(&self, crossing: &Crossing) -> f64 {
+        self.disk.as_ref().map_or(0.0, |disk| disk.opacity(crossing))
     }
 }

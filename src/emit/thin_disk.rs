@@ -181,16 +181,26 @@ impl DiskLight {
     /// The light that a crossing on the disk adds to a ray of which the share `open` comes this far. `mu`: |cosine| of
     /// the ray's angle to the disk's normal, as the matter sees it.
     pub fn at_crossing(&self, crossing: &Crossing, shift: Shift, mu: f64, open: f64) -> Emission {
-        let ThinDisk { disk, edges, turbulence, .. } = &self.disk;
+        let ThinDisk { disk, turbulence, .. } = &self.disk;
         let profile = self.disk.profile(&self.profile, crossing.u);
         let rgb = self.light(profile, shift);
         let structure = match (turbulence, self.streaks) {
             (Some(turbulence), Some(streaks)) => turbulence.brightness(streaks, crossing.place, crossing.footprint),
             _ => 1.0,
         };
-        let opacity = disk.opacity * crossing.share * edges.left(crossing.u, profile);
+        let opacity = self.opacity_at(crossing, profile);
         let strength = open * opacity * structure * emission_law(disk.emission_law, mu);
         Emission { light: rgb.map(|v| strength * v), opacity }
+    }
+
+    /// The share of the light from behind that a crossing hides.
+    pub fn opacity(&self, crossing: &Crossing) -> f64 {
+        self.opacity_at(crossing, self.disk.profile(&self.profile, crossing.u))
+    }
+
+    /// The same where the disk's temperature is `profile`, in that of the hottest ring.
+    fn opacity_at(&self, crossing: &Crossing, profile: f64) -> f64 {
+        self.disk.disk.opacity * crossing.share * self.disk.edges.left(crossing.u, profile)
     }
 
     /// Linear radiance of the opaque, smooth disk where its temperature is `profile`, in that of the hottest ring.

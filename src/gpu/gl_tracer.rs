@@ -8,8 +8,8 @@ use super::device::wgpu_device::Loss;
 use super::frame::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::record::Record;
-use crate::scene::{Hit, Ray, Scene};
-use crate::tracer::{AdapterInfo, FrameRequest, FrameStats, Progress, TileSink};
+use crate::scene::{Hit, Ray, RayOutput, Scene};
+use crate::tracer::{AdapterInfo, FrameRequest, FrameStats, OutputSink, Progress, TileSink};
 use std::sync::Arc;
 
 /// A [`GpuTracer`] on a GL adapter, whose calls run on the adapter's thread. Any thread may call and drop it, whatever
@@ -51,6 +51,20 @@ impl GlTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         self.call_with_progress(progress, |tracer, progress| tracer.render(scene, request, sink, progress))
+    }
+
+    /// As [`GpuTracer::render_outputs`]; `progress` runs on this thread, `sink` on the other.
+    pub fn render_outputs(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        outputs: &[RayOutput],
+        sink: &mut OutputSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        self.call_with_progress(progress, |tracer, progress| {
+            tracer.render_outputs(scene, request, outputs, sink, progress)
+        })
     }
 
     /// As [`GpuTracer::prepare`]; `progress` runs on this thread.

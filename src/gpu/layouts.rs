@@ -2,7 +2,7 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::{bloom, clouds, matter, rays, uniforms};
+use super::frame::{bloom, clouds, matter, outputs, rays, uniforms};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
 use super::lens::{kerr, schwarzschild};
@@ -18,7 +18,22 @@ fn shared() -> Vec<Layout> {
     let [level, beam] = bloom::layouts();
     let [cloud, clouds] = clouds::layouts();
     let (matter, kerr, schwarzschild) = (matter::layout(), kerr::layout(), schwarzschild::layout());
-    vec![film, frame, pass, matter, cloud, clouds, given, start, end, kerr, schwarzschild, level, beam]
+    vec![
+        film,
+        frame,
+        pass,
+        outputs::layout(),
+        matter,
+        cloud,
+        clouds,
+        given,
+        start,
+        end,
+        kerr,
+        schwarzschild,
+        level,
+        beam,
+    ]
 }
 
 type Members<'a> = Vec<(&'a str, usize)>;

@@ -7,5 +7,5 @@ pub mod file;
 pub mod memory;
 
 pub use copiers::Copiers;
-pub use file::{Loaded, Pixels, load, save};
+pub use file::{Attribute, Layer, Loaded, Pixels, load, save, save_layers};
 pub use memory::{ImageMut, ImageRef, Layout, MAX_SIDE, PixelFormat};

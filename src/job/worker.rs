@@ -211,7 +211,7 @@ impl JobQueue {
     pub(super) fn withdraw(&self, job: &Arc<Shared>) -> Option<JobRequest> {
         let mut state = lock(&self.state);
         let is_it = |job_request: &JobRequest| {
-            Arc::ptr_eq(&job_request.shared, job) && matches!(job_request.target, JobTarget::Memory(_))
+            Arc::ptr_eq(&job_request.shared, job) && !matches!(job_request.target, JobTarget::Shared(..))
         };
         let place = state.waiting.iter().position(is_it)?;
         state.waiting.remove(place)
@@ -310,22 +310,23 @@ fn submit_all(queue: &JobQueue) {
     }
 }
 
-/// Submits a frame to the GPU; on the CPU and with GL, makes it.
+/// Submits a frame to the GPU; on the CPU and with GL, and of outputs, makes it.
 fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     let cancelled = job_request.shared.check_cancelled();
-    if let (Err(error), JobTarget::Memory(_)) = (&cancelled, &job_request.target) {
+    // The signals of a target on the GPU are given all the same.
+    if let (Err(error), JobTarget::Memory(..) | JobTarget::Outputs(_)) = (&cancelled, &job_request.target) {
         return queue.send(Event::Whole(Box::new(job_request), Err(error.clone())));
     }
     let mut guard = job_request.tracer.lock_arc();
-    let begun = match &mut *guard {
-        Tracer::Gpu(tracer) => {
+    let begun = match (&mut *guard, &job_request.target) {
+        (Tracer::Gpu(tracer), JobTarget::Memory(..) | JobTarget::Shared(..)) => {
             let begun = cancelled.and_then(|()| begin(tracer, &job_request));
-            if let (Err(_), JobTarget::Shared(_, sync)) = (&begun, &job_request.target) {
+            if let (Err(_), JobTarget::Shared(_, _, sync)) = (&begun, &job_request.target) {
                 give_signals(&tracer.device(), sync);
             }
             begun
         }
-        Tracer::Cpu(_) | Tracer::Gl(_) => {
+        (Tracer::Cpu(_) | Tracer::Gl(_), _) | (_, JobTarget::Outputs(_)) => {
             let rendered = render_whole(&mut guard, &mut job_request);
             // Whoever waits for the tracer gets it before the next job does.
             ArcMutexGuard::unlock_fair(guard);
@@ -345,12 +346,13 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
 
 /// Prepares a frame for its target. Errors: as [`GpuTracer::begin`].
 fn begin(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
-    let target = match &job_request.target {
-        JobTarget::Memory(_) => FrameTarget::Host,
-        JobTarget::Shared(target, _) => FrameTarget::shared(target)?,
+    let (request, target) = match &job_request.target {
+        JobTarget::Memory(request, _) => (request, FrameTarget::Host),
+        JobTarget::Shared(request, target, _) => (request, FrameTarget::shared(target)?),
+        JobTarget::Outputs(_) => return Err(Error::internal("outputs are several frames")),
     };
-    let mut frame = tracer.begin(&job_request.scene, &job_request.request, target)?;
-    if let JobTarget::Shared(target, sync) = &job_request.target {
+    let mut frame = tracer.begin(&job_request.scene, request, target)?;
+    if let JobTarget::Shared(_, target, sync) = &job_request.target {
         frame.hand_over(target.clone(), sync.clone());
     }
     Ok((frame, tracer.device()))
@@ -358,7 +360,7 @@ fn begin(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame
 
 /// The same once its signals are known to grow. Errors: INVALID_ARGUMENT.
 fn begin_asked(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
-    let JobTarget::Shared(_, sync) = &job_request.target else {
+    let JobTarget::Shared(_, _, sync) = &job_request.target else {
         return Err(Error::internal("a frame for the host's memory on the host's thread"));
     };
     interop::check_signals(sync)?;
@@ -380,20 +382,24 @@ fn give_signals(device: &Device, sync: &FrameSync) {
     }
 }
 
-/// Makes a frame without overlap with the next one: the CPU is busy, and GL is one thread's.
+/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and outputs are several
+/// frames.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
-    let (scene, request, shared) = (&job_request.scene, &job_request.request, job_request.shared.clone());
-    let JobTarget::Memory(target) = &mut job_request.target else {
-        return Err(Error::internal("a target on the GPU for another tracer"));
-    };
-    let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
-        target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
-    };
+    let (scene, shared) = (&job_request.scene, job_request.shared.clone());
     let mut progress = |fraction: f64| {
         shared.report(fraction);
         !shared.cancelled.load(Ordering::Relaxed)
     };
-    let rendered = tracer.render(scene, request, &mut sink, &mut progress);
+    let rendered = match &mut job_request.target {
+        JobTarget::Memory(request, target) => {
+            let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| {
+                target.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes)
+            };
+            tracer.render(scene, request, &mut sink, &mut progress)
+        }
+        JobTarget::Outputs(outputs) => outputs.render(tracer, scene, &mut progress),
+        JobTarget::Shared(..) => Err(Error::internal("a target on the GPU for another tracer")),
+    };
     rendered.map_err(|error| match error.kind {
         ErrorKind::Cancelled => Error::new(ErrorKind::Cancelled, "the job was cancelled"),
         _ => error,
@@ -507,12 +513,13 @@ impl RunningFrame {
     fn take_pixels(&mut self, step: Submission) -> Result<()> {
         let target = &mut self.job_request.target;
         // On the GPU what is submitted is made.
-        if let JobTarget::Memory(_) = target {
+        if let JobTarget::Memory(..) = target {
             self.job_request.shared.check_cancelled()?;
         }
         let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| match target {
-            JobTarget::Memory(image) => image.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes),
+            JobTarget::Memory(_, image) => image.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes),
             JobTarget::Shared(..) => Err(Error::internal("pixels of a target on the GPU came to the host")),
+            JobTarget::Outputs(_) => Err(Error::internal("a step of a frame without an image")),
         };
         step.finish(&self.device, &mut self.stats, &mut sink)?;
         self.done += 1;

@@ -103,13 +103,9 @@ impl Renderer {
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
         self.scene.lens(&request.region)?;
         let asks = (submits == Submits::InBackground).then(|| sync.clone());
-        let job_request = JobRequest::new(
-            self.scene.clone(),
-            request,
-            JobTarget::Shared(shared, sync),
-            self.tracer.clone(),
-            self.stats.clone(),
-        );
+        let scene = self.behind(&request.region, shape.size)?.into_owned();
+        let job_request =
+            JobRequest::new(scene, JobTarget::Shared(request, shared, sync), self.tracer.clone(), self.stats.clone());
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),

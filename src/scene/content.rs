@@ -4,9 +4,9 @@
 use super::camera::Camera;
 use super::film::Film;
 use super::hole::Hole;
+use super::occluder::Occluder;
 use super::quality::Quality;
 use super::sky::Sky;
-use crate::emit::Emitters;
 use crate::emit::bands::When;
 use crate::emit::disk::Disk;
 use crate::emit::effects::Effects;
@@ -16,6 +16,7 @@ use crate::emit::thin_disk::ThinDisk;
 use crate::emit::turbulence::Turbulence;
 use crate::emit::volume::Volume;
 use crate::emit::volumes::Volumes;
+use crate::emit::{Emitters, Needs};
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarIndex};
@@ -86,6 +87,10 @@ pub struct Scene {
     pub time: f64,
     pub quality: Quality,
     pub view: View,
+    /// The facts about rays that outputs ask for beside those that the emitters need (`Scene::for_outputs`).
+    pub also_needs: Needs,
+    /// The host's things before the camera, in a frame that is their size; LIGHT only. `None`: none.
+    pub occluder: Option<Occluder>,
     /// Stars instead of the sky's: for tests.
     #[doc(hidden)]
     pub given_stars: Option<Arc<StarIndex>>,
@@ -107,6 +112,8 @@ impl Default for Scene {
             time: 0.0,
             quality: Quality::default(),
             view: View::Light,
+            also_needs: Needs::default(),
+            occluder: None,
             given_stars: None,
         }
     }
@@ -122,7 +129,11 @@ impl Scene {
                 turbulence: Turbulence::new(&disk.disk, disk.u, disk.matter_spin, &self.when()).filter(|_| light),
                 ..disk
             });
-        Emitters { disk, volumes: self.shown_volumes() }
+        let mut also = self.also_needs;
+        if light && self.occluder.is_some() {
+            (also.places, also.beyond) = (true, true);
+        }
+        Emitters { disk, volumes: self.shown_volumes(), also }
     }
 
     /// The part of [`Self::emitters`] that has depth.

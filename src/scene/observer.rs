@@ -122,6 +122,13 @@ impl Lens {
         (self.axes * self.mapping.point(x, y)).normalize()
     }
 
+    /// The distance, M, along the line of sight through (x, y), straight as on the chart, to its point nearest to the
+    /// hole; 0 where that lies behind the observer.
+    pub fn closest_approach(&self, x: f64, y: f64) -> f64 {
+        let (n, _) = self.observer.aberrate(self.look_direction(x, y));
+        self.observer.frame.r * (-n.x).max(0.0)
+    }
+
     /// `look_direction`, and its changes to the next pixel right and down, to first order.
     #[inline]
     pub fn look_direction_and_changes(&self, x: f64, y: f64) -> (DVec3, [DVec3; 2]) {

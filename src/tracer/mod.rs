@@ -7,5 +7,5 @@ mod request;
 mod stats;
 
 pub use adapter::{AdapterInfo, Backend};
-pub use request::{FrameRequest, Progress, Tile, TileSink};
+pub use request::{FrameRequest, OutputSink, Progress, Tile, TileSink};
 pub use stats::{FrameStats, PASSES, StatsBoard};

@@ -78,6 +78,7 @@ enum {
     FIRST_HIT = 184,
     FIRST_HOT_SPOT = 88,
     FIRST_IMAGE = 48,
+    FIRST_OUTPUT = 32,
     FIRST_QUALITY = 48,
     FIRST_RAY = 56,
     FIRST_REGION = 24,

@@ -103,6 +103,24 @@ static void jobs(BhrContext *context) {
     }
 }
 
+static void outputs(BhrContext *context) {
+    const BhrImage images[] = {image_of(BHR_FORMAT_RGBA32F, 200, 100, pixels[0], sizeof pixels[0]),
+                               image_of(BHR_FORMAT_R32F, 200, 100, pixels[1], sizeof pixels[1])};
+    BhrOutput      both[2];
+    for (int i = 0; i < 2; i++) {
+        if (!TOOK(bhr_output_init(&both[i], sizeof both[i]))) {
+            return;
+        }
+        both[i].kind = i == 0 ? BHR_OUTPUT_SKY : BHR_OUTPUT_DEPTH;
+        both[i].image = &images[i];
+    }
+    if (TOOK(bhr_render_outputs(context, both, sizeof both[0], 2, NULL)) &&
+        TOOK(bhr_set_occluder(context, &images[1]))) {
+        frame(context, BHR_FORMAT_RGBA8_SRGB, 200, 100);
+        TOOK(bhr_set_occluder(context, NULL));
+    }
+}
+
 static void skies(BhrContext *context) {
     BhrImage map = image_of(BHR_FORMAT_RGBA8_SRGB, WIDE, HIGH, pixels[1], sizeof pixels[1]);
     BhrSky   sky;
@@ -137,6 +155,7 @@ static void use(BhrContext *context) {
     frame(context, BHR_FORMAT_RGBA8_SRGB, 16, 9);
     frame(context, BHR_FORMAT_RGBA32F, 200, 100);
     jobs(context);
+    outputs(context);
     trace(context);
     if (TOOK(bhr_film_init(&film, sizeof film))) {
         film.bloom = 0.5;

@@ -188,6 +188,26 @@ static void frames(const std::string &folder) {
     EXPECT(std::memcmp(pixels.data(), frame.bytes().data(), pixels.size()) == 0);
     EXPECT(context.prepare(image));
 
+    // Beside the picture.
+    bhr::Frame depth(WIDTH, HEIGHT, bhr::output_format(bhr::OutputKind::depth));
+    bhr::Frame sky(WIDTH, HEIGHT, bhr::output_format(bhr::OutputKind::sky));
+    bhr::Frame order(WIDTH, HEIGHT, bhr::Format::r32f);
+    const BhrImage images[] = {depth.image().c(), sky.image().c(), order.image().c(), raw};
+    const bhr::Output outputs[] = {bhr::Output(bhr::OutputKind::depth, images[0]),
+                                   bhr::Output(bhr::OutputKind::sky, images[1]),
+                                   bhr::Output(bhr::View::order, images[2]),
+                                   bhr::Output(bhr::OutputKind::light, images[3])};
+    std::memset(pixels.data(), 0, pixels.size());
+    EXPECT(context.render_outputs(outputs));
+    EXPECT(std::memcmp(pixels.data(), frame.bytes().data(), pixels.size()) == 0);
+    EXPECT(sky.channel<float>(0, 0, 3) > 0.5f && order.channel<float>(0, 0) == -1.0f);
+    EXPECT(context.set_occluder(depth.image()) && context.render(image) && context.set_occluder(std::nullopt));
+    bhr::Job beside = context.render_outputs_async(bhr::span<const bhr::Output>(outputs, 3)).value();
+    EXPECT(beside.wait());
+    EXPECT(!context.render_outputs({}) && bhr::max_outputs == 8);
+    EXPECT(context.save_outputs(bhr::span<const bhr::Output>(outputs, 3), folder + "/outputs.exr"));
+    EXPECT(context.save_outputs(outputs, folder + "/eight.exr").status() == bhr::StatusCode::unsupported);
+
     // Floats, upside down, and a quarter of the frame.
     float light[HEIGHT][WIDTH][4];
     EXPECT(context.render(bhr::Image(light, WIDTH, HEIGHT, bhr::Format::rgba32f)));

@@ -330,11 +330,53 @@ static void ray_call(BhrContext *context) {
     }
 }
 
+/* Outputs that share a block: each is whole, and the last one stays. */
+static void output_call(BhrContext *context, size_t i) {
+    BhrImage       images[3];
+    BhrOutput      outputs[3];
+    const uint32_t number_of = byte() % 4;
+    const int      async = byte() < 100 && jobs[i] == NULL;
+    for (size_t k = 0; k < 3; k++) {
+        images[k] = image_on(blocks[async ? i : JOBS]);
+        bhr_output_init(&outputs[k], sizeof outputs[k]);
+        outputs[k].struct_size = mostly(sizeof outputs[k], byte());
+        outputs[k].kind = constant(BHR_OUTPUT_VIEW);
+        outputs[k].index = outputs[k].kind == BHR_OUTPUT_VIEW ? byte() % 9u : mostly(0, byte());
+        outputs[k].image = byte() < 250 ? &images[k] : NULL;
+        if (byte() < 220) {
+            /* As hosts have them: of one size, in the kind's format, if that fits into a block. */
+            const int single = outputs[k].kind == BHR_OUTPUT_DEPTH || outputs[k].kind == BHR_OUTPUT_TRANSMISSION ||
+                               outputs[k].kind == BHR_OUTPUT_VIEW;
+            images[k].width = images[0].width;
+            images[k].height = images[0].height;
+            images[k].row_stride = 0;
+            images[k].pixels = blocks[async ? i : JOBS] + 32;
+            images[k].format = single ? BHR_FORMAT_R32F : BHR_FORMAT_RGBA32F;
+        }
+    }
+    const size_t size = mostly(sizeof outputs[0], byte());
+    if (byte() < 20) {
+        check(bhr_save_outputs(context, outputs, size, number_of, "/absent/outputs.exr"));
+        return;
+    }
+    const BhrStatus status = check(bhr_render_outputs(context, outputs, size, number_of, async ? &jobs[i] : NULL));
+    frames += status == BHR_OK;
+    if (async && (status == BHR_OK) != (jobs[i] != NULL)) {
+        fail("status and job disagree");
+    }
+}
+
 static void render_call(BhrContext *context) {
     BhrImage  image = image_on(blocks[JOBS]);
     BhrRegion region = {.struct_size = mostly(sizeof region, byte())};
     size_t    i = byte() % JOBS;
-    switch (byte() % 6) {
+    switch (byte() % 9) {
+    case 6:
+    case 7: output_call(context, i); break;
+    case 8:
+        image.format = BHR_FORMAT_R32F;
+        check(bhr_set_occluder(context, byte() < 60 ? &image : NULL));
+        break;
     case 0:
     case 1: frames += check(bhr_render_image(context, &image)) == BHR_OK; break;
     case 2:

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 24] = [
+const SECTIONS: [(&str, &str); 26] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -29,6 +29,8 @@ const SECTIONS: [(&str, &str); 24] = [
     ("region", "parts of a larger frame"),
     ("render", "rendering into memory"),
     ("job", "rendering in the background"),
+    ("output", "outputs beside the picture"),
+    ("occluder", "the host's things before the camera"),
     ("surface", "rendering into windows"),
     ("rays", "rays: the same tracer, asked directly"),
     ("transfer", "the matter with depth along rays"),

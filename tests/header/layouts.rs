@@ -122,6 +122,7 @@ fn layouts_hold_in_rust() {
             struct_size, method, samples_per_pixel, max_steps, step, tolerance, max_disk_order, reserved, render_scale,
             volume_resolution, reserved2
         }
+        output::BhrOutput { struct_size, kind, index, reserved, image, target }
         region::BhrRegion { struct_size, full_width, full_height, x, y, reserved }
         rays::BhrRay { position, direction, frequency_ratio }
         rays::BhrCrossing { radius, azimuth, redshift, delay }

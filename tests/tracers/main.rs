@@ -5,6 +5,7 @@
 
 mod bloom;
 mod cameras;
+mod composite;
 mod extremes;
 #[path = "../frames/mod.rs"]
 mod frames;
@@ -15,6 +16,8 @@ mod lens;
 mod light;
 mod matter;
 mod observers;
+mod occluder;
+mod outputs;
 mod pictures;
 mod pixels;
 #[path = "../random/mod.rs"]

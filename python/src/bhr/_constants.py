@@ -204,6 +204,18 @@ class View(enum.IntEnum):
     INTENSITY = 7
 
 
+class OutputKind(enum.IntEnum):
+    """The kinds of outputs of a frame; all but LIGHT are numbers of the one ray through a pixel's centre."""
+
+    LIGHT = 0
+    DEPTH = 1
+    SKY = 2
+    TRANSMISSION = 3
+    POSITION = 4
+    DISK = 5
+    VIEW = 6
+
+
 class Fate(enum.IntEnum):
     """How a ray ends."""
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import atexit
 import logging
 import operator
+import os
 import weakref
 from collections.abc import Sequence
 from types import TracebackType
@@ -14,9 +15,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._constants import Backend, Effects, Format, Preset, PresetMatter, Status, View
+from ._constants import Backend, Effects, Format, OutputKind, Preset, PresetMatter, Status, View
 from ._ffi import ffi
-from ._frame import Frame
+from ._frame import Frame, _path
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
@@ -345,6 +346,12 @@ class Context:
         self._set(lib.bhr_set_region, ffi.NULL if region is None else region.to_c())
         self._region = region
 
+    def set_occluder(self, distances: Frame | npt.NDArray[Any] | None) -> None:
+        """Sets the program's own things before the camera: distances along the pixels' lines of sight, float32 of shape
+        (height, width) as large as the frames to come, np.inf where there is nothing; None: none."""
+        frame = distances if isinstance(distances, Frame) or distances is None else Frame(distances)
+        self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image())
+
     # ---- frames ----
 
     def render(
@@ -398,6 +405,38 @@ class Context:
         finally:
             self.view = before
         return values
+
+    def render_outputs(
+        self,
+        width: int,
+        height: int,
+        outputs: Sequence[OutputKind | tuple[OutputKind, int]],
+        *,
+        format: Format = Format.RGBA32F,
+        transparent: bool = False,
+        save: str | os.PathLike[str] | None = None,
+        progress: Progress | None = None,
+    ) -> list[Frame]:
+        """The picture, and what belongs to it: distances, the sky's directions, places on the disk and so on, a frame
+        for each of `outputs`. POSITION, DISK and VIEW may be pairs with the number of a crossing, or the view. `format`
+        and `transparent` are the picture's. `save`: an .exr file that gets them all as layers."""
+        single = {OutputKind.DEPTH, OutputKind.TRANSMISSION, OutputKind.VIEW}
+        array = ffi.new("BhrOutput[]", len(outputs))
+        frames, images = [], []
+        for output, c in zip(outputs, array):
+            kind, index = output if isinstance(output, tuple) else (output, 0)
+            other = Format.R32F if kind in single else Format.RGBA32F
+            frame = Frame.empty(width, height, format if kind == OutputKind.LIGHT else other)
+            frames.append(frame)
+            images.append(frame.image(writable=True, flags=lib.BHR_IMAGE_TRANSPARENT if transparent else 0))
+            c.struct_size = ffi.sizeof("BhrOutput")
+            c.kind, c.index, c.image = OutputKind(kind), index, images[-1]
+        arguments = (array, ffi.sizeof("BhrOutput"), len(array))
+        with self._gate as context, Call(progress) as call:
+            call.check(lib.bhr_render_outputs(context, *arguments, ffi.NULL))
+            if save is not None:
+                check(lib.bhr_save_outputs(context, *arguments, _path(save)))
+        return frames
 
     def prepare(
         self,

@@ -73,6 +73,8 @@ impl GpuTracer {
                 volumes: emitters.needs().parts,
                 projection,
                 refines: scene.refines(request.transparent),
+                turbulent: emitters.disk.is_some_and(|disk| disk.turbulence.is_some()),
+                occluded: scene.view == View::Light && scene.occluder.is_some(),
             },
             film: if bloom.is_some() { FilmVariant::of_light() } else { developed },
             developed: bloom.is_some().then_some(developed),

@@ -12,18 +12,23 @@ use crate::sky::SkyMap;
 use crate::tracer::{Backend, FrameRequest};
 
 impl Setup {
-    /// Every kernel of the frame; those that take longest to make come last.
-    pub fn kernels(&self) -> Vec<KernelKey> {
-        let (record_setup, variants) = (&self.record_setup, &self.variants);
-        let mut keys = match record_setup.source {
-            RecordSource::Traced => record_setup.trace_keys(),
+    /// The kernels that make records, or the tables that they are looked up in.
+    pub(super) fn record_kernels(&self) -> Vec<KernelKey> {
+        match self.record_setup.source {
+            RecordSource::Traced => self.record_setup.trace_keys(),
             RecordSource::Schwarzschild { delay, .. } => {
                 vec![KernelKey::SchwarzschildEnds, KernelKey::SchwarzschildColumns { delay }]
             }
             RecordSource::Kerr { delay, pattern, .. } => {
                 vec![KernelKey::KerrNodes { delay, pattern }, KernelKey::KerrFlags { pattern }]
             }
-        };
+        }
+    }
+
+    /// Every kernel of the frame; those that take longest to make come last.
+    pub fn kernels(&self) -> Vec<KernelKey> {
+        let (record_setup, variants) = (&self.record_setup, &self.variants);
+        let mut keys = self.record_kernels();
         let deferred = record_setup.deferred_source();
         let film = (!variants.several_samples).then_some(variants.film);
         let shade = |source| match film {

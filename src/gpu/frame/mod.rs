@@ -10,6 +10,8 @@ pub(in crate::gpu) mod export;
 mod filaments;
 pub(in crate::gpu) mod kernels;
 pub(in crate::gpu) mod matter;
+mod occluder;
+pub(in crate::gpu) mod outputs;
 pub(in crate::gpu) mod rays;
 pub(in crate::gpu) mod refine;
 pub(in crate::gpu) mod render;

@@ -127,7 +127,7 @@ impl FrameBuffers {
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
         let [streaks, repeating] = tables.streaks().resources();
         let mut shared = vec![frame, pass.clone()];
-        shared.extend(tables.resources().into_iter().chain([streaks, repeating]));
+        shared.extend(tables.resources().into_iter().chain([streaks, repeating, tables.occluder().resource()]));
         let shades = |kernels: &Kernels, target: &[wgpu::BindingResource<'_>]| {
             let take = |kernels: &Kernels, source| {
                 let compiled = match variants.several_samples {

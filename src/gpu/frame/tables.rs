@@ -5,6 +5,7 @@
 //! filaments of matter with depth.
 
 use super::filaments::FilamentTexture;
+use super::occluder::OccluderTexture;
 use super::sky_maps::SkyMaps;
 use super::streaks::StreakTexture;
 use crate::allocate::{collected, with_room};
@@ -35,6 +36,7 @@ pub struct Tables {
     sky_maps: SkyMaps,
     streaks: StreakTexture,
     filaments: FilamentTexture,
+    occluder: OccluderTexture,
     /// Spin as the disk's matter meets it, of the profile in the texture.
     profile_spin: Option<f64>,
     /// `Uploads::lost` when they were made: after another number nobody knows what they hold.
@@ -42,7 +44,7 @@ pub struct Tables {
 }
 
 /// The pictures that are kept when the stars change.
-type Pictures = (SkyMaps, StreakTexture, FilamentTexture);
+type Pictures = (SkyMaps, StreakTexture, FilamentTexture, OccluderTexture);
 
 /// A texture of `size` entries in rows, the last one filled up.
 fn table<T: bytemuck::Pod>(
@@ -71,13 +73,13 @@ fn table<T: bytemuck::Pod>(
 
 impl Tables {
     fn new(device: &Device, stars: Arc<StarIndex>, pictures: Pictures) -> Result<Self> {
-        let (sky_maps, streaks, filaments) = pictures;
+        let (sky_maps, streaks, filaments, occluder) = pictures;
         let (entries, cells) = (stars.light_table_size(), stars.star_cells.len());
         let format = wgpu::TextureFormat::Rgba32Float;
         let light = table(device, "light tables", format, entries, stars.light_tables())?;
         let star_cells = table(device, "star cells", wgpu::TextureFormat::R32Uint, cells, stars.cell_tables())?;
         let lost_uploads = device.uploads.lost();
-        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, profile_spin: None, lost_uploads })
+        Ok(Self { stars, light, star_cells, sky_maps, streaks, filaments, occluder, profile_spin: None, lost_uploads })
     }
 
     /// Brings the tables up to the scene's stars, maps and disk. `map_sampler`: a sampler is to filter maps. Errors:
@@ -102,8 +104,9 @@ impl Tables {
                 Self::new(device, stars, pictures)?
             }
             None => {
-                let pictures = (SkyMaps::new(device)?, StreakTexture::new(device)?, FilamentTexture::new(device)?);
-                Self::new(device, stars, pictures)?
+                let (maps, streaks) = (SkyMaps::new(device)?, StreakTexture::new(device)?);
+                let rest = (FilamentTexture::new(device)?, OccluderTexture::new(device)?);
+                Self::new(device, stars, (maps, streaks, rest.0, rest.1))?
             }
         };
         let tables = tables.insert(made);
@@ -112,12 +115,17 @@ impl Tables {
     }
 
     fn into_pictures(self) -> Pictures {
-        (self.sky_maps, self.streaks, self.filaments)
+        (self.sky_maps, self.streaks, self.filaments, self.occluder)
     }
 
     /// Group 0 of emit/streaks.wgsl.
     pub fn streaks(&self) -> &StreakTexture {
         &self.streaks
+    }
+
+    /// `occluder` of shade/shade.wgsl.
+    pub fn occluder(&self) -> &OccluderTexture {
+        &self.occluder
     }
 
     /// The texture and the sampler of emit/filaments.wgsl.
@@ -143,6 +151,7 @@ impl Tables {
         self.sky_maps.update(device, scene, map_sampler)?;
         self.streaks.update(device, scene)?;
         self.filaments.update(device, scene)?;
+        self.occluder.update(device, scene)?;
         let spin = scene.matter_spin();
         if self.profile_spin == Some(spin) {
             return Ok(());

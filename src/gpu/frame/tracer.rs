@@ -2,6 +2,7 @@
 //! The GPU tracer itself: one device, and what frames and rays keep on it.
 
 use super::buffers::FrameBuffers;
+use super::outputs::OutputBuffers;
 use super::rays::RayBuffers;
 use super::tables::Tables;
 use crate::error::{Error, ErrorKind, Result};
@@ -22,6 +23,7 @@ pub struct GpuTracer {
     pub(in crate::gpu) tables: Option<Tables>,
     pub(in crate::gpu) buffers: FrameBuffers,
     pub(in crate::gpu) ray_buffers: RayBuffers,
+    pub(in crate::gpu) output_buffers: OutputBuffers,
     /// Goes after all that was made with it.
     pub(in crate::gpu) device: Arc<Device>,
     pub(in crate::gpu) adapter: Arc<Adapter>,
@@ -46,6 +48,7 @@ impl GpuTracer {
             tables: None,
             buffers: Default::default(),
             ray_buffers: Default::default(),
+            output_buffers: Default::default(),
         };
         tracer.expect_first_frame();
         Ok(tracer)

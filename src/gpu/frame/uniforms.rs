@@ -59,6 +59,7 @@ pub struct FrameUniform {
     surface: Vec4,
     shown_edges: Vec4,
     plunge: Vec4,
+    occluder: Vec4,
     bands: [[u32; 4]; MOST_BANDS],
     depth_u: [f32; 2],
     matter_count: u32,
@@ -89,7 +90,7 @@ pub(in crate::gpu) fn layouts() -> [crate::gpu::kernel::layout::Layout; 2] {
     let frame = layout!(FrameUniform as "Frame": right, up, forward, beta, e_r, e_theta, e_phi, place, zamo, hole,
         sky_x, sky_y, sky_z, disk, size, turbulence, critical, disk_u, opaque_u, capture_u, max_steps,
         max_crossings, rain, effects, view, pattern, map_sizes, projection,
-        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, bands, depth_u, matter_count,
+        medium_layer, plane_u, soft_edges, surface, shown_edges, plunge, occluder, bands, depth_u, matter_count,
         matter_delay, matter);
     let pass = layout!(PassUniform as "Pass": origin, size, offset, weight, first, slot, refined, light_origin,
         image_origin, pixels_first, pixels_row);
@@ -198,6 +199,9 @@ impl FrameUniform {
             }),
             surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
             shown_edges: four(edges.least[0], edges.least[1], least_light, tolerance),
+            occluder: scene.occluder.as_ref().map_or(four(0.0, 0.0, 1.0, 0.0), |occluder| {
+                four(occluder.origin[0].into(), occluder.origin[1].into(), scene.hole.mass, 0.0)
+            }),
             plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
             bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t.bands)),
             depth_u: range(emitters.depth_u()),

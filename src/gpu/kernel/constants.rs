@@ -15,7 +15,7 @@ use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic};
 use crate::scene::refine::{self, Edge};
-use crate::scene::{ColourMap, Effects, MAX_CROSSINGS, Projection, ToneMap, View};
+use crate::scene::{ColourMap, Effects, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
 use std::fmt::Debug;
 
@@ -61,6 +61,15 @@ pub fn fragment() -> String {
 /// Name; type and value as WGSL.
 fn all() -> Vec<(&'static str, String)> {
     constants! {
+        OUTPUT_DEPTH: u32 = RayOutputKind::Depth;
+        OUTPUT_SKY: u32 = RayOutputKind::Sky;
+        OUTPUT_TRANSMISSION: u32 = RayOutputKind::Transmission;
+        OUTPUT_POSITION: u32 = RayOutputKind::Position;
+        OUTPUT_DISK: u32 = RayOutputKind::Disk;
+        OUTPUT_REDSHIFT: u32 = RayOutputKind::Redshift;
+        OUTPUT_ORDER: u32 = RayOutputKind::Order;
+        OUTPUT_DEFLECTION: u32 = RayOutputKind::Deflection;
+        MOST_OUTPUTS: u32 = MOST_OUTPUTS;
         FATE_CAPTURED: u32 = Fate::Captured;
         FATE_ESCAPED: u32 = Fate::Escaped;
         FATE_UNRESOLVED: u32 = Fate::Unresolved;

@@ -3,7 +3,7 @@
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TRACED, edge_slots, pixel_slots, refine_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, pixel_slots, refine_slots,
     shade_slots, sum_slots,
 };
 use super::variant::{
@@ -34,6 +34,8 @@ pub enum KernelKey {
     Upsample,
     Beam,
     Export(RecordSource, bool, Option<Projection>),
+    /// Whether something shines in the plane, and whether matter with depth lies between crossings.
+    Outputs(RecordSource, bool, bool, Option<Projection>),
     SchwarzschildEnds,
     SchwarzschildColumns {
         delay: bool,
@@ -68,6 +70,10 @@ impl KernelKey {
         Self::Export(source, shade.footprints, shade.projection)
     }
 
+    pub fn outputs(source: RecordSource, shade: ShadeVariant) -> Self {
+        Self::Outputs(source, shade.plane, shade.volumes, shade.projection)
+    }
+
     pub fn entry_point(self) -> &'static str {
         match self {
             Self::Pixels(_) => "trace_pixels",
@@ -76,7 +82,9 @@ impl KernelKey {
             Self::Fill(..) => "fill_media",
             Self::Rays(_) => "trace_rays",
             Self::Count => "count_steps",
-            Self::ShadeSample(source, _) | Self::Export(source, ..) => source.driver(None).0,
+            Self::ShadeSample(source, _) | Self::Export(source, ..) | Self::Outputs(source, ..) => {
+                source.driver(None).0
+            }
             Self::ShadeOnly(source, _, film) => source.driver(Some(film.target)).0,
             Self::Refine(..) => "refine",
             Self::Develop(..) => "develop_tile",
@@ -108,6 +116,7 @@ impl KernelKey {
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
             Self::Export(source, ..) => wgsl::export(source),
+            Self::Outputs(source, ..) => wgsl::outputs(source),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
             Self::SchwarzschildColumns { .. } => wgsl::kernel("lens/schwarzschild_columns"),
             Self::KerrNodes { .. } => wgsl::kernel("lens/kerr_nodes"),
@@ -151,6 +160,10 @@ impl KernelKey {
             }
             Self::Export(source, ..) => {
                 vec![vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]]
+            }
+            Self::Outputs(source, ..) => {
+                let first = vec![Slot::Uniform, Slot::UniformPart, Slot::Texture(TABLES[0])];
+                vec![first, source.slots(), vec![Slot::Uniform, Slot::Write]]
             }
             Self::SchwarzschildEnds => vec![vec![Slot::Uniform, Slot::Uniform, rows]],
             Self::SchwarzschildColumns { .. } => {
@@ -203,6 +216,11 @@ impl KernelKey {
             Self::Export(source, footprints, projection) => {
                 let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
                 [source.constants(), export].concat()
+            }
+            Self::Outputs(source, plane, volumes, projection) => {
+                // Places of crossings come with their footprints.
+                let shade = vec![("PLANE", flag(plane)), ("FOOTPRINTS", 1.0), ("VOLUMES", flag(volumes))];
+                [source.constants(), shade, vec![projection_constant(projection)]].concat()
             }
             Self::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],
             Self::SchwarzschildColumns { delay } => vec![("SPINNING", 0.0), ("DELAY", flag(delay))],
@@ -286,6 +304,8 @@ fn shade_constants(shade: ShadeVariant) -> Vec<(&'static str, f64)> {
         ("VOLUMES", flag(shade.volumes)),
         projection_constant(shade.projection),
         ("REFINES", flag(shade.refines)),
+        ("TURBULENT", flag(shade.turbulent)),
+        ("OCCLUDED", flag(shade.occluded)),
     ]
 }
 

@@ -53,6 +53,10 @@ pub(super) const TABLES: [TextureKind; 2] = [
 pub const STREAKS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::Rg16Float, dimension: wgpu::TextureViewDimension::D2 };
 
+/// `occluder` of shade/shade.wgsl.
+pub const OCCLUDER: TextureKind =
+    TextureKind { format: wgpu::TextureFormat::R32Float, dimension: wgpu::TextureViewDimension::D2 };
+
 /// `filaments` of emit/filaments.wgsl.
 pub const FILAMENTS: TextureKind =
     TextureKind { format: wgpu::TextureFormat::R16Float, dimension: wgpu::TextureViewDimension::D3 };
@@ -141,7 +145,8 @@ pub fn pixel_slots() -> Vec<Slot> {
 /// Group 0 of shade/shade.wgsl and emit/streaks.wgsl.
 pub fn shade_slots() -> Vec<Slot> {
     let ([light, cells], map, streaks) = (TABLES.map(Slot::Texture), Slot::Filtered(SKY_MAP), Slot::Filtered(STREAKS));
-    vec![Slot::Uniform, Slot::UniformPart, light, cells, map, map, Slot::Sampler, streaks, Slot::Sampler]
+    let occluder = Slot::Texture(OCCLUDER);
+    vec![Slot::Uniform, Slot::UniformPart, light, cells, map, map, Slot::Sampler, streaks, Slot::Sampler, occluder]
 }
 
 /// `clouds` of emit/clouds.wgsl, and the texture and the sampler of emit/filaments.wgsl.

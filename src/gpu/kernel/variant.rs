@@ -84,6 +84,10 @@ pub struct ShadeVariant {
     pub projection: Option<Projection>,
     /// Whether pixels with edges get more rays; values of views are not to be averaged.
     pub refines: bool,
+    /// The disk is turbulent.
+    pub turbulent: bool,
+    /// The host has things before the camera.
+    pub occluded: bool,
 }
 
 /// Everything that decides how development is compiled.

@@ -73,6 +73,10 @@ pub fn export(source: RecordSource) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "records/export"])
 }
 
+pub fn outputs(source: RecordSource) -> Result<String> {
+    join(&[source.driver(None).1, source.fragment(), "shade/outputs"])
+}
+
 pub fn develop(film: FilmVariant, glare: bool) -> Result<String> {
     let driver = match film.target {
         PixelTarget::Image(_) | PixelTarget::Packed | PixelTarget::Light => "film/develop",
@@ -91,10 +95,10 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
     let film = |target| FilmVariant { target, ..FilmVariant::of_light() };
     let kerr = |deferred| RecordSource::Kerr { delay: true, pattern: true, moving: true, deferred };
     let sources = [
-        ["shade sample, traced", "shade only, traced", "export, traced"],
-        ["shade sample, spin-0 lens", "shade only, spin-0 lens", "export, spin-0 lens"],
-        ["shade sample, Kerr lens", "shade only, Kerr lens", "export, Kerr lens"],
-        ["shade sample, Kerr deferred", "shade only, Kerr deferred", "export, Kerr deferred"],
+        ["shade sample, traced", "shade only, traced", "export, traced", "outputs, traced"],
+        ["shade sample, spin-0 lens", "shade only, spin-0 lens", "export, spin-0 lens", "outputs, spin-0 lens"],
+        ["shade sample, Kerr lens", "shade only, Kerr lens", "export, Kerr lens", "outputs, Kerr lens"],
+        ["shade sample, Kerr deferred", "shade only, Kerr deferred", "export, Kerr deferred", "outputs, Kerr deferred"],
     ]
     .into_iter()
     .zip([
@@ -103,11 +107,12 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         kerr(false),
         kerr(true),
     ]);
-    let of_sources = sources.flat_map(|([in_sum, alone, exported], source)| {
+    let of_sources = sources.flat_map(|([in_sum, alone, exported, outputs_of], source)| {
         [
             (in_sum, shade_sample(source)),
             (alone, shade_only(source, film(PixelTarget::Packed))),
             (exported, export(source)),
+            (outputs_of, outputs(source)),
         ]
     });
     let others = [

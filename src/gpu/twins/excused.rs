@@ -51,6 +51,16 @@ const HALF: Why = Tested(
     "the_tracers_agree",
     "media of pixels from blocks, in whole pictures, one tracer against the other",
 );
+const OUTPUTS: Why = Tested(
+    "tests/tracers/outputs.rs",
+    "outputs_are_what_rays_meet",
+    "outputs of both tracers against rays integrated in f64, and what alpha leaves of the sky",
+);
+const OCCLUDER: Why = Tested(
+    "tests/tracers/occluder.rs",
+    "the_tracers_agree",
+    "pictures behind things of any shape, one tracer against the other",
+);
 const NO_VOLUMES: Why = Plumbing("a hook that does nothing where no emitter with depth is");
 const ENTRY: Why = Plumbing("a kernel: it hands what others compute from one to the next");
 const HOOK: Why = Plumbing("a hook: it calls the one function that this kernel has for it");
@@ -64,7 +74,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("bloom/gather", "kernel coverage tap_weight between gathered_within gather", BLOOM),
     ("bloom/glare", "tile_light", BLOOM),
     ("bloom/upsample", "between upsample", BLOOM),
-    ("emit/disk", "disk_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
+    ("emit/disk", "disk_at_crossing disk_opacity", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/volumes", "begin_medium add_part width_at cut_of weight_of add_piece coefficients_at", VOLUMES),
     ("emit/course", "step_course", VOLUMES),
@@ -125,6 +135,11 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("refine/refine", "beside_cell crossing_in in_quarters", Plumbing("it finds a lane")),
     ("refine/traced", "ray_record with_sky next_crossing more_crossings rewind_crossings", REFINED),
     ("shade/only", "take_light", HOOK),
+    ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
+    ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
+    ("records/record", "crossing_place crossing_distance", OUTPUTS),
+    ("shade/shade", "set_occluder is_occluded", OCCLUDER),
+    ("emit/plane", "plane_opacity", OUTPUTS),
     ("shade/record", "take_record seen_crossing seen_sky", HOOK),
     (
         "shade/shade",

@@ -195,6 +195,7 @@ fn images() -> Vec<Image> {
         sky::map_image("sky_map", sky::map()),
         sky::map_image("milky_way", sky::map()),
         light::streaks_image(),
+        image("occluder", wgpu::TextureFormat::R32Float, 1, &[0; 4 * TABLE_WIDTH]),
     ]
 }
 

@@ -6,6 +6,8 @@
 
 #[cfg(feature = "exr")]
 mod exr;
+#[cfg(feature = "exr")]
+mod layers;
 mod load;
 mod loaded;
 mod pam;
@@ -19,4 +21,4 @@ mod tests;
 
 pub use load::{decode_png, load};
 pub use loaded::{Loaded, Pixels, srgb_to_linear};
-pub use save::save;
+pub use save::{Attribute, Layer, save, save_layers};

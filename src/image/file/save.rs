@@ -52,6 +52,54 @@ pub fn save(image: &ImageRef<'_>, path: &Path) -> Result<()> {
     on_own_thread(write).map_err(|error| about("write", path, &error))
 }
 
+/// An image as layers of a file have it.
+pub struct Layer<'a> {
+    /// The channels' names, as many as a pixel has values.
+    pub channels: Vec<String>,
+    pub image: ImageRef<'a>,
+}
+
+/// A value of a file's attribute.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Attribute {
+    Number(f64),
+    Text(String),
+}
+
+/// Writes float images of one size to one `.exr` file, each channel by its name, with attributes. It appears as in
+/// [`save`]. Errors: UNSUPPORTED for another extension or an 8-bit format, and for EXR without the cargo feature;
+/// INVALID_ARGUMENT for two channels of one name; IO; OUT_OF_MEMORY.
+pub fn save_layers(layers: &[Layer<'_>], attributes: &[(String, Attribute)], path: &Path) -> Result<()> {
+    for layer in layers {
+        let FileKind::Exr = kind_for(path, layer.image.format())? else {
+            let format = layer.image.format();
+            return Err(Error::unsupported(format!("{format} is no format of layers; they are floats, in .exr")));
+        };
+    }
+    let write = || {
+        replace::with(path, |file| {
+            let mut file = BufWriter::new(file);
+            encode_layers(layers, attributes, &mut file)?;
+            file.into_inner().map_err(super::support::io_error)
+        })
+    };
+    on_own_thread(write).map_err(|error| about("write", path, &error))
+}
+
+#[cfg(feature = "exr")]
+fn encode_layers(
+    layers: &[Layer<'_>],
+    attributes: &[(String, Attribute)],
+    file: &mut BufWriter<std::fs::File>,
+) -> Result<()> {
+    super::layers::write(layers, attributes, file)
+}
+
+#[cfg(not(feature = "exr"))]
+fn encode_layers(_: &[Layer<'_>], _: &[(String, Attribute)], _: &mut BufWriter<std::fs::File>) -> Result<()> {
+    Err(Error::unsupported(super::support::WITHOUT_EXR))
+}
+
 fn encode(image: &ImageRef<'_>, kind: FileKind, file: &mut BufWriter<std::fs::File>) -> Result<()> {
     match kind {
         FileKind::Png => png::write(image, file),

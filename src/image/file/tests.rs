@@ -106,6 +106,66 @@ fn float_files_keep_every_value() {
     assert_eq!(bytemuck::cast_slice::<u8, f32>(loaded.pixels.as_bytes())[..4], [-1.0, -1.0, -1.0, 1.0]);
 }
 
+/// Layers as another program would read them: every channel by its name, and the attributes.
+#[cfg(feature = "exr")]
+#[test]
+fn layers_keep_every_channel_and_attribute() {
+    use ::exr::meta::attribute::{AttributeValue, Text};
+    use ::exr::prelude::{FlatSamples, read_all_flat_layers_from_file};
+    use half::f16;
+    let folder = Folder::new("layers");
+    let values = |first: usize| (first..first + 12).map(|i| i as f32 * 0.5 - 3.0).collect::<Vec<f32>>();
+    let halves = values(40).into_iter().map(f16::from_f32).collect::<Vec<_>>();
+    let (sky, depth, light) =
+        (layout(PixelFormat::Rgba32F, 52), layout(PixelFormat::R32F, -12), layout(PixelFormat::Rgba16F, 0));
+    let blocks = [
+        block(sky, [&values(0), &values(12)]),
+        block(depth, [&[1.0_f32, f32::INFINITY, 3.0], &[f32::NAN, 5.0, 6.0]]),
+        block(light, [&halves, &halves]),
+    ];
+    let names: [&[&str]; 3] = [&["sky.x", "sky.y", "sky.z", "sky.g"], &["depth.Z"], &["R", "G", "B", "A"]];
+    let layers = || {
+        let images = [sky, depth, light].into_iter().zip(&blocks).zip(names).map(|((layout, block), names)| Layer {
+            channels: names.iter().map(|name| name.to_string()).collect(),
+            image: ImageRef::new(layout, bytemuck::cast_slice(block)).unwrap(),
+        });
+        images.collect::<Vec<_>>()
+    };
+    let attributes =
+        [("bhr.hole.spin".into(), Attribute::Number(0.1)), ("bhr.adapter".into(), Attribute::Text("a\u{e9}b".into()))];
+    let path = folder.file("layers.exr");
+    save_layers(&layers(), &attributes, &path).unwrap();
+    let read = read_all_flat_layers_from_file(&path).unwrap();
+    let [layer] = &read.layer_data[..] else { panic!("{} layers", read.layer_data.len()) };
+    let found = |name: &str| {
+        let channel = layer.channel_data.list.iter().find(|channel| channel.name.eq(name)).unwrap();
+        match &channel.sample_data {
+            FlatSamples::F32(values) => values.clone(),
+            FlatSamples::F16(values) => values.iter().map(|value| value.to_f32()).collect(),
+            FlatSamples::U32(_) => panic!("{name} has whole numbers"),
+        }
+    };
+    for (c, name) in names[0].iter().enumerate() {
+        assert_eq!(found(name), values(0).chunks(4).chain(values(12).chunks(4)).map(|p| p[c]).collect::<Vec<_>>());
+    }
+    let depth = found("depth.Z");
+    assert!(depth[1] == f32::INFINITY && depth[3].is_nan() && depth[2] == 3.0 && depth[5] == 6.0, "{depth:?}");
+    assert_eq!(found("A")[..3], [18.5, 20.5, 22.5]);
+    assert_eq!(layer.channel_data.list.len(), 9);
+    let other = &layer.attributes.other;
+    assert_eq!(other.get(&Text::from("bhr.hole.spin")), Some(&AttributeValue::F64(0.1)));
+    assert_eq!(other.get(&Text::from("bhr.adapter")), Some(&AttributeValue::Text("a??b".into())));
+    // Two channels of one name, and formats that are none of layers.
+    let twice = layers().into_iter().chain(layers()).collect::<Vec<_>>();
+    assert_eq!(save_layers(&twice, &[], &path).unwrap_err().kind, ErrorKind::InvalidArgument);
+    let bytes = layout(PixelFormat::Rgba8Srgb, 0);
+    let words = block(bytes, [&TOP, &BOTTOM]);
+    let image = ImageRef::new(bytes, bytemuck::cast_slice(&words)).unwrap();
+    let colours = Layer { channels: names[2].iter().map(|name| name.to_string()).collect(), image };
+    assert_eq!(save_layers(&[colours], &[], &path).unwrap_err().kind, ErrorKind::Unsupported);
+    assert_eq!(folder.names(), ["layers.exr"]);
+}
+
 #[test]
 fn sixteen_bit_files_become_linear() {
     let folder = Folder::new("ppm16");

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! BhrOutput: what a host can have of a frame beside its picture.
+
+use super::array::{Names, read_array};
+use super::call::on_context;
+use super::context::BhrContext;
+use super::entry::anywhere;
+use super::image::{self, BhrImage, path_of};
+use super::job::{BhrJob, new_job};
+use super::pointer::{Out, check_reserved, is_null, unknown};
+use super::render::Report;
+use super::status::BhrStatus;
+use super::versioned::{self, POINTER, Versioned};
+use super::view::view;
+use crate::error::{Error, ErrorKind, Result};
+use crate::job::OutputTarget;
+use crate::scene::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind, View};
+use arrayvec::ArrayVec;
+use std::ffi::{c_char, c_void};
+use std::ptr::{null, null_mut};
+
+/// Outputs of one call at most. Since 0.2.0.
+pub const BHR_MAX_OUTPUTS: u32 = 8u32;
+
+/// A kind of output. All but LIGHT are numbers of the one ray through a pixel's centre: they are not filtered, and
+/// not to be averaged across edges. Scene lengths and axes; crossings are those within the disk's radii, in the
+/// order in which the ray from the camera meets them, so that without a disk there are none. Outside a fisheye's
+/// circle SKY and TRANSMISSION are 0, the others NaN. Since 0.2.0.
+pub type BhrOutputKind = i32;
+/// The picture, or with BhrView another than LIGHT its values: what bhr_render_image makes, byte for byte, in any
+/// format that goes with the view. index: 0. Since 0.2.0.
+pub const BHR_OUTPUT_LIGHT: BhrOutputKind = 0;
+/// R32F: the distance from the camera to what the ray meets first. Of the direct image of the disk, a crossing of
+/// order 0, that is the straight line's length, |x_hit - x_camera|. Light of higher orders, and captured rays, pass
+/// the hole: the distance to the point of the line of sight that is nearest to the hole, 0 where it lies behind.
+/// Infinity where the ray escapes without a crossing. Volumes and hot spots have none. A host's linear depth is
+/// this times the cosine of the angle to its forward axis. index: 0. Since 0.2.0.
+pub const BHR_OUTPUT_DEPTH: BhrOutputKind = 1;
+/// RGBA32F, the lens map: the unit vector from which the light of the sky comes, and g = nu(camera) / nu(at
+/// infinity). All 0 where the ray is captured, or unresolved. It is known behind the disk, too: TRANSMISSION, or
+/// the picture's alpha, says how much of it is seen. A host samples its own surroundings along it. index: 0. Since
+/// 0.2.0.
+pub const BHR_OUTPUT_SKY: BhrOutputKind = 2;
+/// R32F: the share of the sky's light that the disk, volumes and hot spots let pass, 0 .. 1; 0 where the ray is
+/// captured. With BHR_IMAGE_TRANSPARENT the picture's alpha is 1 less the mean of this over a pixel. index: 0.
+/// Since 0.2.0.
+pub const BHR_OUTPUT_TRANSMISSION: BhrOutputKind = 3;
+/// RGBA32F: x, y, z of crossing number index, and its order, 0 for the direct image. Without that crossing x, y, z
+/// are NaN, and the fourth is -1 where the ray escapes, -2 where it is captured, NaN where it is unresolved. Since
+/// 0.2.0.
+pub const BHR_OUTPUT_POSITION: BhrOutputKind = 4;
+/// RGBA32F: radius, azimuth, redshift and delay of crossing number index, as in BhrCrossing; NaN without that
+/// crossing. The delay is NaN for cameras at or inside the photon sphere that fall. Since 0.2.0.
+pub const BHR_OUTPUT_DISK: BhrOutputKind = 5;
+/// R32F: the value of the view whose BHR_VIEW_* index is, but not LIGHT. REDSHIFT, ORDER and DEFLECTION come from
+/// the same rays as other outputs; the others take as long as a frame of their own. Since 0.2.0.
+pub const BHR_OUTPUT_VIEW: BhrOutputKind = 6;
+
+/// An output and where it goes. Begin with bhr_output_init. Since 0.2.0.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct BhrOutput {
+    /// sizeof(BhrOutput).
+    pub struct_size: u32,
+    /// BHR_OUTPUT_*. Default LIGHT.
+    pub kind: BhrOutputKind,
+    /// POSITION, DISK: the number of a crossing, 0 .. 15. VIEW: BHR_VIEW_*. Otherwise 0. Default 0.
+    pub index: u32,
+    /// Reserved: 0.
+    pub reserved: u32,
+    /// The image, in the format of its kind. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT only.
+    pub image: *const BhrImage,
+    /// Reserved for images on the GPU: NULL.
+    pub target: *mut c_void,
+}
+
+// SAFETY: repr(C), size first, no padding, integers and nullable pointers.
+unsafe impl Versioned for BhrOutput {
+    const NAME: &'static str = "BhrOutput";
+    const SIZES: &'static [usize] = &[16 + 2 * POINTER];
+    fn defaults() -> Self {
+        Self { struct_size: 0, kind: BHR_OUTPUT_LIGHT, index: 0, reserved: 0, image: null(), target: null_mut() }
+    }
+}
+
+const OUTPUTS: Names = Names { array: "outputs", size: "output_size", count: "output count" };
+
+/// Crossings of a ray at most (BhrQuality.max_disk_order).
+const MOST_CROSSINGS: u32 = 16;
+
+/// An output as the host gave it, its numbers checked.
+#[derive(Clone, Copy)]
+struct Given {
+    output: Output,
+    image: *const BhrImage,
+}
+
+impl TryFrom<BhrOutput> for Given {
+    type Error = Error;
+
+    fn try_from(given: BhrOutput) -> Result<Self> {
+        let BhrOutput { kind, index, .. } = given;
+        check_reserved(given.reserved, "its")?;
+        if !given.target.is_null() {
+            return Err(Error::argument("its target is not NULL; this library writes outputs into images only"));
+        }
+        let most = match kind {
+            BHR_OUTPUT_POSITION | BHR_OUTPUT_DISK => MOST_CROSSINGS - 1,
+            BHR_OUTPUT_VIEW => u32::MAX,
+            _ => 0,
+        };
+        let of_ray = |kind| Output::Ray(RayOutput { kind, index });
+        let output = match kind {
+            BHR_OUTPUT_LIGHT => Output::Light,
+            BHR_OUTPUT_DEPTH => of_ray(RayOutputKind::Depth),
+            BHR_OUTPUT_SKY => of_ray(RayOutputKind::Sky),
+            BHR_OUTPUT_TRANSMISSION => of_ray(RayOutputKind::Transmission),
+            BHR_OUTPUT_POSITION => of_ray(RayOutputKind::Position),
+            BHR_OUTPUT_DISK => of_ray(RayOutputKind::Disk),
+            BHR_OUTPUT_VIEW => match view(i32::try_from(index).unwrap_or(i32::MAX), "its index")? {
+                View::Light => {
+                    return Err(Error::argument("its index is 0, BHR_VIEW_LIGHT; that is the kind BHR_OUTPUT_LIGHT"));
+                }
+                view => Output::of_view(view),
+            },
+            _ => return unknown(kind, "its kind", "BHR_OUTPUT_LIGHT (0) to BHR_OUTPUT_VIEW (6)"),
+        };
+        if index > most {
+            return Err(Error::argument(format!("its index is {index}; for its kind it must be at most {most}")));
+        }
+        Ok(Self { output, image: given.image })
+    }
+}
+
+type GivenOutputs = ArrayVec<Given, MOST_OUTPUTS>;
+
+const _: () = assert!(MOST_OUTPUTS == BHR_MAX_OUTPUTS as usize);
+
+/// Errors: INVALID_ARGUMENT for a number outside its range, NULL, or what is wrong with an output or its image.
+///
+/// # Safety
+/// `outputs` is NULL or points to `count` structs of `size` readable bytes, whose images are NULL or images of the
+/// host's during `'a`.
+unsafe fn read<'a>(outputs: *const BhrOutput, size: usize, count: u32) -> Result<Vec<OutputTarget<'a>>> {
+    // SAFETY: this function's contract.
+    let given: GivenOutputs = unsafe { read_array(outputs, size, count, &OUTPUTS) }?;
+    if given.is_empty() {
+        return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
+    }
+    let targets = given.iter().enumerate().map(|(index, given)| {
+        let name = format!("outputs[{index}] image");
+        // SAFETY: as above.
+        let image = unsafe { image::read(given.image, &name) }?;
+        Ok(OutputTarget { output: given.output, target: image.pixels, transparent: image.transparent })
+    });
+    targets.collect()
+}
+
+/// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT
+/// for NULL or a wrong struct_size. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_output_init(output: *mut BhrOutput, struct_size: usize) -> BhrStatus {
+    // SAFETY: NULL or struct_size writable bytes, by the header's conventions.
+    anywhere("bhr_output_init", || unsafe { versioned::init(output, "output", struct_size) })
+}
+
+/// Renders several outputs of the scene as it is now: count of them, packed, 1 .. BHR_MAX_OUTPUTS, whose images are
+/// of one size; the region, if one is set, is theirs. All outputs but LIGHT and some views come from one pass over
+/// the frame. LIGHT has the bytes that bhr_render_image makes. The others agree with bhr_trace_rays along
+/// bhr_camera_rays to 5e-5 (1 + |value|), but for fewer than one number in 500, of rays that wind about the hole,
+/// or pass the edge of the disk or of the shadow.
+///
+/// out_job NULL: the call returns when all of it is there, and reports to the progress callback. Otherwise *out_job
+/// becomes a job as bhr_render_image_async makes them; images are then written until it is done or destroyed.
+/// output_size = sizeof(BhrOutput) as the caller was compiled; no output's struct_size may be larger. Errors: those
+/// of bhr_render_image, or of bhr_render_image_async; INVALID_ARGUMENT for a count, a size, a kind or an index
+/// outside its range, images of several sizes, a format that does not go with its kind, or a target. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_render_outputs(
+    context: *mut BhrContext,
+    outputs: *const BhrOutput,
+    output_size: usize,
+    count: u32,
+    out_job: *mut *mut BhrJob,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions; the images' blocks are the host's until the end.
+    unsafe {
+        let out = Out::cleared(out_job);
+        on_context("bhr_render_outputs", context, |state| {
+            let targets = read(outputs, output_size, count)?;
+            if !out_job.is_null() {
+                let job = state.renderer.render_outputs_in_background(targets, state.region)?;
+                let context = context.as_ref().ok_or_else(|| is_null("context"))?;
+                out.set(new_job(context, job, state.progress));
+                return Ok(());
+            }
+            let mut report = Report::new(state.progress);
+            if !report.tell(0.0) {
+                return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame at its begin"));
+            }
+            let frame = state.renderer.render_outputs(targets, state.region, &mut |fraction| report.tell(fraction));
+            if frame.is_ok() {
+                report.finish();
+            }
+            frame
+        })
+    }
+}
+
+/// Writes outputs that bhr_render_outputs has made to an .exr file: one part of scan lines, 32-bit floats (16-bit
+/// ones of LIGHT in RGBA16F), ZIP, with the channels R, G, B, A (LIGHT), depth.Z, sky.x, .y, .z, .g,
+/// transmission.Y, position.x, .y, .z, .order, disk.radius, .azimuth, .g, .delay, and .Y of redshift, order,
+/// deflection, steps, metric, optical_depth, intensity (VIEW); of crossings beyond the first the layers are
+/// position1, disk1 and so on. Alpha is written as it is. Its attributes name the library's version, the backend,
+/// the adapter, and every parameter of the scene as it is now: bhr.version, bhr.hole.spin ... by the names of the
+/// structs' fields here. A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
+/// bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F; UNSUPPORTED for another extension,
+/// LIGHT in an 8-bit format, or a library that was built without EXR; IO; OUT_OF_MEMORY. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_save_outputs(
+    context: *const BhrContext,
+    outputs: *const BhrOutput,
+    output_size: usize,
+    count: u32,
+    path: *const c_char,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        on_context("bhr_save_outputs", context, |state| {
+            let targets = read(outputs, output_size, count)?;
+            state.renderer.save_outputs(&targets, state.region, &path_of(path)?)
+        })
+    }
+}

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! Outputs beside the picture: records of one ray a pixel, and the kernel that writes what outputs want of them
+//! (shade/outputs.wgsl), tile by tile. They have buffers and lens tables of their own, because their records hold more
+//! than those of the picture, whose bytes stay what they are without outputs. Knows no host memory.
+
+use super::buffers::{CachedUniform, FrameBuffers, Size};
+use super::setup::Setup;
+use super::stages::RecordConsumer;
+use super::submission::pass_of;
+use super::tables::Tables;
+use super::tiles::TilePlan;
+use super::tracer::GpuTracer;
+use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::readback::PendingReadback;
+use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{Kernels, check_groups, pixel_groups};
+use crate::gpu::kernel::key::KernelKey;
+use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
+use crate::gpu::lens::records::{RecordStages, STEP_SUM, Shared};
+use crate::scene::output::MOST_OUTPUTS;
+use crate::scene::{RayOutput, Scene};
+use crate::tracer::{FrameRequest, FrameStats, OutputSink, Progress, Tile};
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec4};
+use std::collections::VecDeque;
+
+/// Tiles under way at once: one is read while the next is made.
+const AHEAD: usize = 2;
+/// Largest side of a tile.
+const MAX_TILE_SIDE: u32 = 4096;
+/// Bytes before the numbers in a tile's staging buffer, which begin with the steps of its rays.
+const HEAD: u64 = 256;
+
+/// `Outputs` of shade/outputs.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct OutputsUniform {
+    scene_x: Vec4,
+    scene_y: Vec4,
+    scene_z: Vec4,
+    wanted: [[u32; 4]; MOST_OUTPUTS],
+    count: u32,
+    asks_sky: u32,
+    padding: [u32; 2],
+}
+
+#[cfg(test)]
+pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
+    crate::gpu::kernel::layout::layout!(OutputsUniform as "Outputs": scene_x, scene_y, scene_z, wanted, count,
+        asks_sky, padding)
+}
+
+impl OutputsUniform {
+    fn new(scene: &Scene, outputs: &[RayOutput]) -> Self {
+        use crate::scene::RayOutputKind::{Deflection, Sky};
+        let axes = scene.hole.scene_to_chart().transpose();
+        let column = |v: DVec3, w: f64| v.as_vec3().extend(w as f32);
+        let mut wanted = [[0; 4]; MOST_OUTPUTS];
+        let mut before = 0;
+        for (to, output) in wanted.iter_mut().zip(outputs) {
+            let words = output.words() as u32;
+            *to = [output.kind as u32, output.index, words, before];
+            before += words;
+        }
+        Self {
+            scene_x: column(axes.x_axis, scene.hole.mass),
+            scene_y: column(axes.y_axis, 0.0),
+            scene_z: column(axes.z_axis, 0.0),
+            wanted,
+            count: outputs.len().min(MOST_OUTPUTS) as u32,
+            asks_sky: u32::from(outputs.iter().any(|output| matches!(output.kind, Sky | Deflection))),
+            padding: [0; 2],
+        }
+    }
+}
+
+/// The buffers of outputs; they grow and stay.
+#[derive(Default)]
+pub struct OutputBuffers {
+    frame: FrameBuffers,
+    uniform: Option<CachedUniform>,
+}
+
+/// A tile that has been submitted.
+struct OutputTile {
+    tile: Tile,
+    submission: wgpu::SubmissionIndex,
+    copied: PendingReadback,
+    counts: bool,
+}
+
+/// The kernels that run for each tile.
+struct OutputStages {
+    records: RecordStages,
+    consumer: RecordConsumer,
+}
+
+impl Setup {
+    /// Every kernel of outputs.
+    fn output_kernels(&self) -> Vec<KernelKey> {
+        let mut keys = self.record_kernels();
+        let source = self.record_setup.source;
+        let deferred = self.record_setup.deferred_source();
+        keys.extend([source].into_iter().chain(deferred).map(|source| KernelKey::outputs(source, self.variants.shade)));
+        keys
+    }
+}
+
+impl GpuTracer {
+    /// Errors: as `Renderer::render`.
+    pub fn render_outputs(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        outputs: &[RayOutput],
+        sink: &mut OutputSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        let rendered = self.try_outputs(scene, request, outputs, sink, progress);
+        if rendered.is_err() {
+            self.output_buffers.forget();
+        }
+        rendered
+    }
+
+    fn try_outputs(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        outputs: &[RayOutput],
+        sink: &mut OutputSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        let setup = self.set_up(scene, request, PixelTarget::Packed)?;
+        let batch = self.kernels.begin(&setup.output_kernels());
+        let pixel_bytes = 4 * outputs.iter().map(|output| output.words() as u64).sum::<u64>();
+        let ray_steps = match setup.record_setup.source {
+            RecordSource::Traced => scene.expected_steps(),
+            RecordSource::Schwarzschild { .. } => 2,
+            RecordSource::Kerr { .. } => 8,
+        };
+        // The numbers have two staging buffers.
+        let bytes = setup.record_setup.bytes_per_pixel() + 3 * pixel_bytes;
+        let side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
+        let plan = TilePlan::new(request, bytes, side, ray_steps, 1);
+        let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
+        let software = self.adapter.info.software;
+        let size = Size { tile: plan.largest(), pixel_bytes, several_samples: false };
+        let buffers = &mut self.output_buffers;
+        buffers.prepare(&self.device, size, &setup, software, &OutputsUniform::new(scene, outputs))?;
+        self.kernels.finish(batch)?;
+        let stages = buffers.stages(&self.device, &self.kernels, tables, &setup, software)?;
+        let rays = u64::from(request.width) * u64::from(request.height);
+        let mut stats = FrameStats { rays, ..FrameStats::default() };
+        let mut under_way = VecDeque::new();
+        let (mut submitted, mut done) = (0, 0);
+        while done < plan.count() {
+            if under_way.len() < AHEAD && submitted < plan.count() {
+                let tile = plan.tile(submitted);
+                let pass = pass_of(request, tile, (0, 1), scene.camera.projection, 0, [0, 0]);
+                let source = setup.record_setup.source;
+                let begins = submitted == 0;
+                under_way.push_back(buffers.submit(
+                    &self.device,
+                    &stages,
+                    source,
+                    begins,
+                    (tile, bytemuck::bytes_of(&pass)),
+                    pixel_bytes,
+                )?);
+                submitted += 1;
+                continue;
+            }
+            let Some(tile) = under_way.pop_front() else { break };
+            tile.finish(&self.device, outputs, &mut stats, sink)?;
+            done += 1;
+            if !progress(done as f64 / plan.count() as f64) && done < plan.count() {
+                return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the outputs"));
+            }
+        }
+        stats.device_bytes = self.device.bytes();
+        Ok(stats)
+    }
+}
+
+impl OutputBuffers {
+    fn prepare(
+        &mut self,
+        device: &Device,
+        size: Size,
+        setup: &Setup,
+        software: bool,
+        uniform: &OutputsUniform,
+    ) -> Result<()> {
+        self.frame.prepare(device, size, setup, software)?;
+        let held = match &mut self.uniform {
+            Some(held) => held,
+            None => {
+                let made = CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?;
+                self.uniform.insert(made)
+            }
+        };
+        held.write(device, bytemuck::bytes_of(uniform))
+    }
+
+    fn stages(
+        &mut self,
+        device: &Device,
+        kernels: &Kernels,
+        tables: &Tables,
+        setup: &Setup,
+        software: bool,
+    ) -> Result<OutputStages> {
+        let missing = || Error::internal("outputs without buffers");
+        let fixed = self.frame.fixed.as_ref().ok_or_else(missing)?;
+        let sized = self.frame.sized.as_ref().ok_or_else(missing)?;
+        let uniform = self.uniform.as_ref().ok_or_else(missing)?;
+        let (frame, pass) = (fixed.frame.buffer.as_entire_binding(), fixed.pass());
+        let [light_tables, ..] = tables.resources();
+        let [filaments, filament_sampler] = tables.filaments().resources();
+        let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
+        let step_sum = fixed.step_sum.as_entire_binding();
+        let common = [frame.clone(), pass.clone(), light_tables.clone()];
+        let shared = Shared { frame, pass, step_sum, light_tables, structure, software };
+        let records = self.frame.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
+        let group = self.frame.record_store.group(setup.record_setup.source)?;
+        let target = [uniform.buffer.as_entire_binding(), sized.packed.as_entire_binding()];
+        let take = |kernels: &Kernels, source| {
+            kernels.get(KernelKey::outputs(source, setup.variants.shade))?.stage(device, &[&common, &group, &target])
+        };
+        let consumer = RecordConsumer::new(kernels, &setup.record_setup, software, take)?;
+        Ok(OutputStages { records, consumer })
+    }
+
+    /// Submits a tile. `begins`: it is the frame's first.
+    fn submit(
+        &mut self,
+        device: &Device,
+        stages: &OutputStages,
+        source: RecordSource,
+        begins: bool,
+        (tile, pass): (Tile, &[u8]),
+        pixel_bytes: u64,
+    ) -> Result<OutputTile> {
+        let size = [tile.width, tile.height];
+        check_groups(device, pixel_groups(size.map(|side| side + 2)))?;
+        let missing = || Error::internal("outputs without buffers");
+        let fixed = self.frame.fixed.as_mut().ok_or_else(missing)?;
+        let sized = self.frame.sized.as_ref().ok_or_else(missing)?;
+        fixed.passes.write(device, pass)?;
+        let mut encoder = device.encoder("outputs")?;
+        let steps = self.frame.record_store.reset(source, &fixed.step_sum, &mut encoder);
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            stages.records.encode(&mut pass, begins, 0, size);
+            stages.consumer.dispatch(&mut pass, 0, size);
+        }
+        let bytes = u64::from(tile.width) * u64::from(tile.height) * pixel_bytes;
+        let staging = self.frame.readback.staging(device, HEAD + bytes)?;
+        let to = staging.buffer()?;
+        if let Some(steps) = steps {
+            encoder.copy_buffer_to_buffer(steps, 0, to, 0, STEP_SUM);
+        }
+        encoder.copy_buffer_to_buffer(&sized.packed, 0, to, HEAD, bytes);
+        let mut copied = staging.filled(HEAD + bytes);
+        let counts = steps.is_some();
+        let submission = device.submit(encoder)?;
+        copied.request(device)?;
+        Ok(OutputTile { tile, submission, copied, counts })
+    }
+
+    /// After a submission that failed, nobody knows what the buffers hold.
+    pub fn forget(&mut self) {
+        self.frame.forget();
+        if let Some(uniform) = &mut self.uniform {
+            uniform.forget();
+        }
+    }
+}
+
+impl OutputTile {
+    /// Waits for it and hands its numbers to `sink`. Errors: those of the sink; as [`Device::wait`].
+    fn finish(
+        self,
+        device: &Device,
+        outputs: &[RayOutput],
+        stats: &mut FrameStats,
+        sink: &mut OutputSink<'_>,
+    ) -> Result<()> {
+        let arrived = self.copied.wait(device, &self.submission)?;
+        if self.counts {
+            stats.steps +=
+                arrived.part(0..STEP_SUM, |bytes| Ok(u64::from(bytemuck::pod_read_unaligned::<u32>(bytes))))?;
+        }
+        let mut begin = HEAD;
+        for (index, output) in outputs.iter().enumerate() {
+            let row = 4 * output.words() * self.tile.width as usize;
+            let end = begin + row as u64 * u64::from(self.tile.height);
+            arrived.part(begin..end, |bytes| sink(index, self.tile, bytes, row))?;
+            begin = end;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The host's things before the camera, on both tracers, however rays are found: the crossings that they leave, by the
+//! distances that outputs give, one tracer against the other, parts of frames, and what they must not change.
+
+use crate::frames::{both, cpu, differing, floats, gpu, picture};
+use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
+use bhr::job::OutputTarget;
+use bhr::renderer::Renderer;
+use bhr::scene::{Camera, LensTables, Occluder, RayOutputKind, Region, Scene, View};
+use glam::DVec3;
+
+const SIZE: [u32; 2] = [120, 80];
+
+/// A translucent disk, of which the far side lies behind the hole.
+fn scene(spin: f64, tables: LensTables) -> Scene {
+    let mut scene = Scene::plain();
+    let position = DVec3::new(14.0, -20.0, 6.0) * 3.0;
+    (scene.hole.spin, scene.hole.mass) = (spin, 3.0);
+    scene.camera = Camera { position, forward: -position, fov_y: 1.0, ..Camera::plain() };
+    let disk = scene.disk.as_mut().unwrap();
+    (disk.opacity, disk.outer_radius) = (0.5, 14.0);
+    scene.quality.lens_tables = tables;
+    scene
+}
+
+const WAYS: [(f64, LensTables); 4] =
+    [(0.0, LensTables::Always), (0.0, LensTables::Never), (0.9, LensTables::Always), (0.9, LensTables::Never)];
+
+fn occluder([width, height]: [u32; 2], distance: impl Fn(u32, u32) -> f32) -> Occluder {
+    let all = (0..width * height).map(|i| distance(i % width, i / width)).collect::<Vec<_>>();
+    let layout = Layout::packed(PixelFormat::R32F, width, height);
+    Occluder::new(&ImageRef::new(layout, bytemuck::cast_slice(&all)).unwrap()).unwrap()
+}
+
+fn output(renderer: &mut Renderer, kind: RayOutputKind) -> Vec<f32> {
+    let mut block = vec![0; (SIZE[0] * SIZE[1] * 4) as usize];
+    let target = ImageMut::new(Layout::packed(PixelFormat::R32F, SIZE[0], SIZE[1]), &mut block).unwrap();
+    let target = OutputTarget { output: kind.into(), target, transparent: false };
+    renderer.render_outputs(vec![target], None, &mut |_| true).unwrap();
+    floats(&block)
+}
+
+/// Alpha of each pixel tells which crossings are left: the distances that outputs give say the same.
+#[test]
+fn things_hide_what_lies_behind_them() {
+    for (spin, tables) in WAYS {
+        for (name, mut renderer) in both() {
+            renderer.scene = scene(spin, tables);
+            renderer.scene.quality.refines = false;
+            let depth = output(&mut renderer, RayOutputKind::Depth);
+            let order = output(&mut renderer, RayOutputKind::Order);
+            let plain = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
+            let eye = renderer.scene.camera.position.length() as f32;
+            // Before everything; before the hole and behind the near side of the disk; behind the hole and before the
+            // far side of the disk; behind everything.
+            for distance in [1.0, eye * 0.75, eye * 1.25, 1e6] {
+                renderer.occluder = Some(occluder(SIZE, |_, _| distance));
+                let seen = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
+                let mut counts = [0; 3];
+                let mut off = 0;
+                for (i, (seen, plain)) in seen.chunks_exact(4).zip(plain.chunks_exact(4)).enumerate() {
+                    let ends = distance < 0.99 * eye * 0.8;
+                    let direct = order[i] == 0.0;
+                    let kept = direct && depth[i] <= distance;
+                    let alike = match (ends, kept, direct) {
+                        // The direct image alone, before the thing.
+                        (true, true, _) => (seen[3] - 0.5).abs() < 1e-6 && seen[0] > 0.0,
+                        (true, false, _) => *seen == [0.0; 4],
+                        // The direct image is hidden, and nothing else.
+                        (false, false, true) => seen[3] < plain[3] || plain[3] == 1.0,
+                        (false, _, _) => seen.iter().zip(plain).all(|(a, b)| (a - b).abs() <= 1e-3 * (1.0 + b.abs())),
+                    };
+                    off += usize::from(!alike);
+                    counts[if kept { 0 } else { 1 + usize::from(direct) }] += 1;
+                }
+                assert!(off <= 20, "{name}, spin {spin}, {tables:?}, {distance}: {off} pixels, {counts:?}");
+            }
+            renderer.occluder = None;
+        }
+    }
+}
+
+/// Things of any shape, with edges refined and several samples: the tracers agree, also without alpha.
+#[test]
+fn the_tracers_agree() {
+    let shape = |x: u32, y: u32| match (x / 7 + y / 5) % 4 {
+        0 => f32::INFINITY,
+        1 => 40.0,
+        2 => 80.0 + x as f32,
+        _ => 60.0 + y as f32 / 2.0,
+    };
+    for (spin, tables) in WAYS {
+        for (samples, turbulence, transparent) in [(1, 0.0, true), (1, 1.0, false), (2, 0.0, true)] {
+            let mut scene = scene(spin, tables);
+            scene.quality.samples_per_pixel = samples;
+            scene.disk.as_mut().unwrap().turbulence = turbulence;
+            let pictures = [cpu(), gpu()].map(|mut renderer| {
+                renderer.scene = scene.clone();
+                renderer.occluder = Some(occluder(SIZE, shape));
+                let made = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, transparent);
+                renderer.occluder = None;
+                made
+            });
+            let off = differing(&pictures[0], &pictures[1]);
+            println!("spin {spin}, {tables:?}, {samples} samples, turbulence {turbulence}: {off} pixels differ");
+            assert!(off < 60, "spin {spin}, {tables:?}, {samples} samples, turbulence {turbulence}: {off}");
+        }
+    }
+}
+
+/// Where there is nothing, pictures are what they are without; tiles are parts of frames; views do not regard it.
+#[test]
+fn nothing_else_changes() {
+    for (name, mut renderer) in both() {
+        renderer.scene = scene(0.0, LensTables::Always);
+        renderer.scene.disk.as_mut().unwrap().opacity = 1.0;
+        let plain = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
+        renderer.occluder = Some(occluder(SIZE, |_, _| f32::INFINITY));
+        let same = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
+        assert!(differing(&plain, &same) < 10, "{name}: {}", differing(&plain, &same));
+        let shape = |x: u32, y: u32| if (x / 9 + y / 11).is_multiple_of(2) { 50.0 } else { f32::INFINITY };
+        renderer.occluder = Some(occluder(SIZE, shape));
+        let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
+        renderer.occluder = Some(occluder([50, 20], |x, y| shape(x + 30, y + 25)));
+        let region = Region { full_width: SIZE[0], full_height: SIZE[1], x: 30, y: 25 };
+        let part = picture(&mut renderer, PixelFormat::Rgba8Srgb, [50, 20], Some(region), true);
+        for (y, row) in part.chunks_exact(200).enumerate() {
+            let begin = ((25 + y) * SIZE[0] as usize + 30) * 4;
+            assert!(row == &whole[begin..begin + 200], "{name}, row {y}");
+        }
+        renderer.scene.view = View::Order;
+        picture(&mut renderer, PixelFormat::R32F, SIZE, None, false);
+        renderer.occluder = None;
+    }
+}
