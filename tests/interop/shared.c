@@ -167,6 +167,27 @@ static void host_pixels(size_t at) {
     free(pixels);
 }
 
+/* Rows so far apart that kernels bind the buffer in parts: 128 MiB at once is what lavapipe has. */
+static void far_rows(void) {
+    uint64_t         stride = UINT64_C(4) << 20, bytes = stride * (HEIGHT - 1) + WIDTH * 8;
+    BhrTargetOptions options = options_of(2, BHR_TARGET_BUFFER, stride);
+    BhrTarget       *target;
+    unsigned char   *all = malloc(bytes);
+    uint32_t         wrong = 0;
+    if (!CHECK(all != NULL, "no memory") || !CHECK_OK(bhr_target_create(context, &options, &target)))
+        return;
+    VkPicture picture = imported(target, bytes);
+    expect(2, 0);
+    frame_into(target);
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, bytes, NULL, all);
+    for (uint32_t y = 0; y < HEIGHT; y++)
+        wrong += memcmp(all + y * stride, expected + y * WIDTH * 8, WIDTH * 8) != 0;
+    CHECK(wrong == 0, "rows 4 MiB apart: %u of %u differ", wrong, HEIGHT);
+    bhr_target_destroy(target);
+    vk_drop(&host, &picture);
+    free(all);
+}
+
 static void set_quality(uint32_t samples, double bloom) {
     BhrQuality quality = {.struct_size = sizeof quality};
     BhrFilm    film = {.struct_size = sizeof film};
@@ -285,6 +306,7 @@ int main(int argc, char **argv) {
         exported(at, BHR_TARGET_IMAGE, 0, 0, "region, image");
     }
     CHECK_OK(bhr_set_region(context, NULL));
+    far_rows();
     many_frames(100);
     descriptors();
     bhr_context_destroy(context);
