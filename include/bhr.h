@@ -477,6 +477,14 @@ typedef int32_t BhrProjection;
 #define BHR_PROJECTION_CUBE 3
 
 /**
+ * A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or of
+ * a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any: it is
+ * stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up times the
+ * frame's width / height it is PERSPECTIVE. Since 0.2.0.
+ */
+#define BHR_PROJECTION_FRUSTUM 4
+
+/**
  * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
  * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
  * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
@@ -508,6 +516,19 @@ typedef struct BhrCamera {
      * direction given at position. Default 0.
      */
     double velocity[3];
+    /**
+     * For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
+     * left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
+     */
+    double tan_left;
+    double tan_right;
+    double tan_down;
+    double tan_up;
+    /**
+     * The whole picture moves by this many pixels to the right and down, as temporal antialiasing wants it; each
+     * within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0.
+     */
+    double jitter[2];
 } BhrCamera;
 
 /**
@@ -537,7 +558,7 @@ BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, dou
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
- * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
+ * or parallel, fov_y out of range, |velocity| >= 1, tangents or a jitter that are out of range, an unknown constant.
  */
 BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 

@@ -3,6 +3,7 @@
 #ifndef BHR_CONTEXT_HPP
 #define BHR_CONTEXT_HPP
 
+#include "camera.hpp"
 #include "image.hpp"
 
 #include <cmath>

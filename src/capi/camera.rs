@@ -8,7 +8,7 @@ use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Number, Result};
-use crate::scene::{Camera, Motion, Projection};
+use crate::scene::{Camera, Frustum, Motion, Projection};
 use glam::DVec3;
 
 /// The lens. Camera axes: right = forward x up, then up = right x forward.
@@ -29,6 +29,11 @@ pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
 /// frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
 /// corners up to a quarter is lost.
 pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
+/// A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or of
+/// a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any: it is
+/// stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up times the
+/// frame's width / height it is PERSPECTIVE. Since 0.2.0.
+pub const BHR_PROJECTION_FRUSTUM: BhrProjection = 4;
 
 /// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
 /// or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
@@ -68,12 +73,21 @@ pub struct BhrCamera {
     /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
     /// direction given at position. Default 0.
     pub velocity: [f64; 3],
+    /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
+    /// left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
+    pub tan_left: f64,
+    pub tan_right: f64,
+    pub tan_down: f64,
+    pub tan_up: f64,
+    /// The whole picture moves by this many pixels to the right and down, as temporal antialiasing wants it; each
+    /// within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0.
+    pub jitter: [f64; 2],
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrCamera {
     const NAME: &'static str = "BhrCamera";
-    const SIZES: &'static [usize] = &[120];
+    const SIZES: &'static [usize] = &[120, 168];
     fn defaults() -> Self {
         Camera::default().into()
     }
@@ -91,6 +105,11 @@ impl From<Camera> for BhrCamera {
             motion: camera.motion as BhrMotion,
             reserved: 0,
             velocity: camera.velocity.to_array(),
+            tan_left: camera.frustum.left,
+            tan_right: camera.frustum.right,
+            tan_down: camera.frustum.down,
+            tan_up: camera.frustum.up,
+            jitter: camera.jitter.to_array(),
         }
     }
 }
@@ -107,6 +126,8 @@ impl TryFrom<BhrCamera> for Camera {
             fov_y: given.fov_y,
             motion: motion(given.motion)?,
             velocity: given.velocity.into(),
+            frustum: Frustum { left: given.tan_left, right: given.tan_right, down: given.tan_down, up: given.tan_up },
+            jitter: given.jitter.into(),
         };
         check_reserved(given.reserved, "camera")?;
         camera.check()?;
@@ -120,7 +141,10 @@ fn projection(value: BhrProjection) -> Result<Projection> {
         BHR_PROJECTION_FISHEYE => Projection::Fisheye,
         BHR_PROJECTION_EQUIRECT => Projection::Equirect,
         BHR_PROJECTION_CUBE => Projection::Cube,
-        _ => return unknown(value, "camera projection", "BHR_PROJECTION_PERSPECTIVE (0) to BHR_PROJECTION_CUBE (3)"),
+        BHR_PROJECTION_FRUSTUM => Projection::Frustum,
+        _ => {
+            return unknown(value, "camera projection", "BHR_PROJECTION_PERSPECTIVE (0) to BHR_PROJECTION_FRUSTUM (4)");
+        }
     })
 }
 
@@ -217,7 +241,7 @@ pub unsafe extern "C" fn bhr_camera_orbit(
 }
 
 /// Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
-/// or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
+/// or parallel, fov_y out of range, |velocity| >= 1, tangents or a jitter that are out of range, an unknown constant.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_camera(context: *mut BhrContext, camera: *const BhrCamera) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -97,11 +97,10 @@ impl Scene {
         let mapping = Mapping::new(&self.camera, region)?;
         let axes = self.hole.scene_to_chart() * self.camera.axes()?;
         let frame = &observer.frame;
-        let axes = DMat3::from_cols(
-            frame.components(axes.x_axis) * mapping.plane.x,
-            frame.components(axes.y_axis) * mapping.plane.y,
-            frame.components(axes.z_axis),
-        );
+        let [right, up, forward] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| frame.components(axis));
+        // A picture about another centre costs nothing in the axis that every point of the image plane has once.
+        let middle = forward + right * mapping.centre.x + up * mapping.centre.y;
+        let axes = DMat3::from_cols(right * mapping.plane.x, up * mapping.plane.y, middle);
         Ok(Lens { observer, axes, mapping })
     }
 }
@@ -110,7 +109,8 @@ impl Scene {
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     pub observer: Observer,
-    /// Columns: the units of a point of `mapping`, to the right, up, forward; components in the observer's frame.
+    /// Columns: the units of a point of `mapping`, to the right, up, towards the frame's middle; components in the
+    /// observer's frame.
     pub axes: DMat3,
     pub mapping: Mapping,
 }

@@ -11,12 +11,15 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// `has_look_direction` says where the projection shows something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mapping {
+    /// The formula (`Projection::formula`): FRUSTUM is a PERSPECTIVE about another centre.
     pub projection: Projection,
     /// Size of the full frame in pixels.
     pub width: f64,
     pub height: f64,
     /// Halves of the perspective image plane's sides at distance 1; else 1.
     pub plane: DVec2,
+    /// The middle of the frame on that plane, right and up of straight ahead; else 0.
+    pub centre: DVec2,
     /// Angle of a pixel in the middle of the frame (of a cube's faces as if one filled its side), radians.
     pub pixel_angle: f64,
 }
@@ -24,7 +27,7 @@ pub struct Mapping {
 impl Mapping {
     /// Errors: INVALID_STATE for a cube whose frame is not six times as wide as high.
     pub fn new(camera: &Camera, region: &Region) -> Result<Self> {
-        let projection = camera.projection;
+        let projection = camera.projection.formula();
         if projection == Projection::Cube && u64::from(region.full_width) != 6 * u64::from(region.full_height) {
             return Err(Error::state(format!(
                 "frame is {} x {}; the projection CUBE shows six faces side by side, so its width must be 6 times \
@@ -36,15 +39,25 @@ impl Mapping {
         }
         let (width, height) = (f64::from(region.full_width), f64::from(region.full_height));
         let tan = (0.5 * camera.fov_y).tan();
-        let plane =
-            if projection == Projection::Perspective { DVec2::new(tan * width / height, tan) } else { DVec2::ONE };
+        let borders = camera.frustum;
+        let (plane, middle) = match camera.projection {
+            Projection::Perspective => (DVec2::new(tan * width / height, tan), DVec2::ZERO),
+            Projection::Frustum => (
+                0.5 * DVec2::new(borders.right - borders.left, borders.up - borders.down),
+                0.5 * DVec2::new(borders.right + borders.left, borders.up + borders.down),
+            ),
+            _ => (DVec2::ONE, DVec2::ZERO),
+        };
+        // The jitter moves what was in the middle to the right and down.
+        let shift = plane * camera.jitter * DVec2::new(-2.0 / width, 2.0 / height);
+        let centre = if projection == Projection::Perspective { middle + shift } else { DVec2::ZERO };
         let pixel_angle = match projection {
-            Projection::Perspective => 2.0 * tan / height,
+            Projection::Perspective | Projection::Frustum => 2.0 * plane.y / height,
             Projection::Fisheye => camera.fov_y / width.min(height),
             Projection::Equirect => PI / height,
             Projection::Cube => FRAC_PI_2 / height,
         };
-        Ok(Self { projection, width, height, plane, pixel_angle })
+        Ok(Self { projection, width, height, plane, centre, pixel_angle })
     }
 
     /// Whether something is seen at (x, y): all but what lies outside a fisheye's circle.
@@ -59,11 +72,13 @@ impl Mapping {
     }
 
     /// A point (right, up, forward) in the direction seen at (x, y) of the full frame, (0, 0) being its top-left
-    /// corner; PERSPECTIVE: right and up in units of `plane`. Outside the frame the image plane, the angles or the
-    /// nearest face continue.
+    /// corner; PERSPECTIVE: right and up of `centre` in units of `plane`. Outside the frame the image plane, the angles
+    /// or the nearest face continue.
     pub fn point(&self, x: f64, y: f64) -> DVec3 {
         match self.projection {
-            Projection::Perspective => DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0),
+            Projection::Perspective | Projection::Frustum => {
+                DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0)
+            }
             Projection::Fisheye => {
                 let (from_centre, radius) = (self.offset(x, y), self.offset(x, y).length());
                 let (sin, cos) = (self.pixel_angle * radius).sin_cos();
@@ -84,7 +99,9 @@ impl Mapping {
     /// Changes of `point` to the next pixel right and down, to first order.
     pub fn changes(&self, x: f64, y: f64) -> [DVec3; 2] {
         match self.projection {
-            Projection::Perspective => [DVec3::X * (2.0 / self.width), DVec3::Y * (-2.0 / self.height)],
+            Projection::Perspective | Projection::Frustum => {
+                [DVec3::X * (2.0 / self.width), DVec3::Y * (-2.0 / self.height)]
+            }
             Projection::Fisheye => {
                 let from_centre = self.offset(x, y);
                 let radius = from_centre.length();

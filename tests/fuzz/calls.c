@@ -195,13 +195,16 @@ static void scene_call(BhrContext *context) {
     case 3:
         bhr_camera_init(&camera, sizeof camera);
         camera.struct_size = mostly(sizeof camera, byte());
-        camera.projection = constant(BHR_PROJECTION_CUBE);
+        camera.projection = constant(BHR_PROJECTION_FRUSTUM);
         camera.motion = constant(BHR_MOTION_VELOCITY);
         if (byte() < 128) {
             memcpy(camera.position, vector, sizeof vector);
         }
         camera.fov_y = mostly(1, 0) != 0 ? camera.fov_y : number();
         camera.velocity[byte() % 3] = number() / 16.0;
+        camera.tan_left = mostly(1, 0) != 0 ? camera.tan_left : number();
+        camera.tan_up = mostly(1, 0) != 0 ? camera.tan_up : number();
+        camera.jitter[byte() % 2] = number() / 8.0;
         check(bhr_set_camera(context, &camera));
         break;
     case 4:

@@ -8,6 +8,7 @@ mod cameras;
 mod extremes;
 #[path = "../frames/mod.rs"]
 mod frames;
+mod frusta;
 mod half;
 mod jobs;
 mod kernels;

@@ -50,6 +50,7 @@ class Projection(enum.IntEnum):
     FISHEYE = 1
     EQUIRECT = 2
     CUBE = 3
+    FRUSTUM = 4
 
 
 class Motion(enum.IntEnum):

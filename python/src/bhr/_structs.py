@@ -122,6 +122,13 @@ class Camera(_Struct):
     motion: Motion = Motion.STATIC
     #: v / c for VELOCITY, against the local static observer (ZAMO).
     velocity: Vector = (0.0, 0.0, 0.0)
+    #: The borders of a FRUSTUM's picture on the plane at distance 1 ahead, to the right and up.
+    tan_left: float = -1.0
+    tan_right: float = 1.0
+    tan_down: float = -1.0
+    tan_up: float = 1.0
+    #: The picture of a PERSPECTIVE or a FRUSTUM moves by so many pixels to the right and down, each within +-1.
+    jitter: tuple[float, float] = (0.0, 0.0)
 
     @classmethod
     def orbit(cls, distance: float, azimuth: float, elevation: float, **fields: Any) -> Camera:
