@@ -7,6 +7,28 @@
 
 namespace bhr {
 
+/// Flags for bhr_camera_from_matrices and bhr_camera_matrices.
+enum class MatrixFlags : std::uint32_t {
+    none = 0,
+    row_major = BHR_MATRIX_ROW_MAJOR,
+    y_down = BHR_MATRIX_Y_DOWN,
+    zero_to_one = BHR_MATRIX_ZERO_TO_ONE,
+    reversed = BHR_MATRIX_REVERSED,
+    forward_z = BHR_MATRIX_FORWARD_Z,
+};
+namespace detail {
+template <> inline constexpr bool is_bits<MatrixFlags> = true;
+} // namespace detail
+
+/// Sixteen numbers, column by column unless MatrixFlags::row_major says otherwise.
+using Matrix = std::array<double, 16>;
+
+/// The matrices that rasterisers have: the world's to the camera, and the camera's to clip space.
+struct CameraMatrices {
+    Matrix view;
+    Matrix projection;
+};
+
 /// BhrCamera, with the defaults of bhr_camera_init.
 struct Camera {
     std::uint32_t struct_size;
@@ -37,6 +59,23 @@ struct Camera {
     /// bhr_camera_orbit; angles in radians.
     Result<void> orbit(double distance, double azimuth, double elevation) {
         return change([&](BhrCamera *it) { return bhr_camera_orbit(it, distance, azimuth, elevation); });
+    }
+
+    /// bhr_camera_from_matrices.
+    Result<void> from_matrices(const Matrix &view, const Matrix &matrix, MatrixFlags flags = MatrixFlags::none) {
+        return change([&](BhrCamera *it) {
+            return bhr_camera_from_matrices(it, view.data(), matrix.data(), static_cast<std::uint32_t>(flags));
+        });
+    }
+
+    /// bhr_camera_matrices.
+    Result<CameraMatrices> matrices(std::uint32_t width, std::uint32_t height, double near_z, double far_z,
+                                    MatrixFlags flags = MatrixFlags::none) const {
+        const BhrCamera copy = c();
+        return detail::ask(CameraMatrices(), [&](CameraMatrices &made) {
+            return bhr_camera_matrices(&copy, width, height, near_z, far_z, static_cast<std::uint32_t>(flags),
+                                       made.view.data(), made.projection.data());
+        });
     }
 
   private:

@@ -35,6 +35,7 @@ pub mod hole;
 pub mod image;
 pub mod job;
 pub mod log;
+pub mod matrix;
 pub mod preset;
 pub mod quality;
 pub mod rays;

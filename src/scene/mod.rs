@@ -9,6 +9,7 @@ pub mod frame;
 pub mod hole;
 pub mod host_rays;
 pub mod lensing;
+pub mod matrices;
 pub mod observer;
 pub mod preset;
 pub mod projection;

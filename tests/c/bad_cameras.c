@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* bad_cameras.c -- cameras as hosts have them, asked wrongly: tangents and jitter that are none. Each refusal must
- * leave the context, and what was to be filled in, as the header says. The rest of BhrCamera is in bad_scene.c. */
+/* bad_cameras.c -- cameras as hosts have them, asked wrongly: tangents and jitter that are none, matrices that are no
+ * camera's. Each refusal must leave the context, and what was to be filled in, as the header says. The rest of
+ * BhrCamera is in bad_scene.c. */
 #include "check.h"
 #include "refusals.h"
 
@@ -91,6 +92,114 @@ static void earlier_hosts(Watch *watch, BhrContext *context) {
     CHECK_OK(bhr_set_camera(context, &watch->camera));
 }
 
+/* ---- matrices ---- */
+
+/* By columns: a camera at (0, 0, 25) that looks along -z, and an infinite projection with reversed depths. */
+static const double VIEW[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -25, 1};
+static const double PROJECTION[16] = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
+
+/* The camera stays as it is when this is refused. */
+static void refused(const double view[16], const double projection[16], uint32_t flags, const char *words) {
+    BhrCamera camera = frustum(), before = camera;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, words, bhr_camera_from_matrices(&camera, view, projection, flags));
+    CHECK(memcmp(&camera, &before, sizeof camera) == 0, "a refusal (%s) changed the camera", words);
+}
+
+static void from_matrices(void) {
+    BhrCamera camera = frustum();
+    CHECK_OK(bhr_camera_from_matrices(&camera, VIEW, PROJECTION, 0));
+    CHECK(camera.position[2] == 25.0 && camera.forward[2] == -1.0 && camera.up[1] == 1.0, "the view");
+    CHECK(camera.tan_left == -1.0 && camera.tan_right == 1.0 && camera.tan_down == -0.5 && camera.tan_up == 0.5,
+          "the projection: %g %g %g %g", camera.tan_left, camera.tan_right, camera.tan_down, camera.tan_up);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "camera", bhr_camera_from_matrices(NULL, VIEW, PROJECTION, 0));
+    refused(NULL, PROJECTION, 0, "view");
+    refused(VIEW, NULL, 0, "projection");
+    refused(VIEW, PROJECTION, 32u, "flags");
+    refused(VIEW, PROJECTION, UINT32_MAX, "flags");
+    refused(VIEW, PROJECTION, BHR_MATRIX_ROW_MAJOR, "view");
+    refused(VIEW, PROJECTION, BHR_MATRIX_Y_DOWN, "left-handed");
+    for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
+        for (int k = 0; k < 16; k++) {
+            double bad[16];
+            memcpy(bad, VIEW, sizeof bad);
+            bad[k] = NOT_FINITE[i];
+            refused(bad, PROJECTION, 0, "view");
+            memcpy(bad, PROJECTION, sizeof bad);
+            bad[k] = NOT_FINITE[i];
+            if (k % 4 == 2) { /* the row of depths */
+                CHECK_OK(bhr_camera_from_matrices(&camera, VIEW, bad, 0));
+            } else {
+                refused(VIEW, bad, 0, "projection");
+            }
+        }
+    }
+    static const double at_the_hole[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+    static const double scaled[16] = {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, -25, 1};
+    static const double mirrored[16] = {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -25, 1};
+    static const double orthographic[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -0.1, 0, 0, 0, -1, 1};
+    static const double flat[16] = {0, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
+    static const double narrow[16] = {1e-12, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, -1, 0, 0, 0.1, 0};
+    refused(at_the_hole, PROJECTION, 0, "position");
+    refused(scaled, PROJECTION, 0, "rigid");
+    refused(mirrored, PROJECTION, 0, "left-handed");
+    refused(VIEW, orthographic, 0, "orthographic");
+    refused(VIEW, flat, 0, "projection [0][0]");
+    refused(VIEW, narrow, 0, "tan_left");
+    /* A host of 0.1.0 has no room for a frustum. */
+    camera = frustum();
+    camera.struct_size = offsetof(BhrCamera, jitter);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_from_matrices(&camera, VIEW, PROJECTION, 0));
+    camera.struct_size = 3;
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "struct_size", bhr_camera_from_matrices(&camera, VIEW, PROJECTION, 0));
+}
+
+/* Both matrices are 0 after a refusal. */
+static void not_made(const BhrCamera *camera, uint32_t width, uint32_t height, double near_z, double far_z,
+                     uint32_t flags, const char *words) {
+    double view[16], projection[16];
+    memset(view, UNTOUCHED, sizeof view);
+    memset(projection, UNTOUCHED, sizeof projection);
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, words,
+                bhr_camera_matrices(camera, width, height, near_z, far_z, flags, view, projection));
+    for (int i = 0; i < 16; i++) {
+        CHECK(view[i] == 0.0 && projection[i] == 0.0, "a refusal (%s) left numbers", words);
+    }
+}
+
+static void matrices(void) {
+    BhrCamera camera = frustum();
+    double    view[16], projection[16];
+    CHECK_OK(bhr_camera_from_matrices(&camera, VIEW, PROJECTION, 0));
+    CHECK_OK(bhr_camera_matrices(&camera, 8, 4, 0.1, INFINITY, BHR_MATRIX_ZERO_TO_ONE | BHR_MATRIX_REVERSED, view,
+                                 projection));
+    for (int i = 0; i < 16; i++) {
+        CHECK(fabs(view[i] - VIEW[i]) < 1e-12 && fabs(projection[i] - PROJECTION[i]) < 1e-12, "number %d", i);
+    }
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "out_view",
+                bhr_camera_matrices(&camera, 8, 4, 0.1, 9.0, 0, NULL, projection));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "out_projection",
+                bhr_camera_matrices(&camera, 8, 4, 0.1, 9.0, 0, view, NULL));
+    not_made(NULL, 8, 4, 0.1, 9.0, 0, "camera");
+    not_made(&camera, 0, 4, 0.1, 9.0, 0, "frame");
+    not_made(&camera, 8, 0, 0.1, 9.0, 0, "frame");
+    not_made(&camera, 8, 4, 0.1, 9.0, 64u, "flags");
+    static const double bad_near[] = {0.0, -0.1, NAN, INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad_near); i++) {
+        not_made(&camera, 8, 4, bad_near[i], INFINITY, 0, "near_z");
+    }
+    static const double bad_far[] = {0.1, 0.0, -9.0, NAN, -INFINITY};
+    for (size_t i = 0; i < COUNT_OF(bad_far); i++) {
+        not_made(&camera, 8, 4, 0.1, bad_far[i], 0, "far_z");
+    }
+    for (BhrProjection p = BHR_PROJECTION_FISHEYE; p <= BHR_PROJECTION_CUBE; p++) {
+        camera.projection = p;
+        not_made(&camera, 8, 4, 0.1, 9.0, 0, "projection");
+    }
+    camera = frustum();
+    camera.tan_up = -2.0;
+    not_made(&camera, 8, 4, 0.1, 9.0, 0, "tan_down");
+}
+
 int main(int argc, char **argv) {
     BhrContext *context = check_context(check_begin(argc, argv));
     static Watch watch;
@@ -99,6 +208,8 @@ int main(int argc, char **argv) {
     jitter(&watch, context);
     taken(&watch, context);
     earlier_hosts(&watch, context);
+    from_matrices();
+    matrices();
     bhr_context_destroy(context);
     return check_end();
 }

@@ -92,6 +92,12 @@ static void scene() {
     EXPECT(camera.look_at({20.0, 0.0, 1.0}, {0.0, 0.0, 0.0}) && camera.position[0] == 20.0);
     EXPECT(!camera.orbit(-1.0, 0.0, 0.0) && camera.position[0] == 20.0);
     EXPECT(camera.orbit(20.0, 0.0, 0.1));
+    const auto flags = bhr::MatrixFlags::zero_to_one | bhr::MatrixFlags::reversed;
+    const bhr::CameraMatrices seen_by = camera.matrices(16, 9, 0.1, INFINITY, flags).value();
+    bhr::Camera again;
+    EXPECT(again.from_matrices(seen_by.view, seen_by.projection) && again.projection == bhr::Projection::frustum);
+    EXPECT(std::fabs(again.position[0] - camera.position[0]) < 1e-12 && again.tan_up > 0.0);
+    EXPECT(!camera.matrices(0, 9, 0.1, 1.0) && !again.from_matrices(seen_by.projection, seen_by.view));
     camera.motion = bhr::Motion::free_fall;
     EXPECT(context.set_camera(camera));
     EXPECT(context.camera().value().motion == bhr::Motion::free_fall);

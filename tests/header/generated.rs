@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 24] = [
+const SECTIONS: [(&str, &str); 25] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -17,6 +17,7 @@ const SECTIONS: [(&str, &str); 24] = [
     ("context", "context"),
     ("hole", "the black hole"),
     ("camera", "the camera: an observer with a lens"),
+    ("matrix", "cameras as matrices"),
     ("disk", "accretion disk"),
     ("volume", "matter with depth: volumes and hot spots"),
     ("image", "images in the host's memory"),

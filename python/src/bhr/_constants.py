@@ -53,6 +53,16 @@ class Projection(enum.IntEnum):
     FRUSTUM = 4
 
 
+class MatrixFlags(enum.IntFlag):
+    """How a host's matrices and its clip space are: see BHR_MATRIX_* in bhr.h. Arrays of numpy are ROW_MAJOR."""
+
+    ROW_MAJOR = 1
+    Y_DOWN = 2
+    ZERO_TO_ONE = 4
+    REVERSED = 8
+    FORWARD_Z = 16
+
+
 class Motion(enum.IntEnum):
     """How the camera's observer moves."""
 

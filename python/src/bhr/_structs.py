@@ -22,6 +22,7 @@ from ._constants import (
     EmissionLaw,
     Flow,
     HotSpotFlags,
+    MatrixFlags,
     Method,
     Motion,
     Projection,
@@ -147,6 +148,26 @@ class Camera(_Struct):
         vectors = doubles(position, 3, "position"), doubles(target, 3, "target"), doubles(up, 3, "up")
         check(lib.bhr_camera_look_at(struct, *vectors))
         return cls.from_c(struct)
+
+    @classmethod
+    def from_matrices(
+        cls, view: npt.ArrayLike, projection: npt.ArrayLike, flags: int = MatrixFlags(0), **fields: Any
+    ) -> Camera:
+        """A camera from the matrices of a rasteriser, 4 x 4, as they multiply column vectors."""
+        struct = cls(**fields).to_c()
+        matrices = [doubles(np.asarray(m, float).ravel(), 16, "a matrix") for m in (view, projection)]
+        check(lib.bhr_camera_from_matrices(struct, *matrices, flags | MatrixFlags.ROW_MAJOR))
+        return cls.from_c(struct)
+
+    def matrices(
+        self, width: int, height: int, near_z: float, far_z: float = np.inf, flags: int = MatrixFlags(0)
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """View and projection, 4 x 4, as they multiply column vectors, for frames of this size."""
+        view, projection = np.zeros((4, 4)), np.zeros((4, 4))
+        outs = [ffi.cast("double *", m.ctypes.data) for m in (view, projection)]
+        flags = flags | MatrixFlags.ROW_MAJOR
+        check(lib.bhr_camera_matrices(self.to_c(), width, height, near_z, far_z, flags, *outs))
+        return view, projection
 
 
 @dataclasses.dataclass(frozen=True)
