@@ -455,40 +455,40 @@ typedef int32_t BhrProjection;
 
 /**
  * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
- * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
- * 0 in a TRANSPARENT image, NaN in views, rays without direction.
+ * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black,
+ * alpha 0 in a TRANSPARENT image, NaN in views, rays without direction.
  */
 #define BHR_PROJECTION_FISHEYE 1
 
 /**
- * All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude towards
- * up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the
- * poles, where pixels are far narrower than high, the light of single stars is not exact.
+ * All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude
+ * towards up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or
+ * two of the poles, where pixels are far narrower than high, the light of single stars is not exact.
  */
 #define BHR_PROJECTION_EQUIRECT 2
 
 /**
- * Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face it
- * is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way sees, not
- * its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a
- * frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
- * corners up to a quarter is lost.
+ * Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face
+ * it is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way
+ * sees, not its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else
+ * INVALID_STATE when a frame or rays are asked for. Stars keep their light across the borders of faces; within two
+ * pixels of the cube's corners up to a quarter is lost.
  */
 #define BHR_PROJECTION_CUBE 3
 
 /**
- * A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or of
- * a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any: it is
- * stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up times the
- * frame's width / height it is PERSPECTIVE. Since 0.2.0.
+ * A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or
+ * of a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any:
+ * it is stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up
+ * times the frame's width / height it is PERSPECTIVE. Since 0.2.0.
  */
 #define BHR_PROJECTION_FRUSTUM 4
 
 /**
- * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
- * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
- * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
- * circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
+ * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a
+ * frame or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT
+ * moves on a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with
+ * spin on the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
  */
 typedef int32_t BhrMotion;
 
@@ -558,7 +558,8 @@ BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, dou
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
- * or parallel, fov_y out of range, |velocity| >= 1, tangents or a jitter that are out of range, an unknown constant.
+ * or parallel, fov_y out of range, |velocity| >= 1, tangents or a jitter that are out of range, an unknown
+ * constant.
  */
 BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 
@@ -566,13 +567,13 @@ BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *cam
 BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
 /**
- * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a STATIC
- * one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
- * it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time,
- * and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from outside to inside (M
- * = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time. On failure the camera
- * stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible;
- * UNSUPPORTED for VELOCITY.
+ * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a
+ * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera
+ * stays where it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of
+ * bhr_set_time, and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from
+ * outside to inside (M = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time.
+ * On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the
+ * motion is not possible; UNSUPPORTED for VELOCITY.
  */
 BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context,
                                            BhrCamera *camera,
@@ -603,32 +604,33 @@ BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context,
 #define BHR_MATRIX_REVERSED 8u
 
 /**
- * The camera looks along its own +z, with x to the right and y up (Direct3D, Unreal), else along -z (OpenGL, Vulkan,
- * Unity). For bhr_camera_matrices; bhr_camera_from_matrices sees it in the projection. Since 0.2.0.
+ * The camera looks along its own +z, with x to the right and y up (Direct3D, Unreal), else along -z (OpenGL,
+ * Vulkan, Unity). For bhr_camera_matrices; bhr_camera_from_matrices sees it in the projection. Since 0.2.0.
  */
 #define BHR_MATRIX_FORWARD_Z 16u
 
 /**
- * Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the host's
- * matrices; the rest of it, its motion for one, stays. Touches no context. Any thread, inside callbacks too.
+ * Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
+ * host's matrices; the rest of it, its motion for one, stays. Touches no context. Any thread, inside callbacks
+ * too.
  *
  * view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a
  * rotation and a shift, without scale. projection is any perspective one: of OpenGL, Vulkan, Direct3D or Metal,
- * off-axis, jittered, with reversed or infinite depths; its row of depths is not read. flags: BHR_MATRIX_ROW_MAJOR and
- * BHR_MATRIX_Y_DOWN as they are; the others do not matter here.
+ * off-axis, jittered, with reversed or infinite depths; its row of depths is not read. flags: BHR_MATRIX_ROW_MAJOR
+ * and BHR_MATRIX_Y_DOWN as they are; the others do not matter here.
  *
- * bhr's scene is right-handed. For a left-handed world negate one axis: of the positions given to bhr, and of the view
- * that is passed here (no flags in both):
+ * bhr's scene is right-handed. For a left-handed world negate one axis: of the positions given to bhr, and of the
+ * view that is passed here (no flags in both):
  *
  *     Unity   Matrix4x4 view = camera.worldToCameraMatrix * Matrix4x4.Scale(new Vector3(1, 1, -1));
  *             Matrix4x4 projection = camera.projectionMatrix;                 positions (x, y, -z)
  *     Unreal  FMatrix view = FScaleMatrix(FVector(1, -1, 1)) * matrices.GetViewMatrix();
  *             FMatrix projection = matrices.GetProjectionMatrix();            positions (x, -y, z), in cm
  *
- * On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, unknown flags, numbers not finite, a view
- * that is not rigid to 1e-4, a projection that is orthographic, sheared or rolled, matrices that mirror the scene
- * (left-handed worlds), the hole's centre as position, and a camera whose struct_size ends before jitter does. Since
- * 0.2.0.
+ * On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, unknown flags, numbers not finite, a
+ * view that is not rigid to 1e-4, a projection that is orthographic, sheared or rolled, matrices that mirror the
+ * scene (left-handed worlds), the hole's centre as position, and a camera whose struct_size ends before jitter
+ * does. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_camera_from_matrices(BhrCamera *camera,
                                                  const double view[16],
@@ -636,12 +638,13 @@ BHR_NODISCARD BhrStatus bhr_camera_from_matrices(BhrCamera *camera,
                                                  uint32_t flags);
 
 /**
- * The view and the projection of a PERSPECTIVE or FRUSTUM camera, for hosts whose own things are to be seen where bhr
- * shows them: pixels of a width x height frame with the planes near_z > 0 and far_z > near_z, or INFINITY. flags: any
- * of BHR_MATRIX_*; the matrices are what bhr_camera_from_matrices takes. For a left-handed world multiply the view by
- * the same scale again. The camera's motion does not enter: an observer that moves sees directions aberrated, which no
- * matrix says. Touches no context. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT for NULL, a side of 0,
- * another projection, planes out of range, unknown flags, a camera that bhr_set_camera would refuse. Since 0.2.0.
+ * The view and the projection of a PERSPECTIVE or FRUSTUM camera, for hosts whose own things are to be seen where
+ * bhr shows them: pixels of a width x height frame with the planes near_z > 0 and far_z > near_z, or INFINITY.
+ * flags: any of BHR_MATRIX_*; the matrices are what bhr_camera_from_matrices takes. For a left-handed world
+ * multiply the view by the same scale again. The camera's motion does not enter: an observer that moves sees
+ * directions aberrated, which no matrix says. Touches no context. Any thread, inside callbacks too. Errors:
+ * INVALID_ARGUMENT for NULL, a side of 0, another projection, planes out of range, unknown flags, a camera that
+ * bhr_set_camera would refuse. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_camera_matrices(const BhrCamera *camera,
                                             uint32_t width,
@@ -1799,6 +1802,59 @@ BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context,
                                        uint32_t capacity,
                                        double *out_points,
                                        uint32_t *out_count);
+
+/* ---- points on the screen ---- */
+
+#define BHR_MAX_IMAGE_ORDER 3u /**< The highest order that bhr_project_point looks for. Since 0.2.0. */
+
+/** An image of a point: where on the screen it appears, and how. Since 0.2.0. */
+typedef struct BhrProjectedPoint {
+    uint32_t struct_size; /**< sizeof(BhrProjectedPoint), set by the caller. */
+    /** 1: a ray to the point was found. 0: there is none, or none was found; the numbers are then NaN, the ray's 0. */
+    uint32_t found;
+    /** 1: it is seen within the image, whatever matter or sky may be before it. 0: beside it, or not found. */
+    uint32_t on_screen;
+    uint32_t reserved; /**< Reserved: 0. */
+    /**
+     * Pixel position, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
+     * projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
+     */
+    double x;
+    double y;
+    BhrRay ray; /**< The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y. */
+    /**
+     * The solid angle of the image of something small at the point by that of the thing itself in flat space, as
+     * the camera sees it, its motion included; negative where the image is mirrored, as those of odd orders are.
+     * Without bounds towards the caustics: straight behind a hole without spin.
+     */
+    double magnification;
+    double delay;    /**< Coordinate time since the light left the point, scene lengths; NaN from inside the horizon. */
+    double redshift; /**< g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO). */
+} BhrProjectedPoint;
+
+/**
+ * Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the
+ * inverse of bhr_camera_ray. point: scene axes and lengths. order: how often the light went half round the hole; 0
+ * is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin it is the image that
+ * this one becomes as the spin grows from 0.
+ *
+ * Without spin every point outside the horizon has one image of each order, also behind the hole. With spin some
+ * have more or fewer, by the caustics that a spinning hole has, and the search may end there: of random points
+ * outside r+ + 1 M, seen from outside r+ + 2 M, two in a thousand are not found at orders 0 and 1, one in a
+ * hundred at order 2, a fifth at order 3; beside the horizon more. The ray of an image that is found passes the
+ * point within 1e-6 of its distance. Whether matter is before the point is for the host to ask (bhr_trace_rays).
+ *
+ * It is computed in double precision on the CPU, on this thread, whatever the backend: in about a millisecond, at
+ * orders 2 and 3 with spin in about ten; a search that fails takes up to a second. Errors: INVALID_ARGUMENT for
+ * NULL, a wrong struct_size, numbers not finite, an order above the highest; INVALID_STATE for a point farther
+ * than 1e15 M; else as bhr_camera_ray. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_project_point(const BhrContext *context,
+                                          uint32_t width,
+                                          uint32_t height,
+                                          const double point[3],
+                                          uint32_t order,
+                                          BhrProjectedPoint *out_image);
 
 /* ---- the matter with depth along rays ---- */
 

@@ -89,6 +89,23 @@ struct Camera {
     }
 };
 
+/// The highest order for Context::project_point.
+inline constexpr std::uint32_t max_image_order = BHR_MAX_IMAGE_ORDER;
+
+/// BhrProjectedPoint.
+struct ProjectedPoint {
+    std::uint32_t struct_size = sizeof(ProjectedPoint);
+    std::uint32_t found = 0;
+    std::uint32_t on_screen = 0;
+    std::uint32_t reserved = 0;
+    double x = 0.0;
+    double y = 0.0;
+    Ray ray = {};
+    double magnification = 0.0;
+    double delay = 0.0;
+    double redshift = 0.0;
+};
+
 } // namespace bhr
 
 #endif

@@ -470,6 +470,14 @@ class Context {
         });
     }
 
+    /// bhr_project_point.
+    Result<ProjectedPoint> project_point(std::uint32_t width, std::uint32_t height, const Vector &point,
+                                         std::uint32_t order = 0) const {
+        return detail::ask_struct<ProjectedPoint, BhrProjectedPoint>([&](BhrProjectedPoint *image) {
+            return bhr_project_point(get(), width, height, point.data(), order, image);
+        });
+    }
+
     /// bhr_trace_path: at most `capacity` points.
     Result<std::vector<PathPoint>> trace_path(const Ray &ray, std::uint32_t capacity = 4096) {
         const std::uint32_t most = capacity < 65536 ? capacity : 65536; // it never has more

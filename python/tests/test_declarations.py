@@ -35,12 +35,13 @@ ENUMS = {
     "BHR_FATE_": bhr.Fate,
     "BHR_FLOW_": bhr.Flow,
     "BHR_HOT_SPOT_": bhr.HotSpotFlags,
+    "BHR_MATRIX_": bhr.MatrixFlags,
 }
 
 #: Constants of C that Python has by other means: arguments, logging's levels, numpy's strides. Windows are left out.
 ELSEWHERE = re.compile(
     r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|MAX_CROSSINGS"
-    r"|MAX_VOLUMES|MAX_HOT_SPOTS|WINDOW_\w+|PRESENT_\w+)"
+    r"|MAX_VOLUMES|MAX_IMAGE_ORDER|MAX_HOT_SPOTS|WINDOW_\w+|PRESENT_\w+)"
 )
 
 #: Functions for windows, which this package does not have; and what cffi or numpy do in their place.
@@ -73,6 +74,7 @@ STRUCTS = [
     bhr.FrameStats,
     bhr.HoleInfo,
     bhr.HotSpot,
+    bhr.ProjectedPoint,
     bhr.Quality,
     bhr.Region,
     bhr.Sky,

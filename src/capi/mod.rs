@@ -37,6 +37,7 @@ pub mod job;
 pub mod log;
 pub mod matrix;
 pub mod preset;
+pub mod project;
 pub mod quality;
 pub mod rays;
 pub mod region;

@@ -12,6 +12,7 @@ pub mod lensing;
 pub mod matrices;
 pub mod observer;
 pub mod preset;
+pub mod project;
 pub mod projection;
 pub mod quality;
 pub mod query;

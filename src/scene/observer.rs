@@ -8,7 +8,7 @@ use super::{Camera, Motion, Region, Scene};
 use crate::error::{Error, Number, Result};
 use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// The range of observers, M: farther out, f32 tracers could not hold a ray's constants.
 pub const MIN_RADIUS: f64 = 1e-6;
@@ -120,6 +120,12 @@ impl Lens {
     /// being its top-left corner. Unit even where the projection shows nothing (`Mapping::has_look_direction`).
     pub fn look_direction(&self, x: f64, y: f64) -> DVec3 {
         (self.axes * self.mapping.point(x, y)).normalize()
+    }
+
+    /// The position of the full frame at which a look direction (components in the observer's own frame) is seen;
+    /// `None` where the projection has none for it.
+    pub fn position(&self, look: DVec3) -> Option<DVec2> {
+        self.mapping.position(self.axes.inverse() * look)
     }
 
     /// `look_direction`, and its changes to the next pixel right and down, to first order.

@@ -96,6 +96,36 @@ impl Mapping {
         }
     }
 
+    /// The position whose `point` lies in the direction of `p`; `None`: behind a perspective's image plane. Opposite a
+    /// fisheye's centre it is one of the many.
+    pub fn position(&self, p: DVec3) -> Option<DVec2> {
+        let size = DVec2::new(self.width, self.height);
+        let on_plane = |p: DVec3| DVec2::new(0.5 + 0.5 * p.x / p.z, 0.5 - 0.5 * p.y / p.z);
+        match self.projection {
+            Projection::Perspective | Projection::Frustum => (p.z > 0.0).then(|| on_plane(p) * size),
+            Projection::Fisheye => {
+                let side = p.truncate();
+                let radius = side.length().atan2(p.z) / self.pixel_angle;
+                let from_centre = side.normalize_or(DVec2::X) * radius;
+                Some(0.5 * size + DVec2::new(from_centre.x, -from_centre.y))
+            }
+            Projection::Equirect => {
+                let (longitude, latitude) = (p.x.atan2(p.z), p.y.atan2(p.x.hypot(p.z)));
+                Some(DVec2::new(0.5 + longitude / TAU, 0.5 - latitude / PI) * size)
+            }
+            Projection::Cube => {
+                let most = p.abs().max_element();
+                let face = match p {
+                    p if p.z.abs() == most => 4 + u8::from(p.z < 0.0),
+                    p if p.x.abs() == most => u8::from(p.x < 0.0),
+                    p => 2 + u8::from(p.y < 0.0),
+                };
+                let at = on_plane(turned_from_face(face, p)) * self.height;
+                Some(DVec2::new(f64::from(face) * self.height + at.x, at.y))
+            }
+        }
+    }
+
     /// Changes of `point` to the next pixel right and down, to first order.
     pub fn changes(&self, x: f64, y: f64) -> [DVec3; 2] {
         match self.projection {
@@ -156,6 +186,18 @@ fn turned_to_face(face: u8, p: DVec3) -> DVec3 {
         1 => DVec3::new(-p.z, p.y, p.x),
         2 => DVec3::new(p.x, p.z, -p.y),
         3 => DVec3::new(p.x, -p.z, p.y),
+        4 => p,
+        _ => DVec3::new(-p.x, p.y, -p.z),
+    }
+}
+
+/// The reverse of `turned_to_face`.
+fn turned_from_face(face: u8, p: DVec3) -> DVec3 {
+    match face {
+        0 => DVec3::new(-p.z, p.y, p.x),
+        1 => DVec3::new(p.z, p.y, -p.x),
+        2 => DVec3::new(p.x, -p.z, p.y),
+        3 => DVec3::new(p.x, p.z, -p.y),
         4 => p,
         _ => DVec3::new(-p.x, p.y, -p.z),
     }
@@ -247,6 +289,20 @@ mod tests {
             assert!(cube.same_face(x - 50.0, x + 49.999));
         }
         assert!(cube.same_face(-1.0, 0.0));
+    }
+
+    #[test]
+    fn positions_are_where_points_are_seen() {
+        for m in mappings() {
+            for (x, y) in [(0.3, 0.2), (150.5, 100.4), (99.8, 31.0), (100.2, 70.0), (290.0, 0.7), (12.0, 49.0)] {
+                if !m.has_look_direction(x, y) || (m.projection == Projection::Cube && y > m.height) {
+                    continue;
+                }
+                let back = m.position(m.point(x, y) * 3.0).unwrap();
+                assert!(back.abs_diff_eq(DVec2::new(x, y), 1e-9), "{m:?}: {x} {y} {back}");
+            }
+        }
+        assert_eq!(mapping(Projection::Perspective, [300, 200], 1.0).position(DVec3::NEG_Z), None);
     }
 
     #[test]

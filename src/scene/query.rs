@@ -132,7 +132,7 @@ impl Scene {
         Ok(())
     }
 
-    fn pixel_rays(&self, width: u32, height: u32, region: Option<Region>) -> Result<(PixelRays, Region)> {
+    pub(super) fn pixel_rays(&self, width: u32, height: u32, region: Option<Region>) -> Result<(PixelRays, Region)> {
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         if width == 0 || height == 0 {
             return Err(Error::argument(format!("image is {width} x {height}; each side must be at least 1")));
@@ -215,9 +215,9 @@ fn angles(indices: &[usize]) -> i32 {
 }
 
 /// The camera's lens and the boost into the frame in which its rays are stated.
-struct PixelRays {
-    lens: Lens,
-    aberration: Observer,
+pub(super) struct PixelRays {
+    pub(super) lens: Lens,
+    pub(super) aberration: Observer,
 }
 
 impl PixelRays {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* bad_cameras.c -- cameras as hosts have them, asked wrongly: tangents and jitter that are none, matrices that are no
- * camera's. Each refusal must leave the context, and what was to be filled in, as the header says. The rest of
- * BhrCamera is in bad_scene.c. */
+ * camera's, points that are nowhere. Each refusal must leave the context, and what was to be filled in, as the header
+ * says. The rest of BhrCamera is in bad_scene.c. */
 #include "check.h"
 #include "refusals.h"
 
@@ -200,6 +200,62 @@ static void matrices(void) {
     not_made(&camera, 8, 4, 0.1, 9.0, 0, "tan_down");
 }
 
+/* ---- points on the screen ---- */
+
+static void points(Watch *watch, BhrContext *context) {
+    static const double point[3] = {1.0, 8.0, 3.0};
+    BhrProjectedPoint   image;
+    image.struct_size = sizeof image;
+    CHECK_OK(bhr_project_point(context, 16, 9, point, 0, &image));
+    CHECK(image.found == 1 && image.magnification > 0.0 && image.delay > 0.0 && image.redshift > 0.0, "a point");
+    BhrRay ray;
+    CHECK_OK(bhr_camera_ray(context, 16, 9, image.x, image.y, &ray));
+    for (int k = 0; k < 3; k++) {
+        CHECK(fabs(ray.direction[k] - image.ray.direction[k]) < 1e-12, "direction %d: %.17g %.17g", k,
+              ray.direction[k], image.ray.direction[k]);
+    }
+    CHECK(fabs(ray.frequency_ratio - image.ray.frequency_ratio) < 1e-12, "frequency ratio");
+
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_project_point(NULL, 16, 9, point, 0, &image));
+    CHECK(image.found == 0 && image.x == 0.0 && image.struct_size == sizeof image, "a failure clears the image");
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_image", bhr_project_point(context, 16, 9, point, 0, NULL));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "point", bhr_project_point(context, 16, 9, NULL, 0, &image));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width", bhr_project_point(context, 0, 9, point, 0, &image));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "height", bhr_project_point(context, 16, 0, point, 0, &image));
+    static const uint32_t orders[] = {BHR_MAX_IMAGE_ORDER + 1, 1000u, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(orders); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "order",
+                      bhr_project_point(context, 16, 9, point, orders[i], &image));
+    }
+    for (size_t i = 0; i < COUNT_OF(NOT_FINITE); i++) {
+        for (int k = 0; k < 3; k++) {
+            double bad[3] = {1.0, 8.0, 3.0};
+            bad[k] = NOT_FINITE[i];
+            CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "point",
+                          bhr_project_point(context, 16, 9, bad, 0, &image));
+        }
+    }
+    static const double far_away[3] = {0.0, 1e300, 0.0};
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_STATE, "position",
+                  bhr_project_point(context, 16, 9, far_away, 0, &image));
+    static const uint32_t wrong[] = {0, 4, 111, 1u << 20, UINT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+        image.struct_size = wrong[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size",
+                      bhr_project_point(context, 16, 9, point, 0, &image));
+    }
+    /* There is nothing to be seen of the hole's inside, and where the camera is. */
+    image.struct_size = sizeof image;
+    static const double centre[3] = {0.0, 0.0, 0.0};
+    const double *const nowhere[] = {centre, watch->camera.position};
+    for (size_t i = 0; i < COUNT_OF(nowhere); i++) {
+        CHECK_OK(bhr_project_point(context, 16, 9, nowhere[i], 0, &image));
+        CHECK(image.found == 0 && image.on_screen == 0 && isnan(image.x) && isnan(image.magnification) &&
+                  image.ray.direction[0] == 0.0,
+              "an image of nothing: %g %g", image.x, image.magnification);
+    }
+}
+
 int main(int argc, char **argv) {
     BhrContext *context = check_context(check_begin(argc, argv));
     static Watch watch;
@@ -210,6 +266,7 @@ int main(int argc, char **argv) {
     earlier_hosts(&watch, context);
     from_matrices();
     matrices();
+    points(&watch, context);
     bhr_context_destroy(context);
     return check_end();
 }

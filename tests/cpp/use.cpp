@@ -272,6 +272,10 @@ static void rays() {
     EXPECT(context.trace(bhr::span<const bhr::Ray>(&inward, 1), bhr::span<bhr::Hit>(&hit, 1)));
     EXPECT(hit.fate == bhr::Fate::captured && hit.crossing_count == 0);
     EXPECT(!context.trace(all, bhr::span<bhr::Hit>(&hit, 1)) && context.trace(bhr::span<const bhr::Ray>()));
+    const bhr::ProjectedPoint label = context.project_point(8, 4, {0.0, 0.0, 0.5}, 9).value_or(bhr::ProjectedPoint());
+    EXPECT(label.found == 0);
+    const bhr::ProjectedPoint image = context.project_point(8, 4, {1.0, -8.0, 3.0}).value();
+    EXPECT(image.found == 1 && image.magnification > 0.0 && image.delay > 0.0 && image.ray.frequency_ratio > 0.0);
     const std::vector<bhr::PathPoint> path = context.trace_path(inward, 100).value();
     EXPECT(path.size() >= 2 && path.size() <= 100 && near(path[0].z, 30.0));
     EXPECT(path.back().z < 2.1 && path.back().t < 0.0);

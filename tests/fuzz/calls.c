@@ -312,7 +312,13 @@ static void ray_call(BhrContext *context) {
         }
         rays[i].frequency_ratio = number();
     }
-    switch (byte() % 5) {
+    switch (byte() % 6) {
+    case 5: {
+        BhrProjectedPoint image;
+        image.struct_size = mostly(sizeof image, 3);
+        check(bhr_project_point(context, count(), count(), rays[0].position, mostly(0, byte()), &image));
+        break;
+    }
     case 4:
         check(bhr_transfer_rays(context, rays, mostly(sizeof rays[0], 3), byte() % 4, found_matter,
                                 sizeof found_matter[0]));

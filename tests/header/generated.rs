@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 25] = [
+const SECTIONS: [(&str, &str); 26] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -32,6 +32,7 @@ const SECTIONS: [(&str, &str); 25] = [
     ("job", "rendering in the background"),
     ("surface", "rendering into windows"),
     ("rays", "rays: the same tracer, asked directly"),
+    ("project", "points on the screen"),
     ("transfer", "the matter with depth along rays"),
     ("stats", "numbers about the last finished frame"),
 ];

@@ -34,6 +34,7 @@ from ._constants import (
 )
 from ._ffi import ffi
 from ._library import begin, check, lib
+from ._rays import RAY
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -325,6 +326,35 @@ class Quality(_Struct):
     render_scale: float = 1.0
     #: HALF: a quarter of the rays where matter with depth is smooth.
     volume_resolution: VolumeResolution = VolumeResolution.FULL
+
+
+@dataclasses.dataclass(frozen=True)
+class ProjectedPoint(_Struct):
+    """Where on the screen a point of the scene appears."""
+
+    c_name: ClassVar[str] = "BhrProjectedPoint"
+
+    #: 0: there is no such image, or none was found.
+    found: int
+    #: 1: it lies within the image.
+    on_screen: int
+    #: Pixels; NaN behind a flat picture.
+    x: float
+    y: float
+    #: The ray to the point: a record of the dtype RAY.
+    ray: Any
+    #: Solid angle by that in flat space; negative where the image is mirrored.
+    magnification: float
+    #: Coordinate time since the light left, scene lengths.
+    delay: float
+    #: nu(camera) / nu(observer at rest at the point).
+    redshift: float
+
+    @classmethod
+    def from_c(cls: type[_Self], struct: Any) -> _Self:
+        names = [name for name in _names(cls) if name != "ray"]
+        ray = np.frombuffer(ffi.buffer(ffi.addressof(struct.ray)), RAY)[0].copy()
+        return cls(ray=ray, **{name: getattr(struct, name) for name in names})
 
 
 @dataclasses.dataclass(frozen=True)

@@ -17,8 +17,8 @@ use super::orbit::{horizon_outer, zamo_omega};
 use glam::DVec3;
 use shooting::{Aim, FINE, Flight, Target};
 
-/// The highest order that is looked for: each half turn more makes rays e^pi times as sensitive, and beyond this doubles
-/// do not hold a direction well enough.
+/// The highest order that is looked for: each half turn more makes rays e^pi times as sensitive, and beyond this
+/// doubles do not hold a direction well enough.
 pub const HIGHEST_ORDER: u32 = 3;
 
 /// The largest distance at which a ray still passes through its point, as a share of the distances of the point from

@@ -50,8 +50,8 @@ pub struct Aim {
     pub z: f64,
     /// -1: measured from the direction towards the hole; 1: from that away from it.
     pub pole: f64,
-    /// Mino time, in units in which the observer of the local frame measures frequency 1: rays of all energies, those of
-    /// an ergosphere too, differ smoothly from each other in it.
+    /// Mino time, in units in which the observer of the local frame measures frequency 1: rays of all energies, those
+    /// of an ergosphere too, differ smoothly from each other in it.
     pub time: f64,
 }
 
@@ -174,7 +174,7 @@ pub fn bring(frame: &LocalFrame, target: &Target, guess: Aim, order: u32, effort
                 break;
             }
             share *= 0.5;
-            // What is left is rounding error, or there is no way on.
+            // Only rounding error is left, or there is no way on.
             if share < 0.02 {
                 return (miss.length() <= effort.enough).then_some((aim, iteration));
             }
