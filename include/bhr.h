@@ -1913,6 +1913,11 @@ typedef struct BhrFrameStats {
     uint64_t gpu_ns;       /**< Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
     uint64_t readback_ns;  /**< Time to copy pixels into the host's memory, without the wait for the GPU. */
     uint64_t device_bytes; /**< Device memory that the context holds. */
+    /**
+     * Lens tables made for this frame: 0 where those of an earlier frame served, which are kept for up to four
+     * places of eyes that are shown by turns, or where none were needed. Since 0.2.0.
+     */
+    uint64_t lens_tables;
 } BhrFrameStats;
 
 /** Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */

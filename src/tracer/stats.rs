@@ -23,6 +23,8 @@ pub struct FrameStats {
     pub readback_ns: u64,
     /// Device memory held by this renderer.
     pub device_bytes: u64,
+    /// Lens tables made for the frame.
+    pub lens_tables: u64,
 }
 
 /// The numbers about a renderer's last finished frame, whoever made it.

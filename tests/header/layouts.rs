@@ -134,7 +134,8 @@ fn layouts_hold_in_rust() {
             fate, crossing_count, sky_direction, sky_redshift, swept_angle, steps, reserved, crossings
         }
         stats::BhrFrameStats {
-            struct_size, reserved, frame_index, rays, steps, cpu_ns, gpu_ns, readback_ns, device_bytes
+            struct_size, reserved, frame_index, rays, steps, cpu_ns, gpu_ns, readback_ns, device_bytes,
+            lens_tables
         }
     };
     let json = committed();

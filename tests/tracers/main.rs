@@ -6,6 +6,7 @@
 mod bloom;
 mod cameras;
 mod extremes;
+mod eyes;
 #[path = "../frames/mod.rs"]
 mod frames;
 mod frusta;

@@ -403,6 +403,8 @@ class FrameStats(_Struct):
     gpu_ns: int
     readback_ns: int
     device_bytes: int
+    #: Lens tables made for the frame; 0 where those of an earlier one served.
+    lens_tables: int
 
 
 @dataclasses.dataclass(frozen=True)
