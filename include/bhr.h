@@ -497,6 +497,13 @@ typedef int32_t BhrMotion;
 #define BHR_MOTION_ORBIT 2     /**< On a circular orbit towards +ph. */
 #define BHR_MOTION_VELOCITY 3  /**< Moves with BhrCamera.velocity. */
 
+/** The eye for which an EQUIRECT picture is made. Since 0.2.0. */
+typedef int32_t BhrEye;
+
+#define BHR_EYE_MIDDLE 0 /**< The camera's own place: no stereo picture. */
+#define BHR_EYE_LEFT 1   /**< The left eye. */
+#define BHR_EYE_RIGHT 2  /**< The right eye. */
+
 /** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
 typedef struct BhrCamera {
     uint32_t struct_size;     /**< sizeof(BhrCamera). */
@@ -529,6 +536,19 @@ typedef struct BhrCamera {
      * within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0.
      */
     double jitter[2];
+    /** For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0. */
+    double eye_distance;
+    /**
+     * BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
+     * stereo (omnidirectional stereo, ODS): each column is seen from where the eye is when the head, which turns
+     * about position and up, looks at that column. Columns share an eye, up to 64, where things half as far as the
+     * hole do not leap by more than a tenth of a pixel for it; each such strip is rendered as a frame of its own,
+     * so that a picture takes longer. Bloom that the preset has is left out; other bloom, and a beam, are
+     * INVALID_STATE, windows and bhr_project_point UNSUPPORTED. Towards the poles, as in all such pictures, depth
+     * is wrong. Other projections ignore it. Default MIDDLE.
+     */
+    BhrEye eye;
+    uint32_t reserved2; /**< Reserved: 0. */
 } BhrCamera;
 
 /**
@@ -558,8 +578,8 @@ BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, dou
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
- * or parallel, fov_y out of range, |velocity| >= 1, tangents or a jitter that are out of range, an unknown
- * constant.
+ * or parallel, fov_y out of range, |velocity| >= 1, tangents, jitter or eye_distance that are out of range, an
+ * unknown constant.
  */
 BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 

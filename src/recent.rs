@@ -38,7 +38,7 @@ impl<K: PartialEq, V> Recent<K, V> {
                 return None;
             }
         }
-        // Who comes back has the one replaced that was not asked for the longest; others the last.
+        // A key that comes back replaces the one that was not asked for the longest; others replace the last.
         let goes = if came_back.is_some() { self.kept.pop() } else { self.kept.drain(..1.min(self.kept.len())).next() };
         goes.map(|(key, thing)| {
             self.replaced.insert(0, key);
@@ -76,7 +76,7 @@ mod tests {
         let (mut recent, mut made) = (Recent::default(), 0);
         for key in keys {
             if !recent.find(&key) {
-                drop(recent.make_room(&key));
+                let _ = recent.make_room(&key);
                 recent.put(key, key);
                 made += 1;
             }

@@ -45,6 +45,9 @@ struct Camera {
     double tan_down;
     double tan_up;
     std::array<double, 2> jitter;
+    double eye_distance;
+    Eye eye;
+    std::uint32_t reserved2;
 
     Camera() noexcept { detail::defaults(*this, bhr_camera_init); }
     BhrCamera c() const noexcept { return detail::as_c<BhrCamera>(*this); }

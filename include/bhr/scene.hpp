@@ -60,6 +60,13 @@ enum class Projection : std::int32_t {
     frustum = BHR_PROJECTION_FRUSTUM,
 };
 
+/// BhrEye.
+enum class Eye : std::int32_t {
+    middle = BHR_EYE_MIDDLE,
+    left = BHR_EYE_LEFT,
+    right = BHR_EYE_RIGHT,
+};
+
 /// BhrMotion. (static is a word of the language.)
 enum class Motion : std::int32_t {
     static_ = BHR_MOTION_STATIC,

@@ -23,6 +23,7 @@ ENUMS = {
     "BHR_ADAPTER_": bhr.AdapterFlags,
     "BHR_PROJECTION_": bhr.Projection,
     "BHR_MOTION_": bhr.Motion,
+    "BHR_EYE_": bhr.Eye,
     "BHR_FORMAT_": bhr.Format,
     "BHR_SKY_": bhr.SkyFlags,
     "BHR_TONE_MAP_": bhr.ToneMap,

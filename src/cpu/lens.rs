@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Ray records of pixels, looked up in tables of the observer's lens (`physics::lens`). Records and their footprints are
-//! as `record` makes them by tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
+//! Ray records of pixels, looked up in tables of the observer's lens (`physics::lens`). Records and their footprints
+//! are as `record` makes them by tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
 use super::tables::Tables;

@@ -254,10 +254,10 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     }
     let mut guard = job_request.tracer.lock_arc();
     let begun = match &mut *guard {
-        Tracer::Gpu(tracer) => tracer
+        Tracer::Gpu(tracer) if !job_request.scene.camera.is_omnistereo() => tracer
             .begin(&job_request.scene, &job_request.request, FrameTarget::Host)
             .map(|frame| (frame, tracer.device())),
-        Tracer::Cpu(_) | Tracer::Gl(_) => {
+        _ => {
             let rendered = render_whole(&mut guard, &mut job_request);
             // Whoever waits for the tracer gets it before the next job does.
             ArcMutexGuard::unlock_fair(guard);
@@ -278,7 +278,8 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     }
 }
 
-/// Makes a frame without overlap with the next one: the CPU is busy, and GL is one thread's.
+/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and a picture that is seen from
+/// several places is made strip by strip.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
     let (scene, request, target, shared) =
         (&job_request.scene, &job_request.request, &mut job_request.target, job_request.shared.clone());

@@ -24,6 +24,16 @@ impl Projection {
     }
 }
 
+/// The eye of a stereo picture all round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Eye {
+    /// No stereo picture: the camera's own place.
+    Middle = 0,
+    Left = 1,
+    Right = 2,
+}
+
 /// The borders of a picture on the plane at distance 1 ahead of the camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frustum {
@@ -109,6 +119,9 @@ pub struct Camera {
     pub frustum: Frustum,
     /// The shift of the picture of a `Perspective` or a `Frustum`, pixels right and down, at most 1 each way.
     pub jitter: DVec2,
+    /// Which eye an `Equirect` picture is for, and the distance of the eyes, scene lengths.
+    pub eye: Eye,
+    pub eye_distance: f64,
 }
 
 impl Default for Camera {
@@ -124,13 +137,16 @@ impl Default for Camera {
             velocity: DVec3::ZERO,
             frustum: Frustum { left: -1.0, right: 1.0, down: -1.0, up: 1.0 },
             jitter: DVec2::ZERO,
+            eye: Eye::Middle,
+            eye_distance: 0.0,
         }
     }
 }
 
 impl Camera {
     /// Errors: a number not finite, position 0, forward or up zero or parallel, fov_y out of range, |velocity| >= 1,
-    /// tangents as `Frustum::check`, a jitter above 1.
+    /// tangents as `Frustum::check`, a jitter above 1,
+    /// a negative eye distance.
     pub fn check(&self) -> Result<()> {
         let named =
             [("position", self.position), ("forward", self.forward), ("up", self.up), ("velocity", self.velocity)];
@@ -152,6 +168,12 @@ impl Camera {
             Projection::Perspective => (std::f64::consts::PI, false),
             _ => (std::f64::consts::TAU, true),
         };
+        if !(self.eye_distance >= 0.0 && self.eye_distance.is_finite()) {
+            return Err(Error::argument(format!(
+                "camera eye_distance is {}; it must be finite and not less than 0",
+                Number(self.eye_distance)
+            )));
+        }
         if self.projection == Projection::Frustum {
             self.frustum.check()?;
         }

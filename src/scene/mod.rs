@@ -4,6 +4,7 @@
 
 pub mod camera;
 mod content;
+pub mod eyes;
 pub mod film;
 pub mod frame;
 pub mod hole;
@@ -26,7 +27,7 @@ pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};
 pub use crate::emit::effects::Effects;
 pub use crate::emit::hot_spot::HotSpot;
 pub use crate::emit::volume::{FlowLaw, Shape, Volume};
-pub use camera::{Camera, Frustum, Motion, Projection};
+pub use camera::{Camera, Eye, Frustum, Motion, Projection};
 pub use content::{Scene, View};
 pub use film::{ColourMap, Film, ToneMap};
 pub use frame::Region;

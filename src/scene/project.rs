@@ -30,7 +30,7 @@ impl Scene {
     /// The image of a scene point that light makes after `order` half turns about the hole, in a `width` x `height`
     /// image of the camera's (`region`: of the part of a frame that it is). `None`: there is none, or none was found.
     ///
-    /// Errors: as `camera_ray`; INVALID_ARGUMENT for a point not finite or an order above `HIGHEST_ORDER`;
+    /// Errors: as `camera_ray`; UNSUPPORTED for a camera of several places; INVALID_ARGUMENT for a point not finite or an order above `HIGHEST_ORDER`;
     /// INVALID_STATE for a point farther than 1e15 M.
     pub fn project_point(
         &self,
@@ -44,6 +44,7 @@ impl Scene {
             let (x, y, z) = (Number(point.x), Number(point.y), Number(point.z));
             return Err(Error::argument(format!("point is ({x}, {y}, {z}); it must be finite")));
         }
+        self.check_one_eye("bhr_project_point")?;
         if order > HIGHEST_ORDER {
             return Err(Error::argument(format!("order is {order}; the highest is {HIGHEST_ORDER}")));
         }

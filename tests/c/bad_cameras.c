@@ -60,6 +60,48 @@ static void jitter(Watch *watch, BhrContext *context) {
     }
 }
 
+static void eyes(Watch *watch, BhrContext *context) {
+    static const int32_t unknown[] = {-1, 3, 77, INT32_MIN, INT32_MAX};
+    for (size_t i = 0; i < COUNT_OF(unknown); i++) {
+        BhrCamera camera = frustum();
+        camera.eye = unknown[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "eye", bhr_set_camera(context, &camera));
+    }
+    static const double bad[] = {NAN, INFINITY, -INFINITY, -0.1};
+    for (size_t i = 0; i < COUNT_OF(bad); i++) {
+        BhrCamera camera = frustum();
+        camera.eye_distance = bad[i];
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "eye_distance", bhr_set_camera(context, &camera));
+    }
+    BhrCamera camera = frustum();
+    camera.reserved2 = 1;
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "reserved", bhr_set_camera(context, &camera));
+    /* A picture all round for one eye. */
+    camera = frustum();
+    camera.projection = BHR_PROJECTION_EQUIRECT;
+    camera.eye = BHR_EYE_LEFT, camera.eye_distance = 0.4;
+    CHECK_OK(bhr_set_camera(context, &camera));
+    BhrFilm film = watch->film;
+    film.bloom = 0.3;
+    CHECK_OK(bhr_set_film(context, &film));
+    static unsigned char pixels[16 * 8 * 4];
+    BhrImage             image = image_of(BHR_FORMAT_RGBA8_SRGB, 16, 8, pixels, sizeof pixels);
+    CHECK_FAILS(BHR_ERROR_INVALID_STATE, "an eye", bhr_render_image(context, &image));
+    film.bloom = film.beam_fwhm = 0.0;
+    CHECK_OK(bhr_set_film(context, &film));
+    CHECK_OK(bhr_render_image(context, &image));
+    static const double point[3] = {1.0, 8.0, 3.0};
+    BhrProjectedPoint   projected;
+    projected.struct_size = sizeof projected;
+    CHECK_FAILS(BHR_ERROR_UNSUPPORTED, "eye", bhr_project_point(context, 16, 8, point, 0, &projected));
+    BhrRay rays[2];
+    CHECK_OK(bhr_camera_rays(context, 2, 1, rays));
+    CHECK(rays[0].position[0] != rays[1].position[0], "both columns are seen from one place");
+    CHECK_OK(bhr_set_film(context, &watch->film));
+    CHECK_OK(bhr_set_camera(context, &watch->camera));
+    check_unchanged(watch, __FILE__, __LINE__, "the camera of both eyes set back");
+}
+
 /* At the limits, and where a number is ignored. */
 static void taken(Watch *watch, BhrContext *context) {
     BhrCamera camera = frustum();
@@ -262,6 +304,7 @@ int main(int argc, char **argv) {
     watch_unusual_scene(&watch, context);
     tangents(&watch, context);
     jitter(&watch, context);
+    eyes(&watch, context);
     taken(&watch, context);
     earlier_hosts(&watch, context);
     from_matrices();

@@ -205,6 +205,8 @@ static void scene_call(BhrContext *context) {
         camera.tan_left = mostly(1, 0) != 0 ? camera.tan_left : number();
         camera.tan_up = mostly(1, 0) != 0 ? camera.tan_up : number();
         camera.jitter[byte() % 2] = number() / 8.0;
+        camera.eye = mostly(1, 0) != 0 ? BHR_EYE_MIDDLE : constant(BHR_EYE_RIGHT);
+        camera.eye_distance = mostly(1, 0) != 0 ? 0.0 : number();
         check(bhr_set_camera(context, &camera));
         break;
     case 4:

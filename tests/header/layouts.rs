@@ -102,7 +102,7 @@ fn layouts_hold_in_rust() {
         }
         camera::BhrCamera {
             struct_size, projection, position, forward, up, fov_y, motion, reserved, velocity, tan_left, tan_right,
-            tan_down, tan_up, jitter
+            tan_down, tan_up, jitter, eye_distance, eye, reserved2
         }
         disk::BhrDisk {
             struct_size, flags, inner_radius, outer_radius, temperature, opacity, brightness, turbulence, seed,

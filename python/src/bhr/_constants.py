@@ -53,6 +53,14 @@ class Projection(enum.IntEnum):
     FRUSTUM = 4
 
 
+class Eye(enum.IntEnum):
+    """The eye for which an EQUIRECT picture is made, for stereo all round."""
+
+    MIDDLE = 0
+    LEFT = 1
+    RIGHT = 2
+
+
 class MatrixFlags(enum.IntFlag):
     """How a host's matrices and its clip space are: see BHR_MATRIX_* in bhr.h. Arrays of numpy are ROW_MAJOR."""
 

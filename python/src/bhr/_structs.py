@@ -20,6 +20,7 @@ from ._constants import (
     DiskFlags,
     DiskReference,
     EmissionLaw,
+    Eye,
     Flow,
     HotSpotFlags,
     MatrixFlags,
@@ -112,7 +113,7 @@ class Camera(_Struct):
     """An observer with a lens. Lengths in scene units, angles in radians."""
 
     c_name: ClassVar[str] = "BhrCamera"
-    c_enums = {"projection": Projection, "motion": Motion}
+    c_enums = {"projection": Projection, "motion": Motion, "eye": Eye}
 
     position: Vector = (0.0, 26.0, 2.5)
     #: Any non-zero length.
@@ -131,6 +132,9 @@ class Camera(_Struct):
     tan_up: float = 1.0
     #: The picture of a PERSPECTIVE or a FRUSTUM moves by so many pixels to the right and down, each within +-1.
     jitter: tuple[float, float] = (0.0, 0.0)
+    #: For EQUIRECT: the distance of two eyes, and for which of them the picture is.
+    eye_distance: float = 0.0
+    eye: Eye = Eye.MIDDLE
 
     @classmethod
     def orbit(cls, distance: float, azimuth: float, elevation: float, **fields: Any) -> Camera:

@@ -107,6 +107,7 @@ fn made(kind: Kind, number: u32) -> View {
         motion: scene.camera.motion,
         frustum: Frustum { left: -0.9, right: random.even(-0.5, 0.8), down: 0.1, up: random.even(0.2, 1.4) },
         jitter: 0.5 * random.direction().truncate(),
+        ..Camera::plain()
     };
     let disk = scene.disk.as_mut().expect("the default scene has a disk");
     disk.retrograde = number.is_multiple_of(5);
