@@ -500,9 +500,9 @@ typedef int32_t BhrMotion;
 /** The eye for which an EQUIRECT picture is made. Since 0.2.0. */
 typedef int32_t BhrEye;
 
-#define BHR_EYE_MIDDLE 0 /**< The camera's own place: no stereo picture. */
-#define BHR_EYE_LEFT 1   /**< The left eye. */
-#define BHR_EYE_RIGHT 2  /**< The right eye. */
+#define BHR_EYE_MIDDLE 0 /**< The camera's own place: no stereo picture. Since 0.2.0. */
+#define BHR_EYE_LEFT 1   /**< The left eye. Since 0.2.0. */
+#define BHR_EYE_RIGHT 2  /**< The right eye. Since 0.2.0. */
 
 /** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
 typedef struct BhrCamera {

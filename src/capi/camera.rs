@@ -51,11 +51,11 @@ pub const BHR_MOTION_VELOCITY: BhrMotion = 3;
 
 /// The eye for which an EQUIRECT picture is made. Since 0.2.0.
 pub type BhrEye = i32;
-/// The camera's own place: no stereo picture.
+/// The camera's own place: no stereo picture. Since 0.2.0.
 pub const BHR_EYE_MIDDLE: BhrEye = 0;
-/// The left eye.
+/// The left eye. Since 0.2.0.
 pub const BHR_EYE_LEFT: BhrEye = 1;
-/// The right eye.
+/// The right eye. Since 0.2.0.
 pub const BHR_EYE_RIGHT: BhrEye = 2;
 
 /// The camera: an observer with a lens. Positions and axes in scene axes and lengths.

@@ -278,8 +278,8 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     }
 }
 
-/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and a picture that is seen from
-/// several places is made strip by strip.
+/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and a picture that is seen
+/// from several places is made strip by strip.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
     let (scene, request, target, shared) =
         (&job_request.scene, &job_request.request, &mut job_request.target, job_request.shared.clone());

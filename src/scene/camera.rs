@@ -119,7 +119,7 @@ pub struct Camera {
     pub frustum: Frustum,
     /// The shift of the picture of a `Perspective` or a `Frustum`, pixels right and down, at most 1 each way.
     pub jitter: DVec2,
-    /// Which eye an `Equirect` picture is for, and the distance of the eyes, scene lengths.
+    /// The eye that an `Equirect` picture is for, and the distance of the eyes, scene lengths.
     pub eye: Eye,
     pub eye_distance: f64,
 }

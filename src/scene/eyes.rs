@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Stereo pictures all round, of one eye each: every column is seen from where the eye is when the head has turned to it
-//! (omnidirectional stereo: Ishiguro, Yamamoto & Tsuji 1992, IEEE PAMI 14, 257; Peleg, Ben-Ezra & Pritch 2001, IEEE PAMI
-//! 23, 279). Columns beside each other share an eye where that cannot be told.
+//! Stereo pictures all round, of one eye each: every column is seen from where the eye is when the head has turned to
+//! it (omnidirectional stereo: Ishiguro, Yamamoto & Tsuji 1992, IEEE PAMI 14, 257; Peleg, Ben-Ezra & Pritch 2001, IEEE
+//! PAMI 23, 279). Columns beside each other share an eye where that cannot be told.
 
 use super::camera::Eye;
 use super::{Camera, Projection, Region, Scene};
@@ -45,7 +45,8 @@ impl Camera {
 
     /// How many columns of a frame share an eye.
     fn strip_width(&self) -> u32 {
-        // Over a column the eye moves by 2 pi / columns of half the eyes' distance, and a column is 2 pi / columns wide.
+        // Over a column the eye moves by 2 pi / columns of half the eyes' distance, and a column is 2 pi / columns
+        // wide.
         let columns = LEAP * 0.5 * self.position.length() / (0.5 * self.eye_distance);
         columns.clamp(1.0, WIDEST) as u32
     }

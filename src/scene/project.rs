@@ -30,8 +30,8 @@ impl Scene {
     /// The image of a scene point that light makes after `order` half turns about the hole, in a `width` x `height`
     /// image of the camera's (`region`: of the part of a frame that it is). `None`: there is none, or none was found.
     ///
-    /// Errors: as `camera_ray`; UNSUPPORTED for a camera of several places; INVALID_ARGUMENT for a point not finite or an order above `HIGHEST_ORDER`;
-    /// INVALID_STATE for a point farther than 1e15 M.
+    /// Errors: as `camera_ray`; UNSUPPORTED for a camera of several places; INVALID_ARGUMENT for a point not finite or
+    /// an order above `HIGHEST_ORDER`; INVALID_STATE for a point farther than 1e15 M.
     pub fn project_point(
         &self,
         width: u32,
