@@ -455,24 +455,24 @@ typedef int32_t BhrProjection;
 
 /**
  * Dome master, equidistant: the angle from forward grows evenly with the distance from the frame's centre, to
- * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black,
- * alpha 0 in a TRANSPARENT image, NaN in views, rays without direction.
+ * fov_y / 2 (fov_y to 2 pi) at the circle inscribed in the frame. Outside the circle there is nothing: black, alpha
+ * 0 in a TRANSPARENT image, NaN in views, rays without direction.
  */
 #define BHR_PROJECTION_FISHEYE 1
 
 /**
- * All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude
- * towards up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or
- * two of the poles, where pixels are far narrower than high, the light of single stars is not exact.
+ * All-round picture, 360 x 180 degrees in even steps: longitude from forward (middle) to the right, latitude towards
+ * up (top); fov_y is ignored. A frame that is not twice as wide as high is stretched. Within a pixel or two of the
+ * poles, where pixels are far narrower than high, the light of single stars is not exact.
  */
 #define BHR_PROJECTION_EQUIRECT 2
 
 /**
- * Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face
- * it is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way
- * sees, not its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else
- * INVALID_STATE when a frame or rays are asked for. Stars keep their light across the borders of faces; within two
- * pixels of the cube's corners up to a quarter is lost.
+ * Six faces of a cube side by side: right, left, up, down, front, back. The top of each face is up; of the up face it
+ * is backward, of the down face forward. Each shows what a 90 degree PERSPECTIVE camera that looks that way sees, not
+ * its mirror image; fov_y is ignored. The full frame's width must be 6 times its height, else INVALID_STATE when a
+ * frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
+ * corners up to a quarter is lost.
  */
 #define BHR_PROJECTION_CUBE 3
 
@@ -485,10 +485,10 @@ typedef int32_t BhrProjection;
 #define BHR_PROJECTION_FRUSTUM 4
 
 /**
- * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a
- * frame or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT
- * moves on a circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with
- * spin on the circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
+ * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
+ * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
+ * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
+ * circular geodesic, in the equatorial plane only (to within 1e-12 of the radius).
  */
 typedef int32_t BhrMotion;
 
@@ -587,13 +587,13 @@ BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *cam
 BHR_NODISCARD BhrStatus bhr_get_camera(const BhrContext *context, BhrCamera *camera);
 
 /**
- * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a
- * STATIC one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera
- * stays where it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of
- * bhr_set_time, and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from
- * outside to inside (M = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time.
- * On failure the camera stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the
- * motion is not possible; UNSUPPORTED for VELOCITY.
+ * Moves a camera along its own world line about the context's hole by proper_time (scene lengths, finite): a STATIC
+ * one stays, a FREE_FALL one falls, an ORBIT one orbits, its axes carried along. The context's own camera stays where
+ * it is. *out_coordinate_time, unless NULL, becomes the scene time that went by: add it to the time of bhr_set_time,
+ * and a fall through a spin-0 horizon is seamless. It is the chart's t outside the horizon; from outside to inside (M
+ * = 1, H as at bhr_set_time) it is proper_time + H(r at the begin); inside it is proper_time. On failure the camera
+ * stays as it was. Errors: INVALID_ARGUMENT as bhr_set_camera; INVALID_STATE where the motion is not possible;
+ * UNSUPPORTED for VELOCITY.
  */
 BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context,
                                            BhrCamera *camera,

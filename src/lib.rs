@@ -4,14 +4,16 @@
 //! - `capi`: the C API, `include/bhr.h`: checks every argument, holds all pointer code.
 //! - [`renderer`]: one scene and one tracer; the safe Rust face. [`job`]: its frames in the background. [`surface`]:
 //!   its frames in the host's windows.
-//! - `tracers`: the tracers behind one face. `cpu`, `gpu`: the two of them, with one behaviour: scene -> pixels. -
-//! [`window`]: the host's windows, as their platforms know them. - [`tracer`]: what tracers take and give: requests,
-//! tiles, numbers, adapters. - [`film`]: radiance -> pixels. - [`scene`]: what to draw, as plain validated data. -
-//! [`emit`]: what shines or absorbs near the hole. [`sky`]: stars and maps. [`image`]: pixels in memory and files. -
-//! [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone. - `random`,
-//! `recent` (things that are kept), `deferred` (work that waits until a thread holds no lock of the process),
-//! `allocate` (memory that may be
-//!   refused), `thread_scope` (what the library's threads take over from the threads that they work for), [`error`].
+//! - `tracers`: the tracers behind one face. `cpu`, `gpu`: the two of them, with one behaviour: scene -> pixels.
+//! - [`window`]: the host's windows, as their platforms know them.
+//! - [`tracer`]: what tracers take and give: requests, tiles, numbers, adapters.
+//! - [`film`]: radiance -> pixels.
+//! - [`scene`]: what to draw, as plain validated data.
+//! - [`emit`]: what shines or absorbs near the hole. [`sky`]: stars and maps. [`image`]: pixels in memory and files.
+//! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
+//! - `random`, `recent` (costly things that are kept), `deferred` (work that waits until a thread holds no lock of the
+//!   process), `allocate` (memory that may be refused), `thread_scope` (what the library's threads take over from the
+//!   threads that they work for), [`error`].
 //!
 //! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms.rs holds it.
 

@@ -87,8 +87,8 @@ impl Scene {
     pub fn check_one_eye(&self, what: &str) -> Result<()> {
         if self.camera.is_omnistereo() {
             return Err(Error::unsupported(format!(
-                "camera eye is {}: {what} of a picture whose columns are seen from several places is not supported; set \
-                 eye 0",
+                "camera eye is {}: {what} of a picture whose columns are seen from several places is not supported; \
+                 set eye 0",
                 self.camera.eye as i32
             )));
         }

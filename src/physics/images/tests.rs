@@ -93,7 +93,7 @@ fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
     let begun = Instant::now();
     let found = cases.par_iter().map(miss).collect::<Vec<_>>();
     let lost = found.iter().filter(|miss| miss.is_none()).count();
-    let missed = found.iter().flatten().filter(|miss| !(**miss <= 1e-6)).count();
+    let missed = found.iter().flatten().filter(|miss| miss.is_nan() || **miss > 1e-6).count();
     let [first, last] = [cases[0].0, cases[cases.len() - 1].0];
     println!("spins {first} to {last}: {lost} of {} lost, {missed} missed, {:?}", cases.len(), begun.elapsed());
     [lost, missed]
