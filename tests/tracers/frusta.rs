@@ -150,3 +150,20 @@ fn rays_of_a_frustum_lie_between_its_tangents() {
     scene.camera.jitter = DVec2::new(0.25, -0.5);
     assert!(seen(&scene, 31.5, 40.5).abs_diff_eq(at(31.25, 41.0), 1e-14));
 }
+
+/// Off-axis, jittered, wider than high in another ratio than the frame, and moving.
+#[test]
+fn both_tracers_show_the_same_frustum() {
+    for way in WAYS {
+        let pictures = both().map(|(_, mut renderer)| {
+            set(&mut renderer, way);
+            renderer.scene.camera.projection = Projection::Frustum;
+            renderer.scene.camera.frustum = Frustum { left: -1.2, right: 0.4, down: -0.3, up: 0.9 };
+            renderer.scene.camera.jitter = DVec2::new(0.3, -0.45);
+            shown(&mut renderer, SIZE, None)
+        });
+        let wrong = differing(&pictures[0], &pictures[1]);
+        println!("{way:?}: {wrong} pixels differ");
+        assert!(wrong <= (SIZE[0] * SIZE[1]) as usize / 100, "{way:?}: {wrong} pixels differ");
+    }
+}

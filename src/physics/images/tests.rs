@@ -152,7 +152,7 @@ fn images_are_reciprocal() {
 }
 
 /// The lens equation of weak fields: with x the angle from the hole in Einstein radii, mu = 1/2 +- (x^2 + 2) / (2 x
-/// sqrt(x^2 + 4)) (Schneider, Ehlers & Falco 1992, eq. 2.24).
+/// sqrt(x^2 + 4)) (Schneider, Ehlers & Falco 1992, chapter 2).
 #[test]
 fn far_images_obey_the_lens_equation() {
     let distance = 1e7_f64;
