@@ -84,14 +84,19 @@ pub struct BhrCamera {
     pub velocity: [f64; 3],
     /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
     /// left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
+    /// Since 0.2.0.
     pub tan_left: f64,
+    /// The right border. Since 0.2.0.
     pub tan_right: f64,
+    /// The lower border. Since 0.2.0.
     pub tan_down: f64,
+    /// The upper border. Since 0.2.0.
     pub tan_up: f64,
     /// The whole picture moves by this many pixels to the right and down, as temporal antialiasing wants it; each
-    /// within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0.
+    /// within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0. Since 0.2.0.
     pub jitter: [f64; 2],
-    /// For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0.
+    /// For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0. Since
+    /// 0.2.0.
     pub eye_distance: f64,
     /// BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
     /// stereo (omnidirectional stereo, ODS): each column is seen from where the eye is when the head, which turns
@@ -99,9 +104,9 @@ pub struct BhrCamera {
     /// hole do not leap by more than a tenth of a pixel for it; each such strip is rendered as a frame of its own,
     /// so that a picture takes longer. Bloom that the preset has is left out; other bloom, and a beam, are
     /// INVALID_STATE, windows and bhr_project_point UNSUPPORTED. Towards the poles, as in all such pictures, depth
-    /// is wrong. Other projections ignore it. Default MIDDLE.
+    /// is wrong. Other projections ignore it. Default MIDDLE. Since 0.2.0.
     pub eye: BhrEye,
-    /// Reserved: 0.
+    /// Reserved: 0. Since 0.2.0.
     pub reserved2: u32,
 }
 
