@@ -477,6 +477,14 @@ typedef int32_t BhrProjection;
 #define BHR_PROJECTION_CUBE 3
 
 /**
+ * A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or
+ * of a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any:
+ * it is stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up
+ * times the frame's width / height it is PERSPECTIVE. Since 0.2.0.
+ */
+#define BHR_PROJECTION_FRUSTUM 4
+
+/**
  * How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
  * or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
  * circle towards +ph: without spin at any latitude, with r > 3 M and beta = 1 / sqrt(r / M - 2); with spin on the
@@ -488,6 +496,13 @@ typedef int32_t BhrMotion;
 #define BHR_MOTION_FREE_FALL 1 /**< Falls radially from rest at infinity. */
 #define BHR_MOTION_ORBIT 2     /**< On a circular orbit towards +ph. */
 #define BHR_MOTION_VELOCITY 3  /**< Moves with BhrCamera.velocity. */
+
+/** The eye for which an EQUIRECT picture is made. Since 0.2.0. */
+typedef int32_t BhrEye;
+
+#define BHR_EYE_MIDDLE 0 /**< The camera's own place: no stereo picture. Since 0.2.0. */
+#define BHR_EYE_LEFT 1   /**< The left eye. Since 0.2.0. */
+#define BHR_EYE_RIGHT 2  /**< The right eye. Since 0.2.0. */
 
 /** The camera: an observer with a lens. Positions and axes in scene axes and lengths. */
 typedef struct BhrCamera {
@@ -508,6 +523,36 @@ typedef struct BhrCamera {
      * direction given at position. Default 0.
      */
     double velocity[3];
+    /**
+     * For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
+     * left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
+     * Since 0.2.0.
+     */
+    double tan_left;
+    double tan_right; /**< The right border. Since 0.2.0. */
+    double tan_down;  /**< The lower border. Since 0.2.0. */
+    double tan_up;    /**< The upper border. Since 0.2.0. */
+    /**
+     * The whole picture moves by this many pixels to the right and down, as temporal antialiasing wants it; each
+     * within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0. Since 0.2.0.
+     */
+    double jitter[2];
+    /**
+     * For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0. Since
+     * 0.2.0.
+     */
+    double eye_distance;
+    /**
+     * BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
+     * stereo (omnidirectional stereo, ODS): each column is seen from where the eye is when the head, which turns
+     * about position and up, looks at that column. Columns share an eye, up to 64, where things half as far as the
+     * hole do not leap by more than a tenth of a pixel for it; each such strip is rendered as a frame of its own,
+     * so that a picture takes longer. Bloom that the preset has is left out; other bloom, and a beam, are
+     * INVALID_STATE, windows and bhr_project_point UNSUPPORTED. Towards the poles, as in all such pictures, depth
+     * is wrong. Other projections ignore it. Default MIDDLE. Since 0.2.0.
+     */
+    BhrEye eye;
+    uint32_t reserved2; /**< Reserved: 0. Since 0.2.0. */
 } BhrCamera;
 
 /**
@@ -537,7 +582,8 @@ BHR_NODISCARD BhrStatus bhr_camera_orbit(BhrCamera *camera, double distance, dou
 
 /**
  * Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
- * or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
+ * or parallel, fov_y out of range, |velocity| >= 1, tangents, jitter or eye_distance that are out of range, an
+ * unknown constant.
  */
 BHR_NODISCARD BhrStatus bhr_set_camera(BhrContext *context, const BhrCamera *camera);
 
@@ -557,6 +603,81 @@ BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context,
                                            BhrCamera *camera,
                                            double proper_time,
                                            double *out_coordinate_time);
+
+/* ---- cameras as matrices ---- */
+
+/**
+ * Matrices lie in memory row by row, else column by column. For matrices that multiply row vectors (DirectXMath,
+ * Unreal) it is the other way round: those that lie there row by row are given without it. Since 0.2.0.
+ */
+#define BHR_MATRIX_ROW_MAJOR 1u
+
+/**
+ * Clip space's y = +1 is the image's bottom row, as in Vulkan; else its top row, as in OpenGL, Direct3D and Metal.
+ * Since 0.2.0.
+ */
+#define BHR_MATRIX_Y_DOWN 2u
+
+/**
+ * Depths lie in 0 .. 1, else in -1 .. 1 (OpenGL). For bhr_camera_matrices; bhr_camera_from_matrices does not ask.
+ * Since 0.2.0.
+ */
+#define BHR_MATRIX_ZERO_TO_ONE 4u
+
+/** The near plane has the greatest depth, the far one the least. For bhr_camera_matrices. Since 0.2.0. */
+#define BHR_MATRIX_REVERSED 8u
+
+/**
+ * The camera looks along its own +z, with x to the right and y up (Direct3D, Unreal), else along -z (OpenGL,
+ * Vulkan, Unity). For bhr_camera_matrices; bhr_camera_from_matrices sees it in the projection. Since 0.2.0.
+ */
+#define BHR_MATRIX_FORWARD_Z 16u
+
+/**
+ * Sets position, forward, up and the picture (projection FRUSTUM, its tangents, jitter 0) of a camera from the
+ * host's matrices; the rest of it, its motion for one, stays. Touches no context. Any thread, inside callbacks
+ * too.
+ *
+ * view takes the world, whose origin is the hole's centre and whose lengths are scene lengths, to the camera: a
+ * rotation and a shift, without scale. projection is any perspective one: of OpenGL, Vulkan, Direct3D or Metal,
+ * off-axis, jittered, with reversed or infinite depths; its row of depths is not read. flags: BHR_MATRIX_ROW_MAJOR
+ * and BHR_MATRIX_Y_DOWN as they are; the others do not matter here.
+ *
+ * bhr's scene is right-handed. For a left-handed world negate one axis: of the positions given to bhr, and of the
+ * view that is passed here (no flags in both):
+ *
+ *     Unity   Matrix4x4 view = camera.worldToCameraMatrix * Matrix4x4.Scale(new Vector3(1, 1, -1));
+ *             Matrix4x4 projection = camera.projectionMatrix;                 positions (x, y, -z)
+ *     Unreal  FMatrix view = FScaleMatrix(FVector(1, -1, 1)) * matrices.GetViewMatrix();
+ *             FMatrix projection = matrices.GetProjectionMatrix();            positions (x, -y, z), in cm
+ *
+ * On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, unknown flags, numbers not finite, a
+ * view that is not rigid to 1e-4, a projection that is orthographic, sheared or rolled, matrices that mirror the
+ * scene (left-handed worlds), the hole's centre as position, and a camera whose struct_size ends before jitter
+ * does. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_camera_from_matrices(BhrCamera *camera,
+                                                 const double view[16],
+                                                 const double projection[16],
+                                                 uint32_t flags);
+
+/**
+ * The view and the projection of a PERSPECTIVE or FRUSTUM camera, for hosts whose own things are to be seen where
+ * bhr shows them: pixels of a width x height frame with the planes near_z > 0 and far_z > near_z, or INFINITY.
+ * flags: any of BHR_MATRIX_*; the matrices are what bhr_camera_from_matrices takes. For a left-handed world
+ * multiply the view by the same scale again. The camera's motion does not enter: an observer that moves sees
+ * directions aberrated, which no matrix says. Touches no context. Any thread, inside callbacks too. Errors:
+ * INVALID_ARGUMENT for NULL, a side of 0, another projection, planes out of range, unknown flags, a camera that
+ * bhr_set_camera would refuse. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_camera_matrices(const BhrCamera *camera,
+                                            uint32_t width,
+                                            uint32_t height,
+                                            double near_z,
+                                            double far_z,
+                                            uint32_t flags,
+                                            double out_view[16],
+                                            double out_projection[16]);
 
 /* ---- accretion disk ---- */
 
@@ -1936,6 +2057,59 @@ BHR_NODISCARD BhrStatus bhr_trace_path(BhrContext *context,
                                        double *out_points,
                                        uint32_t *out_count);
 
+/* ---- points on the screen ---- */
+
+#define BHR_MAX_IMAGE_ORDER 3u /**< The highest order that bhr_project_point looks for. Since 0.2.0. */
+
+/** An image of a point: where on the screen it appears, and how. Since 0.2.0. */
+typedef struct BhrProjectedPoint {
+    uint32_t struct_size; /**< sizeof(BhrProjectedPoint), set by the caller. */
+    /** 1: a ray to the point was found. 0: there is none, or none was found; the numbers are then NaN, the ray's 0. */
+    uint32_t found;
+    /** 1: it is seen within the image, whatever matter or sky may be before it. 0: beside it, or not found. */
+    uint32_t on_screen;
+    uint32_t reserved; /**< Reserved: 0. */
+    /**
+     * Pixel position, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
+     * projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
+     */
+    double x;
+    double y;
+    BhrRay ray; /**< The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y. */
+    /**
+     * The solid angle of the image of something small at the point by that of the thing itself in flat space, as
+     * the camera sees it, its motion included; negative where the image is mirrored, as those of odd orders are.
+     * Without bounds towards the caustics: straight behind a hole without spin.
+     */
+    double magnification;
+    double delay;    /**< Coordinate time since the light left the point, scene lengths; NaN from inside the horizon. */
+    double redshift; /**< g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO). */
+} BhrProjectedPoint;
+
+/**
+ * Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the
+ * inverse of bhr_camera_ray. point: scene axes and lengths. order: how often the light went half round the hole; 0
+ * is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin it is the image that
+ * this one becomes as the spin grows from 0.
+ *
+ * Without spin every point outside the horizon has one image of each order, also behind the hole. With spin some
+ * have more or fewer, by the caustics that a spinning hole has, and the search may end there: of random points
+ * outside r+ + 1 M, seen from outside r+ + 2 M, two in a thousand are not found at orders 0 and 1, one in a
+ * hundred at order 2, a fifth at order 3; beside the horizon more. The ray of an image that is found passes the
+ * point within 1e-6 of its distance. Whether matter is before the point is for the host to ask (bhr_trace_rays).
+ *
+ * It is computed in double precision on the CPU, on this thread, whatever the backend: in about a millisecond, at
+ * orders 2 and 3 with spin in about ten; a search that fails takes up to a second. Errors: INVALID_ARGUMENT for
+ * NULL, a wrong struct_size, numbers not finite, an order above the highest; INVALID_STATE for a point farther
+ * than 1e15 M; else as bhr_camera_ray. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_project_point(const BhrContext *context,
+                                          uint32_t width,
+                                          uint32_t height,
+                                          const double point[3],
+                                          uint32_t order,
+                                          BhrProjectedPoint *out_image);
+
 /* ---- the matter with depth along rays ---- */
 
 /**
@@ -1999,6 +2173,11 @@ typedef struct BhrFrameStats {
     uint64_t gpu_ns;       /**< Time on the GPU; 0 where the adapter has no timestamps, or traces on the CPU. */
     uint64_t readback_ns;  /**< Time to copy pixels into the host's memory, without the wait for the GPU. */
     uint64_t device_bytes; /**< Device memory that the context holds. */
+    /**
+     * Lens tables made for this frame: 0 where those of an earlier frame served, which are kept for up to four
+     * places of eyes that are shown by turns, or where none were needed. Since 0.2.0.
+     */
+    uint64_t lens_tables;
 } BhrFrameStats;
 
 /** Numbers about the context's last finished frame. Errors: INVALID_ARGUMENT for NULL or a wrong struct_size. */

@@ -44,6 +44,7 @@
 #ifndef BHR_HPP
 #define BHR_HPP
 
+#include "bhr/camera.hpp"
 #include "bhr/context.hpp"
 #include "bhr/image.hpp"
 #include "bhr/output.hpp"

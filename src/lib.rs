@@ -11,8 +11,9 @@
 //! - [`scene`]: what to draw, as plain validated data.
 //! - [`emit`]: what shines or absorbs near the hole. [`sky`]: stars and maps. [`image`]: pixels in memory and files.
 //! - [`physics`]: metrics, geodesics, observers, orbits, lenses, disk flux, blackbody; f64, usable alone.
-//! - `random`, `deferred` (work that waits until a thread holds no lock of the process), `allocate` (memory that may be
-//!   refused), `thread_scope` (what the library's threads take over from the threads that they work for), [`error`].
+//! - `random`, `recent` (costly things that are kept), `deferred` (work that waits until a thread holds no lock of the
+//!   process), `allocate` (memory that may be refused), `thread_scope` (what the library's threads take over from the
+//!   threads that they work for), [`error`].
 //!
 //! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms.rs holds it.
 
@@ -30,6 +31,7 @@ pub mod interop;
 pub mod job;
 pub mod physics;
 mod random;
+mod recent;
 pub mod renderer;
 pub mod scene;
 pub mod sky;

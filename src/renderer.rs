@@ -276,6 +276,7 @@ impl Renderer {
     /// surface; SURFACE_LOST; DEVICE_LOST.
     pub fn render_surface(&mut self, surface: &Arc<Surface>) -> Result<ShowOutcome> {
         self.check_device()?;
+        self.scene.check_one_eye("a window")?;
         self.scene.observer()?;
         if !surface.has_ended() && !self.surfaces.iter().any(|ours| std::ptr::eq(ours.as_ptr(), Arc::as_ptr(surface))) {
             return Err(Error::argument("surface was made by another context"));
@@ -301,18 +302,19 @@ impl Renderer {
         transparent: bool,
         region: Option<Region>,
     ) -> Result<FrameRequest> {
-        let set = region.is_some();
+        let (set, strips) = (region.is_some(), self.scene.camera.is_omnistereo());
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         region.check_image(width, height)?;
         let blooms = Bloom::is_shown(&self.scene.film, self.scene.view, format);
-        if blooms && set && !(self.scene.film.glare_is_optional && self.scene.film.beam_fwhm == 0.0) {
+        if blooms && (set || strips) && !(self.scene.film.glare_is_optional && self.scene.film.beam_fwhm == 0.0) {
             let film = &self.scene.film;
             let spread = [("bloom", "glare", film.bloom), ("beam_fwhm", "its light", film.beam_fwhm)];
             let (name, light, value) = if film.bloom > 0.0 { spread[0] } else { spread[1] };
             return Err(Error::state(format!(
-                "film {name} is {}: {light} comes from the whole frame, and a region is set; set no region, or \
-                 {name} 0",
-                Number(value)
+                "film {name} is {}: {light} comes from the whole frame, and {} is set; set no {}, or {name} 0",
+                Number(value),
+                if set { "a region" } else { "an eye" },
+                if set { "region" } else { "eye" }
             )));
         }
         match (self.scene.view, format) {
@@ -381,7 +383,7 @@ impl Renderer {
         progress: &mut Progress<'_>,
     ) -> Result<()> {
         let request = self.request(format, size, transparent, region)?;
-        let shown = format == PixelFormat::Rgba8Srgb && !transparent;
+        let shown = format == PixelFormat::Rgba8Srgb && !transparent && !self.scene.camera.is_omnistereo();
         let window = shown.then(|| frame_request(&self.scene, size, format));
         let scene = self.behind(&request.region, size)?;
         self.tracer.lock().prepare(&scene, &request, window.as_ref(), progress)
@@ -468,6 +470,9 @@ impl Renderer {
     fn output_frame<'a>(&self, mut targets: Vec<OutputTarget<'a>>, region: Option<Region>) -> Result<OutputFrame<'a>> {
         let checked = self.check_outputs(&targets, region)?;
         for OutputTarget { output, target, transparent } in &mut targets {
+            if *output != Output::Light {
+                self.scene.check_one_eye("an output beside the light")?;
+            }
             if *output == Output::Light {
                 self.request(target.format(), [target.width(), target.height()], *transparent, region)?;
             }

@@ -5,8 +5,8 @@
 use crate::cpu::CpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{self, Adapter, AdapterIds, GlTracer, GpuTracer, Search};
-use crate::scene::{RayOutput, Scene};
-use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, OutputSink, Progress, TileSink};
+use crate::scene::{LensTables, RayOutput, Region, Scene};
+use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, OutputSink, Progress, Tile, TileSink};
 use parking_lot::Mutex;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -45,6 +45,56 @@ pub type SharedTracer = Arc<Mutex<Tracer>>;
 impl Tracer {
     /// Renders a frame and waits for it. Errors: as `Renderer::render`.
     pub fn render(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        if scene.camera.is_omnistereo() {
+            return self.render_strips(scene, request, sink, progress);
+        }
+        self.render_from_one_place(scene, request, sink, progress)
+    }
+
+    /// Renders a frame whose columns are seen from several places: strip by strip, each as a part of the frame. Errors:
+    /// as `Renderer::render`.
+    fn render_strips(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        sink: &mut TileSink<'_>,
+        progress: &mut Progress<'_>,
+    ) -> Result<FrameStats> {
+        let strips = scene.camera.strips(&request.region, request.width)?;
+        let mut scene = scene.clone();
+        // Tables would be made for each strip, which is too small to pay for them.
+        if scene.quality.lens_tables == LensTables::Auto {
+            scene.quality.lens_tables = LensTables::Never;
+        }
+        let mut sum = FrameStats::default();
+        let count = strips.len();
+        for (number, strip) in strips.into_iter().enumerate() {
+            scene.camera = strip.camera;
+            let region = Region { x: request.region.x + strip.begin, ..request.region };
+            let part = FrameRequest { width: strip.width, region, ..*request };
+            let mut goes_on = true;
+            let mut place = |tile: Tile, pixels: &[u8], row_bytes: usize| {
+                sink(Tile { x: tile.x + strip.begin, ..tile }, pixels, row_bytes)
+            };
+            let mut report = |done: f64| {
+                goes_on = progress((number as f64 + done) / count as f64);
+                goes_on
+            };
+            sum.add(&self.render_from_one_place(&scene, &part, &mut place, &mut report)?);
+            if !goes_on && number + 1 < count {
+                return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the frame"));
+            }
+        }
+        Ok(sum)
+    }
+
+    fn render_from_one_place(
         &mut self,
         scene: &Scene,
         request: &FrameRequest,

@@ -299,6 +299,7 @@ fn picture(mut renderer: Renderer, bars: &Bars, kind: &str, through: Through, fl
         fov_y: number(&scene["fovy"]),
         motion: if kind == "circular" { Motion::Orbit } else { Motion::Static },
         velocity: DVec3::ZERO,
+        ..Camera::plain()
     };
     let all_seen = through.see(&mut renderer, width as u32, height as u32);
 

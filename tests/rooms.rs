@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// From the lowest to the highest; rooms of one line do not import each other.
 const ROOMS: [&[&str]; 15] = [
     &["error"],
-    &["allocate", "deferred", "random", "thread_scope"],
+    &["allocate", "deferred", "random", "recent", "thread_scope"],
     &["physics"],
     &["emit", "image"],
     &["sky"],

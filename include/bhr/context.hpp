@@ -3,6 +3,7 @@
 #ifndef BHR_CONTEXT_HPP
 #define BHR_CONTEXT_HPP
 
+#include "camera.hpp"
 #include "image.hpp"
 #include "output.hpp"
 #include "preset.hpp"
@@ -514,6 +515,14 @@ class Context {
                        ? BHR_OK
                        : bhr_transfer_rays(get(), c_rays(rays.data()), sizeof(Ray), rays.size(),
                                            reinterpret_cast<BhrTransfer *>(found.data()), sizeof(Transfer));
+        });
+    }
+
+    /// bhr_project_point.
+    Result<ProjectedPoint> project_point(std::uint32_t width, std::uint32_t height, const Vector &point,
+                                         std::uint32_t order = 0) const {
+        return detail::ask_struct<ProjectedPoint, BhrProjectedPoint>([&](BhrProjectedPoint *image) {
+            return bhr_project_point(get(), width, height, point.data(), order, image);
         });
     }
 

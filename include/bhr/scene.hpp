@@ -57,6 +57,14 @@ enum class Projection : std::int32_t {
     fisheye = BHR_PROJECTION_FISHEYE,
     equirect = BHR_PROJECTION_EQUIRECT,
     cube = BHR_PROJECTION_CUBE,
+    frustum = BHR_PROJECTION_FRUSTUM,
+};
+
+/// BhrEye.
+enum class Eye : std::int32_t {
+    middle = BHR_EYE_MIDDLE,
+    left = BHR_EYE_LEFT,
+    right = BHR_EYE_RIGHT,
 };
 
 /// BhrMotion. (static is a word of the language.)
@@ -286,44 +294,6 @@ template <class T, class C, class Function> Result<T> ask_struct(Function &&func
 }
 
 } // namespace detail
-
-/// BhrCamera, with the defaults of bhr_camera_init.
-struct Camera {
-    std::uint32_t struct_size;
-    Projection projection;
-    Vector position;
-    Vector forward;
-    Vector up;
-    double fov_y;
-    Motion motion;
-    std::uint32_t reserved;
-    Vector velocity;
-
-    Camera() noexcept { detail::defaults(*this, bhr_camera_init); }
-    BhrCamera c() const noexcept { return detail::as_c<BhrCamera>(*this); }
-
-    /// bhr_camera_look_at.
-    Result<void> look_at(const Vector &from, const Vector &target, const Vector &upward = {0.0, 0.0, 1.0}) {
-        return change([&](BhrCamera *it) {
-            return bhr_camera_look_at(it, from.data(), target.data(), upward.data());
-        });
-    }
-
-    /// bhr_camera_orbit; angles in radians.
-    Result<void> orbit(double distance, double azimuth, double elevation) {
-        return change([&](BhrCamera *it) { return bhr_camera_orbit(it, distance, azimuth, elevation); });
-    }
-
-  private:
-    template <class Function> Result<void> change(Function &&function) {
-        BhrCamera copy = c();
-        Result<void> done = detail::call([&] { return function(&copy); });
-        if (done) {
-            detail::take(*this, copy);
-        }
-        return done;
-    }
-};
 
 /// BhrDisk, with the defaults of bhr_disk_init.
 struct Disk {

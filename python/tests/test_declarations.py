@@ -23,6 +23,7 @@ ENUMS = {
     "BHR_ADAPTER_": bhr.AdapterFlags,
     "BHR_PROJECTION_": bhr.Projection,
     "BHR_MOTION_": bhr.Motion,
+    "BHR_EYE_": bhr.Eye,
     "BHR_FORMAT_": bhr.Format,
     "BHR_SKY_": bhr.SkyFlags,
     "BHR_TONE_MAP_": bhr.ToneMap,
@@ -37,12 +38,13 @@ ENUMS = {
     "BHR_FATE_": bhr.Fate,
     "BHR_FLOW_": bhr.Flow,
     "BHR_HOT_SPOT_": bhr.HotSpotFlags,
+    "BHR_MATRIX_": bhr.MatrixFlags,
 }
 
 #: Constants of C that Python has by other means: arguments, logging's levels, numpy's strides. Windows are left out.
 ELSEWHERE = re.compile(
     r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|MAX_CROSSINGS"
-    r"|MAX_VOLUMES|MAX_HOT_SPOTS|MAX_OUTPUTS|WINDOW_\w+|PRESENT_\w+)"
+    r"|MAX_VOLUMES|MAX_IMAGE_ORDER|MAX_HOT_SPOTS|MAX_OUTPUTS|WINDOW_\w+|PRESENT_\w+)"
 )
 
 #: Functions for windows, which this package does not have; and what cffi or numpy do in their place.
@@ -77,6 +79,7 @@ STRUCTS = [
     bhr.FrameStats,
     bhr.HoleInfo,
     bhr.HotSpot,
+    bhr.ProjectedPoint,
     bhr.Quality,
     bhr.Region,
     bhr.Sky,

@@ -144,3 +144,18 @@ def test_matter_along_rays_is_summed(ctx):
     assert ctx.hot_spots == tuple(spots)
     ctx.volumes, ctx.hot_spots = [], []
     assert ctx.volumes == () and ctx.transfer(bhr.rays((20.0, 0.0, 0.0), (-1.0, 1.0, 0.0)))["intensity"] == 0.0
+
+
+def test_points_on_the_screen(ctx):
+    ctx.camera = bhr.Camera.orbit(25.0, 0.3, 0.2)
+    direct = ctx.project_point(320, 180, (2.0, -8.0, 1.0))
+    assert direct.found and direct.on_screen and direct.magnification > 0.0 and direct.delay > 20.0
+    ray = ctx.camera_ray(320, 180, direct.x, direct.y)
+    assert np.allclose(ray["direction"], direct.ray["direction"], atol=1e-12)
+    path = ctx.trace_path(direct.ray, 60000)
+    assert np.linalg.norm(path[:, :3] - (2.0, -8.0, 1.0), axis=1).min() < 0.01
+    other = ctx.project_point(320, 180, (2.0, -8.0, 1.0), order=1)
+    assert other.found and other.magnification < 0.0 and other.delay > direct.delay
+    assert not ctx.project_point(320, 180, (0.1, 0.0, 0.0)).found
+    with pytest.raises(bhr.InvalidArgument):
+        ctx.project_point(320, 180, (2.0, -8.0, 1.0), order=4)

@@ -202,3 +202,17 @@ def test_adapters():
         assert (ctx.stats.frame_index, ctx.stats.rays) == (1, 32 * 18)
         ctx.recover()
         ctx.render(32, 18)
+
+
+def test_matrices():
+    camera = bhr.Camera.orbit(20.0, 0.4, 0.3, fov_y=1.1)
+    flags = bhr.MatrixFlags.ZERO_TO_ONE | bhr.MatrixFlags.REVERSED
+    view, projection = camera.matrices(320, 180, 0.1, flags=flags)
+    # Infinite, reversed depths, as they multiply column vectors.
+    assert projection[3, 2] == -1.0 and projection[2, 3] == pytest.approx(0.1) and np.allclose(view[3], [0, 0, 0, 1])
+    assert projection[1, 1] == pytest.approx(1.0 / math.tan(0.55))
+    back = bhr.Camera.from_matrices(view, projection)
+    assert back.projection == bhr.Projection.FRUSTUM and np.allclose(back.position, camera.position)
+    assert back.tan_up == pytest.approx(math.tan(0.55)) and back.tan_left == pytest.approx(-math.tan(0.55) * 16 / 9)
+    with pytest.raises(bhr.InvalidArgument, match="left-handed"):
+        bhr.Camera.from_matrices(view @ np.diag([1.0, 1.0, -1.0, 1.0]), projection)

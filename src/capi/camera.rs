@@ -8,7 +8,7 @@ use super::pointer::{Out, check_finite, check_finite_vector, check_reserved, is_
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
 use crate::error::{Error, Number, Result};
-use crate::scene::{Camera, Motion, Projection};
+use crate::scene::{Camera, Eye, Frustum, Motion, Projection};
 use glam::DVec3;
 
 /// The lens. Camera axes: right = forward x up, then up = right x forward.
@@ -29,6 +29,11 @@ pub const BHR_PROJECTION_EQUIRECT: BhrProjection = 2;
 /// frame or rays are asked for. Stars keep their light across the borders of faces; within two pixels of the cube's
 /// corners up to a quarter is lost.
 pub const BHR_PROJECTION_CUBE: BhrProjection = 3;
+/// A flat picture between four tangents, as the frustum of a projection matrix, of an eye before a lens (XrFovf) or
+/// of a wall of a cave: tan_left, tan_right, tan_down, tan_up. fov_y is ignored, and the frame's shape may be any:
+/// it is stretched to the tangents. With tan_up = -tan_down = tan(fov_y / 2) and tan_right = -tan_left = tan_up
+/// times the frame's width / height it is PERSPECTIVE. Since 0.2.0.
+pub const BHR_PROJECTION_FRUSTUM: BhrProjection = 4;
 
 /// How the camera's observer moves. A motion that is not possible at the camera's place is INVALID_STATE when a frame
 /// or rays are asked for. FREE_FALL falls radially from rest at infinity, inside a spin-0 horizon too. ORBIT moves on a
@@ -43,6 +48,15 @@ pub const BHR_MOTION_FREE_FALL: BhrMotion = 1;
 pub const BHR_MOTION_ORBIT: BhrMotion = 2;
 /// Moves with BhrCamera.velocity.
 pub const BHR_MOTION_VELOCITY: BhrMotion = 3;
+
+/// The eye for which an EQUIRECT picture is made. Since 0.2.0.
+pub type BhrEye = i32;
+/// The camera's own place: no stereo picture. Since 0.2.0.
+pub const BHR_EYE_MIDDLE: BhrEye = 0;
+/// The left eye. Since 0.2.0.
+pub const BHR_EYE_LEFT: BhrEye = 1;
+/// The right eye. Since 0.2.0.
+pub const BHR_EYE_RIGHT: BhrEye = 2;
 
 /// The camera: an observer with a lens. Positions and axes in scene axes and lengths.
 #[repr(C)]
@@ -68,12 +82,38 @@ pub struct BhrCamera {
     /// For BHR_MOTION_VELOCITY: v / c against the local static observer (ZAMO), |v| < 1; components as for a
     /// direction given at position. Default 0.
     pub velocity: [f64; 3],
+    /// For FRUSTUM: the borders of the picture on the plane at distance 1 ahead, to the right and up, within +-1e9;
+    /// left less than right, down less than up. Default -1, 1, -1, 1. Other projections ignore them.
+    /// Since 0.2.0.
+    pub tan_left: f64,
+    /// The right border. Since 0.2.0.
+    pub tan_right: f64,
+    /// The lower border. Since 0.2.0.
+    pub tan_down: f64,
+    /// The upper border. Since 0.2.0.
+    pub tan_up: f64,
+    /// The whole picture moves by this many pixels to the right and down, as temporal antialiasing wants it; each
+    /// within +-1. For PERSPECTIVE and FRUSTUM; other projections ignore it. Default 0. Since 0.2.0.
+    pub jitter: [f64; 2],
+    /// For EQUIRECT with an eye: the distance of the two eyes, scene lengths, at least 0. Default 0. Since
+    /// 0.2.0.
+    pub eye_distance: f64,
+    /// BHR_EYE_*. With LEFT or RIGHT and an eye_distance above 0 an EQUIRECT picture is one of two for 360-degree
+    /// stereo (omnidirectional stereo, ODS): each column is seen from where the eye is when the head, which turns
+    /// about position and up, looks at that column. Columns share an eye, up to 64, where things half as far as the
+    /// hole do not leap by more than a tenth of a pixel for it; each such strip is rendered as a frame of its own,
+    /// so that a picture takes longer. Bloom that the preset has is left out; other bloom, and a beam, are
+    /// INVALID_STATE, windows and bhr_project_point UNSUPPORTED. Towards the poles, as in all such pictures, depth
+    /// is wrong. Other projections ignore it. Default MIDDLE. Since 0.2.0.
+    pub eye: BhrEye,
+    /// Reserved: 0. Since 0.2.0.
+    pub reserved2: u32,
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrCamera {
     const NAME: &'static str = "BhrCamera";
-    const SIZES: &'static [usize] = &[120];
+    const SIZES: &'static [usize] = &[120, 184];
     fn defaults() -> Self {
         Camera::default().into()
     }
@@ -91,6 +131,14 @@ impl From<Camera> for BhrCamera {
             motion: camera.motion as BhrMotion,
             reserved: 0,
             velocity: camera.velocity.to_array(),
+            tan_left: camera.frustum.left,
+            tan_right: camera.frustum.right,
+            tan_down: camera.frustum.down,
+            tan_up: camera.frustum.up,
+            jitter: camera.jitter.to_array(),
+            eye_distance: camera.eye_distance,
+            eye: camera.eye as BhrEye,
+            reserved2: 0,
         }
     }
 }
@@ -107,8 +155,13 @@ impl TryFrom<BhrCamera> for Camera {
             fov_y: given.fov_y,
             motion: motion(given.motion)?,
             velocity: given.velocity.into(),
+            frustum: Frustum { left: given.tan_left, right: given.tan_right, down: given.tan_down, up: given.tan_up },
+            jitter: given.jitter.into(),
+            eye_distance: given.eye_distance,
+            eye: eye(given.eye)?,
         };
         check_reserved(given.reserved, "camera")?;
+        check_reserved(given.reserved2, "camera")?;
         camera.check()?;
         Ok(camera)
     }
@@ -120,7 +173,19 @@ fn projection(value: BhrProjection) -> Result<Projection> {
         BHR_PROJECTION_FISHEYE => Projection::Fisheye,
         BHR_PROJECTION_EQUIRECT => Projection::Equirect,
         BHR_PROJECTION_CUBE => Projection::Cube,
-        _ => return unknown(value, "camera projection", "BHR_PROJECTION_PERSPECTIVE (0) to BHR_PROJECTION_CUBE (3)"),
+        BHR_PROJECTION_FRUSTUM => Projection::Frustum,
+        _ => {
+            return unknown(value, "camera projection", "BHR_PROJECTION_PERSPECTIVE (0) to BHR_PROJECTION_FRUSTUM (4)");
+        }
+    })
+}
+
+fn eye(value: BhrEye) -> Result<Eye> {
+    Ok(match value {
+        BHR_EYE_MIDDLE => Eye::Middle,
+        BHR_EYE_LEFT => Eye::Left,
+        BHR_EYE_RIGHT => Eye::Right,
+        _ => return unknown(value, "camera eye", "BHR_EYE_MIDDLE (0) to BHR_EYE_RIGHT (2)"),
     })
 }
 
@@ -217,7 +282,8 @@ pub unsafe extern "C" fn bhr_camera_orbit(
 }
 
 /// Sets the camera. Errors: INVALID_ARGUMENT for NULL, a number not finite, position (0, 0, 0), forward or up zero
-/// or parallel, fov_y out of range, |velocity| >= 1, an unknown constant.
+/// or parallel, fov_y out of range, |velocity| >= 1, tangents, jitter or eye_distance that are out of range, an
+/// unknown constant.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_camera(context: *mut BhrContext, camera: *const BhrCamera) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

@@ -122,7 +122,7 @@ impl From<Hit> for BhrHit {
 }
 
 /// `width * height`. Errors: a side that is 0 or longer than an image's; more rays than memory has addresses for.
-fn frame_pixels(width: u32, height: u32) -> Result<usize> {
+pub(super) fn frame_pixels(width: u32, height: u32) -> Result<usize> {
     for (name, side) in [("width", width), ("height", height)] {
         if side == 0 || side > MAX_SIDE {
             return Err(Error::argument(format!("frame {name} is {side}; it must lie in [1, {MAX_SIDE}]")));

@@ -31,12 +31,15 @@ pub struct BhrFrameStats {
     pub readback_ns: u64,
     /// Device memory that the context holds.
     pub device_bytes: u64,
+    /// Lens tables made for this frame: 0 where those of an earlier frame served, which are kept for up to four
+    /// places of eyes that are shown by turns, or where none were needed. Since 0.2.0.
+    pub lens_tables: u64,
 }
 
 // SAFETY: repr(C), size first, no padding, integers only.
 unsafe impl Versioned for BhrFrameStats {
     const NAME: &'static str = "BhrFrameStats";
-    const SIZES: &'static [usize] = &[64];
+    const SIZES: &'static [usize] = &[64, 72];
     fn defaults() -> Self {
         FrameStats::default().into()
     }
@@ -54,6 +57,7 @@ impl From<FrameStats> for BhrFrameStats {
             gpu_ns: stats.gpu_ns,
             readback_ns: stats.readback_ns,
             device_bytes: stats.device_bytes,
+            lens_tables: stats.lens_tables,
         }
     }
 }

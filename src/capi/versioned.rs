@@ -343,6 +343,7 @@ mod tests {
         hosts_of_the_first_release_go_on::<crate::capi::hole::BhrHoleInfo>();
         hosts_of_the_first_release_go_on::<crate::capi::image::BhrImage>();
         hosts_of_the_first_release_go_on::<crate::capi::preset::BhrPresetOptions>();
+        hosts_of_the_first_release_go_on::<crate::capi::project::BhrProjectedPoint>();
         hosts_of_the_first_release_go_on::<crate::capi::quality::BhrQuality>();
         hosts_of_the_first_release_go_on::<crate::capi::region::BhrRegion>();
         hosts_of_the_first_release_go_on::<crate::capi::sky::BhrSky>();

@@ -5,10 +5,11 @@
 use super::CpuTracer;
 use super::delivery::Delivery;
 use super::half::Blocks;
-use super::lens::{LensCache, LensLookup};
+use super::lens::LensLookup;
 use super::record::{Neighbours, Recorder};
 use super::refine::Refiner;
 use super::shade::Shader;
+use super::tables::LensCache;
 use crate::allocate::{self, collected, filled};
 use crate::emit::half::Evenness;
 use crate::error::Result;
@@ -61,7 +62,8 @@ impl CpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         allocate::check_room(0, "a frame")?;
-        self.with_frame(scene, request, |pool, frame| {
+        let before = self.lenses.made;
+        let stats = self.with_frame(scene, request, |pool, frame| {
             let widest = if frame.half.is_some() { TILE_WIDTH_HALF } else { TILE_WIDTH };
             let tiles = tiles(request, frame.expected_steps(scene), widest)?;
             let mut delivery = Delivery::new(pool, frame, sink, progress);
@@ -71,7 +73,8 @@ impl CpuTracer {
             }
             let rays = u64::from(request.width) * u64::from(request.height) * u64::from(frame.samples);
             Ok(FrameStats { rays, steps: delivery.steps, ..FrameStats::default() })
-        })
+        })?;
+        Ok(FrameStats { lens_tables: self.lenses.made - before, ..stats })
     }
 
     /// Sets a frame up, and keeps its sky and its lens for the next ones. Errors: as `Scene::lens`; OUT_OF_MEMORY;

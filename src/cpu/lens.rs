@@ -1,136 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Ray records of pixels, looked up in tables of the observer's lens (`physics::lens`), and the tables themselves,
-//! built in parallel and kept while what they depend on stays. Records and their footprints are as `record` makes them
-//! by tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
+//! Ray records of pixels, looked up in tables of the observer's lens (`physics::lens`). Records and their footprints
+//! are as `record` makes them by tracing. Mirrored by `shaders/lens/schwarzschild_record.wgsl`. Knows no shading.
 
 use super::record::{Neighbours, Recorder};
-use crate::allocate::{filled, with_room};
+use super::tables::Tables;
 use crate::emit::{Crossing, EmissionPoint, Needs};
-use crate::error::Result;
-use crate::physics::lens::kerr::{self, Crossings, Grid, KerrLens};
-use crate::physics::lens::schwarzschild::{Branch, Column, Family, Resolution};
-use crate::physics::lens::{LENS, OrbitPlane, PlaneImage, SchwarzschildLens};
-use crate::physics::observer::{LocalFrame, Momenta};
+use crate::physics::lens::kerr;
+use crate::physics::lens::{OrbitPlane, PlaneImage, SchwarzschildLens};
+use crate::physics::observer::Momenta;
 use crate::physics::orbit::redshift;
 use crate::physics::trace::Fate;
 use crate::scene::record::{Record, UNKNOWN_EMISSION_POINT, polar_momentum};
-use crate::scene::refine::{DiskEdges, SAME_CROSSING, looked_up_edge, near_disk_edge, reached_u, turn_of};
-use crate::scene::{Lensing, Scene};
+use crate::scene::refine::{DiskEdges, SAME_CROSSING, looked_up_edge, near_disk_edge, turn_of};
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::PI;
-use std::ops::Range;
-
-/// The tables of the last frame that looked rays up in some.
-#[derive(Default)]
-pub struct LensCache {
-    schwarzschild: Option<SchwarzschildLens>,
-    kerr: Option<(KerrKey, KerrLens)>,
-}
-
-/// Everything that the tables of a spinning hole depend on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct KerrKey {
-    spin: f64,
-    r: f64,
-    /// Unit vector from the hole to the observer.
-    e_r: DVec3,
-    wanted: Crossings,
-}
-
-/// The tables of a frame.
-#[derive(Clone, Copy)]
-pub enum Tables<'a> {
-    Schwarzschild(&'a SchwarzschildLens),
-    Kerr(&'a KerrLens),
-}
-
-impl LensCache {
-    /// The tables for `lensing` by the observer at `frame`, built on the current pool unless they are those of before.
-    /// `None`: rays are to be traced. Errors: OUT_OF_MEMORY.
-    pub fn tables(&mut self, scene: &Scene, frame: &LocalFrame, lensing: Lensing) -> Result<Option<Tables<'_>>> {
-        Ok(match lensing {
-            Lensing::Traced => None,
-            Lensing::Kerr => self.kerr(frame, wanted(scene))?.map(Tables::Kerr),
-            Lensing::Schwarzschild => {
-                self.schwarzschild(frame, scene.emitters().needs().delays)?.map(Tables::Schwarzschild)
-            }
-        })
-    }
-
-    fn schwarzschild(&mut self, frame: &LocalFrame, with_delay: bool) -> Result<Option<&SchwarzschildLens>> {
-        let fits = |lens: &SchwarzschildLens| {
-            let family = lens.family();
-            (family.r, family.rain, family.with_delay) == (frame.r, frame.rain, with_delay)
-        };
-        if !self.schwarzschild.as_ref().is_some_and(fits) {
-            self.schwarzschild = build_schwarzschild(frame, with_delay)?;
-        }
-        Ok(self.schwarzschild.as_ref())
-    }
-
-    fn kerr(&mut self, frame: &LocalFrame, wanted: Crossings) -> Result<Option<&KerrLens>> {
-        let key = KerrKey { spin: frame.a, r: frame.r, e_r: frame.e_r, wanted };
-        if !self.kerr.as_ref().is_some_and(|(held, _)| *held == key) {
-            // The old tables go first, because they are large.
-            self.kerr = None;
-            self.kerr = build_kerr(frame, wanted)?.map(|lens| (key, lens));
-        }
-        Ok(self.kerr.as_ref().map(|(_, lens)| lens))
-    }
-}
-
-/// The contents that a frame of `scene` asks of tables.
-fn wanted(scene: &Scene) -> Crossings {
-    let orders = scene.pixel_settings().max_crossings;
-    let emitters = scene.emitters();
-    match emitters.plane_u() {
-        Some(plane_u) => Crossings { orders, plane_u: reached_u(plane_u), pattern: emitters.needs().places },
-        None => Crossings { orders: 0, plane_u: [1.0, 0.0], pattern: false },
-    }
-}
-
-/// A table of `rows`, each `width` long.
-fn by_rows<T: Copy + Default + Send, I: Iterator<Item = T>>(
-    rows: Range<usize>,
-    width: usize,
-    make: impl Fn(usize) -> I + Sync,
-) -> Result<Vec<T>> {
-    let mut table = filled(rows.len() * width, T::default(), LENS)?;
-    table.par_chunks_mut(width).zip(rows).for_each(|(row, number)| {
-        row.iter_mut().zip(make(number)).for_each(|(out, value)| *out = value);
-    });
-    Ok(table)
-}
-
-fn build_kerr(frame: &LocalFrame, wanted: Crossings) -> Result<Option<KerrLens>> {
-    let Some(grid) = Grid::new(frame, kerr::Resolution::COARSE, wanted) else { return Ok(None) };
-    let tables = |branch| {
-        let rows = 0..grid.rows(branch);
-        let nodes = by_rows(rows.clone(), grid.columns() * grid.channels(), |row| grid.node_row(branch, row))?;
-        let flags = by_rows(grid.cell_rows(branch), grid.columns(), |row| grid.flag_row(branch, row, &nodes))?;
-        Ok((by_rows(rows, grid.packed_row_size(), |row| grid.packed_row(row, &nodes))?, flags))
-    };
-    let ((outer, outer_flags), (inner, inner_flags)) = (tables(kerr::Branch::Outer)?, tables(kerr::Branch::Inner)?);
-    Ok(Some(KerrLens::assemble(grid, [outer, inner], [outer_flags, inner_flags])))
-}
-
-fn build_schwarzschild(frame: &LocalFrame, with_delay: bool) -> Result<Option<SchwarzschildLens>> {
-    let Some(family) = Family::new(frame, with_delay, Resolution::SINGLE) else { return Ok(None) };
-    let columns = |branch| -> Result<Option<Vec<Column>>> {
-        let count = family.columns(branch);
-        let (mut made, mut columns) = (with_room(count, LENS)?, with_room(count, LENS)?);
-        (0..count).into_par_iter().map(|i| family.column(branch, i)).collect_into_vec(&mut made);
-        for column in made {
-            let Some(column) = column? else { return Ok(None) };
-            columns.push(column);
-        }
-        Ok(Some(columns))
-    };
-    let (escaping, captured) = rayon::join(|| columns(Branch::Escaping), || columns(Branch::Captured));
-    let (Some(escaping), Some(captured)) = (escaping?, captured?) else { return Ok(None) };
-    SchwarzschildLens::from_columns(family, escaping, captured)
-}
 
 /// Looks the records of a frame up.
 pub struct LensLookup<'a> {
@@ -354,10 +237,11 @@ fn escape(record: &mut Record, ratio: f64, direction: DVec3, changes: [DVec3; 2]
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cpu::tables::LensCache;
     use crate::physics::geodesic::wrap_angle;
     use crate::physics::trace::Settings;
     use crate::scene::observer::Lens;
-    use crate::scene::{Camera, KerrThreshold, LensTables, Motion, Region};
+    use crate::scene::{Camera, KerrThreshold, LensTables, Lensing, Motion, Region, Scene};
 
     /// Numbers in [0, 1): a fixed sequence (Knuth's multiplier, TAOCP 3.3.4).
     struct Sequence(u64);

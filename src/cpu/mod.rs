@@ -11,14 +11,15 @@ mod rays;
 mod record;
 pub(crate) mod refine;
 pub(crate) mod shade;
+mod tables;
 
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::scene::{Hit, Ray, Scene, Transfer};
 use crate::sky::StarIndex;
 use crate::tracer::{AdapterInfo, Backend};
-use lens::LensCache;
 use std::sync::Arc;
+use tables::LensCache;
 
 /// Most threads a pool may have, whatever the host asks for.
 pub const MAX_THREADS: u32 = 1024;

@@ -232,8 +232,9 @@ impl<'a> LevelAbout<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cpu::lens::{LensCache, LensLookup};
+    use crate::cpu::lens::LensLookup;
     use crate::cpu::record::Recorder;
+    use crate::cpu::tables::LensCache;
     use crate::scene::{KerrThreshold, LensTables, Region};
 
     /// The shares of a frame's pixels that are refined for an edge of the disk and for the critical curve.

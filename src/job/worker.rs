@@ -318,15 +318,21 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
         return queue.send(Event::Whole(Box::new(job_request), Err(error.clone())));
     }
     let mut guard = job_request.tracer.lock_arc();
-    let begun = match (&mut *guard, &job_request.target) {
-        (Tracer::Gpu(tracer), JobTarget::Memory(..) | JobTarget::Shared(..)) => {
+    // A picture that is seen from several places is made strip by strip, and outputs are several frames.
+    let is_one = match &job_request.target {
+        JobTarget::Memory(..) => !job_request.scene.camera.is_omnistereo(),
+        JobTarget::Shared(..) => true,
+        JobTarget::Outputs(_) => false,
+    };
+    let begun = match &mut *guard {
+        Tracer::Gpu(tracer) if is_one => {
             let begun = cancelled.and_then(|()| begin(tracer, &job_request));
             if let (Err(_), JobTarget::Shared(_, _, sync)) = (&begun, &job_request.target) {
                 give_signals(&tracer.device(), sync);
             }
             begun
         }
-        (Tracer::Cpu(_) | Tracer::Gl(_), _) | (_, JobTarget::Outputs(_)) => {
+        _ => {
             let rendered = render_whole(&mut guard, &mut job_request);
             // Whoever waits for the tracer gets it before the next job does.
             ArcMutexGuard::unlock_fair(guard);
@@ -382,8 +388,8 @@ fn give_signals(device: &Device, sync: &FrameSync) {
     }
 }
 
-/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and outputs are several
-/// frames.
+/// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and outputs and strips are
+/// several frames.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
     let (scene, shared) = (&job_request.scene, job_request.shared.clone());
     let mut progress = |fraction: f64| {

@@ -10,6 +10,7 @@ pub mod cie1931;
 pub mod disk_flux;
 pub mod flow;
 pub mod geodesic;
+pub mod images;
 pub mod integrator;
 pub mod lens;
 pub mod limb_darkening;

@@ -143,7 +143,7 @@ impl LocalFrame {
     }
 
     /// sqrt(A / Sigma) = sqrt(g_phph) / sin(theta), Boyer-Lindquist (Bardeen, Press & Teukolsky 1972, eq. 2.3).
-    fn circumference(&self) -> f64 {
+    pub(crate) fn circumference(&self) -> f64 {
         let u = 1.0 / self.r;
         let au2 = (self.a * u).powi(2);
         let sigma = 1.0 + au2 * self.cos * self.cos;

@@ -101,6 +101,7 @@ impl Renderer {
         let shared = target.on(&device)?;
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
+        self.scene.check_one_eye("a frame for a target on the GPU")?;
         self.scene.lens(&request.region)?;
         let asks = (submits == Submits::InBackground).then(|| sync.clone());
         let scene = self.behind(&request.region, shape.size)?.into_owned();

@@ -4,7 +4,7 @@
 
 use super::hole::unit;
 use crate::error::{Error, Number, Result};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(i32)]
@@ -13,6 +13,65 @@ pub enum Projection {
     Fisheye = 1,
     Equirect = 2,
     Cube = 3,
+    /// Between the four tangents of `Camera::frustum`.
+    Frustum = 4,
+}
+
+impl Projection {
+    /// The projection by whose formula directions are found: a frustum's is the perspective one, about another centre.
+    pub fn formula(self) -> Self {
+        if self == Self::Frustum { Self::Perspective } else { self }
+    }
+}
+
+/// The eye of a stereo picture all round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Eye {
+    /// No stereo picture: the camera's own place.
+    Middle = 0,
+    Left = 1,
+    Right = 2,
+}
+
+/// The borders of a picture on the plane at distance 1 ahead of the camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frustum {
+    pub left: f64,
+    pub right: f64,
+    pub down: f64,
+    pub up: f64,
+}
+
+impl Frustum {
+    /// Largest tangent: f32 still squares it.
+    pub const MOST: f64 = 1e9;
+
+    /// Errors: a tangent not finite or above `MOST`, left not below right, down not below up.
+    pub fn check(&self) -> Result<()> {
+        let Self { left, right, down, up } = *self;
+        for (name, tangent) in [("left", left), ("right", right), ("down", down), ("up", up)] {
+            if tangent.is_nan() || tangent.abs() > Self::MOST {
+                return Err(Error::argument(format!(
+                    "camera tan_{name} is {}; it must lie within +-{:e}",
+                    Number(tangent),
+                    Self::MOST
+                )));
+            }
+        }
+        for (low, high, names) in [(left, right, ["left", "right"]), (down, up, ["down", "up"])] {
+            if low >= high {
+                return Err(Error::argument(format!(
+                    "camera tan_{} is {} and tan_{} is {}; the first must be less than the second",
+                    names[0],
+                    Number(low),
+                    names[1],
+                    Number(high)
+                )));
+            }
+        }
+        Ok(())
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +115,13 @@ pub struct Camera {
     pub motion: Motion,
     /// v / c against the local static observer, |v| < 1; components as for a direction given at `position` (bhr.h).
     pub velocity: DVec3,
+    /// The borders of a `Frustum`'s picture. Default: 45 degrees each way.
+    pub frustum: Frustum,
+    /// The shift of the picture of a `Perspective` or a `Frustum`, pixels right and down, at most 1 each way.
+    pub jitter: DVec2,
+    /// The eye that an `Equirect` picture is for, and the distance of the eyes, scene lengths.
+    pub eye: Eye,
+    pub eye_distance: f64,
 }
 
 impl Default for Camera {
@@ -69,12 +135,18 @@ impl Default for Camera {
             fov_y: std::f64::consts::FRAC_PI_4,
             motion: Motion::Static,
             velocity: DVec3::ZERO,
+            frustum: Frustum { left: -1.0, right: 1.0, down: -1.0, up: 1.0 },
+            jitter: DVec2::ZERO,
+            eye: Eye::Middle,
+            eye_distance: 0.0,
         }
     }
 }
 
 impl Camera {
-    /// Errors: a number not finite, position 0, forward or up zero or parallel, fov_y out of range, |velocity| >= 1.
+    /// Errors: a number not finite, position 0, forward or up zero or parallel, fov_y out of range, |velocity| >= 1,
+    /// tangents as `Frustum::check`, a jitter above 1,
+    /// a negative eye distance.
     pub fn check(&self) -> Result<()> {
         let named =
             [("position", self.position), ("forward", self.forward), ("up", self.up), ("velocity", self.velocity)];
@@ -96,7 +168,23 @@ impl Camera {
             Projection::Perspective => (std::f64::consts::PI, false),
             _ => (std::f64::consts::TAU, true),
         };
-        let ignored = matches!(self.projection, Projection::Equirect | Projection::Cube);
+        if !(self.eye_distance >= 0.0 && self.eye_distance.is_finite()) {
+            return Err(Error::argument(format!(
+                "camera eye_distance is {}; it must be finite and not less than 0",
+                Number(self.eye_distance)
+            )));
+        }
+        if self.projection == Projection::Frustum {
+            self.frustum.check()?;
+        }
+        if self.jitter.is_nan() || self.jitter.abs().max_element() > 1.0 {
+            return Err(Error::argument(format!(
+                "camera jitter is ({}, {}); it must lie within +-1 pixel",
+                Number(self.jitter.x),
+                Number(self.jitter.y)
+            )));
+        }
+        let ignored = matches!(self.projection, Projection::Equirect | Projection::Cube | Projection::Frustum);
         let inside = self.fov_y > 0.0 && (self.fov_y < limit || (closed && self.fov_y == limit));
         if !ignored && !inside {
             let range = if closed { "(0, 2 pi]" } else { "(0, pi)" };

@@ -4,16 +4,19 @@
 
 pub mod camera;
 mod content;
+pub mod eyes;
 pub mod film;
 pub mod frame;
 pub mod hole;
 pub mod host_rays;
 pub mod lensing;
+pub mod matrices;
 pub mod observer;
 pub mod occluder;
 pub mod output;
 mod parameters;
 pub mod preset;
+pub mod project;
 pub mod projection;
 pub mod quality;
 pub mod query;
@@ -27,7 +30,7 @@ pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};
 pub use crate::emit::effects::Effects;
 pub use crate::emit::hot_spot::HotSpot;
 pub use crate::emit::volume::{FlowLaw, Shape, Volume};
-pub use camera::{Camera, Motion, Projection};
+pub use camera::{Camera, Eye, Frustum, Motion, Projection};
 pub use content::{Scene, View};
 pub use film::{ColourMap, Film, ToneMap};
 pub use frame::Region;

@@ -8,7 +8,7 @@ use super::{Camera, Motion, Region, Scene};
 use crate::error::{Error, Number, Result};
 use crate::physics::observer::{LocalFrame, NoFrame, Observer};
 use crate::physics::orbit::{horizon_outer, photon_orbit};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 /// The range of observers, M: farther out, f32 tracers could not hold a ray's constants.
 pub const MIN_RADIUS: f64 = 1e-6;
@@ -97,11 +97,10 @@ impl Scene {
         let mapping = Mapping::new(&self.camera, region)?;
         let axes = self.hole.scene_to_chart() * self.camera.axes()?;
         let frame = &observer.frame;
-        let axes = DMat3::from_cols(
-            frame.components(axes.x_axis) * mapping.plane.x,
-            frame.components(axes.y_axis) * mapping.plane.y,
-            frame.components(axes.z_axis),
-        );
+        let [right, up, forward] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| frame.components(axis));
+        // A picture about another centre costs nothing in the axis that every point of the image plane has once.
+        let middle = forward + right * mapping.centre.x + up * mapping.centre.y;
+        let axes = DMat3::from_cols(right * mapping.plane.x, up * mapping.plane.y, middle);
         Ok(Lens { observer, axes, mapping })
     }
 }
@@ -110,7 +109,8 @@ impl Scene {
 #[derive(Clone, Copy, Debug)]
 pub struct Lens {
     pub observer: Observer,
-    /// Columns: the units of a point of `mapping`, to the right, up, forward; components in the observer's frame.
+    /// Columns: the units of a point of `mapping`, to the right, up, towards the frame's middle; components in the
+    /// observer's frame.
     pub axes: DMat3,
     pub mapping: Mapping,
 }
@@ -127,6 +127,12 @@ impl Lens {
     pub fn closest_approach(&self, x: f64, y: f64) -> f64 {
         let (n, _) = self.observer.aberrate(self.look_direction(x, y));
         self.observer.frame.r * (-n.x).max(0.0)
+    }
+
+    /// The position of the full frame at which a look direction (components in the observer's own frame) is seen;
+    /// `None` where the projection has none for it.
+    pub fn position(&self, look: DVec3) -> Option<DVec2> {
+        self.mapping.position(self.axes.inverse() * look)
     }
 
     /// `look_direction`, and its changes to the next pixel right and down, to first order.

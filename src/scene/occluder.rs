@@ -95,6 +95,7 @@ impl Scene {
     /// INVALID_ARGUMENT for those of another size; UNSUPPORTED where matter has depth.
     pub fn behind(&self, occluder: Option<&Occluder>, size: [u32; 2], region: &Region) -> Result<Cow<'_, Self>> {
         let Some(occluder) = occluder.filter(|_| self.view == View::Light) else { return Ok(Cow::Borrowed(self)) };
+        self.check_one_eye("an occluder")?;
         let given = [occluder.width, occluder.height];
         if given != size {
             let ([w, h], [width, height]) = (given, size);

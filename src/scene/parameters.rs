@@ -3,6 +3,7 @@
 //! fields; enumerations go by the words of their constants. A field that is new has to be named here: all structs are
 //! taken apart without a rest, but for choices that are no host's.
 
+use super::camera::Frustum;
 use super::{Camera, Disk, Film, Hole, HotSpot, Quality, Region, Scene, Sky, Volume};
 use crate::image::Attribute;
 use glam::DVec3;
@@ -70,10 +71,26 @@ impl Scene {
     }
 
     fn put_camera(&self, list: &mut Parameters) {
-        let Camera { projection, position, forward, up, fov_y, motion, velocity } = self.camera;
+        let Camera {
+            projection,
+            position,
+            forward,
+            up,
+            fov_y,
+            motion,
+            velocity,
+            frustum: Frustum { left, right, down, up: top },
+            jitter,
+            eye,
+            eye_distance,
+        } = self.camera;
         list.word("bhr.camera.projection".into(), &projection);
         list.word("bhr.camera.motion".into(), &motion);
-        list.numbers("bhr.camera", [("fov_y", fov_y)]);
+        list.word("bhr.camera.eye".into(), &eye);
+        let tangents = [("tan_left", left), ("tan_right", right), ("tan_down", down), ("tan_up", top)];
+        list.numbers("bhr.camera", [("fov_y", fov_y), ("eye_distance", eye_distance)]);
+        list.numbers("bhr.camera", tangents);
+        list.vector("bhr.camera.jitter", &jitter.to_array());
         let vectors: [(&str, DVec3); 4] =
             [("position", position), ("forward", forward), ("up", up), ("velocity", velocity)];
         vectors.iter().for_each(|(name, v)| list.vector(&format!("bhr.camera.{name}"), &v.to_array()));

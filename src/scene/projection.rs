@@ -11,12 +11,15 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// `has_look_direction` says where the projection shows something.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mapping {
+    /// The formula (`Projection::formula`): FRUSTUM is a PERSPECTIVE about another centre.
     pub projection: Projection,
     /// Size of the full frame in pixels.
     pub width: f64,
     pub height: f64,
     /// Halves of the perspective image plane's sides at distance 1; else 1.
     pub plane: DVec2,
+    /// The middle of the frame on that plane, right and up of straight ahead; else 0.
+    pub centre: DVec2,
     /// Angle of a pixel in the middle of the frame (of a cube's faces as if one filled its side), radians.
     pub pixel_angle: f64,
 }
@@ -24,7 +27,7 @@ pub struct Mapping {
 impl Mapping {
     /// Errors: INVALID_STATE for a cube whose frame is not six times as wide as high.
     pub fn new(camera: &Camera, region: &Region) -> Result<Self> {
-        let projection = camera.projection;
+        let projection = camera.projection.formula();
         if projection == Projection::Cube && u64::from(region.full_width) != 6 * u64::from(region.full_height) {
             return Err(Error::state(format!(
                 "frame is {} x {}; the projection CUBE shows six faces side by side, so its width must be 6 times \
@@ -36,15 +39,25 @@ impl Mapping {
         }
         let (width, height) = (f64::from(region.full_width), f64::from(region.full_height));
         let tan = (0.5 * camera.fov_y).tan();
-        let plane =
-            if projection == Projection::Perspective { DVec2::new(tan * width / height, tan) } else { DVec2::ONE };
+        let borders = camera.frustum;
+        let (plane, middle) = match camera.projection {
+            Projection::Perspective => (DVec2::new(tan * width / height, tan), DVec2::ZERO),
+            Projection::Frustum => (
+                0.5 * DVec2::new(borders.right - borders.left, borders.up - borders.down),
+                0.5 * DVec2::new(borders.right + borders.left, borders.up + borders.down),
+            ),
+            _ => (DVec2::ONE, DVec2::ZERO),
+        };
+        // The jitter moves what was in the middle to the right and down.
+        let shift = plane * camera.jitter * DVec2::new(-2.0 / width, 2.0 / height);
+        let centre = if projection == Projection::Perspective { middle + shift } else { DVec2::ZERO };
         let pixel_angle = match projection {
-            Projection::Perspective => 2.0 * tan / height,
+            Projection::Perspective | Projection::Frustum => 2.0 * plane.y / height,
             Projection::Fisheye => camera.fov_y / width.min(height),
             Projection::Equirect => PI / height,
             Projection::Cube => FRAC_PI_2 / height,
         };
-        Ok(Self { projection, width, height, plane, pixel_angle })
+        Ok(Self { projection, width, height, plane, centre, pixel_angle })
     }
 
     /// Whether something is seen at (x, y): all but what lies outside a fisheye's circle.
@@ -59,11 +72,13 @@ impl Mapping {
     }
 
     /// A point (right, up, forward) in the direction seen at (x, y) of the full frame, (0, 0) being its top-left
-    /// corner; PERSPECTIVE: right and up in units of `plane`. Outside the frame the image plane, the angles or the
-    /// nearest face continue.
+    /// corner; PERSPECTIVE: right and up of `centre` in units of `plane`. Outside the frame the image plane, the angles
+    /// or the nearest face continue.
     pub fn point(&self, x: f64, y: f64) -> DVec3 {
         match self.projection {
-            Projection::Perspective => DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0),
+            Projection::Perspective | Projection::Frustum => {
+                DVec3::new(2.0 * x / self.width - 1.0, 1.0 - 2.0 * y / self.height, 1.0)
+            }
             Projection::Fisheye => {
                 let (from_centre, radius) = (self.offset(x, y), self.offset(x, y).length());
                 let (sin, cos) = (self.pixel_angle * radius).sin_cos();
@@ -81,10 +96,42 @@ impl Mapping {
         }
     }
 
+    /// The position whose `point` lies in the direction of `p`; `None`: behind a perspective's image plane. Opposite a
+    /// fisheye's centre it is one of the many.
+    pub fn position(&self, p: DVec3) -> Option<DVec2> {
+        let size = DVec2::new(self.width, self.height);
+        let on_plane = |p: DVec3| DVec2::new(0.5 + 0.5 * p.x / p.z, 0.5 - 0.5 * p.y / p.z);
+        match self.projection {
+            Projection::Perspective | Projection::Frustum => (p.z > 0.0).then(|| on_plane(p) * size),
+            Projection::Fisheye => {
+                let side = p.truncate();
+                let radius = side.length().atan2(p.z) / self.pixel_angle;
+                let from_centre = side.normalize_or(DVec2::X) * radius;
+                Some(0.5 * size + DVec2::new(from_centre.x, -from_centre.y))
+            }
+            Projection::Equirect => {
+                let (longitude, latitude) = (p.x.atan2(p.z), p.y.atan2(p.x.hypot(p.z)));
+                Some(DVec2::new(0.5 + longitude / TAU, 0.5 - latitude / PI) * size)
+            }
+            Projection::Cube => {
+                let most = p.abs().max_element();
+                let face = match p {
+                    p if p.z.abs() == most => 4 + u8::from(p.z < 0.0),
+                    p if p.x.abs() == most => u8::from(p.x < 0.0),
+                    p => 2 + u8::from(p.y < 0.0),
+                };
+                let at = on_plane(turned_from_face(face, p)) * self.height;
+                Some(DVec2::new(f64::from(face) * self.height + at.x, at.y))
+            }
+        }
+    }
+
     /// Changes of `point` to the next pixel right and down, to first order.
     pub fn changes(&self, x: f64, y: f64) -> [DVec3; 2] {
         match self.projection {
-            Projection::Perspective => [DVec3::X * (2.0 / self.width), DVec3::Y * (-2.0 / self.height)],
+            Projection::Perspective | Projection::Frustum => {
+                [DVec3::X * (2.0 / self.width), DVec3::Y * (-2.0 / self.height)]
+            }
             Projection::Fisheye => {
                 let from_centre = self.offset(x, y);
                 let radius = from_centre.length();
@@ -139,6 +186,18 @@ fn turned_to_face(face: u8, p: DVec3) -> DVec3 {
         1 => DVec3::new(-p.z, p.y, p.x),
         2 => DVec3::new(p.x, p.z, -p.y),
         3 => DVec3::new(p.x, -p.z, p.y),
+        4 => p,
+        _ => DVec3::new(-p.x, p.y, -p.z),
+    }
+}
+
+/// The reverse of `turned_to_face`.
+fn turned_from_face(face: u8, p: DVec3) -> DVec3 {
+    match face {
+        0 => DVec3::new(-p.z, p.y, p.x),
+        1 => DVec3::new(p.z, p.y, -p.x),
+        2 => DVec3::new(p.x, -p.z, p.y),
+        3 => DVec3::new(p.x, p.z, -p.y),
         4 => p,
         _ => DVec3::new(-p.x, p.y, -p.z),
     }
@@ -230,6 +289,20 @@ mod tests {
             assert!(cube.same_face(x - 50.0, x + 49.999));
         }
         assert!(cube.same_face(-1.0, 0.0));
+    }
+
+    #[test]
+    fn positions_are_where_points_are_seen() {
+        for m in mappings() {
+            for (x, y) in [(0.3, 0.2), (150.5, 100.4), (99.8, 31.0), (100.2, 70.0), (290.0, 0.7), (12.0, 49.0)] {
+                if !m.has_look_direction(x, y) || (m.projection == Projection::Cube && y > m.height) {
+                    continue;
+                }
+                let back = m.position(m.point(x, y) * 3.0).unwrap();
+                assert!(back.abs_diff_eq(DVec2::new(x, y), 1e-9), "{m:?}: {x} {y} {back}");
+            }
+        }
+        assert_eq!(mapping(Projection::Perspective, [300, 200], 1.0).position(DVec3::NEG_Z), None);
     }
 
     #[test]

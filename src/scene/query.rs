@@ -110,8 +110,12 @@ impl Scene {
             let (x, y) = (Number(x), Number(y));
             return Err(Error::argument(format!("pixel position ({x}, {y}) must lie within +-{MAX_PIXEL:e}")));
         }
-        let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
-        Ok(pixel_rays.ray(self, x + f64::from(region.x), y + f64::from(region.y)))
+        let full_width = region.map_or(width, |region| region.full_width);
+        let column = x + f64::from(region.map_or(0, |region| region.x));
+        let by_eye = self.seen_by_eye(column, full_width.max(1))?;
+        let scene = by_eye.as_ref().unwrap_or(self);
+        let (pixel_rays, region) = scene.pixel_rays(width, height, region)?;
+        Ok(pixel_rays.ray(scene, x + f64::from(region.x), y + f64::from(region.y)))
     }
 
     /// Rays through all pixel centres of the image, row by row, handed to `write(index, ray)`. Errors: as `camera_ray`.
@@ -123,6 +127,16 @@ impl Scene {
         write: &mut dyn FnMut(usize, Ray),
     ) -> Result<()> {
         let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
+        if self.camera.is_omnistereo() {
+            for x in 0..width {
+                for y in 0..height {
+                    let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+                    let index = y as usize * width as usize + x as usize;
+                    write(index, self.camera_ray(width, height, Some(region), at[0], at[1])?);
+                }
+            }
+            return Ok(());
+        }
         for y in 0..height {
             for x in 0..width {
                 let (px, py) = (f64::from(region.x + x) + 0.5, f64::from(region.y + y) + 0.5);
@@ -132,7 +146,7 @@ impl Scene {
         Ok(())
     }
 
-    fn pixel_rays(&self, width: u32, height: u32, region: Option<Region>) -> Result<(PixelRays, Region)> {
+    pub(super) fn pixel_rays(&self, width: u32, height: u32, region: Option<Region>) -> Result<(PixelRays, Region)> {
         let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
         if width == 0 || height == 0 {
             return Err(Error::argument(format!("image is {width} x {height}; each side must be at least 1")));
@@ -215,9 +229,9 @@ fn angles(indices: &[usize]) -> i32 {
 }
 
 /// The camera's lens and the boost into the frame in which its rays are stated.
-struct PixelRays {
-    lens: Lens,
-    aberration: Observer,
+pub(super) struct PixelRays {
+    pub(super) lens: Lens,
+    pub(super) aberration: Observer,
 }
 
 impl PixelRays {

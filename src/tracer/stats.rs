@@ -23,6 +23,21 @@ pub struct FrameStats {
     pub readback_ns: u64,
     /// Device memory held by this renderer.
     pub device_bytes: u64,
+    /// Lens tables made for the frame.
+    pub lens_tables: u64,
+}
+
+impl FrameStats {
+    /// Adds the numbers about a part of the same frame.
+    pub fn add(&mut self, part: &Self) {
+        self.rays += part.rays;
+        self.steps += part.steps;
+        self.gpu_ns += part.gpu_ns;
+        self.pass_ns.iter_mut().zip(part.pass_ns).for_each(|(sum, part)| *sum += part);
+        self.readback_ns += part.readback_ns;
+        self.device_bytes = self.device_bytes.max(part.device_bytes);
+        self.lens_tables += part.lens_tables;
+    }
 }
 
 /// The numbers about a renderer's last finished frame, whoever made it.

@@ -123,7 +123,7 @@ static void camera_numbers(Watch *watch, BhrContext *context) {
         memcpy(camera.velocity, fast[i], sizeof fast[i]);
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "velocity", bhr_set_camera(context, &camera));
     }
-    static const int32_t unknown[] = {-1, 4, 77, INT32_MIN, INT32_MAX};
+    static const int32_t unknown[] = {-1, 5, 77, INT32_MIN, INT32_MAX};
     for (size_t i = 0; i < COUNT_OF(unknown); i++) {
         BhrCamera camera = default_camera();
         camera.motion = unknown[i];

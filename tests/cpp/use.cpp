@@ -92,6 +92,12 @@ static void scene() {
     EXPECT(camera.look_at({20.0, 0.0, 1.0}, {0.0, 0.0, 0.0}) && camera.position[0] == 20.0);
     EXPECT(!camera.orbit(-1.0, 0.0, 0.0) && camera.position[0] == 20.0);
     EXPECT(camera.orbit(20.0, 0.0, 0.1));
+    const auto flags = bhr::MatrixFlags::zero_to_one | bhr::MatrixFlags::reversed;
+    const bhr::CameraMatrices seen_by = camera.matrices(16, 9, 0.1, INFINITY, flags).value();
+    bhr::Camera again;
+    EXPECT(again.from_matrices(seen_by.view, seen_by.projection) && again.projection == bhr::Projection::frustum);
+    EXPECT(std::fabs(again.position[0] - camera.position[0]) < 1e-12 && again.tan_up > 0.0);
+    EXPECT(!camera.matrices(0, 9, 0.1, 1.0) && !again.from_matrices(seen_by.projection, seen_by.view));
     camera.motion = bhr::Motion::free_fall;
     EXPECT(context.set_camera(camera));
     EXPECT(context.camera().value().motion == bhr::Motion::free_fall);
@@ -295,6 +301,10 @@ static void rays() {
     EXPECT(context.trace(bhr::span<const bhr::Ray>(&inward, 1), bhr::span<bhr::Hit>(&hit, 1)));
     EXPECT(hit.fate == bhr::Fate::captured && hit.crossing_count == 0);
     EXPECT(!context.trace(all, bhr::span<bhr::Hit>(&hit, 1)) && context.trace(bhr::span<const bhr::Ray>()));
+    const bhr::ProjectedPoint label = context.project_point(8, 4, {0.0, 0.0, 0.5}, 9).value_or(bhr::ProjectedPoint());
+    EXPECT(label.found == 0);
+    const bhr::ProjectedPoint image = context.project_point(8, 4, {1.0, -8.0, 3.0}).value();
+    EXPECT(image.found == 1 && image.magnification > 0.0 && image.delay > 0.0 && image.ray.frequency_ratio > 0.0);
     const std::vector<bhr::PathPoint> path = context.trace_path(inward, 100).value();
     EXPECT(path.size() >= 2 && path.size() <= 100 && near(path[0].z, 30.0));
     EXPECT(path.back().z < 2.1 && path.back().t < 0.0);

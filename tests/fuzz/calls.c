@@ -196,18 +196,25 @@ static void scene_call(BhrContext *context) {
     case 3:
         bhr_camera_init(&camera, sizeof camera);
         camera.struct_size = mostly(sizeof camera, byte());
-        camera.projection = constant(BHR_PROJECTION_CUBE);
+        camera.projection = constant(BHR_PROJECTION_FRUSTUM);
         camera.motion = constant(BHR_MOTION_VELOCITY);
         if (byte() < 128) {
             memcpy(camera.position, vector, sizeof vector);
         }
         camera.fov_y = mostly(1, 0) != 0 ? camera.fov_y : number();
         camera.velocity[byte() % 3] = number() / 16.0;
+        camera.tan_left = mostly(1, 0) != 0 ? camera.tan_left : number();
+        camera.tan_up = mostly(1, 0) != 0 ? camera.tan_up : number();
+        camera.jitter[byte() % 2] = number() / 8.0;
+        camera.eye = mostly(1, 0) != 0 ? BHR_EYE_MIDDLE : constant(BHR_EYE_RIGHT);
+        camera.eye_distance = mostly(1, 0) != 0 ? 0.0 : number();
         check(bhr_set_camera(context, &camera));
         break;
     case 4:
         bhr_camera_init(&camera, sizeof camera);
         check(bhr_camera_orbit(&camera, number(), number(), number()));
+        check(bhr_camera_matrices(&camera, count(), count(), number(), number(), byte(), gamma, gamma + 16));
+        check(bhr_camera_from_matrices(&camera, gamma, gamma + 16, byte()));
         check(bhr_set_camera(context, &camera));
         break;
     case 5:
@@ -315,7 +322,13 @@ static void ray_call(BhrContext *context) {
         }
         rays[i].frequency_ratio = number();
     }
-    switch (byte() % 5) {
+    switch (byte() % 6) {
+    case 5: {
+        BhrProjectedPoint image;
+        image.struct_size = mostly(sizeof image, 3);
+        check(bhr_project_point(context, count(), count(), rays[0].position, mostly(0, byte()), &image));
+        break;
+    }
     case 4:
         check(bhr_transfer_rays(context, rays, mostly(sizeof rays[0], 3), byte() % 4, found_matter,
                                 sizeof found_matter[0]));

@@ -79,7 +79,7 @@ pub fn table(text: &str, header: &str) -> String {
          #define TYPE(x) _Generic((x), int32_t: \"int32\", uint32_t: \"uint32\", int64_t: \"int64\", \
          uint64_t: \"uint64\", double: \"double\", void *: \"void*\", double *: \"double[]\", char *: \"char[]\", \
          BhrLogFn: \"log\", const BhrWindow *: \"window\", BhrCrossing *: \"crossings\", \
-         const BhrImage *: \"image\", default: \"?\")\n\
+         const BhrImage *: \"image\", BhrRay: \"ray\", default: \"?\")\n\
          int main(void) {{\n"
     );
     for name in constants(text) {

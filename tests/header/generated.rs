@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The header's sections in order (a type stands before its first use): source file, title.
-const SECTIONS: [(&str, &str); 26] = [
+const SECTIONS: [(&str, &str); 28] = [
     ("version", "version"),
     ("status", "status, messages"),
     ("log", "log"),
@@ -17,6 +17,7 @@ const SECTIONS: [(&str, &str); 26] = [
     ("context", "context"),
     ("hole", "the black hole"),
     ("camera", "the camera: an observer with a lens"),
+    ("matrix", "cameras as matrices"),
     ("disk", "accretion disk"),
     ("volume", "matter with depth: volumes and hot spots"),
     ("image", "images in the host's memory"),
@@ -33,6 +34,7 @@ const SECTIONS: [(&str, &str); 26] = [
     ("occluder", "the host's things before the camera"),
     ("surface", "rendering into windows"),
     ("rays", "rays: the same tracer, asked directly"),
+    ("project", "points on the screen"),
     ("transfer", "the matter with depth along rays"),
     ("stats", "numbers about the last finished frame"),
 ];

@@ -100,7 +100,10 @@ fn layouts_hold_in_rust() {
             photon_orbit_retrograde, isco_prograde, isco_retrograde, critical_impact_parameter, shadow_angular_radius,
             camera_radius, camera_time_rate
         }
-        camera::BhrCamera { struct_size, projection, position, forward, up, fov_y, motion, reserved, velocity }
+        camera::BhrCamera {
+            struct_size, projection, position, forward, up, fov_y, motion, reserved, velocity, tan_left, tan_right,
+            tan_down, tan_up, jitter, eye_distance, eye, reserved2
+        }
         disk::BhrDisk {
             struct_size, flags, inner_radius, outer_radius, temperature, opacity, brightness, turbulence, seed,
             reference, emission_law, edge_softness
@@ -124,13 +127,17 @@ fn layouts_hold_in_rust() {
         }
         output::BhrOutput { struct_size, kind, index, reserved, image, target }
         region::BhrRegion { struct_size, full_width, full_height, x, y, reserved }
+        project::BhrProjectedPoint {
+            struct_size, found, on_screen, reserved, x, y, ray, magnification, delay, redshift
+        }
         rays::BhrRay { position, direction, frequency_ratio }
         rays::BhrCrossing { radius, azimuth, redshift, delay }
         rays::BhrHit {
             fate, crossing_count, sky_direction, sky_redshift, swept_angle, steps, reserved, crossings
         }
         stats::BhrFrameStats {
-            struct_size, reserved, frame_index, rays, steps, cpu_ns, gpu_ns, readback_ns, device_bytes
+            struct_size, reserved, frame_index, rays, steps, cpu_ns, gpu_ns, readback_ns, device_bytes,
+            lens_tables
         }
     };
     let json = committed();

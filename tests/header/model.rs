@@ -13,7 +13,8 @@ use std::collections::BTreeMap;
 const FIRST_RELEASE: &str = "0.1.0";
 
 /// Bits that a parameter holds rather than the field that their comments begin with.
-const BITS_OF_PARAMETERS: [(&str, &str); 1] = [("BHR_EFFECT_", "bhr_set_effects.effects")];
+const BITS_OF_PARAMETERS: [(&str, &str); 2] =
+    [("BHR_EFFECT_", "bhr_set_effects.effects"), ("BHR_MATRIX_", "bhr_camera_matrices.flags")];
 
 /// A declaration of the header: the section that it stands in, its comment, and its text without comments.
 struct Item<'a> {

@@ -108,6 +108,7 @@ fn frames_at_the_extremes() {
             motion,
             velocity,
             projection,
+            ..Camera::plain()
         };
         let height = if projection == Projection::Cube { 4 } else { 16 };
         for renderer in &mut renderers {
@@ -149,6 +150,7 @@ fn table_frames_at_the_extremes() {
             motion,
             velocity: random.direction() * random.pick(&[0.0, 0.5, 0.999, 0.999999]),
             projection: random.pick(&PROJECTIONS),
+            ..Camera::plain()
         };
         let [width, height] = if camera.projection == Projection::Cube { [102, 17] } else { [101, 99] };
         let disk = [random.pick(&[20.0, 1e6]), random.pick(&[0.5, 1.0]), random.pick(&[0.0, 1.0])];

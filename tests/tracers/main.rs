@@ -7,8 +7,10 @@ mod bloom;
 mod cameras;
 mod composite;
 mod extremes;
+mod eyes;
 #[path = "../frames/mod.rs"]
 mod frames;
+mod frusta;
 mod half;
 mod jobs;
 mod kernels;

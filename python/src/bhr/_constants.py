@@ -50,6 +50,25 @@ class Projection(enum.IntEnum):
     FISHEYE = 1
     EQUIRECT = 2
     CUBE = 3
+    FRUSTUM = 4
+
+
+class Eye(enum.IntEnum):
+    """The eye for which an EQUIRECT picture is made, for stereo all round."""
+
+    MIDDLE = 0
+    LEFT = 1
+    RIGHT = 2
+
+
+class MatrixFlags(enum.IntFlag):
+    """How a host's matrices and its clip space are: see BHR_MATRIX_* in bhr.h. Arrays of numpy are ROW_MAJOR."""
+
+    ROW_MAJOR = 1
+    Y_DOWN = 2
+    ZERO_TO_ONE = 4
+    REVERSED = 8
+    FORWARD_Z = 16
 
 
 class Motion(enum.IntEnum):

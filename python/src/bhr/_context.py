@@ -30,6 +30,7 @@ from ._structs import (
     FrameStats,
     HoleInfo,
     HotSpot,
+    ProjectedPoint,
     Quality,
     Region,
     Sky,
@@ -469,6 +470,13 @@ class Context:
         with self._gate as context:
             check(lib.bhr_camera_ray(context, width, height, x, y, _pointer("BhrRay *", ray)))
         return ray
+
+    def project_point(self, width: int, height: int, point: VectorLike, order: int = 0) -> ProjectedPoint:
+        """Where in a frame a point of the scene appears: by light that went half round the hole `order` times."""
+        struct = new("BhrProjectedPoint")
+        with self._gate as context:
+            check(lib.bhr_project_point(context, width, height, doubles(point, 3, "point"), order, struct))
+        return ProjectedPoint.from_c(struct)
 
     def trace(
         self, rays: npt.NDArray[np.void] | np.void, *, out: npt.NDArray[np.void] | None = None

@@ -20,8 +20,10 @@ from ._constants import (
     DiskFlags,
     DiskReference,
     EmissionLaw,
+    Eye,
     Flow,
     HotSpotFlags,
+    MatrixFlags,
     Method,
     Motion,
     Projection,
@@ -33,6 +35,7 @@ from ._constants import (
 )
 from ._ffi import ffi
 from ._library import begin, check, lib
+from ._rays import RAY
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -110,7 +113,7 @@ class Camera(_Struct):
     """An observer with a lens. Lengths in scene units, angles in radians."""
 
     c_name: ClassVar[str] = "BhrCamera"
-    c_enums = {"projection": Projection, "motion": Motion}
+    c_enums = {"projection": Projection, "motion": Motion, "eye": Eye}
 
     position: Vector = (0.0, 26.0, 2.5)
     #: Any non-zero length.
@@ -122,6 +125,16 @@ class Camera(_Struct):
     motion: Motion = Motion.STATIC
     #: v / c for VELOCITY, against the local static observer (ZAMO).
     velocity: Vector = (0.0, 0.0, 0.0)
+    #: The borders of a FRUSTUM's picture on the plane at distance 1 ahead, to the right and up.
+    tan_left: float = -1.0
+    tan_right: float = 1.0
+    tan_down: float = -1.0
+    tan_up: float = 1.0
+    #: The picture of a PERSPECTIVE or a FRUSTUM moves by so many pixels to the right and down, each within +-1.
+    jitter: tuple[float, float] = (0.0, 0.0)
+    #: For EQUIRECT: the distance of two eyes, and for which of them the picture is.
+    eye_distance: float = 0.0
+    eye: Eye = Eye.MIDDLE
 
     @classmethod
     def orbit(cls, distance: float, azimuth: float, elevation: float, **fields: Any) -> Camera:
@@ -140,6 +153,26 @@ class Camera(_Struct):
         vectors = doubles(position, 3, "position"), doubles(target, 3, "target"), doubles(up, 3, "up")
         check(lib.bhr_camera_look_at(struct, *vectors))
         return cls.from_c(struct)
+
+    @classmethod
+    def from_matrices(
+        cls, view: npt.ArrayLike, projection: npt.ArrayLike, flags: int = MatrixFlags(0), **fields: Any
+    ) -> Camera:
+        """A camera from the matrices of a rasteriser, 4 x 4, as they multiply column vectors."""
+        struct = cls(**fields).to_c()
+        matrices = [doubles(np.asarray(m, float).ravel(), 16, "a matrix") for m in (view, projection)]
+        check(lib.bhr_camera_from_matrices(struct, *matrices, flags | MatrixFlags.ROW_MAJOR))
+        return cls.from_c(struct)
+
+    def matrices(
+        self, width: int, height: int, near_z: float, far_z: float = np.inf, flags: int = MatrixFlags(0)
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """View and projection, 4 x 4, as they multiply column vectors, for frames of this size."""
+        view, projection = np.zeros((4, 4)), np.zeros((4, 4))
+        outs = [ffi.cast("double *", m.ctypes.data) for m in (view, projection)]
+        flags = flags | MatrixFlags.ROW_MAJOR
+        check(lib.bhr_camera_matrices(self.to_c(), width, height, near_z, far_z, flags, *outs))
+        return view, projection
 
 
 @dataclasses.dataclass(frozen=True)
@@ -300,6 +333,35 @@ class Quality(_Struct):
 
 
 @dataclasses.dataclass(frozen=True)
+class ProjectedPoint(_Struct):
+    """Where on the screen a point of the scene appears."""
+
+    c_name: ClassVar[str] = "BhrProjectedPoint"
+
+    #: 0: there is no such image, or none was found.
+    found: int
+    #: 1: it lies within the image.
+    on_screen: int
+    #: Pixels; NaN behind a flat picture.
+    x: float
+    y: float
+    #: The ray to the point: a record of the dtype RAY.
+    ray: Any
+    #: Solid angle by that in flat space; negative where the image is mirrored.
+    magnification: float
+    #: Coordinate time since the light left, scene lengths.
+    delay: float
+    #: nu(camera) / nu(observer at rest at the point).
+    redshift: float
+
+    @classmethod
+    def from_c(cls: type[_Self], struct: Any) -> _Self:
+        names = [name for name in _names(cls) if name != "ray"]
+        ray = np.frombuffer(ffi.buffer(ffi.addressof(struct.ray)), RAY)[0].copy()
+        return cls(ray=ray, **{name: getattr(struct, name) for name in names})
+
+
+@dataclasses.dataclass(frozen=True)
 class Region(_Struct):
     """The part of a larger frame that an image holds: for tiles, dome walls and render farms."""
 
@@ -345,6 +407,8 @@ class FrameStats(_Struct):
     gpu_ns: int
     readback_ns: int
     device_bytes: int
+    #: Lens tables made for the frame; 0 where those of an earlier one served.
+    lens_tables: int
 
 
 @dataclasses.dataclass(frozen=True)

@@ -147,7 +147,7 @@ impl BegunFrame {
     /// The numbers about the frame before anything of it has run.
     pub fn stats(&self) -> FrameStats {
         let rays = u64::from(self.request.width) * u64::from(self.request.height) * u64::from(self.samples);
-        FrameStats { rays, ..FrameStats::default() }
+        FrameStats { rays, lens_tables: self.stages.make_tables().into(), ..FrameStats::default() }
     }
 
     /// The next one.

@@ -51,13 +51,14 @@ impl GpuTracer {
         // (H200). Software drivers run both sides of every branch.
         let shares = scene.quality.shares_kernels.unwrap_or(!self.adapter.info.software);
         let film_variant = FilmVariant::new(&scene.film, scene.view, request.format, target);
-        let (usual_view, usual_film) = (scene.camera.projection == Projection::Perspective, film_variant.is_usual());
+        let formula = lens.mapping.projection;
+        let (usual_view, usual_film) = (formula == Projection::Perspective, film_variant.is_usual());
         // Where one kernel both looks and develops, what is unusual in either is left open in both.
         let both = bloom.is_none() && samples == 1;
         let own_view = !shares || (usual_view && (usual_film || !both));
         let own_film = !shares || (usual_film && (usual_view || !both));
         let developed = if own_film { film_variant } else { film_variant.of_any() };
-        let projection = own_view.then_some(scene.camera.projection);
+        let projection = own_view.then_some(formula);
         let variants = ShadingVariants {
             shade: ShadeVariant {
                 light: scene.view == View::Light,

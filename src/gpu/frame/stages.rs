@@ -221,6 +221,11 @@ impl ShadeStages {
 }
 
 impl Stages {
+    /// Whether the tables of a lens are made for the frame.
+    pub(in crate::gpu) fn make_tables(&self) -> bool {
+        self.records.make_tables()
+    }
+
     /// Shades samples of a tile; the last one is followed by the sum's development, or, with bloom, by giving it to
     /// the light.
     pub fn shade(

@@ -190,7 +190,7 @@ impl FrameUniform {
             view: scene.view as u32,
             pattern: turbulence.map_or([0; 2], |t| [t.bands.seed, t.bands.first as u32]),
             map_sizes: [1; 4],
-            projection: scene.camera.projection as u32,
+            projection: lens.mapping.projection as u32,
             medium_layer: crossings,
             plane_u: range(emitters.plane_u()),
             soft_edges: emitters.disk.map_or(Vec4::ZERO, |thin| {

@@ -14,6 +14,7 @@ use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, TextureKind
 use crate::physics::lens::critical::CRITICAL_NODES;
 use crate::physics::lens::kerr::{Branch, Crossings, Grid, Resolution};
 use crate::physics::observer::LocalFrame;
+use crate::recent::Recent;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 use wgpu::BufferUsages as Usage;
@@ -79,10 +80,10 @@ impl KerrKey {
     }
 }
 
-/// The tables; made when first needed.
+/// The tables, of several observers by turns; made when first needed.
 #[derive(Default)]
 pub struct KerrTables {
-    resources: Option<KerrResources>,
+    kept: Recent<KerrKey, KerrResources>,
     deferred: Option<Buffer>,
 }
 
@@ -95,7 +96,9 @@ struct KerrResources {
     sky: Texture,
     crossings: Texture,
     flags: Texture,
-    traced: Option<(KerrKey, KerrUniform)>,
+    /// The counts of rows that are in use.
+    used: [u32; 2],
+    /// The interval in 1/r of the plane for which cells are judged.
     flagged: Option<[f64; 2]>,
 }
 
@@ -144,26 +147,26 @@ impl KerrTables {
         frame_uniform: wgpu::BindingResource<'_>,
     ) -> Result<Option<KerrStages>> {
         let key = KerrKey::new(frame, contents);
-        let current = self.resources.as_ref().and_then(|m| m.traced).filter(|(traced, _)| *traced == key);
-        if current.is_some() && self.resources.as_ref().is_some_and(|m| m.flagged == Some(contents.plane_u)) {
+        let traced = self.kept.find(&key);
+        if traced && self.kept.first().is_some_and(|m| m.flagged == Some(contents.plane_u)) {
             return Ok(None);
         }
-        let uniform = match current {
-            Some((_, uniform)) => uniform,
-            None => self.remake(device, frame, contents)?,
-        };
-        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
-        resources.traced = Some((key, uniform));
+        if !traced {
+            let goes = self.kept.make_room(&key);
+            self.kept.put(key, KerrResources::remade(goes, device, frame, contents)?);
+        }
+        let resources = self.kept.first_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
         resources.flagged = Some(contents.plane_u);
+        let used = resources.used;
         let view = |texture: &Texture| texture.view.clone();
         let (curve, sky, crossings, flags) =
             (view(&resources.curve), view(&resources.sky), view(&resources.crossings), view(&resources.flags));
         let texture = wgpu::BindingResource::TextureView;
         let lens = resources.uniform.as_entire_binding();
         let shared = [frame_uniform, lens, texture(&curve), texture(&sky), texture(&crossings)];
-        let trace_nodes = match current {
-            Some(_) => None,
-            None => Some(
+        let trace_nodes = match traced {
+            true => None,
+            false => Some(
                 kernels
                     .get(KernelKey::KerrNodes { delay: contents.delay, pattern: contents.pattern })?
                     .stage(device, &[&shared])?,
@@ -171,11 +174,33 @@ impl KerrTables {
         };
         let all = [shared.as_slice(), &[texture(&flags)]].concat();
         let flag_cells = kernels.get(KernelKey::KerrFlags { pattern: contents.pattern })?.stage(device, &[&all])?;
-        Ok(Some(KerrStages { trace_nodes, flag_cells, size: [KERR_COLUMNS, uniform.rows[0] + uniform.rows[1]] }))
+        Ok(Some(KerrStages { trace_nodes, flag_cells, size: [KERR_COLUMNS, used[0] + used[1]] }))
     }
 
-    /// Makes room for the observer's tables and writes what the host knows of them.
-    fn remake(&mut self, device: &Device, frame: &LocalFrame, contents: &KerrContents) -> Result<KerrUniform> {
+    /// Frees the tables.
+    pub fn release(&mut self) {
+        self.kept.clear();
+    }
+
+    /// After a submission that failed, nobody knows what the tables hold.
+    pub fn forget(&mut self) {
+        self.kept.clear();
+    }
+
+    /// Group 1 of a shading kernel.
+    pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
+        let parts = self.kept.first().zip(self.deferred.as_ref());
+        let (resources, deferred) = parts.ok_or_else(|| Error::internal("a lens without tables"))?;
+        let tables = [&resources.curve, &resources.sky, &resources.crossings, &resources.flags];
+        let tables = tables.map(|t| wgpu::BindingResource::TextureView(&t.view));
+        let (uniform, deferred) = (resources.uniform.as_entire_binding(), deferred.as_entire_binding());
+        Ok([uniform].into_iter().chain(tables).chain([deferred]).collect())
+    }
+}
+
+impl KerrResources {
+    /// Room for an observer's tables, that of others if it serves, with what the host knows of them written.
+    fn remade(goes: Option<Self>, device: &Device, frame: &LocalFrame, contents: &KerrContents) -> Result<Self> {
         let resolution = Resolution { chi_nodes: KERR_COLUMNS as usize, nodes_per_octave: [KERR_PER_OCTAVE; 2] };
         let crossings =
             Crossings { orders: contents.orders as usize, plane_u: contents.plane_u, pattern: contents.pattern };
@@ -184,12 +209,13 @@ impl KerrTables {
         let rows = [Branch::Outer, Branch::Inner].map(|branch| grid.rows(branch) as u32);
         let needed = [rows[0], rows[0] + rows[1]];
         let layers = if contents.pattern { contents.orders } else { contents.orders.div_ceil(ORDERS_A_LAYER) };
-        let serves = |m: &KerrResources| (0..2).all(|i| m.rows[i] >= needed[i]) && m.layers >= layers;
-        if !self.resources.as_ref().is_some_and(serves) {
-            self.resources = None;
-            self.resources = Some(KerrResources::new(device, needed.map(|n| n.next_multiple_of(ROWS_STEP)), layers)?);
-        }
-        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let serves = |m: &Self| (0..2).all(|i| m.rows[i] >= needed[i]) && m.layers >= layers;
+        // Those that go, go before others are made, unless they serve.
+        let mut resources = match goes.filter(serves) {
+            Some(resources) => resources,
+            None => Self::new(device, needed.map(|n| n.next_multiple_of(ROWS_STEP)), layers)?,
+        };
+        (resources.used, resources.flagged) = (rows, None);
         let curve = grid.curve();
         let local = |v: DVec3| v.as_vec3().extend(0.0);
         let uniform = KerrUniform {
@@ -205,37 +231,12 @@ impl KerrTables {
         let table = nodes.windows(2).flat_map(|pair| pair.iter().flat_map(|(t, slope)| [*t as f32, *slope as f32]));
         let column = |chi: f64| [chi.sin(), chi.cos(), curve.at(chi).0, 0.0].map(|v| v as f32);
         let columns = grid.column_angles().iter().flat_map(|chi| column(*chi)).collect::<Vec<f32>>();
-        resources.traced = None;
         device.write(&resources.uniform, 0, bytemuck::bytes_of(&uniform))?;
         device.write_rows(&resources.curve, 0, bytemuck::cast_slice(&table.collect::<Vec<f32>>()))?;
         device.write_rows(&resources.curve, 1, bytemuck::cast_slice(&columns))?;
-        Ok(uniform)
+        Ok(resources)
     }
 
-    /// Frees the tables.
-    pub fn release(&mut self) {
-        self.resources = None;
-    }
-
-    /// After a submission that failed, nobody knows what the tables hold.
-    pub fn forget(&mut self) {
-        if let Some(resources) = &mut self.resources {
-            resources.traced = None;
-        }
-    }
-
-    /// Group 1 of a shading kernel.
-    pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
-        let parts = self.resources.as_ref().zip(self.deferred.as_ref());
-        let (resources, deferred) = parts.ok_or_else(|| Error::internal("a lens without tables"))?;
-        let tables = [&resources.curve, &resources.sky, &resources.crossings, &resources.flags];
-        let tables = tables.map(|t| wgpu::BindingResource::TextureView(&t.view));
-        let (uniform, deferred) = (resources.uniform.as_entire_binding(), deferred.as_entire_binding());
-        Ok([uniform].into_iter().chain(tables).chain([deferred]).collect())
-    }
-}
-
-impl KerrResources {
     fn new(device: &Device, rows: [u32; 2], layers: u32) -> Result<Self> {
         let texture = |kind: TextureKind, label: &str, height: u32, layers: u32| {
             device.texture(label, kind.format, kind.dimension, [KERR_COLUMNS, height], layers)
@@ -250,13 +251,18 @@ impl KerrResources {
             sky: texture(LENS_ROWS, "lens sky", rows[0], 1)?,
             crossings: texture(LENS_COLUMNS, "lens crossings", rows[1], layers)?,
             flags: texture(LENS_FLAGS, "lens flags", rows[1], 1)?,
-            traced: None,
+            used: rows,
             flagged: None,
         })
     }
 }
 
 impl KerrStages {
+    /// Whether nodes are traced: the tables are made, not only judged anew.
+    pub fn make_tables(&self) -> bool {
+        self.trace_nodes.is_some()
+    }
+
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>) {
         let groups = kernels::pixel_groups(self.size);
         if let Some(trace) = &self.trace_nodes {

@@ -122,7 +122,7 @@ impl RecordStore {
                 let trace = trace_stages(device, kernels, record_setup.pixel_variant(), &pixels, shared)?;
                 RecordStages::Traced(TraceStages { half, ..trace })
             }
-            // Only one lens is kept: both together could take 48 MB.
+            // Only lenses of one kind are kept: both together could take half as much again.
             RecordSource::Schwarzschild { delay, .. } => {
                 self.kerr.release();
                 RecordStages::Schwarzschild(self.schwarzschild.update(
@@ -185,6 +185,15 @@ impl RecordStore {
 }
 
 impl RecordStages {
+    /// Whether the tables of a lens are made for the frame.
+    pub fn make_tables(&self) -> bool {
+        match self {
+            Self::Traced(_) => false,
+            Self::Schwarzschild(stages) => stages.is_some(),
+            Self::Kerr(stages) => stages.as_ref().is_some_and(KerrStages::make_tables),
+        }
+    }
+
     /// `begins`: these are the frame's first.
     pub fn encode(&self, pass: &mut wgpu::ComputePass<'_>, begins: bool, offset: u32, tile: [u32; 2]) {
         match self {

@@ -13,6 +13,7 @@ use crate::gpu::kernel::slots::{LENS_COLUMNS, LENS_ROWS, TextureKind};
 use crate::gpu::kernel::variant::LENS_GROUP;
 use crate::physics::observer::{LocalFrame, Observer};
 use crate::physics::shadow::shadow;
+use crate::recent::Recent;
 use bytemuck::{Pod, Zeroable};
 use wgpu::BufferUsages as Usage;
 
@@ -67,10 +68,10 @@ struct SchwarzschildKey {
     delay: bool,
 }
 
-/// The tables; made when first needed.
+/// The tables, of several observers by turns; made when first needed.
 #[derive(Default)]
 pub struct SchwarzschildTables {
-    resources: Option<SchwarzschildResources>,
+    kept: Recent<SchwarzschildKey, SchwarzschildResources>,
 }
 
 struct SchwarzschildResources {
@@ -81,7 +82,6 @@ struct SchwarzschildResources {
     swept: Texture,
     u: Texture,
     delays: Texture,
-    filled: Option<SchwarzschildKey>,
 }
 
 /// The passes that fill tables.
@@ -102,20 +102,20 @@ impl SchwarzschildTables {
         delay: bool,
         frame_uniform: wgpu::BindingResource<'_>,
     ) -> Result<Option<SchwarzschildStages>> {
-        let uniform = SchwarzschildUniform::new(frame);
-        let nodes = uniform.nodes[0].max(uniform.nodes[1]);
-        if !self.resources.as_ref().is_some_and(|m| m.nodes >= nodes && (m.delay || !delay)) {
-            self.resources = None;
-            self.resources = Some(SchwarzschildResources::new(device, nodes, delay)?);
-        }
-        let resources = self.resources.as_mut().ok_or_else(|| Error::internal("a lens without tables"))?;
         // Tables with delays do not serve frames without: another kernel fills them, which may round otherwise.
         let key = SchwarzschildKey { r: frame.r, rain: frame.rain, delay };
-        if resources.filled == Some(key) {
+        if self.kept.find(&key) {
             return Ok(None);
         }
+        let uniform = SchwarzschildUniform::new(frame);
+        let nodes = uniform.nodes[0].max(uniform.nodes[1]);
+        // Those that go, go before others are made, unless they serve.
+        let serves = |m: &SchwarzschildResources| m.nodes >= nodes && (m.delay || !delay);
+        let resources = match self.kept.make_room(&key).filter(serves) {
+            Some(resources) => resources,
+            None => SchwarzschildResources::new(device, nodes, delay)?,
+        };
         device.write(&resources.uniform, 0, bytemuck::bytes_of(&uniform))?;
-        resources.filled = Some(key);
         let view = |texture: &Texture| texture.view.clone();
         let (ends, swept, u, delays) =
             (view(&resources.ends), view(&resources.swept), view(&resources.u), view(&resources.delays));
@@ -127,19 +127,18 @@ impl SchwarzschildTables {
         let fill_columns = kernels
             .get(KernelKey::SchwarzschildColumns { delay })?
             .stage(device, &[&[frame_uniform, lens, texture(&ends), texture(&swept), texture(&u), texture(&delays)]])?;
+        self.kept.put(key, resources);
         Ok(Some(SchwarzschildStages { find_ends, fill_columns, groups: [nodes.div_ceil(LENS_GROUP), BRANCHES] }))
     }
 
     /// After a submission that failed, nobody knows what the tables hold.
     pub fn forget(&mut self) {
-        if let Some(resources) = &mut self.resources {
-            resources.filled = None;
-        }
+        self.kept.clear();
     }
 
     /// Group 1 of a shading kernel.
     pub fn group(&self) -> Result<Vec<wgpu::BindingResource<'_>>> {
-        let resources = self.resources.as_ref().ok_or_else(|| Error::internal("a lens without tables"))?;
+        let resources = self.kept.first().ok_or_else(|| Error::internal("a lens without tables"))?;
         let tables =
             [&resources.swept, &resources.u, &resources.delays].map(|t| wgpu::BindingResource::TextureView(&t.view));
         Ok([resources.uniform.as_entire_binding()].into_iter().chain(tables).collect())
@@ -165,7 +164,6 @@ impl SchwarzschildResources {
             swept: row("lens swept")?,
             u: texture(LENS_COLUMNS, "lens u", columns)?,
             delays: texture(LENS_COLUMNS, "lens delay", if delay { columns } else { [1, 1] })?,
-            filled: None,
         })
     }
 }

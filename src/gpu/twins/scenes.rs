@@ -9,7 +9,7 @@ use crate::gpu::frame::uniforms::FrameUniform;
 use crate::physics::metric::chart;
 use crate::physics::orbit::horizon_outer;
 use crate::scene::observer::Lens;
-use crate::scene::{Camera, Effects, Motion, Projection, Region, Scene, Sky};
+use crate::scene::{Camera, Effects, Frustum, Motion, Projection, Region, Scene, Sky};
 use crate::scene::{DiskReference, EmissionLaw};
 use glam::{DQuat, DVec3};
 use std::f64::consts::PI;
@@ -93,14 +93,21 @@ fn made(kind: Kind, number: u32) -> View {
         place.z = 0.0;
     }
     scene.camera = Camera {
-        projection: [Projection::Perspective, Projection::Fisheye, Projection::Equirect, Projection::Cube]
-            [(number / 4) as usize % 4],
+        projection: [
+            if number.is_multiple_of(3) { Projection::Frustum } else { Projection::Perspective },
+            Projection::Fisheye,
+            Projection::Equirect,
+            Projection::Cube,
+        ][(number / 4) as usize % 4],
         position: place * scene.hole.mass,
         forward: random.direction() - place.normalize() * 1.5,
         up: random.direction(),
         fov_y: random.even(0.3, 1.5),
         velocity: random.direction() * random.even(0.0, 0.9),
         motion: scene.camera.motion,
+        frustum: Frustum { left: -0.9, right: random.even(-0.5, 0.8), down: 0.1, up: random.even(0.2, 1.4) },
+        jitter: 0.5 * random.direction().truncate(),
+        ..Camera::plain()
     };
     let disk = scene.disk.as_mut().expect("the default scene has a disk");
     disk.retrograde = number.is_multiple_of(5);

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+/* bhr/camera.hpp -- the camera of bhr.h in C++. Include bhr.hpp. */
+#ifndef BHR_CAMERA_HPP
+#define BHR_CAMERA_HPP
+
+#include "scene.hpp"
+
+namespace bhr {
+
+/// Flags for bhr_camera_from_matrices and bhr_camera_matrices.
+enum class MatrixFlags : std::uint32_t {
+    none = 0,
+    row_major = BHR_MATRIX_ROW_MAJOR,
+    y_down = BHR_MATRIX_Y_DOWN,
+    zero_to_one = BHR_MATRIX_ZERO_TO_ONE,
+    reversed = BHR_MATRIX_REVERSED,
+    forward_z = BHR_MATRIX_FORWARD_Z,
+};
+namespace detail {
+template <> inline constexpr bool is_bits<MatrixFlags> = true;
+} // namespace detail
+
+/// Sixteen numbers, column by column unless MatrixFlags::row_major says otherwise.
+using Matrix = std::array<double, 16>;
+
+/// The matrices that rasterisers have: the world's to the camera, and the camera's to clip space.
+struct CameraMatrices {
+    Matrix view;
+    Matrix projection;
+};
+
+/// BhrCamera, with the defaults of bhr_camera_init.
+struct Camera {
+    std::uint32_t struct_size;
+    Projection projection;
+    Vector position;
+    Vector forward;
+    Vector up;
+    double fov_y;
+    Motion motion;
+    std::uint32_t reserved;
+    Vector velocity;
+    double tan_left;
+    double tan_right;
+    double tan_down;
+    double tan_up;
+    std::array<double, 2> jitter;
+    double eye_distance;
+    Eye eye;
+    std::uint32_t reserved2;
+
+    Camera() noexcept { detail::defaults(*this, bhr_camera_init); }
+    BhrCamera c() const noexcept { return detail::as_c<BhrCamera>(*this); }
+
+    /// bhr_camera_look_at.
+    Result<void> look_at(const Vector &from, const Vector &target, const Vector &upward = {0.0, 0.0, 1.0}) {
+        return change([&](BhrCamera *it) {
+            return bhr_camera_look_at(it, from.data(), target.data(), upward.data());
+        });
+    }
+
+    /// bhr_camera_orbit; angles in radians.
+    Result<void> orbit(double distance, double azimuth, double elevation) {
+        return change([&](BhrCamera *it) { return bhr_camera_orbit(it, distance, azimuth, elevation); });
+    }
+
+    /// bhr_camera_from_matrices.
+    Result<void> from_matrices(const Matrix &view, const Matrix &matrix, MatrixFlags flags = MatrixFlags::none) {
+        return change([&](BhrCamera *it) {
+            return bhr_camera_from_matrices(it, view.data(), matrix.data(), static_cast<std::uint32_t>(flags));
+        });
+    }
+
+    /// bhr_camera_matrices.
+    Result<CameraMatrices> matrices(std::uint32_t width, std::uint32_t height, double near_z, double far_z,
+                                    MatrixFlags flags = MatrixFlags::none) const {
+        const BhrCamera copy = c();
+        return detail::ask(CameraMatrices(), [&](CameraMatrices &made) {
+            return bhr_camera_matrices(&copy, width, height, near_z, far_z, static_cast<std::uint32_t>(flags),
+                                       made.view.data(), made.projection.data());
+        });
+    }
+
+  private:
+    template <class Function> Result<void> change(Function &&function) {
+        BhrCamera copy = c();
+        Result<void> done = detail::call([&] { return function(&copy); });
+        if (done) {
+            detail::take(*this, copy);
+        }
+        return done;
+    }
+};
+
+/// The highest order for Context::project_point.
+inline constexpr std::uint32_t max_image_order = BHR_MAX_IMAGE_ORDER;
+
+/// BhrProjectedPoint.
+struct ProjectedPoint {
+    std::uint32_t struct_size = sizeof(ProjectedPoint);
+    std::uint32_t found = 0;
+    std::uint32_t on_screen = 0;
+    std::uint32_t reserved = 0;
+    double x = 0.0;
+    double y = 0.0;
+    Ray ray = {};
+    double magnification = 0.0;
+    double delay = 0.0;
+    double redshift = 0.0;
+};
+
+} // namespace bhr
+
+#endif

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The images of a point: the light rays from it to an observer, one for each number of half turns about the hole, with
+//! magnification and delay. Always in f64. Knows no camera and no scene.
+//!
+//! Without spin a ray stays in the plane of observer, hole and point. The optical geometry of that plane has negative
+//! curvature outside r = 3/2 M (-2/r^3 + 3/r^4; Gibbons & Werner 2008, Class. Quantum Grav. 25, 235009), so that two
+//! rays that part never meet again: for each angle to be swept there is exactly one ray, found by bracketing (`plane`).
+//! With spin that ray is followed while the spin grows from 0 (`path`), by Newton's method with the integrator itself.
+
+mod path;
+mod plane;
+mod shooting;
+
+use super::geodesic::{Constants, State};
+use super::observer::LocalFrame;
+use super::orbit::{horizon_outer, zamo_omega};
+use glam::DVec3;
+use shooting::{Aim, FINE, Flight, Target};
+
+/// The highest order that is looked for: each half turn more makes rays e^pi times as sensitive, and beyond this
+/// doubles do not hold a direction well enough.
+pub const HIGHEST_ORDER: u32 = 3;
+
+/// The largest distance at which a ray still passes through its point, as a share of the distances of the point from
+/// the observer and from the hole, whichever is less.
+const PASSES: f64 = 1e-7;
+
+/// An image of a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Image {
+    /// The unit look direction, components in the observer's local frame.
+    pub look: DVec3,
+    pub constants: Constants,
+    /// The ray at the observer and at the point.
+    pub start: State,
+    pub there: State,
+    /// Solid angle of the image by that in flat space, as the observer of the local frame sees it; negative where the
+    /// image is mirrored, infinite on a caustic.
+    pub magnification: f64,
+    /// nu(observer of the local frame) / nu(ZAMO at the point).
+    pub redshift: f64,
+}
+
+/// The image of the chart place `point` that light makes after `order` half turns, for the observer at `frame`. `None`:
+/// the point is not outside the horizon, or it is where the observer is, or no ray was found.
+pub fn image(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Image> {
+    let observer = frame.e_r * frame.r;
+    let distance = point.distance(observer);
+    let at_point = LocalFrame::new(frame.a, point).ok()?;
+    if at_point.rain || at_point.r <= horizon_outer(frame.a) || distance == 0.0 {
+        return None;
+    }
+    let aim = if frame.a == 0.0 {
+        plane::aim(frame, point.normalize(), 1.0 / at_point.r, order)?
+    } else {
+        path::aim(frame, point, order)?
+    };
+    let target = Target::new(point);
+    let flight = Flight::of(frame, &aim, FINE)?;
+    let miss = (flight.there.chart_direction() / flight.there.u).distance(point);
+    if miss.is_nan() || miss > PASSES * distance.min(at_point.r) {
+        return None;
+    }
+    let area = beam_area(frame, &aim, &flight, &at_point, order);
+    let (c, omega) = (flight.constants, zamo_omega(frame.a, at_point.r, at_point.sin));
+    let emitted = (c.energy - omega * c.angular_momentum) / at_point.lapse;
+    debug_assert!(target.u > 0.0);
+    Some(Image {
+        look: aim.look(),
+        constants: c,
+        start: flight.start,
+        there: flight.there,
+        magnification: distance * distance / area,
+        redshift: c.nu_local / emitted,
+    })
+}
+
+/// The area at the point, M^2, of the beam of rays about `aim`, by its solid angle at the observer; its sign is that of
+/// the image's orientation.
+///
+/// Neighbouring rays differ at the point by displacements xi with k.xi = 0, because they meet at the observer. Their
+/// area is the same for all observers at the point, and does not change when multiples of k are added (Sachs 1961), so
+/// that rays may be compared at equal Mino times: the ZAMO's is taken, for whom xi has no part along time.
+fn beam_area(frame: &LocalFrame, aim: &Aim, flight: &Flight, at: &LocalFrame, order: u32) -> f64 {
+    let look = aim.look();
+    let (first, second) = look.any_orthonormal_pair();
+    // (first, second, look) is right-handed, as (e_r, e_theta, e_phi) is.
+    let step = aim.small(frame, order) * 10.0;
+    let (a, u) = (frame.a, flight.there.u);
+    let sigma = at.r * at.r + (a * at.cos).powi(2);
+    let delta = sigma_delta(a, at.r);
+    let circumference = at.circumference();
+    let drag = circumference * at.sin * zamo_omega(a, at.r, at.sin) / at.lapse;
+    let c = &flight.constants;
+    // The photon's momentum, as the ZAMO has it; the ray is followed backward.
+    let polar = flight.velocity().dot(at.e_theta);
+    let momentum = DVec3::new(
+        flight.there.du / (u * u) / (sigma * delta).sqrt(),
+        -polar / sigma.sqrt(),
+        if at.sin > 0.0 { c.angular_momentum / (circumference * at.sin) } else { -flight.velocity().dot(at.e_phi) },
+    )
+    .normalize();
+    let displacement = |along: DVec3| {
+        let [after, before] = [step, -step].map(|step| {
+            let turned = (look + along * step).normalize();
+            flight.again(frame, turned).map(|state| (state.u, state.chart_direction()))
+        });
+        let ((u1, n1), (u0, n0)) = (after?, before?);
+        let (du, dn) = ((u1 - u0) / (2.0 * step), (n1 - n0) / (2.0 * step));
+        let at_rest = DVec3::new(
+            -du / (u * u) * (sigma / delta).sqrt(),
+            dn.dot(at.e_theta) * sigma.sqrt(),
+            dn.dot(at.e_phi) * circumference,
+        );
+        let time = momentum.dot(at_rest) / (1.0 + momentum.z * drag);
+        Some(at_rest - DVec3::Z * (drag * time))
+    };
+    match (displacement(first), displacement(second)) {
+        (Some(first), Some(second)) => -momentum.dot(first.cross(second)),
+        _ => f64::NAN,
+    }
+}
+
+/// Delta = (r - r+)(r - r-).
+fn sigma_delta(a: f64, r: f64) -> f64 {
+    (r - horizon_outer(a)) * (r - super::orbit::horizon_inner(a))
+}
+
+#[cfg(test)]
+mod tests;
