@@ -128,7 +128,7 @@ impl Tracer {
         window: Option<&FrameRequest>,
         progress: &mut Progress<'_>,
     ) -> Result<()> {
-        // Of a picture that is seen from several places the first strip needs all that the others do.
+        // The first strip of a picture that is seen from several places needs all that the others do.
         if scene.camera.is_omnistereo()
             && let Some(strip) = scene.camera.strips(&request.region, request.width)?.first()
         {
