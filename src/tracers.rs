@@ -42,6 +42,15 @@ pub enum RunsOn {
 /// A tracer that a renderer, its jobs and its windows take turns with.
 pub type SharedTracer = Arc<Mutex<Tracer>>;
 
+/// The scene of a strip: tables would be made for each, which is too small to pay for them.
+fn without_tables(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    if scene.quality.lens_tables == LensTables::Auto {
+        scene.quality.lens_tables = LensTables::Never;
+    }
+    scene
+}
+
 impl Tracer {
     /// Renders a frame and waits for it. Errors: as `Renderer::render`.
     pub fn render(
@@ -67,11 +76,7 @@ impl Tracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let strips = scene.camera.strips(&request.region, request.width)?;
-        let mut scene = scene.clone();
-        // Tables would be made for each strip, which is too small to pay for them.
-        if scene.quality.lens_tables == LensTables::Auto {
-            scene.quality.lens_tables = LensTables::Never;
-        }
+        let mut scene = without_tables(scene);
         let mut sum = FrameStats::default();
         let count = strips.len();
         for (number, strip) in strips.into_iter().enumerate() {
@@ -147,6 +152,13 @@ impl Tracer {
         window: Option<&FrameRequest>,
         progress: &mut Progress<'_>,
     ) -> Result<()> {
+        // The first strip of a picture that is seen from several places needs all that the others do.
+        if scene.camera.is_omnistereo()
+            && let Some(strip) = scene.camera.strips(&request.region, request.width)?.first()
+        {
+            let scene = Scene { camera: strip.camera, ..without_tables(scene) };
+            return self.prepare(&scene, &FrameRequest { width: strip.width, ..*request }, None, progress);
+        }
         match self {
             Self::Cpu(t) => window.into_iter().chain([request]).try_for_each(|request| t.prepare(scene, request)),
             Self::Gpu(t) => t.prepare(scene, request, window, progress),

@@ -136,6 +136,8 @@ fn columns_are_seen_from_their_eyes() {
 #[test]
 fn jobs_show_what_images_show() {
     for (tracer, mut renderer) in both() {
+        renderer.scene.camera = all_round(Eye::Left, 1.0);
+        renderer.prepare(PixelFormat::Rgba8Srgb, SIZE, false, None, &mut |_| true).unwrap();
         let whole = shown(&mut renderer, all_round(Eye::Left, 1.0), None);
         let mut pixels = vec![0; whole.len()];
         let layout = Layout::packed(PixelFormat::Rgba8Srgb, SIZE[0], SIZE[1]);
