@@ -222,8 +222,9 @@ def test_things_before_the_camera(any_ctx):
     distances[:, :16] = 0.5
     any_ctx.set_occluder(distances)
     half = any_ctx.render(32, 18, transparent=True).array
-    # Glare adds light, and leaves alpha as it is.
-    assert not half[:, :16, 3].any() and np.abs(half[:, 16:, 3] - whole[:, 16:, 3].astype(int)).max() <= 2
+    # Glare adds light, and leaves alpha as it is. Rays go on behind the disk, so that a few more pixels are refined.
+    assert not half[:, :16, 3].any() and half[:, 16:, 3].max() == 255
+    assert (np.abs(half[:, 16:, 3] - whole[:, 16:, 3].astype(int)) > 2).sum() <= 8
     with pytest.raises(bhr.InvalidArgument, match="16 x 18"):
         any_ctx.render(16, 18)
     for bad in np.zeros((18, 32, 4), np.uint8), np.full((18, 32), np.nan, np.float32):
