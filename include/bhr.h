@@ -646,10 +646,12 @@ BHR_NODISCARD BhrStatus bhr_camera_advance(const BhrContext *context,
  * bhr's scene is right-handed. For a left-handed world negate one axis: of the positions given to bhr, and of the
  * view that is passed here (no flags in both):
  *
- *     Unity   Matrix4x4 view = camera.worldToCameraMatrix * Matrix4x4.Scale(new Vector3(1, 1, -1));
- *             Matrix4x4 projection = camera.projectionMatrix;                 positions (x, y, -z)
- *     Unreal  FMatrix view = FScaleMatrix(FVector(1, -1, 1)) * matrices.GetViewMatrix();
- *             FMatrix projection = matrices.GetProjectionMatrix();            positions (x, -y, z), in cm
+ * - Unity, with positions (x, y, -z):
+ *   `Matrix4x4 view = camera.worldToCameraMatrix * Matrix4x4.Scale(new Vector3(1, 1, -1));`
+ *   `Matrix4x4 projection = camera.projectionMatrix;`
+ * - Unreal, with positions (x, -y, z), in cm:
+ *   `FMatrix view = FScaleMatrix(FVector(1, -1, 1)) * matrices.GetViewMatrix();`
+ *   `FMatrix projection = matrices.GetProjectionMatrix();`
  *
  * On failure the camera stays as it was. Errors: INVALID_ARGUMENT for NULL, unknown flags, numbers not finite, a
  * view that is not rigid to 1e-4, a projection that is orthographic, sheared or rolled, matrices that mirror the

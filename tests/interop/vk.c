@@ -3,6 +3,7 @@
 #include "vk.h"
 
 #include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -386,4 +387,38 @@ int open_descriptors(void) {
         count += entry->d_name[0] != '.';
     closedir(folder);
     return count;
+}
+
+double vk_apart(BhrFormat format, const void *some, const void *others, size_t bytes) {
+    const unsigned char *a = some, *b = others;
+    double               most = 0;
+    if (format == BHR_FORMAT_RGBA8_SRGB || format == BHR_FORMAT_BGRA8_SRGB) {
+        for (size_t i = 0; i < bytes; i++)
+            most = fmax(most, abs(a[i] - b[i]));
+        return most;
+    }
+    size_t each = format == BHR_FORMAT_RGBA16F ? 2 : 4;
+    for (size_t i = 0; i + each <= bytes; i += each) {
+        uint16_t half[2];
+        float    x[2];
+        if (memcmp(a + i, b + i, each) == 0)
+            continue;
+        if (each == 2) {
+            memcpy(&half[0], a + i, 2), memcpy(&half[1], b + i, 2);
+            /* Of one sign half floats are in the order of their bits. */
+            most = fmax(most, (half[0] ^ half[1]) >> 15 ? INFINITY : abs(half[0] - half[1]));
+        } else {
+            memcpy(&x[0], a + i, 4), memcpy(&x[1], b + i, 4);
+            double off = 1e6 * fabs((double)x[0] - x[1]) / fmax(fmax(fabs(x[0]), fabs(x[1])), 1e-3);
+            most = isnan(off) ? INFINITY : fmax(most, off);
+        }
+    }
+    return most;
+}
+
+double vk_most_apart(const BhrContext *context, BhrFormat format) {
+    BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
+    if (bhr_context_adapter(context, &adapter) != BHR_OK || adapter.flags & BHR_ADAPTER_SOFTWARE)
+        return 0;
+    return format == BHR_FORMAT_RGBA16F ? 4 : format == BHR_FORMAT_RGBA32F || format == BHR_FORMAT_R32F ? 3000 : 1;
 }

@@ -58,6 +58,43 @@ fn stat(fd: i32) -> std::io::Result<libc::stat> {
     }
 }
 
+/// The kind of file that a driver passes something as, by a descriptor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct FileKind {
+    format: libc::mode_t,
+    /// The device that a device's file is; the file system that another one is on.
+    device: libc::dev_t,
+}
+
+impl FileKind {
+    pub fn of(fd: i32) -> Option<Self> {
+        let found = stat(fd).ok()?;
+        let format = found.st_mode & libc::S_IFMT;
+        Some(Self { format, device: if format == libc::S_IFCHR { found.st_rdev } else { found.st_dev } })
+    }
+
+    /// That of a descriptor which is closed then.
+    pub fn of_own(fd: i32) -> Option<Self> {
+        let kind = Self::of(fd);
+        // SAFETY: the caller's own, which nobody else knows.
+        unsafe { libc::close(fd) };
+        kind
+    }
+}
+
+/// What a driver passes is never looked for in another kind of file than the driver's own: NVIDIA's (580), asked to
+/// import a file that it did not make, gave no memory afterwards. `own` is `None` where that is not known.
+///
+/// Errors: INVALID_ARGUMENT.
+pub(super) fn check_kind(fd: i32, own: Option<FileKind>, what: &str) -> Result<()> {
+    match (FileKind::of(fd), own) {
+        (Some(found), Some(own)) if found != own => {
+            Err(Error::argument(format!("handle fd {fd} is no {what} of this driver: it is another kind of file")))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Errors: INVALID_ARGUMENT for a descriptor that cannot be memory. (llvmpipe's is a regular file; it reads from any,
 /// and waits for ever for a pipe's bytes.)
 pub(super) fn check_descriptor(fd: i32, size: u64, llvmpipe: bool) -> Result<()> {

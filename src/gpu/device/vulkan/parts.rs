@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The handles and functions of a device's Vulkan, the extensions that bhr adds to wgpu's, and what the device shares.
 
+#[cfg(unix)]
+use super::descriptor::FileKind;
 use crate::gpu::device::external::{AdapterIds, HOST_POINTER, OPAQUE_FD, Sharing};
 use ash::{ext, khr, vk};
 use std::ffi::CStr;
+#[cfg(unix)]
+use std::sync::OnceLock;
 use wgpu::hal::api::Vulkan;
 use wgpu::hal::vulkan::CreateDeviceCallback;
 
@@ -37,6 +41,9 @@ pub struct VulkanParts {
     pub(super) largest_image: u32,
     /// Mesa's llvmpipe, whose imports read a header from the descriptor, and wait for ever where there is none.
     pub(in crate::gpu) llvmpipe: bool,
+    /// What the driver passes memory and semaphores as, once that was asked.
+    #[cfg(unix)]
+    own_files: [OnceLock<Option<FileKind>>; 2],
 }
 
 impl VulkanParts {
@@ -81,6 +88,8 @@ impl VulkanParts {
             pointer_alignment: host.min_imported_host_pointer_alignment,
             largest_image: of_device.limits.max_image_dimension2_d,
             llvmpipe: driver.driver_id == vk::DriverId::MESA_LLVMPIPE,
+            #[cfg(unix)]
+            own_files: [const { OnceLock::new() }; 2],
             instance,
             device: raw,
             physical,
@@ -169,6 +178,53 @@ impl VulkanParts {
         unsafe { self.instance.get_physical_device_external_semaphore_properties(self.physical, &ask, &mut answer) };
         let both = vk::ExternalSemaphoreFeatureFlags::EXPORTABLE | vk::ExternalSemaphoreFeatureFlags::IMPORTABLE;
         self.semaphore_fd.is_some() && answer.external_semaphore_features.contains(both)
+    }
+
+    /// The kind of file that the driver passes memory as; `None` where it passes none.
+    #[cfg(unix)]
+    pub(super) fn own_memory(&self) -> Option<FileKind> {
+        *self.own_files[0].get_or_init(|| {
+            let fns = self.memory_fd.as_ref()?;
+            let handle = vk::ExternalMemoryHandleTypeFlags::OPAQUE_FD;
+            let mut export = vk::ExportMemoryAllocateInfo::default().handle_types(handle);
+            let kind = self.memory_type(u32::MAX, vk::MemoryPropertyFlags::DEVICE_LOCAL)?;
+            let allocate = vk::MemoryAllocateInfo::default().allocation_size(4096).memory_type_index(kind);
+            // SAFETY: the memory is made, passed and freed here; nobody uses it.
+            unsafe {
+                let memory = self.device.allocate_memory(&allocate.push_next(&mut export), None).ok()?;
+                let fd = fns.get_memory_fd(&vk::MemoryGetFdInfoKHR::default().memory(memory).handle_type(handle));
+                self.device.free_memory(memory, None);
+                FileKind::of_own(fd.ok()?)
+            }
+        })
+    }
+
+    /// The kind of file that the driver passes semaphores as; `None` where it passes none.
+    #[cfg(unix)]
+    pub(super) fn own_semaphore(&self) -> Option<FileKind> {
+        *self.own_files[1].get_or_init(|| {
+            let fns = self.semaphore_fd.as_ref()?;
+            let handle = vk::ExternalSemaphoreHandleTypeFlags::OPAQUE_FD;
+            let mut export = vk::ExportSemaphoreCreateInfo::default().handle_types(handle);
+            let mut kind = vk::SemaphoreTypeCreateInfo::default().semaphore_type(vk::SemaphoreType::TIMELINE);
+            let make = vk::SemaphoreCreateInfo::default().push_next(&mut export).push_next(&mut kind);
+            // SAFETY: the semaphore is made, passed and destroyed here; nobody uses it.
+            unsafe {
+                let made = self.device.create_semaphore(&make, None).ok()?;
+                let ask = vk::SemaphoreGetFdInfoKHR::default().semaphore(made).handle_type(handle);
+                let fd = fns.get_semaphore_fd(&ask);
+                self.device.destroy_semaphore(made, None);
+                FileKind::of_own(fd.ok()?)
+            }
+        })
+    }
+
+    /// Bytes of the heap that a memory type lies in; 0 for a type that there is not.
+    pub(super) fn heap_size(&self, memory_type: u32) -> u64 {
+        // SAFETY: plain values.
+        let all = unsafe { self.instance.get_physical_device_memory_properties(self.physical) };
+        let kind = all.memory_types_as_slice().get(memory_type as usize);
+        kind.and_then(|kind| all.memory_heaps_as_slice().get(kind.heap_index as usize)).map_or(0, |heap| heap.size)
     }
 
     /// The first memory type among `bits` that has `flags`.

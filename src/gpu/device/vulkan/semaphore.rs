@@ -74,6 +74,7 @@ impl GpuSemaphore {
     #[cfg(unix)]
     fn import(&self, fd: i32) -> Result<()> {
         let copy = super::descriptor::CopiedDescriptor::new(fd)?;
+        super::descriptor::check_kind(fd, self.parts.own_semaphore(), "semaphore")?;
         let fns = self.parts.semaphore_fd.as_ref().ok_or_else(|| Error::internal("no semaphores by descriptor"))?;
         let import = vk::ImportSemaphoreFdInfoKHR::default()
             .semaphore(self.raw)
