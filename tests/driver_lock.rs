@@ -11,7 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 const ALONE: [&str; 6] = [
     "Instance::new: created",
     "Instance::enumerate_adapters",
-    "Adapter::request_device",
+    "Adapter::create_device",
     "Drop Device",
     "Global::drop",
     FIRST_PIPELINE,
@@ -57,14 +57,14 @@ fn render(renderer: &mut Renderer) {
 fn check(case: &str, devices: usize, instances: usize) {
     let messages = std::mem::take(&mut *heard());
     let count = |begin: &str| messages.iter().filter(|(message, _)| message.starts_with(begin)).count();
-    assert_eq!(count("Adapter::request_device"), devices, "{case}: {messages:#?}");
+    assert_eq!(count("Adapter::create_device"), devices, "{case}: {messages:#?}");
     assert_eq!(count("Drop Device"), devices, "{case}: {messages:#?}");
     assert_eq!(count("Global::drop"), instances, "{case}: {messages:#?}");
     let mut first = true;
     for (message, held) in &messages {
         let pipeline = message.starts_with(FIRST_PIPELINE);
         assert_eq!(*held, first || !pipeline, "{case}: {message} in {messages:#?}");
-        first = (first && !pipeline) || message.starts_with("Adapter::request_device");
+        first = (first && !pipeline) || message.starts_with("Adapter::create_device");
     }
 }
 
