@@ -2072,11 +2072,11 @@ typedef struct BhrProjectedPoint {
     uint32_t on_screen;
     uint32_t reserved; /**< Reserved: 0. */
     /**
-     * Pixel position, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
+     * Pixel position to the right, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
      * projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
      */
     double x;
-    double y;
+    double y;   /**< The same downwards. */
     BhrRay ray; /**< The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y. */
     /**
      * The solid angle of the image of something small at the point by that of the thing itself in flat space, as

@@ -28,9 +28,10 @@ pub struct BhrProjectedPoint {
     pub on_screen: u32,
     /// Reserved: 0.
     pub reserved: u32,
-    /// Pixel position, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
+    /// Pixel position to the right, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
     /// projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
     pub x: f64,
+    /// The same downwards.
     pub y: f64,
     /// The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y.
     pub ray: BhrRay,
