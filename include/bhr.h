@@ -1846,7 +1846,8 @@ BHR_NODISCARD BhrStatus bhr_render_outputs(BhrContext *context,
  * deflection, steps, metric, optical_depth, intensity (VIEW); of crossings beyond the first the layers are
  * position1, disk1 and so on. Alpha is written as it is. Its attributes name the library's version, the backend,
  * the adapter, and every parameter of the scene as it is now: bhr.version, bhr.hole.spin ... by the names of the
- * structs' fields here. A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
+ * structs' fields here (bits of flags that are set by themselves, as bhr.disk.plunges; numbers are doubles; the first
+ * volume is bhr.volume0). A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
  * bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F; UNSUPPORTED for another extension,
  * LIGHT in an 8-bit format, or a library that was built without EXR; IO; OUT_OF_MEMORY. Since 0.2.0.
  */
@@ -2079,9 +2080,9 @@ typedef struct BhrProjectedPoint {
     double y;   /**< The same downwards. */
     BhrRay ray; /**< The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y. */
     /**
-     * The solid angle of the image of something small at the point by that of the thing itself in flat space, as
-     * the camera sees it, its motion included; negative where the image is mirrored, as those of odd orders are.
-     * Without bounds towards the caustics: straight behind a hole without spin.
+     * How much larger, in solid angle, something small at the point looks to the camera than it would without the
+     * hole, the camera's motion included; negative where the image is mirrored, as those of odd orders are. It grows
+     * without limit near a caustic, which without spin is the line straight behind the hole.
      */
     double magnification;
     double delay;    /**< Coordinate time since the light left the point, scene lengths; NaN from inside the horizon. */
@@ -2091,8 +2092,8 @@ typedef struct BhrProjectedPoint {
 /**
  * Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the
  * inverse of bhr_camera_ray. point: scene axes and lengths. order: how often the light went half round the hole; 0
- * is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin it is the image that
- * this one becomes as the spin grows from 0.
+ * is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin the image of an order is
+ * the one that the image of this order without spin becomes as the spin grows from 0.
  *
  * Without spin every point outside the horizon has one image of each order, also behind the hole. With spin some
  * have more or fewer, by the caustics that a spinning hole has, and the search may end there: of random points

@@ -213,7 +213,8 @@ pub unsafe extern "C" fn bhr_render_outputs(
 /// deflection, steps, metric, optical_depth, intensity (VIEW); of crossings beyond the first the layers are
 /// position1, disk1 and so on. Alpha is written as it is. Its attributes name the library's version, the backend,
 /// the adapter, and every parameter of the scene as it is now: bhr.version, bhr.hole.spin ... by the names of the
-/// structs' fields here. A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
+/// structs' fields here (bits of flags that are set by themselves, as bhr.disk.plunges; numbers are doubles; the first
+/// volume is bhr.volume0). A file is replaced as bhr_image_save does it. Errors: INVALID_ARGUMENT as
 /// bhr_render_outputs, for two outputs of the same channels, or LIGHT in R32F; UNSUPPORTED for another extension,
 /// LIGHT in an 8-bit format, or a library that was built without EXR; IO; OUT_OF_MEMORY. Since 0.2.0.
 #[unsafe(no_mangle)]

@@ -35,9 +35,9 @@ pub struct BhrProjectedPoint {
     pub y: f64,
     /// The ray from the camera to the point, on the screen or not: bhr_camera_ray at x, y.
     pub ray: BhrRay,
-    /// The solid angle of the image of something small at the point by that of the thing itself in flat space, as
-    /// the camera sees it, its motion included; negative where the image is mirrored, as those of odd orders are.
-    /// Without bounds towards the caustics: straight behind a hole without spin.
+    /// How much larger, in solid angle, something small at the point looks to the camera than it would without the
+    /// hole, the camera's motion included; negative where the image is mirrored, as those of odd orders are. It grows
+    /// without limit near a caustic, which without spin is the line straight behind the hole.
     pub magnification: f64,
     /// Coordinate time since the light left the point, scene lengths; NaN from inside the horizon.
     pub delay: f64,
@@ -75,8 +75,8 @@ impl From<Option<ProjectedPoint>> for BhrProjectedPoint {
 
 /// Where in a width x height image (with a region: that is this part of a frame) a point of the scene appears: the
 /// inverse of bhr_camera_ray. point: scene axes and lengths. order: how often the light went half round the hole; 0
-/// is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin it is the image that
-/// this one becomes as the spin grows from 0.
+/// is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin the image of an order is
+/// the one that the image of this order without spin becomes as the spin grows from 0.
 ///
 /// Without spin every point outside the horizon has one image of each order, also behind the hole. With spin some
 /// have more or fewer, by the caustics that a spinning hole has, and the search may end there: of random points
