@@ -513,7 +513,7 @@ impl Renderer {
     ) -> Result<()> {
         let start = Instant::now();
         let mut frame = self.output_frame(targets, region)?;
-        let scene = self.behind(&frame.region(), frame.size())?;
+        let scene = self.seen_in(&frame)?;
         let rendered = frame.render(&mut self.tracer.lock(), &scene, progress);
         let stats = rendered.map_err(|mut error| {
             if frame.is_touched() {
@@ -535,8 +535,14 @@ impl Renderer {
         let frame = self.output_frame(targets, region)?;
         self.scene.lens(&frame.region())?;
         self.check_device()?;
-        let scene = self.behind(&frame.region(), frame.size())?.into_owned();
+        let scene = self.seen_in(&frame)?.into_owned();
         self.enqueue(scene, JobTarget::Outputs(frame))
+    }
+
+    /// The scene of outputs: with the occluder if one of them is the picture, which alone regards it. Errors: as
+    /// [`Self::behind`].
+    fn seen_in(&self, frame: &OutputFrame<'_>) -> Result<Cow<'_, Scene>> {
+        if frame.has_light() { self.behind(&frame.region(), frame.size()) } else { Ok(Cow::Borrowed(&self.scene)) }
     }
 
     /// The ray records of a width x height image of the scene, row by row, one ray through each pixel's centre: for

@@ -41,6 +41,11 @@ impl<'a> OutputFrame<'a> {
         self.targets.first().map_or([0, 0], |first| [first.target.width(), first.target.height()])
     }
 
+    /// The picture itself is among them.
+    pub fn has_light(&self) -> bool {
+        self.targets.iter().any(|target| target.output == Output::Light)
+    }
+
     /// A pixel was written.
     pub fn is_touched(&self) -> bool {
         self.targets.iter().any(|target| target.target.is_touched())
@@ -69,7 +74,7 @@ impl<'a> OutputFrame<'a> {
             };
             let scene = viewed.as_ref().unwrap_or(scene);
             let rendered = tracer.render(scene, &request, &mut sink, &mut part(progress, done, parts));
-            add(&mut stats, &rendered?);
+            stats.add(&rendered?);
             done += 1;
             check_goes_on(progress, done, parts)?;
         }
@@ -84,7 +89,7 @@ impl<'a> OutputFrame<'a> {
             };
             let scene = scene.for_outputs(&asked);
             let progress = &mut part(progress, done, parts);
-            add(&mut stats, &tracer.render_outputs(&scene, &request, &asked, &mut sink, progress)?);
+            stats.add(&tracer.render_outputs(&scene, &request, &asked, &mut sink, progress)?);
         }
         Ok(stats)
     }
@@ -105,13 +110,4 @@ fn check_goes_on(progress: &mut Progress<'_>, done: usize, parts: usize) -> Resu
         return Err(Error::new(ErrorKind::Cancelled, "the progress callback cancelled the outputs"));
     }
     Ok(())
-}
-
-fn add(sum: &mut FrameStats, stats: &FrameStats) {
-    sum.rays += stats.rays;
-    sum.steps += stats.steps;
-    sum.gpu_ns += stats.gpu_ns;
-    sum.readback_ns += stats.readback_ns;
-    sum.device_bytes = sum.device_bytes.max(stats.device_bytes);
-    sum.pass_ns.iter_mut().zip(stats.pass_ns).for_each(|(sum, ns)| *sum += ns);
 }

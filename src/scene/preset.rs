@@ -40,10 +40,11 @@ impl Preset {
     /// preset has set, and that are still as it did, leave; others stay, as do hole, camera, hot spots, time, quality,
     /// view and the sky's map, orientation and seed.
     pub fn apply(self, scene: &mut Scene) {
-        if scene.preset_volume.is_some_and(|volume| scene.volumes.as_slice() == [volume]) {
-            scene.volumes.clear();
+        if let Some(own) = scene.preset_volume.take()
+            && let Some(place) = scene.volumes.iter().position(|volume| *volume == own)
+        {
+            scene.volumes.remove(place);
         }
-        scene.preset_volume = None;
         let (disk, film, effects, flags) = match self {
             Self::Cinematic => (Disk::default(), Film::default(), Effects::ALL, Sky::STARS | Sky::MILKY_WAY),
             Self::Physical => (

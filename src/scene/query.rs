@@ -129,10 +129,13 @@ impl Scene {
         let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
         if self.camera.is_omnistereo() {
             for x in 0..width {
+                let column = f64::from(region.x + x) + 0.5;
+                let by_eye = self.seen_by_eye(column, region.full_width.max(1))?;
+                let scene = by_eye.as_ref().unwrap_or(self);
+                let (pixel_rays, _) = scene.pixel_rays(width, height, Some(region))?;
                 for y in 0..height {
-                    let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
                     let index = y as usize * width as usize + x as usize;
-                    write(index, self.camera_ray(width, height, Some(region), at[0], at[1])?);
+                    write(index, pixel_rays.ray(scene, column, f64::from(region.y + y) + 0.5));
                 }
             }
             return Ok(());

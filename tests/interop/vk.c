@@ -405,7 +405,7 @@ double vk_apart(BhrFormat format, const void *some, const void *others, size_t b
             continue;
         if (each == 2) {
             memcpy(&half[0], a + i, 2), memcpy(&half[1], b + i, 2);
-            /* Of one sign half floats are in the order of their bits. */
+            /* Half floats of one sign are in the order of their bits. */
             most = fmax(most, (half[0] ^ half[1]) >> 15 ? INFINITY : abs(half[0] - half[1]));
         } else {
             memcpy(&x[0], a + i, 4), memcpy(&x[1], b + i, 4);

@@ -96,7 +96,12 @@ impl Device {
             if submitted.is_err() {
                 self.unstage(queue, waits, signals);
             }
-            submitted?
+            let submitted = submitted?;
+            #[cfg(not(target_vendor = "apple"))]
+            for SemaphoreUse { semaphore, value } in signals {
+                value.iter().for_each(|value| semaphore.has_submitted(*value));
+            }
+            submitted
         };
         if !waits.is_empty() || !signals.is_empty() {
             let (submission, waits) = (submitted.clone(), waits.to_vec());
@@ -165,7 +170,7 @@ impl Device {
         }
         for SemaphoreUse { semaphore, value } in signals {
             // A timeline that has gone further already must not go back.
-            if value.is_none_or(|value| semaphore.submits(value)) {
+            if value.is_none_or(|value| semaphore.may_submit(value)) {
                 hal.add_signal_semaphore(semaphore.raw(), *value);
             }
         }

@@ -82,8 +82,8 @@ impl FileKind {
     }
 }
 
-/// What a driver passes is never looked for in another kind of file than the driver's own: NVIDIA's (580), asked to
-/// import a file that it did not make, gave no memory afterwards. `own` is `None` where that is not known.
+/// A driver is never asked to import another kind of file than its own: NVIDIA's (580), given a file that it did not
+/// make, gave no memory afterwards. `own` is `None` where its kind is not known.
 ///
 /// Errors: INVALID_ARGUMENT.
 pub(super) fn check_kind(fd: i32, own: Option<FileKind>, what: &str) -> Result<()> {

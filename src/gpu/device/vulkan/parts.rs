@@ -41,7 +41,7 @@ pub struct VulkanParts {
     pub(super) largest_image: u32,
     /// Mesa's llvmpipe, whose imports read a header from the descriptor, and wait for ever where there is none.
     pub(in crate::gpu) llvmpipe: bool,
-    /// What the driver passes memory and semaphores as, once that was asked.
+    /// The kinds of file that the driver passes memory and semaphores as, once that was asked.
     #[cfg(unix)]
     own_files: [OnceLock<Option<FileKind>>; 2],
 }

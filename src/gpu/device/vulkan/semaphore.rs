@@ -158,11 +158,14 @@ impl GpuSemaphore {
     }
 
     /// Whether a signal may go to the queue: it is not one that a frame which was asked for later has overtaken.
-    pub(in crate::gpu) fn submits(&self, value: u64) -> bool {
+    pub(in crate::gpu) fn may_submit(&self, value: u64) -> bool {
+        value > self.values().submitted
+    }
+
+    /// A signal went to the queue.
+    pub(in crate::gpu) fn has_submitted(&self, value: u64) {
         let mut values = self.values();
-        let grows = value > values.submitted;
         values.submitted = values.submitted.max(value);
-        grows
     }
 
     /// Waits on the CPU until a timeline has a value; false: not within `time`. Errors: UNSUPPORTED for a binary one;
