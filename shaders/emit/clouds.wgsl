@@ -57,7 +57,7 @@ fn cloud_pattern(index: u32, at: CloudPlace, omega: f32, blur: Blur) -> vec2<f32
     let height = cloud_height(index, at.r, at.cos);
     let texels = cloud_texels(index);
     let pattern = clouds.volumes[index].pattern;
-    // Texels per rad: around, and across the shape; squared, where they are compared.
+    // Texels per rad: around, and across the shape. Names that end with 2 are squares, which spare roots.
     let around = texels.x / sin;
     let across = texels.z * height.y * sin;
     let least = max(CLOUD_SPACED * blur.spacing, around / max(texels.y, across));

@@ -82,8 +82,9 @@ impl FileKind {
     }
 }
 
-/// A driver is never asked to import another kind of file than its own: NVIDIA's (580), given a file that it did not
-/// make, gave no memory afterwards. `own` is `None` where its kind is not known.
+/// A driver is never asked to import another kind of file than its own. NVIDIA's (580) gave no memory any more after
+/// imports of such files were tried (tests/interop/bad.c); that they were the cause is likely, not proven. `own` is
+/// `None` where the driver's kind is not known.
 ///
 /// Errors: INVALID_ARGUMENT.
 pub(super) fn check_kind(fd: i32, own: Option<FileKind>, what: &str) -> Result<()> {

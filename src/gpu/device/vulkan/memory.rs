@@ -146,7 +146,7 @@ impl<'a> Made<'a> {
                 "memory memory_type is {kind}; a target can be in the types {bits:#x} (a bit for each)"
             )));
         }
-        // Drivers are not asked for more than there is: NVIDIA's (580) gives no memory at all after that.
+        // Drivers are not asked for more than there is.
         let most = self.parts.heap_size(info.memory_type);
         if info.allocation_size > most {
             return Err(Error::argument(format!(
