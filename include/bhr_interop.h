@@ -352,9 +352,10 @@ typedef struct BhrSync {
  * it nor waits for it. At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region)
  * counts. Any thread, not inside callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for a
  * target or semaphore of another context, a semaphore that is twice in a list, and a signal whose value does not
- * grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach;
- * SURFACE_LOST for a target or semaphore whose context was recovered; DEVICE_LOST. After an error no semaphore is
- * waited for or signalled, unless steps were submitted: then all are. Since 0.2.0.
+ * grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach,
+ * and where BhrCamera.eye has effect; SURFACE_LOST for a target or semaphore whose context was recovered;
+ * DEVICE_LOST. After an error no semaphore is waited for or signalled, unless steps were submitted: then all are.
+ * Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_render_target(BhrContext *context,
                                           BhrTarget *target,

@@ -174,7 +174,8 @@ pub unsafe extern "C" fn bhr_output_init(output: *mut BhrOutput, struct_size: us
 /// becomes a job as bhr_render_image_async makes them; images are then written until it is done or destroyed.
 /// output_size = sizeof(BhrOutput) as the caller was compiled; no output's struct_size may be larger. Errors: those
 /// of bhr_render_image, or of bhr_render_image_async; INVALID_ARGUMENT for a count, a size, a kind or an index
-/// outside its range, images of several sizes, a format that does not go with its kind, or a target. Since 0.2.0.
+/// outside its range, images of several sizes, a format that does not go with its kind, or a target; UNSUPPORTED for
+/// outputs other than LIGHT where BhrCamera.eye has effect. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_outputs(
     context: *mut BhrContext,
