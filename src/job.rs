@@ -11,7 +11,7 @@ pub use worker::{MAX_UNFINISHED, Worker};
 use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
 use crate::gpu::{FrameSync, GpuTarget};
 use crate::image::ImageMut;
-use crate::scene::Scene;
+use crate::scene::{RayOutput, Scene};
 use crate::tracer::{FrameRequest, FrameStats, Progress, StatsBoard};
 use crate::tracers::SharedTracer;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -116,8 +116,26 @@ pub enum JobTarget {
     Memory(FrameRequest, ImageMut<'static>),
     /// The outputs of a frame, in the host's memory.
     Outputs(OutputFrame<'static>),
-    /// A target on the GPU, with the semaphores of the frame, whose signals are given whatever becomes of it.
-    Shared(FrameRequest, Arc<GpuTarget>, FrameSync),
+    /// Targets on the GPU.
+    Shared(SharedFrame),
+}
+
+/// A frame whose pixels stay on the GPU.
+pub struct SharedFrame {
+    pub request: FrameRequest,
+    /// The picture's; `None`: the frame has none.
+    pub light: Option<Arc<GpuTarget>>,
+    /// Numbers of rays, beside the picture.
+    pub outputs: Vec<(RayOutput, Arc<GpuTarget>)>,
+    /// The semaphores, whose signals are given whatever becomes of the frame.
+    pub sync: FrameSync,
+}
+
+impl SharedFrame {
+    /// All targets.
+    fn targets(&self) -> Vec<Arc<GpuTarget>> {
+        self.light.iter().chain(self.outputs.iter().map(|(_, target)| target)).cloned().collect()
+    }
 }
 
 impl JobTarget {

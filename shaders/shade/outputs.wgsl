@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes what hosts ask of a pixel's ray beside its light: one number or four for each output. Mirrors
-// src/scene/output.rs, where they are defined. Does not know how the record was made.
+// src/scene/output.rs, where they are defined. Knows neither how the record was made nor where the numbers go.
 
 #import constants
 #import camera/observer
@@ -11,31 +11,17 @@
 #import shared/frame
 #import shared/math
 #import shared/not_inlined
+#import shade/wanted
 #import shared/pass
 #requires fn next_crossing() -> Crossing
 #requires fn medium_before(k: u32) -> vec4<f32>
 #requires fn with_sky(record: Record) -> Record
-
-struct Outputs {
-    // Columns that take chart directions to scene axes; w of the first: M in scene lengths.
-    scene_x: vec4<f32>,
-    scene_y: vec4<f32>,
-    scene_z: vec4<f32>,
-    // For each output: OUTPUT_*; the crossing that it is of; its numbers a pixel; those of all before it.
-    wanted: array<vec4<u32>, MOST_OUTPUTS>,
-    count: u32,
-    // 0: nobody asks for the sky's direction.
-    asks_sky: u32,
-    padding: vec2<u32>,
-}
+#requires fn put_numbers(k: u32, at: u32, place: vec2<u32>, bits: vec4<u32>)
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 @group(0) @binding(1) var<uniform> pass_: Pass;
 // As in shade/shade.wgsl.
 @group(0) @binding(2) var light_tables: texture_2d<f32>;
-@group(2) @binding(0) var<uniform> outputs: Outputs;
-// The tile's pixels, row by row: all of the first output, then all of the second.
-@group(2) @binding(1) var<storage, read_write> output_words: array<u32>;
 
 const NOTHING: u32 = 0x7fc00000u;
 const INFINITE: u32 = 0x7f800000u;
@@ -46,15 +32,8 @@ fn light_table(i: u32) -> vec4<f32> {
 
 // Puts the numbers of output `k`, of the tile's pixel `id`, as bits: f32 constants may be neither NaN nor infinite.
 fn put_output(k: u32, id: vec2<u32>, bits: vec4<u32>) {
-    let tile = pass_.size - 2u;
-    let wanted = outputs.wanted[k];
-    let at = wanted.w * tile.x * tile.y + (id.y * tile.x + id.x) * wanted.z;
-    output_words[at] = bits.x;
-    if wanted.z == 4u {
-        output_words[at + 1u] = bits.y;
-        output_words[at + 2u] = bits.z;
-        output_words[at + 3u] = bits.w;
-    }
+    let to = outputs.places[k];
+    put_numbers(k, to.x + id.y * to.y + id.x * outputs.wanted[k].z, to.zw + id, bits);
 }
 
 fn to_scene(v: vec3<f32>) -> vec3<f32> {

@@ -6,12 +6,15 @@ use super::context::BhrContext;
 use super::interop_semaphore::BhrSemaphore;
 use super::interop_target::BhrTarget;
 use super::job::{self, BhrJob};
+use super::output::{BhrOutput, read_targeted};
 use super::pointer::{Out, check_reserved, is_null};
 use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use crate::error::{Error, Result};
 use crate::interop::Semaphore;
-use crate::renderer::{HostSync, Submits};
+use crate::job::Job;
+use crate::renderer::{HostSync, Renderer, Submits};
+use crate::scene::Region;
 use std::ptr::null;
 
 /// A semaphore and a value of it. Since 0.2.0.
@@ -77,9 +80,40 @@ unsafe fn read_uses<'a>(list: *const BhrSemaphoreValue, count: u32, name: &str) 
         .collect()
 }
 
+/// Renders with the semaphores of `sync`, and makes the job.
+///
 /// # Safety
 /// All pointers are NULL or valid.
 unsafe fn render(
+    function: &str,
+    context: *mut BhrContext,
+    sync: *const BhrSync,
+    out_job: *mut *mut BhrJob,
+    body: impl FnOnce(&mut Renderer, Option<Region>, &HostSync<'_>) -> Result<Job>,
+) -> BhrStatus {
+    // SAFETY: this function's contract.
+    unsafe {
+        let out = Out::cleared(out_job);
+        on_context(function, context, |state| {
+            let given = if sync.is_null() { BhrSync::defaults() } else { versioned::read(sync, "sync")? };
+            check_reserved(given.reserved, "sync")?;
+            let waits = read_uses(given.waits, given.wait_count, "wait")?;
+            let signals = read_uses(given.signals, given.signal_count, "signal")?;
+            let sync = HostSync { waits: &waits, signals: &signals };
+            let job = body(&mut state.renderer, state.region, &sync)?;
+            if out_job.is_null() {
+                return Ok(());
+            }
+            let context = context.as_ref().ok_or_else(|| is_null("context"))?;
+            out.set(Box::into_raw(Box::new(job::of_target(job, context, state.progress))));
+            Ok(())
+        })
+    }
+}
+
+/// # Safety
+/// All pointers are NULL or valid.
+unsafe fn render_target(
     function: &str,
     context: *mut BhrContext,
     target: *mut BhrTarget,
@@ -89,21 +123,9 @@ unsafe fn render(
 ) -> BhrStatus {
     // SAFETY: this function's contract.
     unsafe {
-        let out = Out::cleared(out_job);
-        on_context(function, context, |state| {
+        render(function, context, sync, out_job, |renderer, region, sync| {
             let target = target.as_ref().ok_or_else(|| is_null("target"))?;
-            let given = if sync.is_null() { BhrSync::defaults() } else { versioned::read(sync, "sync")? };
-            check_reserved(given.reserved, "sync")?;
-            let waits = read_uses(given.waits, given.wait_count, "wait")?;
-            let signals = read_uses(given.signals, given.signal_count, "signal")?;
-            let sync = HostSync { waits: &waits, signals: &signals };
-            let job = state.renderer.render_target(&target.target, state.region, &sync, submits)?;
-            if out_job.is_null() {
-                return Ok(());
-            }
-            let context = context.as_ref().ok_or_else(|| is_null("context"))?;
-            out.set(Box::into_raw(Box::new(job::of_target(job, context, state.progress))));
-            Ok(())
+            renderer.render_target(&target.target, region, sync, submits)
         })
     }
 }
@@ -130,7 +152,7 @@ pub unsafe extern "C" fn bhr_render_target(
     out_job: *mut *mut BhrJob,
 ) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
-    unsafe { render("bhr_render_target", context, target, sync, out_job, Submits::Now) }
+    unsafe { render_target("bhr_render_target", context, target, sync, out_job, Submits::Now) }
 }
 
 /// The same as a job of bhr's threads, in their order, as bhr_render_image_async: the scene, the region and the
@@ -149,5 +171,53 @@ pub unsafe extern "C" fn bhr_render_target_async(
     out_job: *mut *mut BhrJob,
 ) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
-    unsafe { render("bhr_render_target_async", context, target, sync, out_job, Submits::InBackground) }
+    unsafe { render_target("bhr_render_target_async", context, target, sync, out_job, Submits::InBackground) }
+}
+
+/// Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target, in one frame and
+/// with one set of semaphores; image is NULL in all of them. As bhr_render_target in everything else, which is the
+/// case of one LIGHT; the bytes are those of bhr_render_outputs. LIGHT, at most one, goes into any target that
+/// bhr_render_target takes, the others into R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage.
+/// All targets are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
+/// (bhr_set_view) and render them as LIGHT. Errors: those of bhr_render_target, of any of the targets, and of
+/// bhr_render_outputs; INVALID_ARGUMENT for an output without a target, or with an image, a target that is there
+/// twice, a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills
+/// (without STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since
+/// 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_render_outputs_shared(
+    context: *mut BhrContext,
+    outputs: *const BhrOutput,
+    output_size: usize,
+    count: u32,
+    sync: *const BhrSync,
+    out_job: *mut *mut BhrJob,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        render("bhr_render_outputs_shared", context, sync, out_job, |renderer, region, sync| {
+            let outputs = read_targeted(outputs, output_size, count)?;
+            renderer.render_shared_outputs(&outputs, region, sync, Submits::Now)
+        })
+    }
+}
+
+/// The same as a job of bhr's threads, with TIMELINE semaphores only: to bhr_render_outputs_shared as
+/// bhr_render_target_async is to bhr_render_target. Errors: those of both. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_render_outputs_shared_async(
+    context: *mut BhrContext,
+    outputs: *const BhrOutput,
+    output_size: usize,
+    count: u32,
+    sync: *const BhrSync,
+    out_job: *mut *mut BhrJob,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
+    unsafe {
+        render("bhr_render_outputs_shared_async", context, sync, out_job, |renderer, region, sync| {
+            let outputs = read_targeted(outputs, output_size, count)?;
+            renderer.render_shared_outputs(&outputs, region, sync, Submits::InBackground)
+        })
+    }
 }

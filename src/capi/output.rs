@@ -6,6 +6,7 @@ use super::call::on_context;
 use super::context::BhrContext;
 use super::entry::anywhere;
 use super::image::{self, BhrImage, path_of};
+use super::interop_target::BhrTarget;
 use super::job::{BhrJob, new_job};
 use super::pointer::{Out, check_reserved, is_null, unknown};
 use super::render::Report;
@@ -13,11 +14,13 @@ use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use super::view::view;
 use crate::error::{Error, ErrorKind, Result};
+use crate::interop::Target;
 use crate::job::OutputTarget;
 use crate::scene::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind, View};
 use arrayvec::ArrayVec;
 use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
+use std::sync::Arc;
 
 /// Outputs of one call at most. Since 0.2.0.
 pub const BHR_MAX_OUTPUTS: u32 = 8u32;
@@ -68,9 +71,10 @@ pub struct BhrOutput {
     pub index: u32,
     /// Reserved: 0.
     pub reserved: u32,
-    /// The image, in the format of its kind. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT only.
+    /// The image, in the format of its kind; NULL with target. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT
+    /// only.
     pub image: *const BhrImage,
-    /// Reserved for images on the GPU: NULL.
+    /// A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h; else NULL.
     pub target: *mut c_void,
 }
 
@@ -93,6 +97,7 @@ const MOST_CROSSINGS: u32 = 16;
 struct Given {
     output: Output,
     image: *const BhrImage,
+    target: *mut c_void,
 }
 
 impl TryFrom<BhrOutput> for Given {
@@ -101,9 +106,6 @@ impl TryFrom<BhrOutput> for Given {
     fn try_from(given: BhrOutput) -> Result<Self> {
         let BhrOutput { kind, index, .. } = given;
         check_reserved(given.reserved, "its")?;
-        if !given.target.is_null() {
-            return Err(Error::argument("its target is not NULL; this library writes outputs into images only"));
-        }
         let most = match kind {
             BHR_OUTPUT_POSITION | BHR_OUTPUT_DISK => MOST_CROSSINGS - 1,
             BHR_OUTPUT_VIEW => u32::MAX,
@@ -128,13 +130,51 @@ impl TryFrom<BhrOutput> for Given {
         if index > most {
             return Err(Error::argument(format!("its index is {index}; for its kind it must be at most {most}")));
         }
-        Ok(Self { output, image: given.image })
+        Ok(Self { output, image: given.image, target: given.target })
     }
 }
 
 type GivenOutputs = ArrayVec<Given, MOST_OUTPUTS>;
 
 const _: () = assert!(MOST_OUTPUTS == BHR_MAX_OUTPUTS as usize);
+
+/// Errors: INVALID_ARGUMENT for a number outside its range, or NULL.
+///
+/// # Safety
+/// `outputs` is NULL or points to `count` structs of `size` readable bytes.
+unsafe fn read_given(outputs: *const BhrOutput, size: usize, count: u32) -> Result<GivenOutputs> {
+    // SAFETY: this function's contract.
+    let given: GivenOutputs = unsafe { read_array(outputs, size, count, &OUTPUTS) }?;
+    if given.is_empty() {
+        return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
+    }
+    Ok(given)
+}
+
+/// Outputs that go into targets. Errors: INVALID_ARGUMENT as [`read`], for an image, and without a target.
+///
+/// # Safety
+/// As [`read`], with targets in the place of images.
+pub(super) unsafe fn read_targeted<'a>(
+    outputs: *const BhrOutput,
+    size: usize,
+    count: u32,
+) -> Result<Vec<(Output, &'a Arc<Target>)>> {
+    // SAFETY: this function's contract.
+    let given = unsafe { read_given(outputs, size, count) }?;
+    let targets = given.iter().enumerate().map(|(index, given)| {
+        if !given.image.is_null() {
+            return Err(Error::argument(format!(
+                "outputs[{index}] image is not NULL; bhr_render_outputs writes into images, and a call into one kind"
+            )));
+        }
+        // SAFETY: as above.
+        let target = unsafe { given.target.cast::<BhrTarget>().as_ref() };
+        let target = target.ok_or_else(|| is_null(&format!("outputs[{index}] target")))?;
+        Ok((given.output, &target.target))
+    });
+    targets.collect()
+}
 
 /// Errors: INVALID_ARGUMENT for a number outside its range, NULL, or what is wrong with an output or its image.
 ///
@@ -143,11 +183,13 @@ const _: () = assert!(MOST_OUTPUTS == BHR_MAX_OUTPUTS as usize);
 /// host's during `'a`.
 unsafe fn read<'a>(outputs: *const BhrOutput, size: usize, count: u32) -> Result<Vec<OutputTarget<'a>>> {
     // SAFETY: this function's contract.
-    let given: GivenOutputs = unsafe { read_array(outputs, size, count, &OUTPUTS) }?;
-    if given.is_empty() {
-        return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
-    }
+    let given = unsafe { read_given(outputs, size, count) }?;
     let targets = given.iter().enumerate().map(|(index, given)| {
+        if !given.target.is_null() {
+            return Err(Error::argument(format!(
+                "outputs[{index}] target is not NULL; bhr_render_outputs_shared writes into targets"
+            )));
+        }
         let name = format!("outputs[{index}] image");
         // SAFETY: as above.
         let image = unsafe { image::read(given.image, &name) }?;

@@ -4,7 +4,7 @@
 //! submission. Frames end in the order in which they were requested. Only the first thread holds a tracer; the second
 //! needs nothing that anybody holds for longer than a few instructions, so that it always gets on.
 
-use super::{Job, JobRequest, JobTarget, Shared, lock};
+use super::{Job, JobRequest, JobTarget, Shared, SharedFrame, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::{BegunFrame, Device, FrameSync, FrameTarget, GpuTracer, Submission};
@@ -327,8 +327,8 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     let begun = match &mut *guard {
         Tracer::Gpu(tracer) if is_one => {
             let begun = cancelled.and_then(|()| begin(tracer, &job_request));
-            if let (Err(_), JobTarget::Shared(_, _, sync)) = (&begun, &job_request.target) {
-                give_signals(&tracer.device(), sync);
+            if let (Err(_), JobTarget::Shared(shared)) = (&begun, &job_request.target) {
+                give_signals(&tracer.device(), &shared.sync);
             }
             begun
         }
@@ -352,21 +352,23 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
 
 /// Prepares a frame for its target. Errors: as [`GpuTracer::begin`].
 fn begin(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
-    let (request, target) = match &job_request.target {
-        JobTarget::Memory(request, _) => (request, FrameTarget::Host),
-        JobTarget::Shared(request, target, _) => (request, FrameTarget::shared(target)?),
+    let frame = match &job_request.target {
+        JobTarget::Memory(request, _) => tracer.begin(&job_request.scene, request, FrameTarget::Host)?,
+        JobTarget::Shared(shared) => {
+            let light = shared.light.as_ref().map_or(Ok(FrameTarget::Nowhere), |light| FrameTarget::shared(light))?;
+            let outputs = shared.outputs.iter().map(|(output, target)| (*output, &**target)).collect::<Vec<_>>();
+            let mut frame = tracer.begin_with(&job_request.scene, &shared.request, light, &outputs)?;
+            frame.hand_over(shared.targets(), shared.sync.clone());
+            frame
+        }
         JobTarget::Outputs(_) => return Err(Error::internal("outputs are several frames")),
     };
-    let mut frame = tracer.begin(&job_request.scene, request, target)?;
-    if let JobTarget::Shared(_, target, sync) = &job_request.target {
-        frame.hand_over(target.clone(), sync.clone());
-    }
     Ok((frame, tracer.device()))
 }
 
 /// The same once its signals are known to grow. Errors: INVALID_ARGUMENT.
 fn begin_asked(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame, Arc<Device>)> {
-    let JobTarget::Shared(_, _, sync) = &job_request.target else {
+    let JobTarget::Shared(SharedFrame { sync, .. }) = &job_request.target else {
         return Err(Error::internal("a frame for the host's memory on the host's thread"));
     };
     interop::check_signals(sync)?;

@@ -16,7 +16,7 @@ use glam::DVec3;
 const SMALLEST_UNIT_ENERGY: f64 = 1e-4;
 
 /// A place in the chart with its local orthonormal frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LocalFrame {
     pub a: f64,
     pub r: f64,

@@ -9,8 +9,10 @@ use crate::gpu::{
     TargetShape, shares_nothing,
 };
 use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
-use crate::job::{Job, JobRequest, JobTarget, Worker};
-use crate::scene::Region;
+use crate::image::PixelFormat;
+use crate::job::{Job, JobRequest, JobTarget, SharedFrame, Worker};
+use crate::scene::{MOST_OUTPUTS, Output, Region};
+use crate::tracer::FrameRequest;
 use crate::tracers::{RunsOn, Tracer};
 use std::sync::Arc;
 
@@ -98,15 +100,94 @@ impl Renderer {
         self.check_device()?;
         let device = self.gpu()?.clone();
         let shape = *target.shape();
-        let shared = target.on(&device)?;
+        let light = Some(target.on(&device)?);
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
+        self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), sync }, submits)
+    }
+
+    /// Renders outputs of the scene as it is now into targets, as [`Self::render_target`] does a picture. Errors: as
+    /// there, of each target; INVALID_ARGUMENT for targets of several sizes, one that is there twice, formats that do
+    /// not go with the outputs, two pictures, and views that take frames of their own; UNSUPPORTED for targets that
+    /// kernels do not reach.
+    pub fn render_shared_outputs(
+        &mut self,
+        outputs: &[(Output, &Arc<Target>)],
+        region: Option<Region>,
+        sync: &HostSync<'_>,
+        submits: Submits,
+    ) -> Result<Job> {
+        self.check_device()?;
+        let device = self.gpu()?.clone();
+        let Some(size) = outputs.first().map(|(_, target)| target.shape().size) else {
+            return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
+        };
+        let (mut light, mut of_rays, mut request) = (None, Vec::with_capacity(outputs.len()), None);
+        for (index, (output, target)) in outputs.iter().enumerate() {
+            let on = target.on(&device).map_err(|error| {
+                Error::new(error.kind, format!("outputs[{index}] {}", error.message))
+            })?;
+            let ([width, height], [w, h]) = (size, target.shape().size);
+            if [w, h] != size {
+                return Err(Error::argument(format!(
+                    "outputs[{index}] target is {w} x {h}; outputs[0] has {width} x {height}, and all must be of one \
+                     size"
+                )));
+            }
+            if outputs.iter().take(index).any(|(_, other)| Arc::ptr_eq(other, target)) {
+                return Err(Error::argument(format!("outputs[{index}] target is that of another output")));
+            }
+            let given = target.shape().format;
+            if let Some(wanted) = output.format().filter(|wanted| *wanted != given) {
+                return Err(Error::argument(format!(
+                    "outputs[{index}] target format is {given}; its kind takes {wanted}"
+                )));
+            }
+            match output {
+                Output::Light if light.is_some() => {
+                    return Err(Error::argument(format!(
+                        "outputs[{index}] is a second LIGHT; targets of one frame take one"
+                    )));
+                }
+                Output::Light => {
+                    request = Some(self.request(given, size, target.transparent, region)?);
+                    light = Some(on);
+                }
+                Output::View(view) => {
+                    return Err(Error::argument(format!(
+                        "outputs[{index}] is the view {}, which takes a frame of its own: set it as the view and \
+                         render it as LIGHT",
+                        view.name()
+                    )));
+                }
+                Output::Ray(output) => of_rays.push((*output, on)),
+            }
+        }
+        let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
+        let request = match request {
+            Some(request) => request,
+            None => {
+                let [width, height] = size;
+                let region = region.unwrap_or(Region { full_width: width, full_height: height, x: 0, y: 0 });
+                region.check_image(width, height)?;
+                FrameRequest { width, height, region, format: PixelFormat::Rgba32F, transparent: false }
+            }
+        };
+        self.submit_shared(SharedFrame { request, light, outputs: of_rays, sync }, submits)
+    }
+
+    fn submit_shared(&mut self, frame: SharedFrame, submits: Submits) -> Result<Job> {
+        let request = frame.request;
         self.scene.check_one_eye("a frame for a target on the GPU")?;
         self.scene.lens(&request.region)?;
-        let asks = (submits == Submits::InBackground).then(|| sync.clone());
-        let scene = self.behind(&request.region, shape.size)?.into_owned();
+        let asks = (submits == Submits::InBackground).then(|| frame.sync.clone());
+        let scene = match &frame.light {
+            Some(_) => self.behind(&request.region, [request.width, request.height])?.into_owned(),
+            // The other outputs do not regard the host's things.
+            None => self.scene.clone(),
+        };
         let job_request =
-            JobRequest::new(scene, JobTarget::Shared(request, shared, sync), self.tracer.clone(), self.stats.clone());
+            JobRequest::new(scene, JobTarget::Shared(frame), self.tracer.clone(), self.stats.clone());
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),

@@ -188,6 +188,8 @@ pub(in crate::gpu) fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::Device
         max_buffer_size: offered.max_buffer_size.min(MAX_BUFFER_SIZE),
         max_storage_buffer_binding_size: offered.max_storage_buffer_binding_size.min(MAX_BUFFER_SIZE),
         max_texture_dimension_2d: offered.max_texture_dimension_2d.min(MAX_TEXTURE_SIDE),
+        max_storage_buffers_per_shader_stage: offered.max_storage_buffers_per_shader_stage.min(MOST_BOUND),
+        max_storage_textures_per_shader_stage: offered.max_storage_textures_per_shader_stage.min(MOST_BOUND),
         ..required_limits()
     };
     wgpu::DeviceDescriptor {
@@ -205,6 +207,9 @@ const MAX_BUFFER_SIZE: u64 = 256 << 20;
 
 /// Largest side of a texture asked for: that of a window.
 const MAX_TEXTURE_SIDE: u32 = 16384;
+
+/// Storage buffers, and textures, of a kernel: a target for each output of a frame, and what records take.
+const MOST_BOUND: u32 = crate::scene::MOST_OUTPUTS as u32 + 4;
 
 /// wgpu takes device memory from the driver in blocks of this many bytes: the first, and the largest.
 const MEMORY_BLOCK: std::ops::Range<u64> = (1 << 20)..(32 << 20);

@@ -16,10 +16,10 @@ const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 /// The part of a frame's handover that goes with one submission.
 #[derive(Default)]
 pub struct Handover<'a> {
-    /// A target that this submission is the first of its frame to write.
-    pub(in crate::gpu) takes: Option<&'a GpuTarget>,
-    /// A target that it is the last to write.
-    pub(in crate::gpu) gives: Option<&'a GpuTarget>,
+    /// The targets of a frame that this submission is the first to write.
+    pub(in crate::gpu) takes: &'a [Arc<GpuTarget>],
+    /// Those that it is the last to write.
+    pub(in crate::gpu) gives: &'a [Arc<GpuTarget>],
     pub(in crate::gpu) waits: &'a [SemaphoreUse],
     pub(in crate::gpu) signals: &'a [SemaphoreUse],
 }
@@ -46,15 +46,17 @@ impl Device {
         if let Some(parts) = &self.vulkan {
             use super::vulkan::barrier;
             let mut encoders = Vec::with_capacity(3);
-            if let Some(target) = handover.takes {
-                let mut taking = self.encoder("taking a target")?;
-                self.scoped("taking a target", |_| barrier::take(parts, &mut taking, target))?;
+            if !handover.takes.is_empty() {
+                let mut taking = self.encoder("taking targets")?;
+                let mut take = || handover.takes.iter().for_each(|target| barrier::take(parts, &mut taking, target));
+                self.scoped("taking targets", |_| take())?;
                 encoders.push(taking);
             }
             encoders.extend(encoder);
-            if let Some(target) = handover.gives {
-                let mut giving = self.encoder("giving a target")?;
-                self.scoped("giving a target", |_| barrier::give(parts, &mut giving, target))?;
+            if !handover.gives.is_empty() {
+                let mut giving = self.encoder("giving targets")?;
+                let mut give = || handover.gives.iter().for_each(|target| barrier::give(parts, &mut giving, target));
+                self.scoped("giving targets", |_| give())?;
                 encoders.push(giving);
             }
             return self.submit_all(encoders, handover.waits, handover.signals);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A frame whose steps are being submitted, and what is known of it meanwhile.
 
+use super::beside::Beside;
 use super::rows::FrameRows;
 use super::setup::FrameTarget;
 use super::stages::Stages;
@@ -19,10 +20,12 @@ use std::sync::Arc;
 /// A frame that is prepared and whose steps are being submitted, one after another and before those of any other frame.
 pub struct BegunFrame {
     pub(in crate::gpu) stages: Stages,
+    /// Outputs that are made with it.
+    pub(in crate::gpu) beside: Option<Beside>,
     pub(in crate::gpu) request: FrameRequest,
     pub(in crate::gpu) target: PixelTarget,
     pub(in crate::gpu) delivery: Delivery,
-    /// The target that the host shares, and the semaphores that go with it; as far as they are not submitted yet.
+    /// The targets that the host shares, and the semaphores that go with it; as far as they are not submitted yet.
     pub(in crate::gpu) handed: Option<Handed>,
     pub(in crate::gpu) samples: u32,
     pub(in crate::gpu) projection: Projection,
@@ -35,6 +38,8 @@ pub struct BegunFrame {
 
 /// The place that finished tiles go to.
 pub enum Delivery {
+    /// There are none.
+    Nowhere,
     /// To the host.
     Host,
     /// Where kernels write them, into an image.
@@ -45,17 +50,18 @@ pub enum Delivery {
     Copied(wgpu::Texture),
 }
 
-/// A target that the host shares, on its way to a frame and back.
+/// Targets that the host shares, on their way to a frame and back.
 pub struct Handed {
-    target: Arc<GpuTarget>,
+    targets: Vec<Arc<GpuTarget>>,
     sync: FrameSync,
-    /// A step that writes the target was submitted, with the waits.
+    /// A step that writes targets was submitted, with the waits.
     taken: bool,
 }
 
 impl Delivery {
     pub fn of(target: FrameTarget<'_>) -> Self {
         match target {
+            FrameTarget::Nowhere => Self::Nowhere,
             FrameTarget::Host => Self::Host,
             FrameTarget::Image(..) => Self::Image,
             FrameTarget::Buffer(_, rows) => Self::Rows(rows),
@@ -87,12 +93,12 @@ impl Delivery {
 }
 
 impl Handed {
-    /// The part that goes with a submission. `writes`: it writes the target; `last` of the frame.
+    /// The part that goes with a submission. `writes`: it writes targets; `last` of the frame.
     pub fn handover(&self, writes: bool, last: bool) -> Handover<'_> {
         let begins = !self.taken && (writes || last);
         Handover {
-            takes: begins.then_some(&*self.target),
-            gives: last.then_some(&*self.target),
+            takes: if begins { &self.targets } else { &[] },
+            gives: if last { &self.targets } else { &[] },
             waits: if begins { &self.sync.waits } else { &[] },
             signals: if last { &self.sync.signals } else { &[] },
         }
@@ -105,7 +111,7 @@ impl Handed {
     /// The semaphores of a frame that ends before its last step, or before its first.
     pub fn without_frame(&self) -> Handover<'_> {
         let waits: &[SemaphoreUse] = if self.taken { &[] } else { &self.sync.waits };
-        Handover { takes: None, gives: None, waits, signals: &self.sync.signals }
+        Handover { takes: &[], gives: &[], waits, signals: &self.sync.signals }
     }
 }
 
@@ -113,12 +119,12 @@ impl Handed {
 pub type ExtraCommands<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> + 'a;
 
 impl BegunFrame {
-    /// The frame waits for the semaphores before it writes the target, and signals when it has.
-    pub fn hand_over(&mut self, target: Arc<GpuTarget>, sync: FrameSync) {
-        self.handed = Some(Handed { target, sync, taken: false });
+    /// The frame waits for the semaphores before it writes the targets, and signals when it has.
+    pub fn hand_over(&mut self, targets: Vec<Arc<GpuTarget>>, sync: FrameSync) {
+        self.handed = Some(Handed { targets, sync, taken: false });
     }
 
-    /// After a failure: gives the signals all the same, unless no step has taken the target over yet and `always` is
+    /// After a failure: gives the signals all the same, unless no step has taken the targets over yet and `always` is
     /// false. Errors: whatever the device reports.
     pub fn give_signals(&mut self, device: &Device, always: bool) -> Result<()> {
         match self.handed.take() {
@@ -146,8 +152,11 @@ impl BegunFrame {
 
     /// The numbers about the frame before anything of it has run.
     pub fn stats(&self) -> FrameStats {
-        let rays = u64::from(self.request.width) * u64::from(self.request.height) * u64::from(self.samples);
-        FrameStats { rays, lens_tables: self.stages.make_tables().into(), ..FrameStats::default() }
+        let beside = self.beside.as_ref();
+        let samples = self.samples + u32::from(beside.is_some_and(Beside::takes_rays));
+        let rays = u64::from(self.request.width) * u64::from(self.request.height) * u64::from(samples);
+        let lens_tables = u64::from(self.stages.make_tables()) + u64::from(beside.is_some_and(Beside::make_tables));
+        FrameStats { rays, lens_tables, ..FrameStats::default() }
     }
 
     /// The next one.

@@ -5,6 +5,7 @@ use super::bloom::BloomBuffers;
 use super::clouds::CloudsUniform;
 use super::refine::EdgeList;
 use super::setup::Setup;
+use super::submission::MOST_PASSES;
 use super::tiles::MAX_BATCH;
 use super::uniforms::{FrameUniform, PassUniform};
 use crate::error::{Error, Result};
@@ -16,7 +17,6 @@ use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::slots::{RADIANCE, TextureKind};
 use crate::gpu::lens::records::{RecordStore, step_sum};
-use crate::tracer::PASSES;
 use wgpu::BufferUsages as Usage;
 
 /// Buffers that frames of one size share; they grow and stay.
@@ -42,7 +42,7 @@ pub struct FixedBuffers {
     /// The same for light that is exposed already.
     pub film_of_exposed: CachedUniform,
     /// One `PassUniform` for what is developed in frames with bloom, two for each sample of a batch, with
-    /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`; `uniform_stride` apart.
+    /// `EDGE_SAMPLES` and with `CURVE_SAMPLES`, and one for outputs; `uniform_stride` apart.
     pub passes: CachedUniform,
     pub step_sum: Buffer,
 }
@@ -131,22 +131,6 @@ impl FixedBuffers {
 impl FrameBuffers {
     /// Makes room, and writes what all tiles share.
     pub fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
-        if self.fixed.is_none() {
-            self.fixed = Some(FixedBuffers {
-                frame: CachedUniform::new(device, "frame", size_of::<FrameUniform>() as u64)?,
-                clouds: CachedUniform::in_storage(device, "clouds", size_of::<CloudsUniform>() as u64)?,
-                film: CachedUniform::new(device, "film", size_of::<FilmParams>() as u64)?,
-                film_of_exposed: CachedUniform::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
-                passes: CachedUniform::new(
-                    device,
-                    "passes",
-                    u64::from(1 + 2 * MAX_BATCH) * uniform_stride::<PassUniform>(device),
-                )?,
-                step_sum: step_sum(device)?,
-            });
-            // The clocks of software drivers tell nothing about their threads.
-            self.timer = if software { None } else { GpuTimer::new(device, PASSES as u32)? };
-        }
         if !self.sized.as_ref().is_some_and(|s| s.size.serves(&size)) {
             // The old ones go first: both together need not fit.
             self.sized = None;
@@ -165,6 +149,27 @@ impl FrameBuffers {
         }
         self.record_store.prepare(device, &setup.record_setup, size.tile)?;
         self.edges.prepare(device, if setup.variants.shade.refines { size.tile } else { [1, 1] })?;
+        self.write_fixed(device, setup, software)
+    }
+
+    /// Writes what all tiles share.
+    pub fn write_fixed(&mut self, device: &Device, setup: &Setup, software: bool) -> Result<()> {
+        if self.fixed.is_none() {
+            self.fixed = Some(FixedBuffers {
+                frame: CachedUniform::new(device, "frame", size_of::<FrameUniform>() as u64)?,
+                clouds: CachedUniform::in_storage(device, "clouds", size_of::<CloudsUniform>() as u64)?,
+                film: CachedUniform::new(device, "film", size_of::<FilmParams>() as u64)?,
+                film_of_exposed: CachedUniform::new(device, "film of exposed light", size_of::<FilmParams>() as u64)?,
+                passes: CachedUniform::new(
+                    device,
+                    "passes",
+                    u64::from(2 + 2 * MAX_BATCH) * uniform_stride::<PassUniform>(device),
+                )?,
+                step_sum: step_sum(device)?,
+            });
+            // The clocks of software drivers tell nothing about their threads.
+            self.timer = if software { None } else { GpuTimer::new(device, MOST_PASSES as u32)? };
+        }
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.frame.write(device, bytemuck::bytes_of(&setup.uniform))?;
         if let Some(clouds) = &setup.clouds {

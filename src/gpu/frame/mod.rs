@@ -2,6 +2,7 @@
 //! Frames and rays on the GPU, from a scene to pixels.
 
 pub(in crate::gpu) mod begun;
+pub(in crate::gpu) mod beside;
 pub(in crate::gpu) mod bloom;
 pub(in crate::gpu) mod buffers;
 pub(in crate::gpu) mod clouds;

@@ -15,7 +15,7 @@ use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, check_groups, pixel_groups};
 use crate::gpu::kernel::key::KernelKey;
-use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
+use crate::gpu::kernel::variant::{OutputPlaces, PixelTarget, RecordSource};
 use crate::gpu::lens::records::{RecordStages, STEP_SUM, Shared};
 use crate::scene::output::MOST_OUTPUTS;
 use crate::scene::{RayOutput, Scene};
@@ -34,11 +34,13 @@ const HEAD: u64 = 256;
 /// `Outputs` of shade/outputs.wgsl.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
-struct OutputsUniform {
+pub struct OutputsUniform {
     scene_x: Vec4,
     scene_y: Vec4,
     scene_z: Vec4,
     wanted: [[u32; 4]; MOST_OUTPUTS],
+    /// They change from tile to tile.
+    pub places: [[u32; 4]; MOST_OUTPUTS],
     count: u32,
     asks_sky: u32,
     padding: [u32; 2],
@@ -46,39 +48,47 @@ struct OutputsUniform {
 
 #[cfg(test)]
 pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
-    crate::gpu::kernel::layout::layout!(OutputsUniform as "Outputs": scene_x, scene_y, scene_z, wanted, count,
-        asks_sky, padding)
+    crate::gpu::kernel::layout::layout!(OutputsUniform as "Outputs": scene_x, scene_y, scene_z, wanted, places,
+        count, asks_sky, padding)
 }
 
 impl OutputsUniform {
-    fn new(scene: &Scene, outputs: &[RayOutput]) -> Self {
+    pub fn new(scene: &Scene, outputs: &[RayOutput]) -> Self {
         use crate::scene::RayOutputKind::{Deflection, Sky};
         let axes = scene.hole.scene_to_chart().transpose();
         let column = |v: DVec3, w: f64| v.as_vec3().extend(w as f32);
         let mut wanted = [[0; 4]; MOST_OUTPUTS];
-        let mut before = 0;
         for (to, output) in wanted.iter_mut().zip(outputs) {
-            let words = output.words() as u32;
-            *to = [output.kind as u32, output.index, words, before];
-            before += words;
+            *to = [output.kind as u32, output.index, output.words() as u32, 0];
         }
         Self {
             scene_x: column(axes.x_axis, scene.hole.mass),
             scene_y: column(axes.y_axis, 0.0),
             scene_z: column(axes.z_axis, 0.0),
             wanted,
+            places: [[0; 4]; MOST_OUTPUTS],
             count: outputs.len().min(MOST_OUTPUTS) as u32,
             asks_sky: u32::from(outputs.iter().any(|output| matches!(output.kind, Sky | Deflection))),
             padding: [0; 2],
         }
+    }
+
+    /// The places of a tile's numbers in one buffer: all of the first output, then all of the second.
+    fn packed(mut self, tile: Tile) -> Self {
+        let mut first = 0;
+        for (place, [_, _, words, _]) in self.places.iter_mut().zip(self.wanted) {
+            *place = [first, words * tile.width, 0, 0];
+            first += words * tile.width * tile.height;
+        }
+        self
     }
 }
 
 /// The buffers of outputs; they grow and stay.
 #[derive(Default)]
 pub struct OutputBuffers {
-    frame: FrameBuffers,
-    uniform: Option<CachedUniform>,
+    pub(super) frame: FrameBuffers,
+    pub(super) uniform: Option<CachedUniform>,
 }
 
 /// A tile that has been submitted.
@@ -97,11 +107,12 @@ struct OutputStages {
 
 impl Setup {
     /// Every kernel of outputs.
-    fn output_kernels(&self) -> Vec<KernelKey> {
+    pub(super) fn output_kernels(&self, places: OutputPlaces) -> Vec<KernelKey> {
         let mut keys = self.record_kernels();
         let source = self.record_setup.source;
         let deferred = self.record_setup.deferred_source();
-        keys.extend([source].into_iter().chain(deferred).map(|source| KernelKey::outputs(source, self.variants.shade)));
+        let sources = [source].into_iter().chain(deferred);
+        keys.extend(sources.map(|source| KernelKey::outputs(source, self.variants.shade, places)));
         keys
     }
 }
@@ -132,7 +143,7 @@ impl GpuTracer {
         progress: &mut Progress<'_>,
     ) -> Result<FrameStats> {
         let setup = self.set_up(scene, request, PixelTarget::Packed)?;
-        let batch = self.kernels.begin(&setup.output_kernels());
+        let batch = self.kernels.begin(&setup.output_kernels(OutputPlaces::default()));
         let pixel_bytes = 4 * outputs.iter().map(|output| output.words() as u64).sum::<u64>();
         let ray_steps = match setup.record_setup.source {
             RecordSource::Traced => scene.expected_steps(),
@@ -147,7 +158,8 @@ impl GpuTracer {
         let software = self.adapter.info.software;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: false };
         let buffers = &mut self.output_buffers;
-        buffers.prepare(&self.device, size, &setup, software, &OutputsUniform::new(scene, outputs))?;
+        buffers.prepare(&self.device, size, &setup, software)?;
+        let uniform = OutputsUniform::new(scene, outputs);
         self.kernels.finish(batch)?;
         let stages = buffers.stages(&self.device, &self.kernels, tables, &setup, software)?;
         let rays = u64::from(request.width) * u64::from(request.height);
@@ -165,7 +177,7 @@ impl GpuTracer {
                     &stages,
                     source,
                     begins,
-                    (tile, bytemuck::bytes_of(&pass)),
+                    (tile, bytemuck::bytes_of(&pass), uniform.packed(tile)),
                     pixel_bytes,
                 )?);
                 submitted += 1;
@@ -184,23 +196,19 @@ impl GpuTracer {
 }
 
 impl OutputBuffers {
-    fn prepare(
-        &mut self,
-        device: &Device,
-        size: Size,
-        setup: &Setup,
-        software: bool,
-        uniform: &OutputsUniform,
-    ) -> Result<()> {
+    fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
         self.frame.prepare(device, size, setup, software)?;
-        let held = match &mut self.uniform {
-            Some(held) => held,
-            None => {
-                let made = CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?;
-                self.uniform.insert(made)
+        self.uniform(device).map(drop)
+    }
+
+    /// The uniform of the outputs.
+    pub(super) fn uniform(&mut self, device: &Device) -> Result<&mut CachedUniform> {
+        match &mut self.uniform {
+            Some(held) => Ok(held),
+            empty => {
+                Ok(empty.insert(CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?))
             }
-        };
-        held.write(device, bytemuck::bytes_of(uniform))
+        }
     }
 
     fn stages(
@@ -226,7 +234,8 @@ impl OutputBuffers {
         let group = self.frame.record_store.group(setup.record_setup.source)?;
         let target = [uniform.buffer.as_entire_binding(), sized.packed.as_entire_binding()];
         let take = |kernels: &Kernels, source| {
-            kernels.get(KernelKey::outputs(source, setup.variants.shade))?.stage(device, &[&common, &group, &target])
+            let key = KernelKey::outputs(source, setup.variants.shade, OutputPlaces::default());
+            kernels.get(key)?.stage(device, &[&common, &group, &target])
         };
         let consumer = RecordConsumer::new(kernels, &setup.record_setup, software, take)?;
         Ok(OutputStages { records, consumer })
@@ -239,7 +248,7 @@ impl OutputBuffers {
         stages: &OutputStages,
         source: RecordSource,
         begins: bool,
-        (tile, pass): (Tile, &[u8]),
+        (tile, pass, uniform): (Tile, &[u8], OutputsUniform),
         pixel_bytes: u64,
     ) -> Result<OutputTile> {
         let size = [tile.width, tile.height];
@@ -248,6 +257,7 @@ impl OutputBuffers {
         let fixed = self.frame.fixed.as_mut().ok_or_else(missing)?;
         let sized = self.frame.sized.as_ref().ok_or_else(missing)?;
         fixed.passes.write(device, pass)?;
+        self.uniform.as_mut().ok_or_else(missing)?.write(device, bytemuck::bytes_of(&uniform))?;
         let mut encoder = device.encoder("outputs")?;
         let steps = self.frame.record_store.reset(source, &fixed.step_sum, &mut encoder);
         {

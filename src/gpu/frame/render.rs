@@ -5,6 +5,7 @@
 //! to the sink.
 
 use super::begun::{BegunFrame, Delivery, ExtraCommands};
+use super::beside::{BesideSetup, TargetedOutput};
 use super::bloom::LIGHT_BYTES;
 use super::buffers::Size;
 use super::refine::EdgeList;
@@ -105,36 +106,73 @@ impl GpuTracer {
     /// Prepares a frame. What is not submitted of it afterwards must be followed by [`Self::forget`]. Errors: as
     /// `Renderer::render`; the tables of lenses are then forgotten.
     pub fn begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
-        let begun = self.try_begin(scene, request, target);
+        self.begin_with(scene, request, target, &[])
+    }
+
+    /// [`Self::begin`] of a frame with outputs beside its picture; `Nowhere`: without one. Errors: as there;
+    /// UNSUPPORTED for targets that kernels do not reach.
+    pub fn begin_with(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        target: FrameTarget<'_>,
+        outputs: &[TargetedOutput<'_>],
+    ) -> Result<BegunFrame> {
+        let begun = self.try_begin(scene, request, target, outputs);
         if begun.is_err() {
             self.forget();
         }
         begun
     }
 
-    fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
+    fn try_begin(
+        &mut self,
+        scene: &Scene,
+        request: &FrameRequest,
+        target: FrameTarget<'_>,
+        outputs: &[TargetedOutput<'_>],
+    ) -> Result<BegunFrame> {
+        let pictured = !matches!(target, FrameTarget::Nowhere);
+        let of_outputs = (!outputs.is_empty()).then(|| {
+            let asked = outputs.iter().map(|(output, _)| *output).collect::<Vec<_>>();
+            scene.for_outputs(&asked)
+        });
+        let scene = of_outputs.as_ref().filter(|_| !pictured).unwrap_or(scene);
         let kind = match target {
             FrameTarget::Image(_, format) => PixelTarget::Image(format),
-            FrameTarget::Buffer(..) | FrameTarget::Copied(_) => PixelTarget::Packed,
+            FrameTarget::Buffer(..) | FrameTarget::Copied(_) | FrameTarget::Nowhere => PixelTarget::Packed,
             FrameTarget::Host => self.host_pixels(scene),
         };
         let delivery = Delivery::of(target);
         let mut setup = self.set_up(scene, request, kind)?;
-        let needed = setup.kernels();
-        let batch = self.kernels.begin(&needed);
+        let beside = of_outputs.as_ref().map(|scene| {
+            self.set_up_beside(scene, request, outputs, Some(&setup).filter(|_| pictured))
+        });
+        let beside = beside.transpose()?;
+        let needed = if pictured { setup.kernels() } else { Vec::new() };
+        let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();
+        let batch = self.kernels.begin(&[&needed[..], &of_beside].concat());
         let samples = setup.samples;
         let pixel_bytes = if delivery.is_packed() { request.format.bytes_per_pixel() as u64 } else { 0 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
         // in a view of nothing but the shadow's edge.
-        let ray_steps = match setup.record_setup.source {
+        let steps_of = |source| match source {
             RecordSource::Traced => scene.expected_steps(),
             RecordSource::Schwarzschild { .. } => 2,
             RecordSource::Kerr { .. } => 8,
         };
+        let traced = beside.as_ref().filter(|beside| beside.takes_rays());
+        let ray_steps = steps_of(setup.record_setup.source)
+            + traced.map_or(0, |beside| steps_of(beside.setup.record_setup.source).div_ceil(samples.into()));
         // Packed pixels have two staging buffers.
-        let bytes = setup.record_setup.bytes_per_pixel() + sums + 3 * pixel_bytes + EdgeList::BYTES_PER_PIXEL;
+        let bytes = setup.record_setup.bytes_per_pixel()
+            + beside.as_ref().map_or(0, BesideSetup::bytes_per_pixel)
+            + sums
+            + 3 * pixel_bytes
+            + EdgeList::BYTES_PER_PIXEL;
         let most_rows = delivery.most_rows(&self.device)?;
+        let most_rows = most_rows.min(beside.as_ref().map_or(Ok(u32::MAX), |beside| beside.most_rows(&self.device))?);
         let steps = self.steps(scene, request, &setup, (bytes, ray_steps), most_rows);
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
@@ -146,16 +184,27 @@ impl GpuTracer {
         }
         self.buffers.prepare(&self.device, size, &setup, self.adapter.info.software)?;
         let software = self.adapter.info.software;
+        if let Some(beside) = &beside {
+            beside.prepare(&self.device, &mut self.buffers, &mut self.output_buffers, size.tile, software)?;
+        }
         // Meanwhile the sky and the buffers were made.
         self.kernels.finish(batch)?;
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
+        let beside = beside.map(|beside| {
+            let (buffers, own) = (&mut self.buffers, &mut self.output_buffers);
+            beside.stages(&self.device, &self.kernels, tables, buffers, own, software)
+        });
+        let beside = beside.transpose()?;
         let source = setup.record_setup.source;
         let bloom = setup.bloom;
         let projection = scene.camera.projection;
         let request = *request;
-        self.anticipate(scene, &request, kind, needed);
+        if pictured {
+            self.anticipate(scene, &request, kind, needed);
+        }
         Ok(BegunFrame {
             stages,
+            beside,
             request,
             target: kind,
             delivery,
@@ -205,7 +254,7 @@ impl GpuTracer {
 
     /// [`Self::submit`]; the frame's last step ends with what `then` records. Errors: those of `then` as well.
     pub fn submit_and(&mut self, frame: &mut BegunFrame, then: &mut ExtraCommands<'_>) -> Result<Option<Submission>> {
-        let submitted = self.buffers.submit(&self.device, frame, then);
+        let submitted = self.buffers.submit(&self.device, &mut self.output_buffers, frame, then);
         if submitted.is_err() {
             self.forget();
         }
@@ -215,5 +264,6 @@ impl GpuTracer {
     /// After a frame that failed or was left before its first step, nobody knows what the tables of lenses hold.
     pub fn forget(&mut self) {
         self.buffers.forget();
+        self.output_buffers.forget();
     }
 }

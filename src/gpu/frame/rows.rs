@@ -3,6 +3,7 @@
 //! of a whole frame. Plain numbers.
 
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::sharing::GpuTarget;
 use crate::gpu::device::wgpu_device::Device;
 use crate::tracer::Tile;
 
@@ -28,6 +29,13 @@ pub struct TilePlace {
 }
 
 impl FrameRows {
+    /// The rows of a target's buffer.
+    pub fn of(target: &GpuTarget, buffer: &wgpu::Buffer) -> Self {
+        let shape = &target.shape;
+        let pixel_bytes = shape.format.bytes_per_pixel() as u64;
+        Self { row_stride: shape.row_stride, pixel_bytes, size: buffer.size() }
+    }
+
     /// The most columns and rows of a tile that a binding of `largest` bytes holds. Errors: UNSUPPORTED when it does
     /// not hold a row.
     pub fn most_rows(&self, device: &Device) -> Result<u32> {

@@ -28,6 +28,8 @@ pub(in crate::gpu) struct ShadingVariants {
 /// Where a frame's pixels go.
 #[derive(Clone, Copy)]
 pub enum FrameTarget<'a> {
+    /// There are none: of a frame of outputs without a picture.
+    Nowhere,
     /// To the host, through staging buffers.
     Host,
     /// Into an image as large as the frame: a window's texture, or one that the host shares.
@@ -47,10 +49,7 @@ impl<'a> FrameTarget<'a> {
     pub fn shared(target: &'a GpuTarget) -> Result<Self> {
         let shape = &target.shape;
         Ok(match &target.resource {
-            TargetResource::Buffer(buffer) => {
-                let pixel_bytes = shape.format.bytes_per_pixel() as u64;
-                Self::Buffer(buffer, FrameRows { row_stride: shape.row_stride, pixel_bytes, size: buffer.size() })
-            }
+            TargetResource::Buffer(buffer) => Self::Buffer(buffer, FrameRows::of(target, buffer)),
             TargetResource::Written(_, view) => {
                 let format = StoredFormat::of(shape.format);
                 Self::Image(view, format.ok_or_else(|| Error::internal("an image that kernels cannot write"))?)

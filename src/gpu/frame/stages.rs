@@ -40,6 +40,8 @@ struct ShadeStages {
 
 /// The stages that turn ray records into packed pixels.
 enum Shading {
+    /// There is no picture.
+    Nothing,
     /// The stage for the only sample.
     Only(ShadeStages),
     Samples {
@@ -56,7 +58,8 @@ pub struct Stages {
     shading: Shading,
     /// Group 3 of the kernels that shade: the list of pixels with edges.
     edges: wgpu::BindGroup,
-    pub output: PixelOutput,
+    /// `None`: there is no picture.
+    pub output: Option<PixelOutput>,
     /// In frames with bloom: what follows shading, which then writes light.
     pub glare: Option<GlareStages>,
 }
@@ -122,6 +125,10 @@ impl FrameBuffers {
         let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
         let shared = Shared { frame, pass, step_sum, light_tables, structure, software };
         let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
+        let edges = self.edges.group(device, &kernels.edge_list()?)?;
+        if let FrameTarget::Nowhere = target {
+            return Ok(Stages { records: made, shading: Shading::Nothing, edges, output: None, glare: None });
+        }
         let Shared { frame, pass, structure, .. } = shared;
         let records = self.record_store.group(setup.record_setup.source)?;
         let [even, odd] = sized.radiance.each_ref().map(|t| wgpu::BindingResource::TextureView(&t.view));
@@ -177,7 +184,6 @@ impl FrameBuffers {
         } else {
             Shading::Only(shades(kernels, &[])?)
         };
-        let edges = self.edges.group(device, &kernels.edge_list()?)?;
         let group = |writer: &Compiled, film: &CachedUniform, pixels| {
             device.bind(writer.target()?, &[film.buffer.as_entire_binding(), pixels])
         };
@@ -188,6 +194,7 @@ impl FrameBuffers {
             FrameTarget::Buffer(buffer, rows) => {
                 Ok(PixelOutput::Rows(writer.target()?.clone(), (*film.buffer).clone(), buffer.clone(), rows))
             }
+            FrameTarget::Nowhere => Err(Error::internal("pixels of a frame without a picture")),
             FrameTarget::Copied(_) => group(writer, film, sized.packed.as_entire_binding()).map(PixelOutput::Fixed),
             FrameTarget::Host if variants.rows => {
                 Ok(PixelOutput::Staged(writer.target()?.clone(), (*film.buffer).clone()))
@@ -206,7 +213,7 @@ impl FrameBuffers {
             }
             _ => (pixel_output(&writer, &fixed.film)?, None),
         };
-        Ok(Stages { records: made, shading, edges, output, glare })
+        Ok(Stages { records: made, shading, edges, output: Some(output), glare })
     }
 }
 
@@ -243,6 +250,7 @@ impl Stages {
             let offset = slot * stride;
             self.records.encode(pass, begins && slot == 1, offset, tile);
             match &self.shading {
+                Shading::Nothing => {}
                 Shading::Only(shades) => {
                     pass.set_bind_group(2, output, &[]);
                     shades.dispatch(pass, [offset, offset + stride], tile);

@@ -23,6 +23,8 @@ pub struct Step {
     pub develops: Option<Tile>,
     /// Where the texture of light begins.
     pub light_origin: [u32; 2],
+    /// Whether outputs beside the picture are made of the tile that is shaded.
+    pub outputs: bool,
 }
 
 /// The steps of a frame.
@@ -121,25 +123,27 @@ impl Steps {
                 let (shades, samples) = self.shading(&self.plan, index);
                 let whole = Tile { x: 0, y: 0, width: base[0], height: base[1] };
                 let (gathers, develops) = (ends.then_some(whole), ends.then(|| self.plan.tile(0)));
-                Step { shades, samples, gathers, spreads: ends, develops, light_origin: [0, 0] }
+                let outputs = samples.start == 0;
+                Step { shades, samples, gathers, spreads: ends, develops, light_origin: [0, 0], outputs }
             }
             BloomStrategy::Kept(_) => {
                 let tile = self.plan.tile(index + 1 - gathering);
-                let light_origin = [0, 0];
-                Step { shades: tile, samples: 0..0, gathers: None, spreads: false, develops: Some(tile), light_origin }
+                let (shades, develops, light_origin) = (tile, Some(tile), [0, 0]);
+                Step { shades, samples: 0..0, gathers: None, spreads: false, develops, light_origin, outputs: false }
             }
             BloomStrategy::Twice { gather, frame, factor } if index < gathering => {
                 let (cells, samples) = self.shading(gather, index);
                 let shades = under(cells, *factor, *frame);
                 let gathers = (samples.end == self.samples).then_some(cells);
                 let light_origin = [shades.x, shades.y];
-                Step { shades, samples, gathers, spreads: ends, develops: None, light_origin }
+                Step { shades, samples, gathers, spreads: ends, develops: None, light_origin, outputs: false }
             }
             BloomStrategy::Plain | BloomStrategy::Twice { .. } => {
                 let (shades, samples) = self.shading(&self.plan, index - gathering);
                 let develops = (samples.end == self.samples).then_some(shades);
                 let light_origin = [shades.x, shades.y];
-                Step { shades, samples, gathers: None, spreads: false, develops, light_origin }
+                let outputs = samples.start == 0;
+                Step { shades, samples, gathers: None, spreads: false, develops, light_origin, outputs }
             }
         }
     }
@@ -197,6 +201,8 @@ mod tests {
                 let area = |tile: Tile| u64::from(tile.width) * u64::from(tile.height);
                 let developed = list.iter().filter_map(|step| step.develops).map(area).sum::<u64>();
                 assert_eq!(developed, u64::from(frame[0]) * u64::from(frame[1]), "{frame:?} {strategy}");
+                let with_outputs = list.iter().filter(|step| step.outputs).map(|step| area(step.shades)).sum::<u64>();
+                assert_eq!(with_outputs, developed, "{frame:?} {strategy}");
                 let gathered = list.iter().filter_map(|step| step.gathers).map(area).sum::<u64>();
                 let cells = bloom.levels[0].size.map(u64::from);
                 assert_eq!(gathered, if strategy == 0 { 0 } else { cells[0] * cells[1] });

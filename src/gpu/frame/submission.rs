@@ -3,6 +3,7 @@
 
 use super::begun::{BegunFrame, Delivery, ExtraCommands};
 use super::buffers::FrameBuffers;
+use super::outputs::OutputBuffers;
 use super::uniforms::PassUniform;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
@@ -20,7 +21,10 @@ use crate::tracer::{FrameRequest, FrameStats, PASSES, Tile, TileSink};
 use arrayvec::ArrayVec;
 use std::time::Instant;
 
-/// Passes of a submission, at most one of each kind.
+/// Compute passes of a submission at most: one of each kind, and the outputs', which counts as shading.
+pub const MOST_PASSES: usize = PASSES + 1;
+
+/// Kinds of passes of a submission.
 #[derive(Clone, Copy)]
 enum PassKind {
     Shading,
@@ -39,17 +43,21 @@ pub struct Submission {
     tick_bytes: u64,
     /// Bytes of all that comes before the pixels.
     head: u64,
-    passes: ArrayVec<PassKind, PASSES>,
-    /// Whether steps were counted: none are taken where rays are looked up and nothing else.
-    counts: bool,
+    passes: ArrayVec<PassKind, MOST_PASSES>,
+    /// Whether steps were counted, of the picture and of outputs: none are taken where rays are looked up and nothing
+    /// else.
+    counts: [bool; 2],
     tile: Option<Tile>,
     row_bytes: usize,
 }
 
-/// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device.
+/// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device;
+/// the steps of the picture and those of outputs.
 const TICKS: u64 = 0;
-const STEPS: u64 = 64;
+const STEPS: [u64; 2] = [64, 64 + STEP_SUM];
+const STEPS_END: u64 = STEPS[1] + STEP_SUM;
 pub const PIXELS: u64 = 256;
+const _: () = assert!(TICKS + MOST_PASSES as u64 * timer::PASS_BYTES <= STEPS[0]);
 
 /// Pixels are taken in bands of so many bytes. Threads that present to a window of the device wait for one band at
 /// most: 1.4 ms at the 12 GB/s of one core. Much smaller bands would keep the threads that share the copying
@@ -61,6 +69,7 @@ impl FrameBuffers {
     pub fn submit(
         &mut self,
         device: &Device,
+        own: &mut OutputBuffers,
         frame: &mut BegunFrame,
         then: &mut ExtraCommands<'_>,
     ) -> Result<Option<Submission>> {
@@ -83,9 +92,14 @@ impl FrameBuffers {
             };
             PassUniform { pixels_first, pixels_row, ..pass }
         };
+        let outputs = frame.beside.as_ref().filter(|_| step.outputs);
+        let outputs = outputs.map(|beside| Ok::<_, Error>((beside, beside.group(device, own, step.shades)?))).transpose()?;
+        // The ray of an output goes through the pixel's centre.
+        let centred = pass_of(&frame.request, step.shades, (0, 1), frame.projection, 0, step.light_origin);
         let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
-        let passes = [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice));
-        let mut places = vec![0; (1 + 2 * step.samples.len()) * stride as usize];
+        let passes = [of(developed)].into_iter().chain(shaded.map(of).flat_map(twice)).chain([centred]);
+        let centre = (1 + 2 * step.samples.len()) * stride as usize;
+        let mut places = vec![0; centre + stride as usize];
         for (slot, pass) in places.chunks_exact_mut(stride as usize).zip(passes) {
             slot[..size_of::<PassUniform>()].copy_from_slice(bytemuck::bytes_of(&pass));
         }
@@ -94,7 +108,7 @@ impl FrameBuffers {
         let developed = step.develops.filter(|_| matches!(frame.delivery, Delivery::Host));
         let row_bytes = developed.map_or(0, |tile| tile.width as usize * pixel_size);
         let pixel_bytes = developed.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
-        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS + STEP_SUM };
+        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS_END };
         let staging = match frame.target {
             PixelTarget::Rows if pixel_bytes > 0 => self.mapped.0.staging(device, size)?,
             _ => self.readback.staging(device, size)?,
@@ -109,8 +123,8 @@ impl FrameBuffers {
         let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
         self.edges.reset(&mut encoder);
         let writes = stages.glare.is_some() || step.develops.is_some();
-        let output =
-            if writes { Some(stages.output.group(device, to, step.develops.unwrap_or(step.shades))?) } else { None };
+        let output = stages.output.as_ref().filter(|_| writes);
+        let output = output.map(|output| output.group(device, to, step.develops.unwrap_or(step.shades))).transpose()?;
         let timer = &mut self.timer;
         let mut passes = ArrayVec::new();
         let mut in_pass = |kind: PassKind, label: &str, record: &mut dyn FnMut(&mut wgpu::ComputePass<'_>)| {
@@ -142,9 +156,27 @@ impl FrameBuffers {
                 });
             }
         }
-        let counts = steps.is_some();
+        let mut counts = [steps.is_some(), false];
         if let Some(steps) = steps {
-            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
+            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS[0], STEP_SUM);
+        }
+        if let Some((beside, group)) = &outputs {
+            let steps = beside.reset(&self.record_store, own, &fixed.step_sum, &mut encoder);
+            passes.push(PassKind::Shading);
+            let timestamp_writes = self.timer.as_mut().and_then(GpuTimer::next_pass);
+            beside.encode(
+                &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                    label: Some("outputs"),
+                    timestamp_writes,
+                }),
+                centre as u32,
+                size_of_tile,
+                group,
+            );
+            counts[1] = steps.is_some();
+            if let Some(steps) = steps {
+                encoder.copy_buffer_to_buffer(steps, 0, to, STEPS[1], STEP_SUM);
+            }
         }
         let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
         if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, pixel_bytes > 0) {
@@ -158,17 +190,20 @@ impl FrameBuffers {
         if last {
             then(&mut encoder)?;
         }
-        let develops = step.develops.is_some();
+        let writes = step.develops.is_some() || outputs.is_some();
         let submission = match &mut frame.handed {
             None => device.submit(encoder)?,
             Some(handed) => {
-                let submission = device.submit_handover(Some(encoder), &handed.handover(develops, last))?;
-                handed.submitted(develops);
+                let submission = device.submit_handover(Some(encoder), &handed.handover(writes, last))?;
+                handed.submitted(writes);
                 submission
             }
         };
         copied.request(device)?;
         frame.submitted += 1;
+        if let Some(beside) = &mut frame.beside {
+            beside.begun |= step.outputs;
+        }
         let head = size.min(PIXELS);
         Ok(Some(Submission { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
     }
@@ -195,8 +230,8 @@ impl Submission {
             head[..bytes.len()].copy_from_slice(bytes);
             Ok(())
         })?;
-        if self.counts {
-            let steps = bytemuck::try_pod_read_unaligned::<u32>(part(&head, STEPS, STEP_SUM)?);
+        for (_, begin) in self.counts.into_iter().zip(STEPS).filter(|(counts, _)| *counts) {
+            let steps = bytemuck::try_pod_read_unaligned::<u32>(part(&head, begin, STEP_SUM)?);
             stats.steps += u64::from(steps.map_err(|e| Error::internal(format!("step sum: {e}")))?);
         }
         let ticks = part(&head, TICKS, self.tick_bytes)?;

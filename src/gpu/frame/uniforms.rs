@@ -141,6 +141,11 @@ fn evenness(scene: &Scene) -> [f64; 2] {
 }
 
 impl FrameUniform {
+    /// Whether rays are the same with both.
+    pub fn is_same(&self, other: &Self) -> bool {
+        bytemuck::bytes_of(&Self { map_sizes: other.map_sizes, ..*self }) == bytemuck::bytes_of(other)
+    }
+
     /// `settings`: those of f32 pixels; `crossings`: most that a traced record holds. Errors: as `Scene::lens`.
     pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
         let frame = &lens.observer.frame;

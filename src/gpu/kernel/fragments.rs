@@ -23,6 +23,12 @@ pub fn join(roots: &[&str]) -> Result<String> {
     preprocess::join(&find, roots).map_err(|error| Error::internal(format!("WGSL of {error}")))
 }
 
+/// [`join`] with a further root that is no file. Errors: as [`join`].
+pub fn join_with(roots: &[&str], (name, text): (&'static str, String)) -> Result<String> {
+    let find = |wanted: &str| if wanted == name { Some(text.clone().into()) } else { find(wanted) };
+    preprocess::join(&find, &[roots, &[name]].concat()).map_err(|error| Error::internal(format!("WGSL of {error}")))
+}
+
 /// The WGSL of a fragment that is no file, and of all that it imports; for tests. Errors: as [`join`].
 #[doc(hidden)]
 pub fn join_wgsl(text: &str) -> Result<String> {

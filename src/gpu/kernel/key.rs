@@ -3,11 +3,12 @@
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, pixel_slots, refine_slots,
-    shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, output_slots, pixel_slots,
+    refine_slots, shade_slots, sum_slots,
 };
 use super::variant::{
-    FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant,
+    FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, OutputPlaces, RecordSource, RefineVariant, ShadeVariant,
+    TraceVariant,
 };
 use super::wgsl;
 use crate::error::Result;
@@ -35,7 +36,7 @@ pub enum KernelKey {
     Beam,
     Export(RecordSource, bool, Option<Projection>),
     /// Whether something shines in the plane, and whether matter with depth lies between crossings.
-    Outputs(RecordSource, bool, bool, Option<Projection>),
+    Outputs(RecordSource, bool, bool, Option<Projection>, OutputPlaces),
     SchwarzschildEnds,
     SchwarzschildColumns {
         delay: bool,
@@ -70,8 +71,9 @@ impl KernelKey {
         Self::Export(source, shade.footprints, shade.projection)
     }
 
-    pub fn outputs(source: RecordSource, shade: ShadeVariant) -> Self {
-        Self::Outputs(source, shade.plane, shade.volumes, shade.projection)
+    /// With targets for `places`, group 2 is for the caller to set.
+    pub fn outputs(source: RecordSource, shade: ShadeVariant, places: OutputPlaces) -> Self {
+        Self::Outputs(source, shade.plane, shade.volumes, shade.projection, places)
     }
 
     pub fn entry_point(self) -> &'static str {
@@ -116,7 +118,7 @@ impl KernelKey {
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
             Self::Export(source, ..) => wgsl::export(source),
-            Self::Outputs(source, ..) => wgsl::outputs(source),
+            Self::Outputs(source, .., places) => wgsl::outputs(source, places),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
             Self::SchwarzschildColumns { .. } => wgsl::kernel("lens/schwarzschild_columns"),
             Self::KerrNodes { .. } => wgsl::kernel("lens/kerr_nodes"),
@@ -161,9 +163,9 @@ impl KernelKey {
             Self::Export(source, ..) => {
                 vec![vec![Slot::Uniform, Slot::UniformPart], source.slots(), vec![Slot::Write]]
             }
-            Self::Outputs(source, ..) => {
+            Self::Outputs(source, .., places) => {
                 let first = vec![Slot::Uniform, Slot::UniformPart, Slot::Texture(TABLES[0])];
-                vec![first, source.slots(), vec![Slot::Uniform, Slot::Write]]
+                vec![first, source.slots(), output_slots(places)]
             }
             Self::SchwarzschildEnds => vec![vec![Slot::Uniform, Slot::Uniform, rows]],
             Self::SchwarzschildColumns { .. } => {
@@ -217,7 +219,7 @@ impl KernelKey {
                 let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
                 [source.constants(), export].concat()
             }
-            Self::Outputs(source, plane, volumes, projection) => {
+            Self::Outputs(source, plane, volumes, projection, _) => {
                 // Places of crossings come with their footprints.
                 let shade = vec![("PLANE", flag(plane)), ("FOOTPRINTS", 1.0), ("VOLUMES", flag(volumes))];
                 [source.constants(), shade, vec![projection_constant(projection)]].concat()

@@ -2,7 +2,7 @@
 //! The bindings of kernels: their kinds, the formats of textures as the shaders declare them, and groups that kernels
 //! share.
 
-use super::variant::{FilmVariant, PixelTarget, RecordSource, StoredFormat};
+use super::variant::{FilmVariant, OutputPlace, OutputPlaces, PixelTarget, RecordSource, StoredFormat};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
 
 /// The kind of a binding.
@@ -133,6 +133,18 @@ impl RecordSource {
             }
         }
     }
+}
+
+/// Group 2 of shade/outputs.wgsl.
+pub fn output_slots(places: OutputPlaces) -> Vec<Slot> {
+    let image = |format| Slot::TextureWrite(TextureKind { format, dimension: wgpu::TextureViewDimension::D2 });
+    let of = |place: &OutputPlace| match place {
+        OutputPlace::Number | OutputPlace::Numbers => Slot::Write,
+        OutputPlace::NumberImage => image(wgpu::TextureFormat::R32Float),
+        OutputPlace::NumbersImage => image(wgpu::TextureFormat::Rgba32Float),
+    };
+    let packed = (places == OutputPlaces::default()).then_some(Slot::Write);
+    [Slot::Uniform].into_iter().chain(packed).chain(places.iter().flatten().map(of)).collect()
 }
 
 /// Group 0 of traced/pixels.wgsl.

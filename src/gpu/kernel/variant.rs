@@ -3,7 +3,7 @@
 
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
-use crate::scene::{ColourMap, Film, Projection, ToneMap, View};
+use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, ToneMap, View};
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
@@ -234,6 +234,20 @@ pub enum RecordSource {
     /// lens/kerr_pixel.wgsl, and of the pixels it defers lens/kerr_deferred.wgsl
     Kerr { delay: bool, pattern: bool, moving: bool, deferred: bool },
 }
+
+/// What an output of frames is written into on the device: one number a pixel, or four.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum OutputPlace {
+    /// The rows of a buffer.
+    Number,
+    Numbers,
+    /// An image of R32F or RGBA32F.
+    NumberImage,
+    NumbersImage,
+}
+
+/// The places of a frame's outputs in their order; none: all go into one buffer, packed, for the host.
+pub type OutputPlaces = [Option<OutputPlace>; MOST_OUTPUTS];
 
 /// How refine/refine.wgsl finds its samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

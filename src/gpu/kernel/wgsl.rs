@@ -2,8 +2,8 @@
 //! The WGSL of every kernel: which fragments of shaders/ make it, for which choices. Knows neither bindings nor
 //! devices.
 
-use super::fragments::join;
-use super::variant::{FilmVariant, PixelTarget, RecordSource, StoredFormat};
+use super::fragments::{join, join_with};
+use super::variant::{FilmVariant, OutputPlace, OutputPlaces, PixelTarget, RecordSource, StoredFormat};
 use crate::error::Result;
 
 impl RecordSource {
@@ -73,8 +73,42 @@ pub fn export(source: RecordSource) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "records/export"])
 }
 
-pub fn outputs(source: RecordSource) -> Result<String> {
-    join(&[source.driver(None).1, source.fragment(), "shade/outputs"])
+pub fn outputs(source: RecordSource, places: OutputPlaces) -> Result<String> {
+    let roots = [source.driver(None).1, source.fragment(), "shade/outputs"];
+    if places == OutputPlaces::default() {
+        return join(&[&roots[..], &["shade/packed_outputs"]].concat());
+    }
+    join_with(&roots, ("the outputs' targets", put_numbers(places)))
+}
+
+/// `put_numbers` of shade/packed_outputs.wgsl for targets, each with a binding of its own. It is written here because
+/// the format of an image that is stored to is no constant that a pipeline could set.
+fn put_numbers(places: OutputPlaces) -> String {
+    let (mut bindings, mut cases) = (String::new(), String::new());
+    for (k, place) in places.iter().flatten().enumerate() {
+        let (name, binding) = (format!("output_{k}"), k + 1);
+        let declared = match place {
+            OutputPlace::Number | OutputPlace::Numbers => format!("var<storage, read_write> {name}: array<u32>"),
+            OutputPlace::NumberImage => format!("var {name}: texture_storage_2d<r32float, write>"),
+            OutputPlace::NumbersImage => format!("var {name}: texture_storage_2d<rgba32float, write>"),
+        };
+        let put = match place {
+            OutputPlace::Number => format!("{name}[at] = bits.x;"),
+            OutputPlace::Numbers => format!(
+                "{name}[at] = bits.x; {name}[at + 1u] = bits.y; {name}[at + 2u] = bits.z; {name}[at + 3u] = bits.w;"
+            ),
+            OutputPlace::NumberImage => {
+                format!("textureStore({name}, place, vec4<f32>(bitcast<f32>(bits.x), 0.0, 0.0, 1.0));")
+            }
+            OutputPlace::NumbersImage => format!("textureStore({name}, place, bitcast<vec4<f32>>(bits));"),
+        };
+        bindings += &format!("@group(2) @binding({binding}) {declared};\n");
+        cases += &format!("        case {k}u: {{ {put} }}\n");
+    }
+    format!(
+        "{bindings}\nfn put_numbers(k: u32, at: u32, place: vec2<u32>, bits: vec4<u32>) {{\n    switch k {{\n{cases}        \
+         default: {{ }}\n    }}\n}}\n"
+    )
 }
 
 pub fn develop(film: FilmVariant, glare: bool) -> Result<String> {
@@ -112,9 +146,12 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
             (in_sum, shade_sample(source)),
             (alone, shade_only(source, film(PixelTarget::Packed))),
             (exported, export(source)),
-            (outputs_of, outputs(source)),
+            (outputs_of, outputs(source, OutputPlaces::default())),
         ]
     });
+    use OutputPlace::{Number, NumberImage, Numbers, NumbersImage};
+    let mut targets = OutputPlaces::default();
+    targets.iter_mut().zip([Number, NumbersImage, Numbers, NumberImage]).for_each(|(to, place)| *to = Some(place));
     let others = [
         ("rays", kernel("geodesic/rays")),
         ("pixels", kernel("traced/each")),
@@ -150,6 +187,7 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("shade only by rows", shade_only(kerr(false), film(PixelTarget::Rows))),
         ("spin-0 lens, ends", kernel("lens/schwarzschild_ends")),
         ("spin-0 lens, columns", kernel("lens/schwarzschild_columns")),
+        ("outputs into targets", outputs(RecordSource::Traced, targets)),
         ("Kerr lens, nodes", kernel("lens/kerr_nodes")),
         ("Kerr lens, flags", kernel("lens/kerr_flags")),
     ];

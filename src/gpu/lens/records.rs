@@ -20,6 +20,7 @@ use crate::physics::observer::LocalFrame;
 const TEXEL: u64 = 16;
 
 /// How a frame's records are to be made.
+#[derive(PartialEq)]
 pub struct RecordSetup {
     pub source: RecordSource,
     /// How rays are traced.
@@ -79,6 +80,17 @@ impl RecordSetup {
             keys.extend(half::keys(self.variant));
         }
         keys
+    }
+
+    /// Whether both are looked up in the same tables.
+    pub fn shares_tables(&self, other: &Self) -> bool {
+        use RecordSource::{Kerr, Schwarzschild};
+        self.observer == other.observer
+            && match (self.source, other.source) {
+                (Schwarzschild { delay, .. }, Schwarzschild { delay: others, .. }) => delay == others,
+                (Kerr { .. }, Kerr { .. }) => self.contents == other.contents,
+                _ => false,
+            }
     }
 
     /// The source of the records of those pixels that this one leaves pending.
