@@ -1810,9 +1810,13 @@ typedef struct BhrOutput {
     BhrOutputKind kind; /**< BHR_OUTPUT_*. Default LIGHT. */
     uint32_t index; /**< POSITION, DISK: the number of a crossing, 0 .. 15. VIEW: BHR_VIEW_*. Otherwise 0. Default 0. */
     uint32_t reserved; /**< Reserved: 0. */
-    /** The image, in the format of its kind. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT only. */
+    /**
+     * The image, in the format of its kind; NULL with target. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT
+     * only.
+     */
     const BhrImage *image;
-    void *target; /**< Reserved for images on the GPU: NULL. */
+    /** A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h; else NULL. */
+    void *target;
 } BhrOutput;
 
 /**

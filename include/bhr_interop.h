@@ -377,6 +377,36 @@ BHR_NODISCARD BhrStatus bhr_render_target_async(BhrContext *context,
                                                 const BhrSync *sync,
                                                 BhrJob **out_job);
 
+/**
+ * Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target, in one frame and
+ * with one set of semaphores; image is NULL in all of them. As bhr_render_target in everything else, which is the
+ * case of one LIGHT; the bytes are those of bhr_render_outputs. LIGHT, at most one, goes into any target that
+ * bhr_render_target takes, the others into R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage.
+ * All targets are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
+ * (bhr_set_view) and render them as LIGHT. Errors: those of bhr_render_target, of any of the targets, and of
+ * bhr_render_outputs; INVALID_ARGUMENT for an output without a target, or with an image, a target that is there
+ * twice, a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills
+ * (without STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since
+ * 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_render_outputs_shared(BhrContext *context,
+                                                  const BhrOutput *outputs,
+                                                  size_t output_size,
+                                                  uint32_t count,
+                                                  const BhrSync *sync,
+                                                  BhrJob **out_job);
+
+/**
+ * The same as a job of bhr's threads, with TIMELINE semaphores only: to bhr_render_outputs_shared as
+ * bhr_render_target_async is to bhr_render_target. Errors: those of both. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
+                                                        const BhrOutput *outputs,
+                                                        size_t output_size,
+                                                        uint32_t count,
+                                                        const BhrSync *sync,
+                                                        BhrJob **out_job);
+
 /* ---- the host's Vulkan device ---- */
 
 /** vkGetInstanceProcAddr, cast to this type. */

@@ -8,8 +8,8 @@ use crate::gpu::{
     self, AdapterIds, Device, HostVulkan, ReleaseGuard, SemaphoreKind, SemaphoreOrigin, Sharing, TargetOrigin,
     TargetShape, shares_nothing,
 };
-use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
 use crate::image::PixelFormat;
+use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
 use crate::job::{Job, JobRequest, JobTarget, SharedFrame, Worker};
 use crate::scene::{MOST_OUTPUTS, Output, Region};
 use crate::tracer::FrameRequest;
@@ -124,9 +124,9 @@ impl Renderer {
         };
         let (mut light, mut of_rays, mut request) = (None, Vec::with_capacity(outputs.len()), None);
         for (index, (output, target)) in outputs.iter().enumerate() {
-            let on = target.on(&device).map_err(|error| {
-                Error::new(error.kind, format!("outputs[{index}] {}", error.message))
-            })?;
+            let on = target
+                .on(&device)
+                .map_err(|error| Error::new(error.kind, format!("outputs[{index}] {}", error.message)))?;
             let ([width, height], [w, h]) = (size, target.shape().size);
             if [w, h] != size {
                 return Err(Error::argument(format!(
@@ -186,8 +186,7 @@ impl Renderer {
             // The other outputs do not regard the host's things.
             None => self.scene.clone(),
         };
-        let job_request =
-            JobRequest::new(scene, JobTarget::Shared(frame), self.tracer.clone(), self.stats.clone());
+        let job_request = JobRequest::new(scene, JobTarget::Shared(frame), self.tracer.clone(), self.stats.clone());
         let worker = match &self.worker {
             Some(worker) => worker,
             None => self.worker.insert(Worker::new()?),

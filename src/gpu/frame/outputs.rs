@@ -205,9 +205,7 @@ impl OutputBuffers {
     pub(super) fn uniform(&mut self, device: &Device) -> Result<&mut CachedUniform> {
         match &mut self.uniform {
             Some(held) => Ok(held),
-            empty => {
-                Ok(empty.insert(CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?))
-            }
+            empty => Ok(empty.insert(CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?)),
         }
     }
 

@@ -145,9 +145,9 @@ impl GpuTracer {
         };
         let delivery = Delivery::of(target);
         let mut setup = self.set_up(scene, request, kind)?;
-        let beside = of_outputs.as_ref().map(|scene| {
-            self.set_up_beside(scene, request, outputs, Some(&setup).filter(|_| pictured))
-        });
+        let beside = of_outputs
+            .as_ref()
+            .map(|scene| self.set_up_beside(scene, request, outputs, Some(&setup).filter(|_| pictured)));
         let beside = beside.transpose()?;
         let needed = if pictured { setup.kernels() } else { Vec::new() };
         let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();

@@ -93,7 +93,8 @@ impl FrameBuffers {
             PassUniform { pixels_first, pixels_row, ..pass }
         };
         let outputs = frame.beside.as_ref().filter(|_| step.outputs);
-        let outputs = outputs.map(|beside| Ok::<_, Error>((beside, beside.group(device, own, step.shades)?))).transpose()?;
+        let outputs =
+            outputs.map(|beside| Ok::<_, Error>((beside, beside.group(device, own, step.shades)?))).transpose()?;
         // The ray of an output goes through the pixel's centre.
         let centred = pass_of(&frame.request, step.shades, (0, 1), frame.projection, 0, step.light_origin);
         let twice = |pass: PassUniform| [pass, PassUniform { refined: CURVE_SAMPLES, ..pass }];
@@ -165,10 +166,8 @@ impl FrameBuffers {
             passes.push(PassKind::Shading);
             let timestamp_writes = self.timer.as_mut().and_then(GpuTimer::next_pass);
             beside.encode(
-                &mut encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                    label: Some("outputs"),
-                    timestamp_writes,
-                }),
+                &mut encoder
+                    .begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some("outputs"), timestamp_writes }),
                 centre as u32,
                 size_of_tile,
                 group,

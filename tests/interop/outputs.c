@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* outputs.c -- outputs beside the picture in targets on the GPU: their bytes are those of bhr_render_outputs, in
+ * buffers, buffers with strides and images, alone and all together, however the frame's rays are found; with semaphores
+ * and as jobs; and what is refused, which changes nothing. Arguments: vulkan [validate]. */
+#include "../c/check.h"
+#include "vk.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH 107u
+#define HEIGHT 45u
+#define MOST (WIDTH * HEIGHT * 16u)
+#define BAD BHR_ERROR_INVALID_ARGUMENT
+
+static BhrContext   *context;
+static Vk            host;
+static unsigned char expected[BHR_MAX_OUTPUTS][MOST];
+static unsigned char seen[4 * MOST];
+
+static const struct {
+    BhrOutputKind kind;
+    uint32_t      index;
+    BhrFormat     format;
+    uint32_t      bytes;
+} kinds[BHR_MAX_OUTPUTS] = {
+    {BHR_OUTPUT_DEPTH, 0, BHR_FORMAT_R32F, 4},       {BHR_OUTPUT_LIGHT, 0, BHR_FORMAT_RGBA16F, 8},
+    {BHR_OUTPUT_SKY, 0, BHR_FORMAT_RGBA32F, 16},     {BHR_OUTPUT_TRANSMISSION, 0, BHR_FORMAT_R32F, 4},
+    {BHR_OUTPUT_POSITION, 0, BHR_FORMAT_RGBA32F, 16}, {BHR_OUTPUT_DISK, 1, BHR_FORMAT_RGBA32F, 16},
+    {BHR_OUTPUT_VIEW, BHR_VIEW_REDSHIFT, BHR_FORMAT_R32F, 4},
+    {BHR_OUTPUT_VIEW, BHR_VIEW_DEFLECTION, BHR_FORMAT_R32F, 4},
+};
+
+static BhrTarget *target_of(BhrFormat format, BhrTargetKind kind, uint64_t stride, uint32_t flags) {
+    BhrTargetOptions options;
+    BhrTarget       *target = NULL;
+    CHECK_OK(bhr_target_options_init(&options, sizeof options));
+    options.kind = kind;
+    options.format = format;
+    options.width = WIDTH;
+    options.height = HEIGHT;
+    options.handle_type = BHR_HANDLE_OPAQUE_FD;
+    options.row_stride = stride;
+    options.flags = flags;
+    CHECK_OK(bhr_target_create(context, &options, &target));
+    return target;
+}
+
+static VkPicture imported(BhrTarget *target, uint64_t bytes) {
+    BhrTargetInfo info = {.struct_size = sizeof info};
+    BhrHandle     handle;
+    CHECK_OK(bhr_target_info(target, &info));
+    CHECK_OK(bhr_target_export(target, &handle));
+    return vk_import(&host, &info, handle.fd, bytes);
+}
+
+static BhrOutput output_of(size_t at, BhrTarget *target) {
+    BhrOutput output;
+    CHECK_OK(bhr_output_init(&output, sizeof output));
+    output.kind = kinds[at].kind;
+    output.index = kinds[at].index;
+    output.target = target;
+    return output;
+}
+
+/* The outputs of `chosen` (bits) in the host's memory. */
+static void expect(uint32_t chosen, uint32_t flags) {
+    BhrImage  images[BHR_MAX_OUTPUTS];
+    BhrOutput outputs[BHR_MAX_OUTPUTS];
+    uint32_t  count = 0;
+    for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
+        if (!(chosen >> at & 1))
+            continue;
+        BhrImage *image = &images[count];
+        CHECK_OK(bhr_image_init(image, sizeof *image));
+        image->format = kinds[at].format;
+        image->width = WIDTH;
+        image->height = HEIGHT;
+        image->pixels = expected[at];
+        image->byte_size = MOST;
+        image->flags = kinds[at].kind == BHR_OUTPUT_LIGHT ? flags : 0;
+        outputs[count] = output_of(at, NULL);
+        outputs[count++].image = image;
+    }
+    CHECK_OK(bhr_render_outputs(context, outputs, sizeof *outputs, count, NULL));
+}
+
+typedef enum Way { BUFFERS, STRIDES, IMAGES, MIXED } Way;
+
+/* Renders `chosen` into targets, and compares. */
+static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const char *what) {
+    BhrTarget   *targets[BHR_MAX_OUTPUTS] = {0};
+    VkPicture    pictures[BHR_MAX_OUTPUTS];
+    BhrOutput    outputs[BHR_MAX_OUTPUTS];
+    uint64_t     strides[BHR_MAX_OUTPUTS];
+    BhrSemaphore *done;
+    BhrJob       *job = NULL;
+    uint32_t     count = 0;
+    expect(chosen, flags);
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
+    for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
+        if (!(chosen >> at & 1))
+            continue;
+        int      image = way == IMAGES || (way == MIXED && at % 2);
+        uint64_t row = (uint64_t)WIDTH * kinds[at].bytes, stride = way == STRIDES ? row + 4 * (at + 1) : row;
+        strides[at] = stride;
+        targets[at] = target_of(kinds[at].format, image ? BHR_TARGET_IMAGE : BHR_TARGET_BUFFER,
+                                way == STRIDES ? stride : 0, kinds[at].kind == BHR_OUTPUT_LIGHT ? flags : 0);
+        pictures[at] = imported(targets[at], stride * (HEIGHT - 1) + row);
+        outputs[count++] = output_of(at, targets[at]);
+    }
+    BhrSemaphoreValue signal = {done, 1};
+    BhrSync           sync = {.struct_size = sizeof sync, .signal_count = 1, .signals = &signal};
+    CHECK_OK(async ? bhr_render_outputs_shared_async(context, outputs, sizeof *outputs, count, &sync, &job)
+                   : bhr_render_outputs_shared(context, outputs, sizeof *outputs, count, &sync, &job));
+    CHECK_OK(bhr_semaphore_wait(done, 1, UINT64_MAX));
+    for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
+        if (!(chosen >> at & 1))
+            continue;
+        uint64_t row = (uint64_t)WIDTH * kinds[at].bytes, stride = strides[at];
+        uint32_t wrong = 0;
+        double   apart = 0;
+        memset(seen, 0x77, sizeof seen);
+        vk_read(&host, &pictures[at], VK_QUEUE_FAMILY_EXTERNAL, kinds[at].bytes, stride * (HEIGHT - 1) + row, NULL,
+                seen);
+        for (uint32_t y = 0; y < HEIGHT; y++)
+            if (memcmp(seen + y * stride, expected[at] + y * row, row) != 0)
+                wrong++, apart = fmax(apart, vk_apart(kinds[at].format, seen + y * stride, expected[at] + y * row, row));
+        CHECK(apart <= vk_most_apart(context, kinds[at].format), "%s, way %d: output %zu differs in %u rows, by up to %g",
+              what, (int)way, at, wrong, apart);
+    }
+    if (job) {
+        BhrFrameStats stats = {.struct_size = sizeof stats};
+        CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+        CHECK_OK(bhr_job_stats(job, &stats));
+        CHECK(stats.rays >= WIDTH * HEIGHT, "%llu rays", (unsigned long long)stats.rays);
+    }
+    bhr_job_destroy(job);
+    for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++)
+        if (chosen >> at & 1) {
+            bhr_target_destroy(targets[at]);
+            vk_drop(&host, &pictures[at]);
+        }
+    bhr_semaphore_destroy(done);
+}
+
+/* A part of a frame so large that its rays are looked up in tables, or a small frame, whose rays are traced. */
+static void set_frame(int large) {
+    BhrRegion region = {.struct_size = sizeof region, .full_width = 1920, .full_height = 1080, .x = 905, .y = 510};
+    CHECK_OK(bhr_set_region(context, large ? &region : NULL));
+}
+
+static void set_quality(uint32_t samples, double bloom) {
+    BhrQuality quality = {.struct_size = sizeof quality};
+    BhrFilm    film = {.struct_size = sizeof film};
+    CHECK_OK(bhr_get_quality(context, &quality));
+    CHECK_OK(bhr_get_film(context, &film));
+    quality.samples_per_pixel = samples;
+    film.bloom = bloom;
+    CHECK_OK(bhr_set_quality(context, &quality));
+    CHECK_OK(bhr_set_film(context, &film));
+}
+
+static void set_disk(double opacity, double turbulence) {
+    BhrDisk disk = {.struct_size = sizeof disk};
+    int32_t present;
+    CHECK_OK(bhr_get_disk(context, &disk, &present));
+    disk.opacity = opacity;
+    disk.turbulence = turbulence;
+    CHECK_OK(bhr_set_disk(context, &disk));
+}
+
+enum { ALL = 0xff, THREE = 7, RAYS_ONLY = 0xfd, DEPTH_ONLY = 1, LIGHT_ONLY = 2 };
+
+/* However rays are found, with disks that hide and disks that do not. */
+static void scenes(void) {
+    for (int spins = 0; spins < 2; spins++)
+        for (int large = 0; large < 2; large++)
+            for (int look = 0; look < 3; look++) {
+                char what[80];
+                snprintf(what, sizeof what, "spin %g, large %d, look %d", spins ? 0.9 : 0.0, large, look);
+                CHECK_OK(bhr_set_spin(context, spins ? 0.9 : 0));
+                set_frame(large);
+                set_disk(look == 1 ? 0.5 : 1, look == 2 ? 0.6 : 0);
+                compare(ALL, look == 0 ? MIXED : STRIDES, 0, 0, what);
+                compare(THREE, look == 1 ? IMAGES : BUFFERS, look == 1 ? BHR_IMAGE_TRANSPARENT : 0, 1, what);
+                compare(look == 1 ? DEPTH_ONLY : RAYS_ONLY, BUFFERS, 0, look == 2, what);
+            }
+    set_disk(1, 0);
+    for (int large = 0; large < 2; large++) {
+        set_frame(large);
+        set_quality(5, 0);
+        compare(THREE, BUFFERS, 0, 0, "5 samples");
+    }
+    set_frame(0);
+    set_quality(1, 0.4);
+    compare(THREE, IMAGES, 0, 0, "glare");
+    set_quality(3, 0.4);
+    compare(ALL, MIXED, 0, 1, "3 samples and glare");
+    set_quality(1, 0);
+    compare(LIGHT_ONLY, IMAGES, 0, 0, "the picture alone");
+    BhrVolume volume;
+    CHECK_OK(bhr_volume_init(&volume, sizeof volume));
+    CHECK_OK(bhr_set_volumes(context, &volume, sizeof volume, 1));
+    compare(ALL, BUFFERS, 0, 0, "a volume");
+    CHECK_OK(bhr_set_volumes(context, NULL, sizeof volume, 0));
+    CHECK_OK(bhr_set_view(context, BHR_VIEW_LIGHT));
+}
+
+/* The host's things are in the picture, and in no other output. */
+static void occluded(void) {
+    static float distances[WIDTH * HEIGHT];
+    BhrImage     image;
+    for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
+        distances[i] = i % WIDTH < WIDTH / 2 ? 24.0f : INFINITY;
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    image.format = BHR_FORMAT_R32F;
+    image.width = WIDTH;
+    image.height = HEIGHT;
+    image.pixels = distances;
+    image.byte_size = sizeof distances;
+    CHECK_OK(bhr_set_occluder(context, &image));
+    compare(THREE, BUFFERS, BHR_IMAGE_TRANSPARENT, 0, "an occluder");
+    compare(RAYS_ONLY, IMAGES, 0, 0, "an occluder");
+    CHECK_OK(bhr_set_occluder(context, NULL));
+}
+
+/* Many frames into one set of targets, that go on their way without being waited for. */
+static void many(void) {
+    BhrTarget *targets[3];
+    BhrOutput  outputs[3];
+    BhrSemaphore *done;
+    BhrFrameStats first = {.struct_size = sizeof first}, last = {.struct_size = sizeof last};
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
+    for (size_t at = 0; at < 3; at++) {
+        targets[at] = target_of(kinds[at].format, BHR_TARGET_IMAGE, 0, 0);
+        outputs[at] = output_of(at, targets[at]);
+    }
+    for (uint64_t frame = 1; frame <= 60; frame++) {
+        BhrSemaphoreValue wait = {done, frame - 1}, signal = {done, frame};
+        BhrSync sync = {.struct_size = sizeof sync, .wait_count = frame > 1, .signal_count = 1, .waits = &wait};
+        sync.signals = &signal;
+        CHECK_OK(bhr_set_spin(context, frame % 3 ? 0 : 0.5));
+        CHECK_OK(bhr_render_outputs_shared(context, outputs, sizeof *outputs, 1 + frame % 3, &sync, NULL));
+        if (frame == 20)
+            CHECK_OK(bhr_semaphore_wait(done, 20, UINT64_MAX)), bhr_frame_stats(context, &first);
+    }
+    CHECK_OK(bhr_semaphore_wait(done, 60, UINT64_MAX));
+    CHECK_OK(bhr_frame_stats(context, &last));
+    /* As many staging buffers, of a few bytes each, as frames are on their way. */
+    CHECK(last.device_bytes <= first.device_bytes + 8192, "device memory: %llu bytes early, %llu late",
+          (unsigned long long)first.device_bytes, (unsigned long long)last.device_bytes);
+    for (size_t at = 0; at < 3; at++)
+        bhr_target_destroy(targets[at]);
+    bhr_semaphore_destroy(done);
+    CHECK_OK(bhr_set_spin(context, 0));
+}
+
+static void refused(BhrBackend backend) {
+    BhrTarget *depth = target_of(BHR_FORMAT_R32F, BHR_TARGET_BUFFER, 0, 0);
+    BhrTarget *sky = target_of(BHR_FORMAT_RGBA32F, BHR_TARGET_IMAGE, 0, 0);
+    BhrTarget *light = target_of(BHR_FORMAT_RGBA8_SRGB, BHR_TARGET_IMAGE, 0, 0);
+    BhrOutput  list[9], one;
+    BhrImage   image;
+    BhrJob    *job = (BhrJob *)&one;
+    BhrSync    sync = {.struct_size = sizeof sync, .reserved = 1};
+    Watch      watch;
+    watch_begin(&watch, context);
+    for (size_t i = 0; i < COUNT_OF(list); i++)
+        list[i] = output_of(0, depth);
+#define SHARED(outputs, count) bhr_render_outputs_shared(context, outputs, sizeof(BhrOutput), count, NULL, &job)
+#define REFUSED(status, words, call) CHECK_REFUSED(&watch, status, words, call), CHECK(job == NULL, "not cleared")
+    CHECK_FAILS(BAD, "context", bhr_render_outputs_shared(NULL, list, sizeof *list, 1, NULL, NULL));
+    CHECK_FAILS(BAD, "context", bhr_render_outputs_shared_async(NULL, list, sizeof *list, 1, NULL, NULL));
+    REFUSED(BAD, "outputs", SHARED(NULL, 1));
+    REFUSED(BAD, "output count is 0", SHARED(list, 0));
+    REFUSED(BAD, "9", SHARED(list, 9));
+    REFUSED(BAD, "size", bhr_render_outputs_shared(context, list, 8, 1, NULL, &job));
+    REFUSED(BAD, "sync", bhr_render_outputs_shared(context, list, sizeof *list, 1, &sync, &job));
+    REFUSED(BAD, "outputs[0] target", (one = output_of(0, NULL), SHARED(&one, 1)));
+    REFUSED(BAD, "that of another", SHARED(list, 2));
+    REFUSED(BAD, "takes RGBA32F", (one = output_of(2, depth), SHARED(&one, 1)));
+    REFUSED(BAD, "takes R32F", (one = output_of(0, sky), SHARED(&one, 1)));
+    REFUSED(BAD, "R32F holds views", (one = output_of(1, depth), SHARED(&one, 1)));
+    REFUSED(BAD, "frame of its own", (one = output_of(6, depth), one.index = BHR_VIEW_STEPS, SHARED(&one, 1)));
+    REFUSED(BAD, "second LIGHT", (list[0] = output_of(1, light), list[1] = output_of(1, sky), SHARED(list, 2)));
+    REFUSED(BAD, "kind", (one = output_of(0, depth), one.kind = 99, SHARED(&one, 1)));
+    REFUSED(BAD, "index", (one = output_of(0, depth), one.index = 1, SHARED(&one, 1)));
+    REFUSED(BAD, "reserved", (one = output_of(0, depth), one.reserved = 1, SHARED(&one, 1)));
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    one = output_of(0, depth);
+    one.image = &image;
+    REFUSED(BAD, "image is not NULL", SHARED(&one, 1));
+    one.image = NULL;
+    REFUSED(BAD, "bhr_render_outputs_shared", bhr_render_outputs(context, &one, sizeof one, 1, &job));
+    REFUSED(BAD, "bhr_render_outputs_shared", bhr_save_outputs(context, &one, sizeof one, 1, "none.exr"));
+    BhrTargetOptions options;
+    BhrTarget       *small;
+    CHECK_OK(bhr_target_options_init(&options, sizeof options));
+    options.kind = BHR_TARGET_BUFFER, options.format = BHR_FORMAT_R32F, options.width = WIDTH, options.height = 7;
+    CHECK_OK(bhr_target_create(context, &options, &small));
+    list[0] = output_of(2, sky), list[1] = output_of(0, small);
+    REFUSED(BAD, "one size", SHARED(list, 2));
+    bhr_target_destroy(small);
+    BhrRegion region = {.struct_size = sizeof region, .full_width = 50, .full_height = 50};
+    CHECK_OK(bhr_set_region(context, &region));
+    CHECK_FAILS(BAD, "", (one = output_of(0, depth), SHARED(&one, 1)));
+    CHECK_OK(bhr_set_region(context, NULL));
+    BhrContext *other = check_context(backend);
+    CHECK_FAILS(BAD, "another context", bhr_render_outputs_shared(other, &one, sizeof one, 1, NULL, NULL));
+    bhr_context_destroy(other);
+    BhrSemaphore     *binary;
+    BhrSemaphoreValue use = {NULL, 0};
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_BINARY, 0, &binary));
+    use.semaphore = binary;
+    sync.reserved = 0, sync.signal_count = 1, sync.signals = &use;
+    REFUSED(BAD, "BINARY", bhr_render_outputs_shared_async(context, &one, sizeof one, 1, &sync, &job));
+    CHECK_OK(SHARED(&one, 1));
+    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+    bhr_job_destroy(job);
+    bhr_semaphore_destroy(binary);
+    bhr_target_destroy(depth);
+    bhr_target_destroy(sky);
+    bhr_target_destroy(light);
+}
+
+int main(int argc, char **argv) {
+    BhrBackend        backend = check_begin(argc, argv);
+    int               validate = argc > 2 && strcmp(argv[2], "validate") == 0;
+    BhrContextOptions made = check_options(backend);
+    if (validate)
+        made.flags |= BHR_CONTEXT_VALIDATION, made.log_fn = vk_log;
+    context = check_context_with(&made);
+    BhrInteropInfo info = {.struct_size = sizeof info};
+    CHECK_OK(bhr_interop_info(context, &info));
+    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
+    vk_open_device(&host);
+    set_quality(1, 0);
+    scenes();
+    occluded();
+    many();
+    refused(backend);
+    bhr_context_destroy(context);
+    vk_close(&host);
+    CHECK(vk_complaints == 0, "the validation layers had %d complaints", vk_complaints);
+    return check_end();
+}
