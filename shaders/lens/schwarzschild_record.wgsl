@@ -236,7 +236,7 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
     let c = begin.c;
     let u = (*crossing).u;
     (*crossing).g = lookup.seen.frequency_ratio * redshift_of(c, u);
-    if !FOOTPRINTS {
+    if !FOOTPRINTS && !PLACES {
         return;
     }
     let turn = sincos(phi);
@@ -249,6 +249,9 @@ fn complete(crossing: ptr<function, Crossing>, phi: f32, at: vec3<f32>) {
     if DELAY {
         let integral = column_at(lens_delay, phi / lookup.swept).x;
         (*crossing).place.delay = retardation(c, frame.place.x, begin.state.du, u, du, integral);
+    }
+    if !FOOTPRINTS {
+        return;
     }
     // How far a turn of the ray's plane moves the crossing around the disk, and how far the next pixel moves it.
     let swing = (n.x * lookup.across.y - n.y * lookup.across.x) * turn.x;

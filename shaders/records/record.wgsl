@@ -145,6 +145,8 @@ fn turn_of(record: Record) -> f32 {
 // depth lie between crossings.
 override PLANE: bool = true;
 override FOOTPRINTS: bool = true;
+// Whether their places are needed, without that.
+override PLACES: bool = false;
 override VOLUMES: bool = false;
 // WHOLE_PLANE: the kernel can make next_crossing give crossings where nothing shines, too; it does while whole_plane.
 override WHOLE_PLANE: bool = false;

@@ -115,8 +115,8 @@ fn take_record(id: vec2<u32>, record: Record) {
     var open = 1.0;
     var given = 0u;
     var first: Crossing;
-    // max_crossings bounds what next_crossing gives.
-    for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u) {
+    // max_crossings bounds what next_crossing gives, and outputs.crossings is no more.
+    for (var k = 0u; k < not_inlined(outputs.crossings); k += 1u) {
         var crossing = next_crossing();
         if crossing.u <= 0.0 {
             break;

@@ -17,7 +17,9 @@ struct Outputs {
     count: u32,
     // 0: nobody asks for the sky's direction.
     asks_sky: u32,
-    padding: vec2<u32>,
+    // How many crossings of a ray are asked for: those of the disk's numbers, all for the light that it lets pass.
+    crossings: u32,
+    padding: u32,
 }
 
 @group(2) @binding(0) var<uniform> outputs: Outputs;

@@ -112,6 +112,17 @@ impl RayOutput {
         }
     }
 
+    /// How many crossings of a ray it asks for, from the first on.
+    pub fn crossings(self) -> u32 {
+        use RayOutputKind::{Deflection, Depth, Disk, Order, Position, Redshift, Sky, Transmission};
+        match self.kind {
+            Sky | Deflection => 0,
+            Depth | Redshift | Order => 1,
+            Position | Disk => self.index.saturating_add(1),
+            Transmission => u32::MAX,
+        }
+    }
+
     /// The facts about rays that it asks for.
     fn needs(self) -> Needs {
         use RayOutputKind::{Deflection, Depth, Disk, Position, Sky};

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* timing.c -- frames of 3840 x 2160 in RGBA16F by hand on a GPU, for tests/gpu/interop.sh: how long bhr_render_target
  * holds its thread, how long until its signal, and how long bhr_render_image takes; bytes equal; another device that
- * waits for bhr's timeline on the GPU and signals its own; then many frames, with descriptors and memory counted.
- * Arguments: vulkan [frames]. */
+ * waits for bhr's timeline on the GPU and signals its own; LIGHT alone against LIGHT, DEPTH and SKY in one frame; then
+ * many frames, with descriptors and memory counted. Arguments: vulkan [frames]; with 0 frames only what outputs cost. */
 #include "../c/check.h"
 #include "vk.h"
 
@@ -14,7 +14,9 @@
 #define WIDTH 3840u
 #define HEIGHT 2160u
 #define BYTES ((size_t)WIDTH * HEIGHT * 8)
+#ifndef TIMED
 #define TIMED 40
+#endif
 
 static double now(void) {
     struct timespec time;
@@ -135,6 +137,62 @@ static void timed(BhrContext *context, double spin) {
     vk_close(&host);
 }
 
+/* Medians of frames of the first `count` outputs: on the GPU (0 without its clock), and until the signal; us. */
+static void time_outputs(BhrContext *context, const BhrOutput *outputs, uint32_t count, double medians[2]) {
+    BhrSemaphore *done;
+    double        gpu[TIMED], signal[TIMED];
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
+    for (int i = -3; i < TIMED; i++) {
+        uint64_t          value = (uint64_t)(i + 4);
+        BhrSemaphoreValue one = {done, value};
+        BhrSync           sync = {.struct_size = sizeof sync, .signal_count = 1, .signals = &one};
+        BhrFrameStats     stats = {.struct_size = sizeof stats};
+        BhrJob           *job;
+        double            begin = now();
+        CHECK_OK(bhr_render_outputs_shared(context, outputs, sizeof *outputs, count, &sync, &job));
+        CHECK_OK(bhr_semaphore_wait(done, value, UINT64_MAX));
+        double end = now();
+        CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+        CHECK_OK(bhr_job_stats(job, &stats));
+        bhr_job_destroy(job);
+        if (i >= 0)
+            gpu[i] = (double)stats.gpu_ns * 1e-3, signal[i] = end - begin;
+    }
+    medians[0] = median(gpu), medians[1] = median(signal);
+    bhr_semaphore_destroy(done);
+}
+
+/* LIGHT in RGBA16F alone, and LIGHT, DEPTH and SKY: the latter is to take 1.4 times as long at most. */
+static void outputs_cost(BhrContext *context, double spin, BhrTargetKind kind) {
+    static const BhrFormat formats[] = {BHR_FORMAT_RGBA16F, BHR_FORMAT_R32F, BHR_FORMAT_RGBA32F};
+    static const BhrOutputKind kinds[] = {BHR_OUTPUT_LIGHT, BHR_OUTPUT_DEPTH, BHR_OUTPUT_SKY};
+    BhrTarget                 *targets[3];
+    BhrOutput                  outputs[3];
+    double                     alone[2], three[2];
+    CHECK_OK(bhr_set_spin(context, spin));
+    for (int i = 0; i < 3; i++) {
+        BhrTargetOptions options;
+        CHECK_OK(bhr_target_options_init(&options, sizeof options));
+        options.kind = kind;
+        options.format = formats[i];
+        options.width = WIDTH;
+        options.height = HEIGHT;
+        CHECK_OK(bhr_target_create(context, &options, &targets[i]));
+        CHECK_OK(bhr_output_init(&outputs[i], sizeof outputs[i]));
+        outputs[i].kind = kinds[i];
+        outputs[i].target = targets[i];
+    }
+    time_outputs(context, outputs, 1, alone);
+    time_outputs(context, outputs, 3, three);
+    printf("spin %.1f, %s: LIGHT %.0f us until its signal, with DEPTH and SKY %.0f us: %.2f times as long", spin,
+           kind == BHR_TARGET_IMAGE ? "images" : "buffers", alone[1], three[1], three[1] / alone[1]);
+    if (alone[0] > 0)
+        printf("; on the GPU %.0f and %.0f us: %.2f times", alone[0], three[0], three[0] / alone[0]);
+    printf("\n");
+    for (int i = 0; i < 3; i++)
+        bhr_target_destroy(targets[i]);
+}
+
 static void many(BhrContext *context, uint64_t frames) {
     BhrTargetOptions options;
     BhrTarget       *targets[2];
@@ -179,9 +237,17 @@ int main(int argc, char **argv) {
     BhrContext       *context = NULL;
     if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context)))
         return check_end();
-    timed(context, 0);
-    timed(context, 0.9);
-    many(context, argc > 2 ? strtoull(argv[2], NULL, 10) : 10000);
+    uint64_t frames = argc > 2 ? strtoull(argv[2], NULL, 10) : 10000;
+    if (frames) {
+        timed(context, 0);
+        timed(context, 0.9);
+    }
+    for (int spin = 0; spin < 2; spin++) {
+        outputs_cost(context, spin ? 0.9 : 0, BHR_TARGET_BUFFER);
+        outputs_cost(context, spin ? 0.9 : 0, BHR_TARGET_IMAGE);
+    }
+    if (frames)
+        many(context, frames);
     bhr_context_destroy(context);
     return check_end();
 }

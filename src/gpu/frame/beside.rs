@@ -61,8 +61,13 @@ impl Place {
         let single = output.words() == 1;
         Ok(match &target.resource {
             TargetResource::Buffer(buffer) => {
-                let kind = if single { OutputPlace::Number } else { OutputPlace::Numbers };
-                (Self::Rows(buffer.clone(), FrameRows::of(target, buffer)), kind)
+                let rows = FrameRows::of(target, buffer);
+                let kind = match single {
+                    true => OutputPlace::Number,
+                    false if rows.row_stride.is_multiple_of(16) => OutputPlace::AlignedNumbers,
+                    false => OutputPlace::Numbers,
+                };
+                (Self::Rows(buffer.clone(), rows), kind)
             }
             TargetResource::Written(_, view) => {
                 let kind = if single { OutputPlace::NumberImage } else { OutputPlace::NumbersImage };

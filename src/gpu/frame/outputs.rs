@@ -12,6 +12,7 @@ use super::tiles::TilePlan;
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::readback::PendingReadback;
+use crate::gpu::device::timer::{self, GpuTimer};
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, check_groups, pixel_groups};
 use crate::gpu::kernel::key::KernelKey;
@@ -28,8 +29,9 @@ use std::collections::VecDeque;
 const AHEAD: usize = 2;
 /// Largest side of a tile.
 const MAX_TILE_SIDE: u32 = 4096;
-/// Bytes before the numbers in a tile's staging buffer, which begin with the steps of its rays.
+/// Bytes before the numbers in a tile's staging buffer: the pass's ticks, and the steps of its rays.
 const HEAD: u64 = 256;
+const STEPS: u64 = 64;
 
 /// `Outputs` of shade/outputs.wgsl.
 #[repr(C)]
@@ -43,18 +45,20 @@ pub struct OutputsUniform {
     pub places: [[u32; 4]; MOST_OUTPUTS],
     count: u32,
     asks_sky: u32,
-    padding: [u32; 2],
+    crossings: u32,
+    padding: u32,
 }
 
 #[cfg(test)]
 pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
     crate::gpu::kernel::layout::layout!(OutputsUniform as "Outputs": scene_x, scene_y, scene_z, wanted, places,
-        count, asks_sky, padding)
+        count, asks_sky, crossings, padding)
 }
 
 impl OutputsUniform {
     pub fn new(scene: &Scene, outputs: &[RayOutput]) -> Self {
         use crate::scene::RayOutputKind::{Deflection, Sky};
+        let asked = outputs.iter().map(|output| output.crossings()).max().unwrap_or(0);
         let axes = scene.hole.scene_to_chart().transpose();
         let column = |v: DVec3, w: f64| v.as_vec3().extend(w as f32);
         let mut wanted = [[0; 4]; MOST_OUTPUTS];
@@ -69,7 +73,8 @@ impl OutputsUniform {
             places: [[0; 4]; MOST_OUTPUTS],
             count: outputs.len().min(MOST_OUTPUTS) as u32,
             asks_sky: u32::from(outputs.iter().any(|output| matches!(output.kind, Sky | Deflection))),
-            padding: [0; 2],
+            crossings: asked.min(scene.quality.max_disk_order + 1),
+            padding: 0,
         }
     }
 
@@ -97,6 +102,7 @@ struct OutputTile {
     submission: wgpu::SubmissionIndex,
     copied: PendingReadback,
     counts: bool,
+    tick_bytes: u64,
 }
 
 /// The kernels that run for each tile.
@@ -259,7 +265,9 @@ impl OutputBuffers {
         let mut encoder = device.encoder("outputs")?;
         let steps = self.frame.record_store.reset(source, &fixed.step_sum, &mut encoder);
         {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            let timestamp_writes = self.frame.timer.as_mut().and_then(GpuTimer::next_pass);
+            let timed = wgpu::ComputePassDescriptor { label: Some("outputs"), timestamp_writes };
+            let mut pass = encoder.begin_compute_pass(&timed);
             stages.records.encode(&mut pass, begins, 0, size);
             stages.consumer.dispatch(&mut pass, 0, size);
         }
@@ -267,14 +275,15 @@ impl OutputBuffers {
         let staging = self.frame.readback.staging(device, HEAD + bytes)?;
         let to = staging.buffer()?;
         if let Some(steps) = steps {
-            encoder.copy_buffer_to_buffer(steps, 0, to, 0, STEP_SUM);
+            encoder.copy_buffer_to_buffer(steps, 0, to, STEPS, STEP_SUM);
         }
+        let tick_bytes = self.frame.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, 0));
         encoder.copy_buffer_to_buffer(&sized.packed, 0, to, HEAD, bytes);
         let mut copied = staging.filled(HEAD + bytes);
         let counts = steps.is_some();
         let submission = device.submit(encoder)?;
         copied.request(device)?;
-        Ok(OutputTile { tile, submission, copied, counts })
+        Ok(OutputTile { tile, submission, copied, counts, tick_bytes })
     }
 
     /// After a submission that failed, nobody knows what the buffers hold.
@@ -297,9 +306,13 @@ impl OutputTile {
     ) -> Result<()> {
         let arrived = self.copied.wait(device, &self.submission)?;
         if self.counts {
-            stats.steps +=
-                arrived.part(0..STEP_SUM, |bytes| Ok(u64::from(bytemuck::pod_read_unaligned::<u32>(bytes))))?;
+            stats.steps += arrived
+                .part(STEPS..STEPS + STEP_SUM, |bytes| Ok(u64::from(bytemuck::pod_read_unaligned::<u32>(bytes))))?;
         }
+        let took = arrived.part(0..self.tick_bytes, |bytes| timer::nanoseconds(device, bytes))?;
+        stats.gpu_ns += took;
+        // Beside the picture's: tracing and shading.
+        stats.pass_ns[0] += took;
         let mut begin = HEAD;
         for (index, output) in outputs.iter().enumerate() {
             let row = 4 * output.words() * self.tile.width as usize;

@@ -220,8 +220,8 @@ impl KernelKey {
                 [source.constants(), export].concat()
             }
             Self::Outputs(source, plane, volumes, projection, _) => {
-                // Places of crossings come with their footprints.
-                let shade = vec![("PLANE", flag(plane)), ("FOOTPRINTS", 1.0), ("VOLUMES", flag(volumes))];
+                let places = [("FOOTPRINTS", 0.0), ("PLACES", 1.0)];
+                let shade = [&[("PLANE", flag(plane)), ("VOLUMES", flag(volumes))][..], &places].concat();
                 [source.constants(), shade, vec![projection_constant(projection)]].concat()
             }
             Self::SchwarzschildEnds => vec![("SPINNING", 0.0), ("DELAY", 0.0)],

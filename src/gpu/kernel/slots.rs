@@ -139,7 +139,7 @@ impl RecordSource {
 pub fn output_slots(places: OutputPlaces) -> Vec<Slot> {
     let image = |format| Slot::TextureWrite(TextureKind { format, dimension: wgpu::TextureViewDimension::D2 });
     let of = |place: &OutputPlace| match place {
-        OutputPlace::Number | OutputPlace::Numbers => Slot::Write,
+        OutputPlace::Number | OutputPlace::Numbers | OutputPlace::AlignedNumbers => Slot::Write,
         OutputPlace::NumberImage => image(wgpu::TextureFormat::R32Float),
         OutputPlace::NumbersImage => image(wgpu::TextureFormat::Rgba32Float),
     };

@@ -241,6 +241,8 @@ pub enum OutputPlace {
     /// The rows of a buffer.
     Number,
     Numbers,
+    /// The same, all of which begin at multiples of 16 bytes.
+    AlignedNumbers,
     /// An image of R32F or RGBA32F.
     NumberImage,
     NumbersImage,

@@ -89,6 +89,7 @@ fn put_numbers(places: OutputPlaces) -> String {
         let (name, binding) = (format!("output_{k}"), k + 1);
         let declared = match place {
             OutputPlace::Number | OutputPlace::Numbers => format!("var<storage, read_write> {name}: array<u32>"),
+            OutputPlace::AlignedNumbers => format!("var<storage, read_write> {name}: array<vec4<u32>>"),
             OutputPlace::NumberImage => format!("var {name}: texture_storage_2d<r32float, write>"),
             OutputPlace::NumbersImage => format!("var {name}: texture_storage_2d<rgba32float, write>"),
         };
@@ -97,6 +98,7 @@ fn put_numbers(places: OutputPlaces) -> String {
             OutputPlace::Numbers => format!(
                 "{name}[at] = bits.x; {name}[at + 1u] = bits.y; {name}[at + 2u] = bits.z; {name}[at + 3u] = bits.w;"
             ),
+            OutputPlace::AlignedNumbers => format!("{name}[at >> 2u] = bits;"),
             OutputPlace::NumberImage => {
                 format!("textureStore({name}, place, vec4<f32>(bitcast<f32>(bits.x), 0.0, 0.0, 1.0));")
             }
@@ -149,9 +151,10 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
             (outputs_of, outputs(source, OutputPlaces::default())),
         ]
     });
-    use OutputPlace::{Number, NumberImage, Numbers, NumbersImage};
+    use OutputPlace::{AlignedNumbers, Number, NumberImage, Numbers, NumbersImage};
+    let all = [Number, NumbersImage, Numbers, NumberImage, AlignedNumbers];
     let mut targets = OutputPlaces::default();
-    targets.iter_mut().zip([Number, NumbersImage, Numbers, NumberImage]).for_each(|(to, place)| *to = Some(place));
+    targets.iter_mut().zip(all).for_each(|(to, place)| *to = Some(place));
     let others = [
         ("rays", kernel("geodesic/rays")),
         ("pixels", kernel("traced/each")),
