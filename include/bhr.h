@@ -1879,7 +1879,8 @@ BHR_NODISCARD BhrStatus bhr_save_outputs(const BhrContext *context,
  * is not: things are where light shows them to about M / r of their angle from the hole. Glare (BhrFilm.bloom)
  * goes over things, too. Images of a region take distances for that region. Frames in windows, views and the other
  * outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT, and scenes with volumes
- * or hot spots UNSUPPORTED, when they are rendered. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
+ * or hot spots UNSUPPORTED, when they are rendered; so are, on GPUs, sides of more than a texture may have: 16384, or
+ * less if the adapter has less. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
  * or a distance below 0; OUT_OF_MEMORY; the occluder then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_occluder(BhrContext *context, const BhrImage *distances);

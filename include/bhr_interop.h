@@ -407,6 +407,32 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
                                                         const BhrSync *sync,
                                                         BhrJob **out_job);
 
+/* ---- the host's things, from a target ---- */
+
+/**
+ * bhr_set_occluder with distances on the GPU: target is one of R32F, made, imported or wrapped, that holds them as
+ * bhr_set_occluder describes it, and that frames of LIGHT read anew each time, without a way through host memory.
+ * NULL: none; each of the two functions replaces what the other has set.
+ *
+ * Has no semaphores of its own, because values grow with each frame: a frame reads the target first of all, after
+ * every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
+ * (bhr_render_image and others for host memory) and bhr_prepare read what is there when they begin, so that the host
+ * first waits until it has drawn. An image is then in the target's layout (BhrTargetOptions.layout), and is left in it;
+ * what other devices have written into a target for OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL before,
+ * images with that layout, and acquired again after, if what it holds is to be kept. A plain depth buffer is no such
+ * distance: the host's shader divides by the cosine of the angle to the forward axis.
+ *
+ * Numbers on the GPU cannot be checked: NaN hides nothing, and what is below 0 everything. The target must stay as
+ * long as it is set: after bhr_target_destroy or bhr_context_recover frames are SURFACE_LOST, until another occluder
+ * or NULL is set. It cannot be a frame's target as well. The sides are those of the frames' images, and at most those
+ * of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
+ * Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
+ * another format, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
+ * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. (Backends that share nothing have no targets.) Since
+ * 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *target);
+
 /* ---- the host's Vulkan device ---- */
 
 /** vkGetInstanceProcAddr, cast to this type. */

@@ -48,12 +48,18 @@ pub struct RendererOptions {
     pub compatible_window: Option<NativeWindow>,
 }
 
+/// Where the distances of the host's things are.
+enum HostsThings {
+    Copied(Occluder),
+    Target(Arc<Target>),
+}
+
 /// One scene, one tracer.
 pub struct Renderer {
     /// The scene that the next frame shows. A frame works on the scene as it is when the frame is asked for.
     pub scene: Scene,
     /// The host's things before the camera, in images of their size; LIGHT only.
-    pub occluder: Option<Occluder>,
+    occluder: Option<HostsThings>,
     options: RendererOptions,
     adapter: AdapterInfo,
     runs_on: RunsOn,
@@ -391,7 +397,23 @@ impl Renderer {
 
     /// The scene with the occluder. Errors: as `Scene::behind`.
     fn behind(&self, region: &Region, size: [u32; 2]) -> Result<Cow<'_, Scene>> {
-        self.scene.behind(self.occluder.as_ref(), size, region)
+        let on_device;
+        let occluder = match &self.occluder {
+            None => None,
+            Some(HostsThings::Copied(occluder)) => Some(occluder),
+            // Views and frames without LIGHT do not ask for it.
+            Some(HostsThings::Target(_)) if self.scene.view != View::Light => None,
+            Some(HostsThings::Target(target)) => {
+                on_device = self.occluder_of(target)?;
+                Some(&on_device)
+            }
+        };
+        self.scene.behind(occluder, size, region)
+    }
+
+    /// Sets the host's things; `None`: there are none.
+    pub fn set_occluder(&mut self, occluder: Option<Occluder>) {
+        self.occluder = occluder.map(HostsThings::Copied);
     }
 
     /// Prepares frames in windows of `size` only. Errors: as [`Self::render`].

@@ -35,6 +35,7 @@ pub mod film;
 pub mod hole;
 pub mod image;
 pub mod interop_info;
+pub mod interop_occluder;
 pub mod interop_render;
 pub mod interop_semaphore;
 pub mod interop_target;

@@ -20,17 +20,18 @@ use crate::scene::Occluder;
 /// is not: things are where light shows them to about M / r of their angle from the hole. Glare (BhrFilm.bloom)
 /// goes over things, too. Images of a region take distances for that region. Frames in windows, views and the other
 /// outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT, and scenes with volumes
-/// or hot spots UNSUPPORTED, when they are rendered. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
+/// or hot spots UNSUPPORTED, when they are rendered; so are, on GPUs, sides of more than a texture may have: 16384, or
+/// less if the adapter has less. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
 /// or a distance below 0; OUT_OF_MEMORY; the occluder then stays as it was. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_occluder(context: *mut BhrContext, distances: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         on_context("bhr_set_occluder", context, |state| {
-            state.renderer.occluder = match distances.is_null() {
+            state.renderer.set_occluder(match distances.is_null() {
                 true => None,
                 false => Some(Occluder::new(&image::read(distances, "distances")?.pixels.as_image_ref())?),
-            };
+            });
             Ok(())
         })
     }

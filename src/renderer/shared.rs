@@ -2,7 +2,7 @@
 //! Frames of a renderer that stay on the GPU: its targets and semaphores, and renderers on a host's device. Knows
 //! nothing of C.
 
-use super::{Renderer, RendererOptions};
+use super::{HostsThings, Renderer, RendererOptions};
 use crate::error::{Error, Result};
 use crate::gpu::{
     self, AdapterIds, Device, HostVulkan, ReleaseGuard, SemaphoreKind, SemaphoreOrigin, Sharing, TargetOrigin,
@@ -11,7 +11,7 @@ use crate::gpu::{
 use crate::image::PixelFormat;
 use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
 use crate::job::{Job, JobRequest, JobTarget, SharedFrame, Worker};
-use crate::scene::{MOST_OUTPUTS, Output, Region};
+use crate::scene::{Distances, MOST_OUTPUTS, Occluder, Output, Region};
 use crate::tracer::FrameRequest;
 use crate::tracers::{RunsOn, Tracer};
 use std::sync::Arc;
@@ -99,11 +99,45 @@ impl Renderer {
     ) -> Result<Job> {
         self.check_device()?;
         let device = self.gpu()?.clone();
+        self.check_is_not_occluder(target)?;
         let shape = *target.shape();
         let light = Some(target.on(&device)?);
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
         self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), sync }, submits)
+    }
+
+    /// Sets a target whose pixels are the distances of the host's things, read by each frame when it begins. Errors:
+    /// UNSUPPORTED, on tracers without targets and for an image that cannot be copied; INVALID_ARGUMENT for another
+    /// format than R32F, or a target of another renderer; SURFACE_LOST; the occluder then stays as it was.
+    pub fn set_occluder_target(&mut self, target: &Arc<Target>) -> Result<()> {
+        self.check_device()?;
+        let format = target.shape().format;
+        if format != PixelFormat::R32F {
+            return Err(Error::argument(format!("target format is {format}; an occluder's is R32F")));
+        }
+        target.on(self.gpu()?)?.check_is_read()?;
+        self.occluder = Some(HostsThings::Target(target.clone()));
+        Ok(())
+    }
+
+    /// The distances in a target. Errors: as `Target::on`.
+    pub(super) fn occluder_of(&self, target: &Arc<Target>) -> Result<Occluder> {
+        let on_device = target.on(self.gpu()?).map_err(|error| {
+            Error::new(error.kind, format!("the occluder's {}", error.message.trim_start_matches("the ")))
+        })?;
+        let [width, height] = target.shape().size;
+        Ok(Occluder { width, height, distances: Distances::OnDevice(on_device), origin: [0, 0] })
+    }
+
+    /// Errors: INVALID_ARGUMENT for the target that holds the distances of the host's things.
+    fn check_is_not_occluder(&self, target: &Arc<Target>) -> Result<()> {
+        match &self.occluder {
+            Some(HostsThings::Target(occluder)) if Arc::ptr_eq(occluder, target) => {
+                Err(Error::argument("target is the occluder's, which frames read; it cannot be written as well"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Renders outputs of the scene as it is now into targets, as [`Self::render_target`] does a picture. Errors: as
@@ -137,6 +171,7 @@ impl Renderer {
             if outputs.iter().take(index).any(|(_, other)| Arc::ptr_eq(other, target)) {
                 return Err(Error::argument(format!("outputs[{index}] target is that of another output")));
             }
+            self.check_is_not_occluder(target)?;
             let given = target.shape().format;
             if let Some(wanted) = output.format().filter(|wanted| *wanted != given) {
                 return Err(Error::argument(format!(

@@ -36,7 +36,7 @@ pub use film::{ColourMap, Film, ToneMap};
 pub use frame::Region;
 pub use hole::Hole;
 pub use lensing::{KerrThreshold, Lensing};
-pub use occluder::Occluder;
+pub use occluder::{Distances, Occluder};
 pub use output::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind};
 pub use preset::{Preset, PresetMatter};
 pub use quality::{LensTables, Method, Quality, VolumeResolution};

@@ -8,16 +8,26 @@ use crate::emit::Crossing;
 use crate::error::{Error, Number, Result};
 use crate::image::{ImageRef, PixelFormat};
 use glam::DVec3;
+use std::any::Any;
 use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Distances along the look directions of a frame's pixels, row by row from the top left, in scene lengths; infinity
-/// where there is nothing. (Compared by identity: it never changes.)
+/// where there is nothing.
+#[derive(Clone)]
+pub enum Distances {
+    /// Compared by identity: they never change.
+    Copied(Arc<Vec<f32>>),
+    /// A picture on a tracer's device, which that tracer alone knows and reads anew for each frame.
+    OnDevice(Arc<dyn Any + Send + Sync>),
+}
+
+/// The host's things, as large as the frame's image.
 #[derive(Clone, Debug)]
 pub struct Occluder {
     pub width: u32,
     pub height: u32,
-    pub distances: Arc<Vec<f32>>,
+    pub distances: Distances,
     /// The place of the first pixel in the full frame.
     pub origin: [u32; 2],
 }
@@ -29,6 +39,15 @@ pub struct Shown {
     farthest: f64,
     /// The ray ends there: the occluder is nearer than the ray comes to the hole.
     pub ends: bool,
+}
+
+impl std::fmt::Debug for Distances {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Copied(_) => "Copied",
+            Self::OnDevice(_) => "OnDevice",
+        })
+    }
 }
 
 impl Occluder {
@@ -52,17 +71,18 @@ impl Occluder {
                 distances.push(distance);
             }
         }
-        Ok(Self { width, height, distances: Arc::new(distances), origin: [0, 0] })
+        Ok(Self { width, height, distances: Distances::Copied(Arc::new(distances)), origin: [0, 0] })
     }
 
     /// The distance at a position of the full frame, scene lengths: that of the pixel there, or of the one nearest to
-    /// it.
+    /// it; infinity where only the device knows it.
     pub fn at(&self, x: f64, y: f64) -> f64 {
         let within =
             |at: f64, begin: u32, size: u32| (at - f64::from(begin)).clamp(0.0, f64::from(size) - 1.0) as usize;
         let [column, row] =
             [within(x.floor(), self.origin[0], self.width), within(y.floor(), self.origin[1], self.height)];
-        self.distances.get(row * self.width as usize + column).map_or(f64::INFINITY, |distance| (*distance).into())
+        let Distances::Copied(distances) = &self.distances else { return f64::INFINITY };
+        distances.get(row * self.width as usize + column).map_or(f64::INFINITY, |distance| (*distance).into())
     }
 }
 

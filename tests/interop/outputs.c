@@ -227,6 +227,121 @@ static void occluded(void) {
     CHECK_OK(bhr_set_occluder(context, NULL));
 }
 
+/* Writes `pixels` into a picture of the host's, which bhr is to read. */
+static void fill(const VkPicture *picture, const float *pixels, size_t stride) {
+    static unsigned char rows[2 * MOST];
+    memset(rows, 0xff, sizeof rows);
+    for (uint32_t y = 0; y < HEIGHT; y++)
+        memcpy(rows + y * stride, pixels + (size_t)y * WIDTH, WIDTH * sizeof *pixels);
+    vk_write(&host, picture, VK_QUEUE_FAMILY_EXTERNAL, 4, stride, stride * (HEIGHT - 1) + WIDTH * sizeof *pixels, rows);
+}
+
+/* The host's things on the GPU: pictures are those with the same distances from host memory, which change from frame to
+ * frame. `stride` 0: an image. */
+static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memory) {
+    static float   distances[WIDTH * HEIGHT], in_memory[WIDTH * HEIGHT * 4], from_gpu[WIDTH * HEIGHT * 4];
+    uint64_t       row = WIDTH * 4, step = stride ? stride : row;
+    uint64_t       bytes = step * (HEIGHT - 1) + row;
+    BhrTarget     *target = NULL, *light = target_of(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0, BHR_IMAGE_TRANSPARENT);
+    VkPicture      picture, seen_light = imported(light, 0);
+    BhrImage       image, given;
+    unsigned char *expected_light = expected[1];
+    if (hosts_memory) {
+        BhrTargetOptions options;
+        BhrHandle        handle = {BHR_HANDLE_OPAQUE_FD, -1, NULL};
+        CHECK_OK(bhr_target_options_init(&options, sizeof options));
+        options.kind = kind;
+        options.format = BHR_FORMAT_R32F;
+        options.width = WIDTH;
+        options.height = HEIGHT;
+        options.row_stride = stride;
+        picture = kind == BHR_TARGET_IMAGE ? vk_make_image(&host, VK_FORMAT_R32_SFLOAT, WIDTH, HEIGHT,
+                                                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                                           &handle.fd)
+                                           : vk_make_buffer(&host, bytes, &handle.fd);
+        CHECK_OK(bhr_target_import(context, &options, &picture.info, &handle, &target));
+    } else {
+        target = target_of(BHR_FORMAT_R32F, kind, stride, 0);
+        picture = imported(target, bytes);
+    }
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    image.width = WIDTH;
+    image.height = HEIGHT;
+    image.flags = BHR_IMAGE_TRANSPARENT;
+    given = image;
+    given.format = BHR_FORMAT_R32F;
+    given.flags = 0;
+    given.pixels = distances;
+    given.byte_size = sizeof distances;
+    for (int frame = 0; frame < 4; frame++) {
+        for (uint32_t y = 0; y < HEIGHT; y++)
+            for (uint32_t x = 0; x < WIDTH; x++)
+                distances[y * WIDTH + x] = (x * 3 + y + 40 * (uint32_t)frame) % 97 < 50 ? 20.0f + (float)(x % 16) : INFINITY;
+        image.format = BHR_FORMAT_RGBA32F;
+        image.pixels = in_memory;
+        image.byte_size = sizeof in_memory;
+        CHECK_OK(bhr_set_occluder(context, &given));
+        CHECK_OK(bhr_render_image(context, &image));
+        image.format = BHR_FORMAT_RGBA16F;
+        image.pixels = expected_light;
+        image.byte_size = MOST;
+        CHECK_OK(bhr_render_image(context, &image));
+        fill(&picture, distances, step);
+        CHECK_OK(bhr_set_occluder_target(context, target));
+        image.format = BHR_FORMAT_RGBA32F;
+        image.pixels = from_gpu;
+        image.byte_size = sizeof from_gpu;
+        CHECK_OK(bhr_render_image(context, &image));
+        double apart = vk_apart(BHR_FORMAT_RGBA32F, from_gpu, in_memory, sizeof in_memory);
+        CHECK(apart <= vk_most_apart(context, BHR_FORMAT_RGBA32F), "kind %d, stride %u, frame %d: %g apart", kind,
+              (unsigned)stride, frame, apart);
+        BhrOutput output = output_of(1, light);
+        BhrJob   *job;
+        fill(&picture, distances, step);
+        CHECK_OK(frame % 2 ? bhr_render_outputs_shared_async(context, &output, sizeof output, 1, NULL, &job)
+                           : bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, &job));
+        CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+        bhr_job_destroy(job);
+        vk_read(&host, &seen_light, VK_QUEUE_FAMILY_EXTERNAL, 8, 0, NULL, seen);
+        apart = vk_apart(BHR_FORMAT_RGBA16F, seen, expected_light, WIDTH * HEIGHT * 8);
+        CHECK(apart <= vk_most_apart(context, BHR_FORMAT_RGBA16F), "into a target: %g apart", apart);
+    }
+    /* It is set, and goes: frames say so until another is set. */
+    fill(&picture, distances, step);
+    BhrOutput output = output_of(0, target);
+    CHECK_FAILS(BAD, "occluder", bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL));
+    CHECK_FAILS(BAD, "occluder", bhr_render_target(context, target, NULL, NULL));
+    bhr_target_destroy(target);
+    CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "occluder", bhr_render_image(context, &image));
+    CHECK_OK(bhr_set_occluder_target(context, NULL));
+    CHECK_OK(bhr_render_image(context, &image));
+    CHECK(memcmp(from_gpu, in_memory, sizeof in_memory) != 0, "the occluder is still there");
+    bhr_target_destroy(light);
+    vk_drop(&host, &picture);
+    vk_drop(&host, &seen_light);
+}
+
+static void occluder_refused(BhrBackend backend) {
+    BhrTarget  *colours = target_of(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0, 0);
+    BhrTarget  *depth = target_of(BHR_FORMAT_R32F, BHR_TARGET_BUFFER, 0, 0);
+    BhrContext *other = check_context(backend);
+    BhrImage    image;
+    Watch       watch;
+    watch_begin(&watch, context);
+    CHECK_FAILS(BAD, "context", bhr_set_occluder_target(NULL, depth));
+    CHECK_REFUSED(&watch, BAD, "R32F", bhr_set_occluder_target(context, colours));
+    CHECK_FAILS(BAD, "another context", bhr_set_occluder_target(other, depth));
+    CHECK_OK(bhr_set_occluder_target(context, depth));
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    image.width = WIDTH, image.height = 4, image.pixels = seen, image.byte_size = sizeof seen;
+    CHECK_FAILS(BAD, "the occluder is", bhr_render_image(context, &image));
+    CHECK_OK(bhr_set_occluder(context, NULL));
+    CHECK_OK(bhr_render_image(context, &image));
+    bhr_context_destroy(other);
+    bhr_target_destroy(colours);
+    bhr_target_destroy(depth);
+}
+
 /* Many frames into one set of targets, that go on their way without being waited for. */
 static void many(void) {
     BhrTarget *targets[3];
@@ -340,6 +455,12 @@ int main(int argc, char **argv) {
     set_quality(1, 0);
     scenes();
     occluded();
+    for (int hosts_memory = 0; hosts_memory < 2; hosts_memory++) {
+        occluder_on_gpu(BHR_TARGET_IMAGE, 0, hosts_memory);
+        occluder_on_gpu(BHR_TARGET_BUFFER, 0, hosts_memory);
+        occluder_on_gpu(BHR_TARGET_BUFFER, WIDTH * 4 + 36, hosts_memory);
+    }
+    occluder_refused(backend);
     many();
     refused(backend);
     bhr_context_destroy(context);

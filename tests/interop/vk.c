@@ -303,37 +303,8 @@ static void acquire(Vk *vk, const VkPicture *picture, uint32_t from) {
                          !is_image, &buffer, is_image, &image);
 }
 
-void vk_read(Vk *vk, const VkPicture *picture, uint32_t from, uint32_t pixel_bytes, uint64_t bytes, const VkTurn *turn,
-             void *pixels) {
-    if (picture->image)
-        bytes = (uint64_t)picture->info.width * picture->info.height * pixel_bytes;
-    VkMemoryRequirements needs;
-    VkPicture            staging = {.buffer = new_buffer(vk, bytes, 0, &needs)};
-    VkMemoryAllocateInfo allocate = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = needs.size,
-        .memoryTypeIndex = vk_memory_type(vk, needs.memoryTypeBits,
-                                          VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)};
-    VK(vkAllocateMemory(vk->device, &allocate, NULL, &staging.memory));
-    bind(vk, &staging, 0);
-    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    VK(vkResetCommandBuffer(vk->commands, 0));
-    VK(vkBeginCommandBuffer(vk->commands, &begin));
-    acquire(vk, picture, from);
-    if (picture->image) {
-        VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                  .imageExtent = {picture->info.width, picture->info.height, 1}};
-        vkCmdCopyImageToBuffer(vk->commands, picture->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.buffer, 1,
-                               &copy);
-    } else {
-        VkBufferCopy copy = {.size = bytes};
-        vkCmdCopyBuffer(vk->commands, picture->buffer, staging.buffer, 1, &copy);
-    }
-    VkMemoryBarrier to_host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                               .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
-                               .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
-    vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0,
-                         NULL, 0, NULL);
+/* Ends the commands, submits them and waits. */
+static void submit_and_wait(Vk *vk, const VkTurn *turn) {
     VK(vkEndCommandBuffer(vk->commands));
     static const VkTurn  none;
     VkPipelineStageFlags stage = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
@@ -362,10 +333,101 @@ void vk_read(Vk *vk, const VkPicture *picture, uint32_t from, uint32_t pixel_byt
         turn->unlock(NULL);
     VK(vkWaitForFences(vk->device, 1, &fence, VK_TRUE, 120000000000u));
     vkDestroyFence(vk->device, fence, NULL);
+}
+
+/* A buffer that the host's memory is copied to and from. */
+static VkPicture host_visible(Vk *vk, uint64_t bytes) {
+    VkMemoryRequirements needs;
+    VkPicture            staging = {.buffer = new_buffer(vk, bytes, 0, &needs)};
+    VkMemoryAllocateInfo allocate = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+        .allocationSize = needs.size,
+        .memoryTypeIndex = vk_memory_type(vk, needs.memoryTypeBits,
+                                          VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT)};
+    VK(vkAllocateMemory(vk->device, &allocate, NULL, &staging.memory));
+    bind(vk, &staging, 0);
+    return staging;
+}
+
+void vk_read(Vk *vk, const VkPicture *picture, uint32_t from, uint32_t pixel_bytes, uint64_t bytes, const VkTurn *turn,
+             void *pixels) {
+    if (picture->image)
+        bytes = (uint64_t)picture->info.width * picture->info.height * pixel_bytes;
+    VkPicture staging = host_visible(vk, bytes);
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    VK(vkResetCommandBuffer(vk->commands, 0));
+    VK(vkBeginCommandBuffer(vk->commands, &begin));
+    acquire(vk, picture, from);
+    if (picture->image) {
+        VkBufferImageCopy copy = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                  .imageExtent = {picture->info.width, picture->info.height, 1}};
+        vkCmdCopyImageToBuffer(vk->commands, picture->image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, staging.buffer, 1,
+                               &copy);
+    } else {
+        VkBufferCopy copy = {.size = bytes};
+        vkCmdCopyBuffer(vk->commands, picture->buffer, staging.buffer, 1, &copy);
+    }
+    VkMemoryBarrier to_host = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                               .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                               .dstAccessMask = VK_ACCESS_HOST_READ_BIT};
+    vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0,
+                         NULL, 0, NULL);
+    submit_and_wait(vk, turn);
     void *mapped;
     VK(vkMapMemory(vk->device, staging.memory, 0, VK_WHOLE_SIZE, 0, &mapped));
     memcpy(pixels, mapped, (size_t)bytes);
     vkUnmapMemory(vk->device, staging.memory);
+    vk_drop(vk, &staging);
+}
+
+void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_bytes, uint64_t stride, uint64_t bytes,
+              const void *rows) {
+    VkPicture staging = host_visible(vk, bytes);
+    void     *mapped;
+    VK(vkMapMemory(vk->device, staging.memory, 0, VK_WHOLE_SIZE, 0, &mapped));
+    memcpy(mapped, rows, (size_t)bytes);
+    vkUnmapMemory(vk->device, staging.memory);
+    VkCommandBufferBeginInfo begin = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    VK(vkResetCommandBuffer(vk->commands, 0));
+    VK(vkBeginCommandBuffer(vk->commands, &begin));
+    uint32_t own = to == VK_QUEUE_FAMILY_IGNORED ? VK_QUEUE_FAMILY_IGNORED : 0;
+    if (picture->image) {
+        VkImageMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                                        .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                                        .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                                        .newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                                        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                        .image = picture->image,
+                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+        VkBufferImageCopy    copy = {.bufferRowLength = (uint32_t)(stride / pixel_bytes),
+                                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                     .imageExtent = {picture->info.width, picture->info.height, 1}};
+        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL,
+                             0, NULL, 1, &barrier);
+        vkCmdCopyBufferToImage(vk->commands, staging.buffer, picture->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                               &copy);
+        barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.dstAccessMask = 0;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.newLayout = (VkImageLayout)picture->info.layout;
+        barrier.srcQueueFamilyIndex = own;
+        barrier.dstQueueFamilyIndex = to;
+        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL,
+                             0, NULL, 1, &barrier);
+    } else {
+        VkBufferCopy          copy = {.size = bytes};
+        VkBufferMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
+                                         .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                                         .srcQueueFamilyIndex = own,
+                                         .dstQueueFamilyIndex = to,
+                                         .buffer = picture->buffer,
+                                         .size = VK_WHOLE_SIZE};
+        vkCmdCopyBuffer(vk->commands, staging.buffer, picture->buffer, 1, &copy);
+        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL,
+                             1, &barrier, 0, NULL);
+    }
+    submit_and_wait(vk, NULL);
     vk_drop(vk, &staging);
 }
 

@@ -76,6 +76,11 @@ typedef struct VkTurn {
 void vk_read(Vk *vk, const VkPicture *picture, uint32_t from, uint32_t pixel_bytes, uint64_t bytes, const VkTurn *turn,
              void *pixels);
 
+/* Copies rows, `stride` bytes apart, into a picture: `bytes` of them all. The picture is released to the queue family
+ * `to`, an image in the layout of picture->info. */
+void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_bytes, uint64_t stride, uint64_t bytes,
+              const void *rows);
+
 VkSemaphore vk_timeline(Vk *vk);
 /* How far pixels of one of BHR_FORMAT_* are apart: so many codes of 8 bits, units in the last place of half floats, or
  * millionths of floats (of 0.001, where they are smaller). */

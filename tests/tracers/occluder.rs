@@ -54,7 +54,7 @@ fn things_hide_what_lies_behind_them() {
             // Before everything; before the hole and behind the near side of the disk; behind the hole and before the
             // far side of the disk; behind everything.
             for distance in [1.0, eye * 0.75, eye * 1.25, 1e6] {
-                renderer.occluder = Some(occluder(SIZE, |_, _| distance));
+                renderer.set_occluder(Some(occluder(SIZE, |_, _| distance)));
                 let seen = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
                 let mut counts = [0; 3];
                 let mut off = 0;
@@ -75,7 +75,7 @@ fn things_hide_what_lies_behind_them() {
                 }
                 assert!(off <= 20, "{name}, spin {spin}, {tables:?}, {distance}: {off} pixels, {counts:?}");
             }
-            renderer.occluder = None;
+            renderer.set_occluder(None);
         }
     }
 }
@@ -96,9 +96,9 @@ fn the_tracers_agree() {
             scene.disk.as_mut().unwrap().turbulence = turbulence;
             let pictures = [cpu(), gpu()].map(|mut renderer| {
                 renderer.scene = scene.clone();
-                renderer.occluder = Some(occluder(SIZE, shape));
+                renderer.set_occluder(Some(occluder(SIZE, shape)));
                 let made = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, transparent);
-                renderer.occluder = None;
+                renderer.set_occluder(None);
                 made
             });
             let off = differing(&pictures[0], &pictures[1]);
@@ -115,13 +115,13 @@ fn nothing_else_changes() {
         renderer.scene = scene(0.0, LensTables::Always);
         renderer.scene.disk.as_mut().unwrap().opacity = 1.0;
         let plain = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
-        renderer.occluder = Some(occluder(SIZE, |_, _| f32::INFINITY));
+        renderer.set_occluder(Some(occluder(SIZE, |_, _| f32::INFINITY)));
         let same = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
         assert!(differing(&plain, &same) < 10, "{name}: {}", differing(&plain, &same));
         let shape = |x: u32, y: u32| if (x / 9 + y / 11).is_multiple_of(2) { 50.0 } else { f32::INFINITY };
-        renderer.occluder = Some(occluder(SIZE, shape));
+        renderer.set_occluder(Some(occluder(SIZE, shape)));
         let whole = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
-        renderer.occluder = Some(occluder([50, 20], |x, y| shape(x + 30, y + 25)));
+        renderer.set_occluder(Some(occluder([50, 20], |x, y| shape(x + 30, y + 25))));
         let region = Region { full_width: SIZE[0], full_height: SIZE[1], x: 30, y: 25 };
         let part = picture(&mut renderer, PixelFormat::Rgba8Srgb, [50, 20], Some(region), true);
         for (y, row) in part.chunks_exact(200).enumerate() {
@@ -130,6 +130,6 @@ fn nothing_else_changes() {
         }
         renderer.scene.view = View::Order;
         picture(&mut renderer, PixelFormat::R32F, SIZE, None, false);
-        renderer.occluder = None;
+        renderer.set_occluder(None);
     }
 }

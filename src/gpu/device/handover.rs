@@ -13,6 +13,12 @@ use std::sync::Arc;
 #[cfg(not(target_vendor = "apple"))]
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
+/// A target that a frame reads: its rows are copied into a buffer of bhr's, whose rows may be further apart.
+pub struct TargetRead {
+    pub target: Arc<GpuTarget>,
+    pub staged: Arc<GpuTarget>,
+}
+
 /// The part of a frame's handover that goes with one submission.
 #[derive(Default)]
 pub struct Handover<'a> {
@@ -20,6 +26,8 @@ pub struct Handover<'a> {
     pub(in crate::gpu) takes: &'a [Arc<GpuTarget>],
     /// Those that it is the last to write.
     pub(in crate::gpu) gives: &'a [Arc<GpuTarget>],
+    /// A target that is read before anything else.
+    pub(in crate::gpu) reads: Option<&'a TargetRead>,
     pub(in crate::gpu) waits: &'a [SemaphoreUse],
     pub(in crate::gpu) signals: &'a [SemaphoreUse],
 }
@@ -45,7 +53,12 @@ impl Device {
         #[cfg(not(target_vendor = "apple"))]
         if let Some(parts) = &self.vulkan {
             use super::vulkan::barrier;
-            let mut encoders = Vec::with_capacity(3);
+            let mut encoders = Vec::with_capacity(4);
+            if let Some(read) = handover.reads {
+                let mut reading = self.encoder("reading a target")?;
+                self.scoped("reading a target", |_| barrier::read(parts, &mut reading, read))?;
+                encoders.push(reading);
+            }
             if !handover.takes.is_empty() {
                 let mut taking = self.encoder("taking targets")?;
                 let mut take = || handover.takes.iter().for_each(|target| barrier::take(parts, &mut taking, target));

@@ -9,7 +9,7 @@ use super::external::{
 };
 use super::semaphores::GpuSemaphore;
 use super::wgpu_device::Device;
-use crate::error::Result;
+use crate::error::{Error, Result};
 #[cfg(target_vendor = "apple")]
 use crate::tracer::Backend;
 use std::sync::Arc;
@@ -48,6 +48,18 @@ impl GpuTarget {
     ) -> Self {
         let bytes = device.counted(memory.allocation_size);
         Self { resource, shape, memory, raw, raw_memory, leaves, bytes }
+    }
+
+    /// Errors: UNSUPPORTED for an image without the use for copies out of it.
+    pub fn check_is_read(&self) -> Result<()> {
+        // VK_IMAGE_USAGE_TRANSFER_SRC_BIT.
+        let usage = self.memory.vk_usage;
+        if self.shape.image && usage & 1 == 0 {
+            return Err(Error::unsupported(format!(
+                "target has vk_usage {usage:#x}; an image that frames read needs TRANSFER_SRC (0x1)"
+            )));
+        }
+        Ok(())
     }
 
     /// The VkImage or VkBuffer.

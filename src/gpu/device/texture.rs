@@ -150,6 +150,11 @@ fn texel_bytes(format: wgpu::TextureFormat) -> u64 {
 }
 
 impl Texture {
+    /// The texture itself, which then lives longer than its count of bytes; for commands under way.
+    pub fn clone_raw(&self) -> wgpu::Texture {
+        self.raw.clone()
+    }
+
     /// Columns and rows, in texels.
     pub fn size(&self) -> [u32; 2] {
         [self.raw.width(), self.raw.height()]

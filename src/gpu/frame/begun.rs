@@ -2,6 +2,7 @@
 //! A frame whose steps are being submitted, and what is known of it meanwhile.
 
 use super::beside::Beside;
+use super::occluder::Fetch;
 use super::rows::FrameRows;
 use super::setup::FrameTarget;
 use super::stages::Stages;
@@ -20,6 +21,8 @@ use std::sync::Arc;
 /// A frame that is prepared and whose steps are being submitted, one after another and before those of any other frame.
 pub struct BegunFrame {
     pub(in crate::gpu) stages: Stages,
+    /// The host's things, which its first submission fetches from a target.
+    pub(in crate::gpu) fetch: Option<Fetch>,
     /// Outputs that are made with it.
     pub(in crate::gpu) beside: Option<Beside>,
     pub(in crate::gpu) request: FrameRequest,
@@ -97,6 +100,7 @@ impl Handed {
     pub fn handover(&self, writes: bool, last: bool) -> Handover<'_> {
         let begins = !self.taken && (writes || last);
         Handover {
+            reads: None,
             takes: if begins { &self.targets } else { &[] },
             gives: if last { &self.targets } else { &[] },
             waits: if begins { &self.sync.waits } else { &[] },
@@ -111,7 +115,7 @@ impl Handed {
     /// The semaphores of a frame that ends before its last step, or before its first.
     pub fn without_frame(&self) -> Handover<'_> {
         let waits: &[SemaphoreUse] = if self.taken { &[] } else { &self.sync.waits };
-        Handover { takes: &[], gives: &[], waits, signals: &self.sync.signals }
+        Handover { takes: &[], gives: &[], reads: None, waits, signals: &self.sync.signals }
     }
 }
 

@@ -11,7 +11,7 @@ pub(in crate::gpu) mod export;
 mod filaments;
 pub(in crate::gpu) mod kernels;
 pub(in crate::gpu) mod matter;
-mod occluder;
+pub(in crate::gpu) mod occluder;
 pub(in crate::gpu) mod outputs;
 pub(in crate::gpu) mod rays;
 pub(in crate::gpu) mod refine;

@@ -177,6 +177,7 @@ impl GpuTracer {
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         setup.uniform.map_sizes = tables.map_sizes();
+        let fetch = tables.occluder().fetch(scene)?;
         let packed = if kind == PixelTarget::Packed && delivery.is_packed() { pixel_bytes } else { 0 };
         let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
@@ -204,6 +205,7 @@ impl GpuTracer {
         }
         Ok(BegunFrame {
             stages,
+            fetch,
             beside,
             request,
             target: kind,

@@ -7,6 +7,7 @@ use super::outputs::OutputBuffers;
 use super::uniforms::PassUniform;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
+use crate::gpu::device::handover::Handover;
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer;
 use crate::gpu::device::timer::GpuTimer;
@@ -121,6 +122,10 @@ impl FrameBuffers {
         if let Some(bloom) = &frame.bloom {
             self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
         }
+        let fetch = frame.fetch.as_ref().filter(|_| begins);
+        if let Some(fetch) = fetch {
+            fetch.encode(&mut encoder);
+        }
         let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
         self.edges.reset(&mut encoder);
         let writes = stages.glare.is_some() || step.develops.is_some();
@@ -189,15 +194,14 @@ impl FrameBuffers {
         if last {
             then(&mut encoder)?;
         }
-        let writes = step.develops.is_some() || outputs.is_some();
-        let submission = match &mut frame.handed {
-            None => device.submit(encoder)?,
-            Some(handed) => {
-                let submission = device.submit_handover(Some(encoder), &handed.handover(writes, last))?;
-                handed.submitted(writes);
-                submission
-            }
-        };
+        // The waits are for what is read, too.
+        let writes = step.develops.is_some() || outputs.is_some() || fetch.is_some();
+        let handover = frame.handed.as_ref().map_or_else(Handover::default, |handed| handed.handover(writes, last));
+        let handover = Handover { reads: fetch.map(|fetch| &fetch.read), ..handover };
+        let submission = device.submit_handover(Some(encoder), &handover)?;
+        if let Some(handed) = &mut frame.handed {
+            handed.submitted(writes);
+        }
         copied.request(device)?;
         frame.submitted += 1;
         if let Some(beside) = &mut frame.beside {

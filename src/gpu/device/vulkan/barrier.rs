@@ -4,6 +4,7 @@
 //! what [`give`] does to a layout, [`take`] undoes before the next frame.
 
 use super::parts::VulkanParts;
+use crate::gpu::device::handover::TargetRead;
 use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use ash::vk;
 use ash::vk::Handle;
@@ -101,6 +102,78 @@ pub(in crate::gpu) fn give(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
             // SAFETY: as above, of the image.
             unsafe {
                 parts.device.cmd_pipeline_barrier(commands, stage, then, Default::default(), &[], &[], &[barrier]);
+            }
+        }
+    });
+}
+
+/// Copies the pixels of a target, which the host has left in its layout, into a buffer of bhr's, and gives the target
+/// back as it was.
+pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, read: &TargetRead) {
+    let TargetRead { target, staged } = read;
+    let pixel_bytes = target.shape.format.bytes_per_pixel() as u64;
+    let [width, height] = target.shape.size;
+    let (any, copies) = (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER);
+    let (ignored, own) = (vk::QUEUE_FAMILY_IGNORED, parts.family);
+    let [theirs, ours] = if target.leaves { [vk::QUEUE_FAMILY_EXTERNAL, own] } else { [ignored; 2] };
+    let buffer = vk::Buffer::from_raw(staged.raw);
+    // The frame before may still copy from the buffer, and the frame to come does.
+    let filled = vk::BufferMemoryBarrier::default()
+        .buffer(buffer)
+        .size(vk::WHOLE_SIZE)
+        .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+        .dst_access_mask(vk::AccessFlags::MEMORY_READ)
+        .src_queue_family_index(ignored)
+        .dst_queue_family_index(ignored);
+    let device = &parts.device;
+    let none = vk::DependencyFlags::empty();
+    record(encoder, |commands| match &target.resource {
+        TargetResource::Buffer(_) => {
+            let raw = vk::Buffer::from_raw(target.raw);
+            let barrier = vk::BufferMemoryBarrier::default().buffer(raw).size(vk::WHOLE_SIZE);
+            let acquired = barrier
+                .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+                .dst_access_mask(vk::AccessFlags::TRANSFER_READ)
+                .src_queue_family_index(theirs)
+                .dst_queue_family_index(ours);
+            let released = barrier.src_queue_family_index(ours).dst_queue_family_index(theirs);
+            let rows = (0..u64::from(height)).map(|y| vk::BufferCopy {
+                src_offset: y * target.shape.row_stride,
+                dst_offset: y * staged.shape.row_stride,
+                size: u64::from(width) * pixel_bytes,
+            });
+            let rows = rows.collect::<Vec<_>>();
+            // SAFETY: both buffers live as long as their targets, and hold the rows; the commands are being recorded.
+            unsafe {
+                device.cmd_pipeline_barrier(commands, any, copies, none, &[], &[acquired], &[]);
+                device.cmd_copy_buffer(commands, raw, buffer, &rows);
+                device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[released, filled], &[]);
+            }
+        }
+        TargetResource::Written(..) | TargetResource::Copied(_) => {
+            let raw = vk::Image::from_raw(target.raw);
+            let left = vk::ImageLayout::from_raw(target.shape.layout);
+            let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+            let barrier = vk::ImageMemoryBarrier::default().image(raw).subresource_range(colour());
+            let acquired = barrier
+                .old_layout(left)
+                .new_layout(source)
+                .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+                .dst_access_mask(vk::AccessFlags::TRANSFER_READ)
+                .src_queue_family_index(theirs)
+                .dst_queue_family_index(ours);
+            let released =
+                barrier.old_layout(source).new_layout(left).src_queue_family_index(ours).dst_queue_family_index(theirs);
+            let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
+            let copy = vk::BufferImageCopy::default()
+                .buffer_row_length((staged.shape.row_stride / pixel_bytes) as u32)
+                .image_subresource(layers)
+                .image_extent(vk::Extent3D { width, height, depth: 1 });
+            // SAFETY: as above, of the image.
+            unsafe {
+                device.cmd_pipeline_barrier(commands, any, copies, none, &[], &[], &[acquired]);
+                device.cmd_copy_image_to_buffer(commands, raw, source, buffer, &[copy]);
+                device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[filled], &[released]);
             }
         }
     });
