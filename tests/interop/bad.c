@@ -60,6 +60,11 @@ static void without_sharing(void) {
     CHECK_FAILS(BHR_ERROR_INVALID_STATE, "host",
                 bhr_semaphore_wrap_vulkan(context, BHR_SEMAPHORE_TIMELINE, 1, &semaphore));
     CHECK_FAILS(BAD, "target", bhr_render_target(context, NULL, NULL, NULL));
+    BhrOutput output;
+    CHECK_OK(bhr_output_init(&output, sizeof output));
+    CHECK_FAILS(BAD, "target", bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL));
+    CHECK_FAILS(BAD, "target", bhr_render_outputs_shared_async(context, &output, sizeof output, 1, NULL, NULL));
+    CHECK_OK(bhr_set_occluder_target(context, NULL));
     CHECK(fcntl(0, F_GETFD) != -1, "the host's descriptor was closed");
 }
 

@@ -41,7 +41,7 @@ impl Device {
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
     ) -> Result<wgpu::SubmissionIndex> {
-        self.submit_all(encoders.into(), waits, signals)
+        self.submit_all(encoders.into(), waits, signals, None)
     }
 
     /// [`Self::submit_handed`] with the commands that take a target over and give it back.
@@ -72,21 +72,24 @@ impl Device {
                 self.scoped("giving targets", |_| give())?;
                 encoders.push(giving);
             }
-            return self.submit_all(encoders, handover.waits, handover.signals);
+            let read = handover.reads.map(|read| read.target.clone());
+            return self.submit_all(encoders, handover.waits, handover.signals, read);
         }
-        self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals)
+        self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals, None)
     }
 
+    /// `read`: a target that raw commands read, which wgpu does not know of, and which is kept until they have run.
     fn submit_all(
         &self,
         encoders: Vec<wgpu::CommandEncoder>,
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
+        read: Option<Arc<GpuTarget>>,
     ) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
         let uploads = self.uploads.take();
         let carried = uploads.is_some();
-        let submitted = self.submit_recorded(queue, uploads.into_iter().chain(encoders), waits, signals);
+        let submitted = self.submit_recorded(queue, uploads.into_iter().chain(encoders), waits, signals, read);
         if submitted.is_err() && carried {
             self.uploads.lose();
         }
@@ -99,6 +102,7 @@ impl Device {
         encoders: impl Iterator<Item = wgpu::CommandEncoder>,
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
+        read: Option<Arc<GpuTarget>>,
     ) -> Result<wgpu::SubmissionIndex> {
         // Mistakes in what was recorded come to light here, before anything is staged.
         let commands =
@@ -118,15 +122,15 @@ impl Device {
             }
             submitted
         };
-        if !waits.is_empty() || !signals.is_empty() {
+        if !waits.is_empty() || !signals.is_empty() || read.is_some() {
             let (submission, waits) = (submitted.clone(), waits.to_vec());
-            self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec() });
-            self.let_go_of_done();
+            self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec(), _read: read });
         }
+        self.let_go_of_done();
         Ok(submitted)
     }
 
-    /// Lets go of the semaphores of submissions that have run.
+    /// Lets go of the semaphores, and of targets that were read, of submissions that have run.
     fn let_go_of_done(&self) {
         let mut done = Vec::new();
         let mut in_use = self.turns.in_use();

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The turns with a queue: bhr's threads take them one at a time, and on a host's device they take the host's lock too.
-//! And the semaphores that submissions use, which are kept until those have run.
+//! And the semaphores that submissions use, and targets that they read, which are kept until those have run.
 
 use super::external::QueueLock;
 use super::semaphores::SemaphoreUse;
+use super::sharing::GpuTarget;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -14,11 +15,12 @@ pub struct QueueTurns {
     in_use: Mutex<VecDeque<InUse>>,
 }
 
-/// The semaphores of a submission that may not have run.
+/// The semaphores of a submission that may not have run, and a target that it reads without wgpu knowing.
 pub struct InUse {
     pub submission: wgpu::SubmissionIndex,
     pub waits: Vec<SemaphoreUse>,
     pub _signals: Vec<SemaphoreUse>,
+    pub _read: Option<Arc<GpuTarget>>,
 }
 
 /// While it lives, no other thread touches the queue.
