@@ -395,27 +395,6 @@ impl Renderer {
         self.tracer.lock().prepare(&scene, &request, window.as_ref(), progress)
     }
 
-    /// The scene with the occluder. Errors: as `Scene::behind`.
-    fn behind(&self, region: &Region, size: [u32; 2]) -> Result<Cow<'_, Scene>> {
-        let on_device;
-        let occluder = match &self.occluder {
-            None => None,
-            Some(HostsThings::Copied(occluder)) => Some(occluder),
-            // Views and frames without LIGHT do not ask for it.
-            Some(HostsThings::Target(_)) if self.scene.view != View::Light => None,
-            Some(HostsThings::Target(target)) => {
-                on_device = self.occluder_of(target)?;
-                Some(&on_device)
-            }
-        };
-        self.scene.behind(occluder, size, region)
-    }
-
-    /// Sets the host's things; `None`: there are none.
-    pub fn set_occluder(&mut self, occluder: Option<Occluder>) {
-        self.occluder = occluder.map(HostsThings::Copied);
-    }
-
     /// Prepares frames in windows of `size` only. Errors: as [`Self::render`].
     pub fn prepare_window(&mut self, size: [u32; 2], progress: &mut Progress<'_>) -> Result<()> {
         let window = frame_request(&self.scene, size, PixelFormat::Rgba8Srgb);

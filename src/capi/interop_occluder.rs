@@ -10,13 +10,13 @@ use super::status::BhrStatus;
 /// bhr_set_occluder describes it, and that frames of LIGHT read anew each time, without a way through host memory.
 /// NULL: none; each of the two functions replaces what the other has set.
 ///
-/// Has no semaphores of its own, because values grow with each frame: a frame reads the target first of all, after
-/// every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
-/// (bhr_render_image and others for host memory) and bhr_prepare read what is there when they begin, so that the host
-/// first waits until it has drawn. An image is then in the target's layout (BhrTargetOptions.layout), and is left in it;
-/// what other devices have written into a target for OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL before,
-/// images with that layout, and acquired again after, if what it holds is to be kept. A plain depth buffer is no such
-/// distance: the host's shader divides by the cosine of the angle to the forward axis.
+/// There are no semaphores of its own, because values grow with each frame: a frame reads the target first of all,
+/// after every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
+/// (bhr_render_image and others for host memory) and bhr_prepare read what is there when they begin, so that the
+/// host first waits until it has drawn. An image is then in the target's layout (BhrTargetOptions.layout), and is
+/// left in it; what other devices have written into a target for OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL
+/// before, images with that layout, and acquired again after, if what it holds is to be kept. A plain depth buffer
+/// is no such distance: the host's shader divides by the cosine of the angle to the forward axis.
 ///
 /// Numbers on the GPU cannot be checked: NaN hides nothing, and what is below 0 everything. The target must stay as
 /// long as it is set: after bhr_target_destroy or bhr_context_recover frames are SURFACE_LOST, until another occluder

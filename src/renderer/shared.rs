@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Frames of a renderer that stay on the GPU: its targets and semaphores, and renderers on a host's device. Knows
+//! Frames of a renderer that stay on the GPU: its targets and semaphores, the host's things before the camera, which
+//! may lie in a target, and renderers on a host's device. Knows
 //! nothing of C.
 
 use super::{HostsThings, Renderer, RendererOptions};
@@ -11,9 +12,10 @@ use crate::gpu::{
 use crate::image::PixelFormat;
 use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
 use crate::job::{Job, JobRequest, JobTarget, SharedFrame, Worker};
-use crate::scene::{Distances, MOST_OUTPUTS, Occluder, Output, Region};
+use crate::scene::{Distances, MOST_OUTPUTS, Occluder, Output, Region, Scene, View};
 use crate::tracer::FrameRequest;
 use crate::tracers::{RunsOn, Tracer};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Semaphores that a frame waits for, and that it signals.
@@ -105,6 +107,27 @@ impl Renderer {
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
         self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), sync }, submits)
+    }
+
+    /// The scene with the occluder. Errors: as `Scene::behind`.
+    pub(super) fn behind(&self, region: &Region, size: [u32; 2]) -> Result<Cow<'_, Scene>> {
+        let on_device;
+        let occluder = match &self.occluder {
+            None => None,
+            Some(HostsThings::Copied(occluder)) => Some(occluder),
+            // Views and frames without LIGHT do not ask for it.
+            Some(HostsThings::Target(_)) if self.scene.view != View::Light => None,
+            Some(HostsThings::Target(target)) => {
+                on_device = self.occluder_of(target)?;
+                Some(&on_device)
+            }
+        };
+        self.scene.behind(occluder, size, region)
+    }
+
+    /// Sets the host's things; `None`: there are none.
+    pub fn set_occluder(&mut self, occluder: Option<Occluder>) {
+        self.occluder = occluder.map(HostsThings::Copied);
     }
 
     /// Sets a target whose pixels are the distances of the host's things, read by each frame when it begins. Errors:

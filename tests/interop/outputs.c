@@ -127,8 +127,9 @@ static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const c
                 seen);
         for (uint32_t y = 0; y < HEIGHT; y++)
             if (memcmp(seen + y * stride, expected[at] + y * row, row) != 0)
-                wrong++, apart = fmax(apart, vk_apart(kinds[at].format, seen + y * stride, expected[at] + y * row, row));
-        CHECK(apart <= vk_most_apart(context, kinds[at].format), "%s, way %d: output %zu differs in %u rows, by up to %g",
+                wrong++, apart = fmax(apart, vk_apart(kinds[at].format, seen + y * stride, expected[at] + y * row,
+                                                      row));
+        CHECK(apart <= vk_most_apart(context, kinds[at].format), "%s, way %d: output %zu differs in %u rows, up to %g",
               what, (int)way, at, wrong, apart);
     }
     if (job) {
@@ -276,7 +277,8 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
     for (int frame = 0; frame < 4; frame++) {
         for (uint32_t y = 0; y < HEIGHT; y++)
             for (uint32_t x = 0; x < WIDTH; x++)
-                distances[y * WIDTH + x] = (x * 3 + y + 40 * (uint32_t)frame) % 97 < 50 ? 20.0f + (float)(x % 16) : INFINITY;
+                distances[y * WIDTH + x] =
+                    (x * 3 + y + 40 * (uint32_t)frame) % 97 < 50 ? 20.0f + (float)(x % 16) : INFINITY;
         image.format = BHR_FORMAT_RGBA32F;
         image.pixels = in_memory;
         image.byte_size = sizeof in_memory;
@@ -311,6 +313,8 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
     BhrOutput output = output_of(0, target);
     CHECK_FAILS(BAD, "occluder", bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL));
     CHECK_FAILS(BAD, "occluder", bhr_render_target(context, target, NULL, NULL));
+    output = output_of(1, light);
+    CHECK_OK(bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL)); /* in flight while it goes */
     bhr_target_destroy(target);
     CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "occluder", bhr_render_image(context, &image));
     CHECK_OK(bhr_set_occluder_target(context, NULL));

@@ -2,7 +2,8 @@
 /* timing.c -- frames of 3840 x 2160 in RGBA16F by hand on a GPU, for tests/gpu/interop.sh: how long bhr_render_target
  * holds its thread, how long until its signal, and how long bhr_render_image takes; bytes equal; another device that
  * waits for bhr's timeline on the GPU and signals its own; LIGHT alone against LIGHT, DEPTH and SKY in one frame; then
- * many frames, with descriptors and memory counted. Arguments: vulkan [frames]; with 0 frames only what outputs cost. */
+ * many frames, with descriptors and memory counted. Arguments: vulkan [frames]; with 0 frames only the cost of outputs.
+ */
 #include "../c/check.h"
 #include "vk.h"
 

@@ -403,8 +403,8 @@ void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_byte
         VkBufferImageCopy    copy = {.bufferRowLength = (uint32_t)(stride / pixel_bytes),
                                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
                                      .imageExtent = {picture->info.width, picture->info.height, 1}};
-        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, NULL,
-                             0, NULL, 1, &barrier);
+        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0,
+                             NULL, 0, NULL, 1, &barrier);
         vkCmdCopyBufferToImage(vk->commands, staging.buffer, picture->image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
                                &copy);
         barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -413,8 +413,8 @@ void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_byte
         barrier.newLayout = (VkImageLayout)picture->info.layout;
         barrier.srcQueueFamilyIndex = own;
         barrier.dstQueueFamilyIndex = to;
-        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL,
-                             0, NULL, 1, &barrier);
+        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
+                             NULL, 0, NULL, 1, &barrier);
     } else {
         VkBufferCopy          copy = {.size = bytes};
         VkBufferMemoryBarrier barrier = {.sType = VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER,
@@ -424,8 +424,8 @@ void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_byte
                                          .buffer = picture->buffer,
                                          .size = VK_WHOLE_SIZE};
         vkCmdCopyBuffer(vk->commands, staging.buffer, picture->buffer, 1, &copy);
-        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL,
-                             1, &barrier, 0, NULL);
+        vkCmdPipelineBarrier(vk->commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0,
+                             NULL, 1, &barrier, 0, NULL);
     }
     submit_and_wait(vk, NULL);
     vk_drop(vk, &staging);

@@ -5,7 +5,6 @@ use super::bloom::BloomBuffers;
 use super::clouds::CloudsUniform;
 use super::refine::EdgeList;
 use super::setup::Setup;
-use super::submission::MOST_PASSES;
 use super::tiles::MAX_BATCH;
 use super::uniforms::{FrameUniform, PassUniform};
 use crate::error::{Error, Result};
@@ -17,7 +16,14 @@ use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::slots::{RADIANCE, TextureKind};
 use crate::gpu::lens::records::{RecordStore, step_sum};
+use crate::tracer::PASSES;
 use wgpu::BufferUsages as Usage;
+
+/// Compute passes of a submission at most: one of each kind, and the outputs', which counts as shading.
+pub const MOST_PASSES: usize = PASSES + 1;
+
+/// Where the pixels begin in a submission's staging buffer, behind ticks and steps.
+pub const PIXELS: u64 = 256;
 
 /// Buffers that frames of one size share; they grow and stay.
 #[derive(Default)]

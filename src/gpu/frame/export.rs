@@ -3,9 +3,9 @@
 
 use super::buffers::Size;
 use super::stages::RecordConsumer;
-use super::submission::pass_of;
 use super::tables::Tables;
 use super::tracer::GpuTracer;
+use super::uniforms::pass_of;
 use crate::allocate::collected;
 use crate::emit::medium::Media;
 use crate::emit::{Crossing, EmissionPoint};

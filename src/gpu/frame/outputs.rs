@@ -6,10 +6,10 @@
 use super::buffers::{CachedUniform, FrameBuffers, Size};
 use super::setup::Setup;
 use super::stages::RecordConsumer;
-use super::submission::pass_of;
 use super::tables::Tables;
 use super::tiles::TilePlan;
 use super::tracer::GpuTracer;
+use super::uniforms::pass_of;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer::{self, GpuTimer};

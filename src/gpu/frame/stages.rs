@@ -3,12 +3,11 @@
 //! them. Knows no submissions.
 
 use super::bloom::BloomStages;
-use super::buffers::{CachedUniform, FrameBuffers};
+use super::buffers::{CachedUniform, FrameBuffers, PIXELS};
 use super::refine::RefineStage;
 use super::rows::{FrameRows, TilePlace};
 use super::setup::{FrameTarget, Setup};
 use super::steps::Step;
-use super::submission::PIXELS;
 use super::tables::Tables;
 use crate::error::{Error, Result};
 use crate::gpu::device::wgpu_device::Device;

@@ -2,9 +2,9 @@
 //! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
 
 use super::begun::{BegunFrame, Delivery, ExtraCommands};
-use super::buffers::FrameBuffers;
+use super::buffers::{FrameBuffers, MOST_PASSES, PIXELS};
 use super::outputs::OutputBuffers;
-use super::uniforms::PassUniform;
+use super::uniforms::{PassUniform, pass_of};
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::handover::Handover;
@@ -15,15 +15,10 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{check_groups, pixel_groups};
 use crate::gpu::kernel::variant::PixelTarget;
 use crate::gpu::lens::records::STEP_SUM;
-use crate::scene::Projection;
-use crate::scene::frame::sample_offset;
-use crate::scene::refine::{CURVE_SAMPLES, EDGE_SAMPLES};
-use crate::tracer::{FrameRequest, FrameStats, PASSES, Tile, TileSink};
+use crate::scene::refine::CURVE_SAMPLES;
+use crate::tracer::{FrameStats, Tile, TileSink};
 use arrayvec::ArrayVec;
 use std::time::Instant;
-
-/// Compute passes of a submission at most: one of each kind, and the outputs', which counts as shading.
-pub const MOST_PASSES: usize = PASSES + 1;
 
 /// Kinds of passes of a submission.
 #[derive(Clone, Copy)]
@@ -57,7 +52,6 @@ pub struct Submission {
 const TICKS: u64 = 0;
 const STEPS: [u64; 2] = [64, 64 + STEP_SUM];
 const STEPS_END: u64 = STEPS[1] + STEP_SUM;
-pub const PIXELS: u64 = 256;
 const _: () = assert!(TICKS + MOST_PASSES as u64 * timer::PASS_BYTES <= STEPS[0]);
 
 /// Pixels are taken in bands of so many bytes. Threads that present to a window of the device wait for one band at
@@ -292,32 +286,6 @@ fn copy_tile(
 fn part(bytes: &[u8], begin: u64, size: u64) -> Result<&[u8]> {
     let found = bytes.get(begin as usize..(begin + size) as usize);
     found.ok_or_else(|| Error::internal("a submission's numbers are missing"))
-}
-
-/// The uniform of a sample (its number, and how many there are), the `slot`th of its submission.
-pub fn pass_of(
-    request: &FrameRequest,
-    tile: Tile,
-    (sample, samples): (u32, u32),
-    projection: Projection,
-    slot: u32,
-    light_origin: [u32; 2],
-) -> PassUniform {
-    let region = request.region;
-    let [dx, dy] = sample_offset(sample, samples, projection);
-    PassUniform {
-        origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
-        size: [tile.width + 2, tile.height + 2],
-        offset: [dx as f32, dy as f32],
-        weight: 1.0 / samples as f32,
-        first: u32::from(sample == 0),
-        slot,
-        refined: EDGE_SAMPLES,
-        light_origin: light_origin.map(|v| v as i32),
-        image_origin: [tile.x, tile.y],
-        pixels_first: 0,
-        pixels_row: 0,
-    }
 }
 
 #[cfg(test)]

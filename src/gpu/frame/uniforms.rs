@@ -14,10 +14,12 @@ use crate::physics::lens::critical::CurveLevel;
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::{horizon_inner, horizon_outer, zamo_omega};
 use crate::physics::trace::Settings;
+use crate::scene::frame::sample_offset;
 use crate::scene::observer::Lens;
-use crate::scene::refine::DiskEdges;
-use crate::scene::{EmissionLaw, Scene};
+use crate::scene::refine::{DiskEdges, EDGE_SAMPLES};
+use crate::scene::{EmissionLaw, Projection, Scene};
 use crate::sky::least_patch;
+use crate::tracer::{FrameRequest, Tile};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec4};
 
@@ -214,5 +216,31 @@ impl FrameUniform {
             matter_delay: emitters.volumes.when.reference_delay as f32,
             matter,
         })
+    }
+}
+
+/// The uniform of a sample (its number, and how many there are), the `slot`th of its submission.
+pub fn pass_of(
+    request: &FrameRequest,
+    tile: Tile,
+    (sample, samples): (u32, u32),
+    projection: Projection,
+    slot: u32,
+    light_origin: [u32; 2],
+) -> PassUniform {
+    let region = request.region;
+    let [dx, dy] = sample_offset(sample, samples, projection);
+    PassUniform {
+        origin: [(region.x + tile.x) as i32 - 1, (region.y + tile.y) as i32 - 1],
+        size: [tile.width + 2, tile.height + 2],
+        offset: [dx as f32, dy as f32],
+        weight: 1.0 / samples as f32,
+        first: u32::from(sample == 0),
+        slot,
+        refined: EDGE_SAMPLES,
+        light_origin: light_origin.map(|v| v as i32),
+        image_origin: [tile.x, tile.y],
+        pixels_first: 0,
+        pixels_row: 0,
     }
 }

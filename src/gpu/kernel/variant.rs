@@ -235,7 +235,7 @@ pub enum RecordSource {
     Kerr { delay: bool, pattern: bool, moving: bool, deferred: bool },
 }
 
-/// What an output of frames is written into on the device: one number a pixel, or four.
+/// The place on the device that an output of frames is written into: one number a pixel, or four.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum OutputPlace {
     /// The rows of a buffer.

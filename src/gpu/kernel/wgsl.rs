@@ -107,10 +107,8 @@ fn put_numbers(places: OutputPlaces) -> String {
         bindings += &format!("@group(2) @binding({binding}) {declared};\n");
         cases += &format!("        case {k}u: {{ {put} }}\n");
     }
-    format!(
-        "{bindings}\nfn put_numbers(k: u32, at: u32, place: vec2<u32>, bits: vec4<u32>) {{\n    switch k {{\n{cases}        \
-         default: {{ }}\n    }}\n}}\n"
-    )
+    let head = "fn put_numbers(k: u32, at: u32, place: vec2<u32>, bits: vec4<u32>) {\n    switch k {\n";
+    format!("{bindings}\n{head}{cases}        default: {{ }}\n    }}\n}}\n")
 }
 
 pub fn develop(film: FilmVariant, glare: bool) -> Result<String> {

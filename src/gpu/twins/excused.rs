@@ -138,6 +138,8 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
     ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
     ("shade/packed_outputs", "put_numbers", HOOK),
+    // As src/gpu/kernel/wgsl.rs writes it.
+    ("shade/outputs", "put_numbers", HOOK),
     ("records/record", "crossing_place crossing_distance", OUTPUTS),
     ("shade/shade", "set_occluder is_occluded", OCCLUDER),
     ("emit/plane", "plane_opacity", OUTPUTS),
