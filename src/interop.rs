@@ -101,6 +101,10 @@ impl Target {
 
     /// Ends it, for a reason: later calls are SURFACE_LOST. Its memory goes when the GPU has done with it.
     pub fn end(&self, reason: &'static str) {
+        let _ = self.on.with(|target, _| {
+            target.end();
+            Ok(())
+        });
         self.on.end(reason);
     }
 }

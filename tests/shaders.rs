@@ -133,6 +133,7 @@ const CONSTANT: Because = Because("it counts to a constant of the shader or of i
 const CROSSINGS: Because = Because("it counts crossings, of which the host allows 16 at most (MAX_DISK_ORDER + 1)");
 const ORDERS: Because = Because("it counts crossings that a table holds, of which the host asks for 16 at most");
 const SAMPLES: Because = Because("it counts a pixel's samples, of which the host asks for 4 or 32");
+const TEXELS: Because = Because("it counts the texels of a row or a column of a sky map, 16384 at most");
 const WORDS: Because = Because("it counts the 32-bit words of a pixel, 4 at most");
 const OUTPUTS: Because = Because("it counts outputs, of which there are 8 at most (MOST_OUTPUTS)");
 const TURBULENCE: Because = Because("it counts bands or generations, 2 at most, or taps, 8 at most");
@@ -253,6 +254,9 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         "for (var k = 0u; k < select(not_inlined(frame.max_crossings), 1u, OPAQUE); k += 1u)",
         CROSSINGS,
     ),
+    ("sky/pyramid", "column_light", "for (var j = first.y; j < last.y; j += 1u)", TEXELS),
+    ("sky/pyramid", "column_light", "for (var i = first.x; i < last.x; i += 1u)", TEXELS),
+    ("sky/pyramid", "make_level", "for (var k = first; k <= last; k += 1)", TEXELS),
     (
         "sky/map",
         "map_light",

@@ -38,6 +38,7 @@ pub mod interop_info;
 pub mod interop_occluder;
 pub mod interop_render;
 pub mod interop_semaphore;
+pub mod interop_sky;
 pub mod interop_target;
 pub mod interop_vulkan;
 pub mod job;

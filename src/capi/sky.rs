@@ -144,6 +144,7 @@ pub unsafe extern "C" fn bhr_set_sky_map(context: *mut BhrContext, equirect: *co
                 true => None,
                 false => Some(Arc::new(SkyMap::new(&image::read(equirect, "equirect")?.pixels.as_image_ref())?)),
             };
+            state.renderer.scene.sky_picture = None;
             Ok(())
         })
     }

@@ -34,6 +34,7 @@ pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};
 pub use frame::begun::{BegunFrame, ExtraCommands};
 pub use frame::setup::FrameTarget;
+pub use frame::sky_target::check_sky;
 pub use frame::submission::Submission;
 pub use frame::tracer::GpuTracer;
 pub use gl_tracer::GlTracer;

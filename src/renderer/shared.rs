@@ -6,17 +6,17 @@
 use super::{HostsThings, Renderer, RendererOptions};
 use crate::error::{Error, Result};
 use crate::gpu::{
-    self, AdapterIds, Device, HostVulkan, ReleaseGuard, SemaphoreKind, SemaphoreOrigin, Sharing, TargetOrigin,
-    TargetShape, shares_nothing,
+    self, AdapterIds, Device, GpuTarget, HostVulkan, ReleaseGuard, SemaphoreKind, SemaphoreOrigin, Sharing,
+    TargetOrigin, TargetShape, shares_nothing,
 };
 use crate::image::PixelFormat;
 use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
 use crate::job::{Job, JobRequest, JobTarget, SharedFrame, Worker};
-use crate::scene::{Distances, MOST_OUTPUTS, Occluder, Output, Region, Scene, View};
+use crate::scene::{Distances, MOST_OUTPUTS, Occluder, OnDevice, Output, Region, Scene, SkyPicture, View};
 use crate::tracer::FrameRequest;
 use crate::tracers::{RunsOn, Tracer};
 use std::borrow::Cow;
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// Semaphores that a frame waits for, and that it signals.
 pub struct HostSync<'a> {
@@ -101,9 +101,10 @@ impl Renderer {
     ) -> Result<Job> {
         self.check_device()?;
         let device = self.gpu()?.clone();
-        self.check_is_not_occluder(target)?;
         let shape = *target.shape();
-        let light = Some(target.on(&device)?);
+        let on_device = target.on(&device)?;
+        self.check_is_not_read(target, &on_device)?;
+        let light = Some(on_device);
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
         self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), sync }, submits)
@@ -144,23 +145,41 @@ impl Renderer {
         Ok(())
     }
 
+    /// Sets a target whose pixels are the sky's map, read by each frame that shows it when the frame begins. Errors:
+    /// INVALID_ARGUMENT for a target of another renderer, format or shape; UNSUPPORTED for one that cannot be copied,
+    /// or is too large for the device; SURFACE_LOST; the map then stays as it was.
+    pub fn set_sky_target(&mut self, target: &Arc<Target>) -> Result<()> {
+        self.check_device()?;
+        let device = self.gpu()?;
+        let on_device = target.on(device)?;
+        on_device.check_is_read()?;
+        gpu::check_sky(device, target.shape())?;
+        let TargetShape { size, format, .. } = *target.shape();
+        // Weak, so that a target ends when its host ends it.
+        let place = OnDevice(Arc::new(Arc::downgrade(&on_device)));
+        self.scene.sky_picture = Some(SkyPicture { size, format, place });
+        self.scene.sky_map = None;
+        Ok(())
+    }
+
     /// The distances in a target. Errors: as `Target::on`.
     pub(super) fn occluder_of(&self, target: &Arc<Target>) -> Result<Occluder> {
         let on_device = target.on(self.gpu()?).map_err(|error| {
             Error::new(error.kind, format!("the occluder's {}", error.message.trim_start_matches("the ")))
         })?;
         let [width, height] = target.shape().size;
-        Ok(Occluder { width, height, distances: Distances::OnDevice(on_device), origin: [0, 0] })
+        Ok(Occluder { width, height, distances: Distances::OnDevice(OnDevice(on_device)), origin: [0, 0] })
     }
 
-    /// Errors: INVALID_ARGUMENT for the target that holds the distances of the host's things.
-    fn check_is_not_occluder(&self, target: &Arc<Target>) -> Result<()> {
-        match &self.occluder {
-            Some(HostsThings::Target(occluder)) if Arc::ptr_eq(occluder, target) => {
-                Err(Error::argument("target is the occluder's, which frames read; it cannot be written as well"))
-            }
-            _ => Ok(()),
-        }
+    /// Errors: INVALID_ARGUMENT for a target that frames read.
+    fn check_is_not_read(&self, target: &Arc<Target>, on_device: &Arc<GpuTarget>) -> Result<()> {
+        let sky = self.scene.sky_picture.as_ref().and_then(|sky| sky.place.0.downcast_ref::<Weak<GpuTarget>>());
+        let read = match &self.occluder {
+            Some(HostsThings::Target(occluder)) if Arc::ptr_eq(occluder, target) => "occluder",
+            _ if sky.is_some_and(|sky| std::ptr::eq(sky.as_ptr(), Arc::as_ptr(on_device))) => "sky",
+            _ => return Ok(()),
+        };
+        Err(Error::argument(format!("target is the {read}'s, which frames read; it cannot be written as well")))
     }
 
     /// Renders outputs of the scene as it is now into targets, as [`Self::render_target`] does a picture. Errors: as
@@ -194,7 +213,7 @@ impl Renderer {
             if outputs.iter().take(index).any(|(_, other)| Arc::ptr_eq(other, target)) {
                 return Err(Error::argument(format!("outputs[{index}] target is that of another output")));
             }
-            self.check_is_not_occluder(target)?;
+            self.check_is_not_read(target, &on)?;
             let given = target.shape().format;
             if let Some(wanted) = output.format().filter(|wanted| *wanted != given) {
                 return Err(Error::argument(format!(

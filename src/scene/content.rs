@@ -5,6 +5,7 @@ use super::camera::Camera;
 use super::film::Film;
 use super::hole::Hole;
 use super::occluder::Occluder;
+use super::on_device::OnDevice;
 use super::quality::Quality;
 use super::sky::Sky;
 use crate::emit::bands::When;
@@ -17,6 +18,7 @@ use crate::emit::turbulence::Turbulence;
 use crate::emit::volume::Volume;
 use crate::emit::volumes::Volumes;
 use crate::emit::{Emitters, Needs};
+use crate::image::PixelFormat;
 use crate::physics::geodesic::{Clock, rain_offset};
 use crate::physics::observer::LocalFrame;
 use crate::sky::{SkyMap, StarIndex};
@@ -80,6 +82,8 @@ pub struct Scene {
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
     pub sky_map: Option<Arc<SkyMap>>,
+    /// The same on the tracer's device, in its place.
+    pub sky_picture: Option<SkyPicture>,
     pub film: Film,
     pub effects: Effects,
     /// Scene time, in scene lengths; turns the disk. It is t, but for a camera at or inside a spin-0 horizon rain time
@@ -96,6 +100,14 @@ pub struct Scene {
     pub given_stars: Option<Arc<StarIndex>>,
 }
 
+/// An equirectangular picture of the sky on the tracer's device.
+#[derive(Clone, Debug)]
+pub struct SkyPicture {
+    pub size: [u32; 2],
+    pub format: PixelFormat,
+    pub place: OnDevice,
+}
+
 impl Default for Scene {
     fn default() -> Self {
         Self {
@@ -107,6 +119,7 @@ impl Default for Scene {
             preset_volume: None,
             sky: Sky::default(),
             sky_map: None,
+            sky_picture: None,
             film: Film::default(),
             effects: Effects(Effects::ALL),
             time: 0.0,

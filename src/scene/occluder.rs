@@ -2,24 +2,22 @@
 //! The host's own things before the camera, as distances, and the part of a ray that they leave. Mirrored by
 //! shaders/shade/shade.wgsl. Knows no pixels' colours.
 
-use super::{Region, Scene, View};
+use super::{OnDevice, Region, Scene, View};
 use crate::allocate::with_room;
 use crate::emit::Crossing;
 use crate::error::{Error, Number, Result};
 use crate::image::{ImageRef, PixelFormat};
 use glam::DVec3;
-use std::any::Any;
 use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Distances along the look directions of a frame's pixels, row by row from the top left, in scene lengths; infinity
 /// where there is nothing.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub enum Distances {
     /// Compared by identity: they never change.
     Copied(Arc<Vec<f32>>),
-    /// A picture on a tracer's device, which that tracer alone knows and reads anew for each frame.
-    OnDevice(Arc<dyn Any + Send + Sync>),
+    OnDevice(OnDevice),
 }
 
 /// The host's things, as large as the frame's image.
@@ -39,15 +37,6 @@ pub struct Shown {
     farthest: f64,
     /// The ray ends there: the occluder is nearer than the ray comes to the hole.
     pub ends: bool,
-}
-
-impl std::fmt::Debug for Distances {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Copied(_) => "Copied",
-            Self::OnDevice(_) => "OnDevice",
-        })
-    }
 }
 
 impl Occluder {

@@ -102,7 +102,7 @@ impl Scene {
             ("flags", flags.into()),
             ("stars_brightness", stars_brightness),
             ("map_brightness", map_brightness),
-            ("has_map", flag(self.sky_map.is_some())),
+            ("has_map", flag(self.sky_map.is_some() || self.sky_picture.is_some())),
         ];
         list.numbers("bhr.sky", numbers);
         list.vector("bhr.sky.orientation", &orientation.to_array());

@@ -248,6 +248,7 @@ mod plain {
                 disk: Some(Disk::plain()),
                 sky: Sky::plain(),
                 sky_map: None,
+                sky_picture: None,
                 film: Film::plain(),
                 effects: Effects(Effects::ALL),
                 time: 0.0,

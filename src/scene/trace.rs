@@ -69,8 +69,21 @@ impl Scene {
 
     /// The host's map, where it is to be seen.
     pub fn shown_map(&self) -> Option<&Arc<SkyMap>> {
-        let shown = self.sky.flags & super::Sky::MAP != 0 && self.sky.map_brightness > 0.0;
-        self.sky_map.as_ref().filter(|_| shown)
+        self.sky_map.as_ref().filter(|_| self.asks_for_map())
+    }
+
+    /// The same on the tracer's device.
+    pub fn shown_picture(&self) -> Option<&super::SkyPicture> {
+        self.sky_picture.as_ref().filter(|_| self.asks_for_map())
+    }
+
+    fn asks_for_map(&self) -> bool {
+        self.sky.flags & super::Sky::MAP != 0 && self.sky.map_brightness > 0.0
+    }
+
+    /// Whether the host's map is to be seen, wherever it is.
+    pub fn shows_map(&self) -> bool {
+        self.shown_map().is_some() || self.shown_picture().is_some()
     }
 
     pub fn shows_grid(&self) -> bool {
@@ -79,7 +92,7 @@ impl Scene {
 
     /// Whether anything is to be seen in the sky.
     pub fn shows_sky(&self) -> bool {
-        self.shows_stars() || self.shows_milky_way() || self.shown_map().is_some() || self.shows_grid()
+        self.shows_stars() || self.shows_milky_way() || self.shows_map() || self.shows_grid()
     }
 
     /// Whether pixels that edges run through are refined: there is an edge to see only where something shines, or where

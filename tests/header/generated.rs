@@ -40,12 +40,13 @@ const SECTIONS: [(&str, &str); 28] = [
 ];
 
 /// The same of include/bhr_interop.h.
-const INTEROP_SECTIONS: [(&str, &str); 6] = [
+const INTEROP_SECTIONS: [(&str, &str); 7] = [
     ("interop_info", "what can be shared"),
     ("interop_target", "targets"),
     ("interop_semaphore", "semaphores"),
     ("interop_render", "rendering into targets"),
     ("interop_occluder", "the host's things, from a target"),
+    ("interop_sky", "the sky, from a target"),
     ("interop_vulkan", "the host's Vulkan device"),
 ];
 

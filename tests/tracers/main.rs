@@ -26,6 +26,7 @@ mod pixels;
 mod random;
 mod rings;
 mod sky;
+mod sky_target;
 mod stars;
 mod structure;
 mod supersampling;

@@ -26,8 +26,8 @@ pub struct Handover<'a> {
     pub(in crate::gpu) takes: &'a [Arc<GpuTarget>],
     /// Those that it is the last to write.
     pub(in crate::gpu) gives: &'a [Arc<GpuTarget>],
-    /// A target that is read before anything else.
-    pub(in crate::gpu) reads: Option<&'a TargetRead>,
+    /// Targets that are read before anything else.
+    pub(in crate::gpu) reads: &'a [&'a TargetRead],
     pub(in crate::gpu) waits: &'a [SemaphoreUse],
     pub(in crate::gpu) signals: &'a [SemaphoreUse],
 }
@@ -41,7 +41,7 @@ impl Device {
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
     ) -> Result<wgpu::SubmissionIndex> {
-        self.submit_all(encoders.into(), waits, signals, None)
+        self.submit_all(encoders.into(), waits, signals, Vec::new())
     }
 
     /// [`Self::submit_handed`] with the commands that take a target over and give it back.
@@ -54,9 +54,10 @@ impl Device {
         if let Some(parts) = &self.vulkan {
             use super::vulkan::barrier;
             let mut encoders = Vec::with_capacity(4);
-            if let Some(read) = handover.reads {
-                let mut reading = self.encoder("reading a target")?;
-                self.scoped("reading a target", |_| barrier::read(parts, &mut reading, read))?;
+            if !handover.reads.is_empty() {
+                let mut reading = self.encoder("reading targets")?;
+                let mut read = || handover.reads.iter().for_each(|read| barrier::read(parts, &mut reading, read));
+                self.scoped("reading targets", |_| read())?;
                 encoders.push(reading);
             }
             if !handover.takes.is_empty() {
@@ -72,19 +73,19 @@ impl Device {
                 self.scoped("giving targets", |_| give())?;
                 encoders.push(giving);
             }
-            let read = handover.reads.map(|read| read.target.clone());
+            let read = handover.reads.iter().map(|read| read.target.clone()).collect();
             return self.submit_all(encoders, handover.waits, handover.signals, read);
         }
-        self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals, None)
+        self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals, Vec::new())
     }
 
-    /// `read`: a target that raw commands read, which wgpu does not know of, and which is kept until they have run.
+    /// `read`: targets that raw commands read, which wgpu does not know of, and which are kept until they have run.
     fn submit_all(
         &self,
         encoders: Vec<wgpu::CommandEncoder>,
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
-        read: Option<Arc<GpuTarget>>,
+        read: Vec<Arc<GpuTarget>>,
     ) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
         let uploads = self.uploads.take();
@@ -102,7 +103,7 @@ impl Device {
         encoders: impl Iterator<Item = wgpu::CommandEncoder>,
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
-        read: Option<Arc<GpuTarget>>,
+        read: Vec<Arc<GpuTarget>>,
     ) -> Result<wgpu::SubmissionIndex> {
         // Mistakes in what was recorded come to light here, before anything is staged.
         let commands =
@@ -122,7 +123,7 @@ impl Device {
             }
             submitted
         };
-        if !waits.is_empty() || !signals.is_empty() || read.is_some() {
+        if !waits.is_empty() || !signals.is_empty() || !read.is_empty() {
             let (submission, waits) = (submitted.clone(), waits.to_vec());
             self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec(), _read: read });
         }

@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 #[cfg(target_vendor = "apple")]
 use crate::tracer::Backend;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The place that frames are written to. wgpu frees it after the last use.
 pub enum TargetResource {
@@ -35,6 +36,8 @@ pub struct GpuTarget {
     /// Whether frames hand it over to another device.
     pub(in crate::gpu) leaves: bool,
     bytes: super::buffer::Counted,
+    /// The host has ended it; a submission may still read it.
+    ended: AtomicBool,
 }
 
 impl GpuTarget {
@@ -47,7 +50,16 @@ impl GpuTarget {
         leaves: bool,
     ) -> Self {
         let bytes = device.counted(memory.allocation_size);
-        Self { resource, shape, memory, raw, raw_memory, leaves, bytes }
+        Self { resource, shape, memory, raw, raw_memory, leaves, bytes, ended: AtomicBool::new(false) }
+    }
+
+    /// No frame may read it from now on.
+    pub fn end(&self) {
+        self.ended.store(true, Ordering::Release);
+    }
+
+    pub fn has_ended(&self) -> bool {
+        self.ended.load(Ordering::Acquire)
     }
 
     /// Errors: UNSUPPORTED for an image without the use for copies out of it.

@@ -15,12 +15,12 @@ pub struct QueueTurns {
     in_use: Mutex<VecDeque<InUse>>,
 }
 
-/// The semaphores of a submission that may not have run, and a target that it reads without wgpu knowing.
+/// The semaphores of a submission that may not have run, and targets that it reads without wgpu knowing.
 pub struct InUse {
     pub submission: wgpu::SubmissionIndex,
     pub waits: Vec<SemaphoreUse>,
     pub _signals: Vec<SemaphoreUse>,
-    pub _read: Option<Arc<GpuTarget>>,
+    pub _read: Vec<Arc<GpuTarget>>,
 }
 
 /// While it lives, no other thread touches the queue.

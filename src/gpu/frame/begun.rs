@@ -5,6 +5,7 @@ use super::beside::Beside;
 use super::occluder::Fetch;
 use super::rows::FrameRows;
 use super::setup::FrameTarget;
+use super::sky_target::SkyFetch;
 use super::stages::Stages;
 use super::steps::{Step, Steps};
 use crate::error::Result;
@@ -21,8 +22,9 @@ use std::sync::Arc;
 /// A frame that is prepared and whose steps are being submitted, one after another and before those of any other frame.
 pub struct BegunFrame {
     pub(in crate::gpu) stages: Stages,
-    /// The host's things, which its first submission fetches from a target.
+    /// The host's things, and its sky, which the first submission fetches from targets.
     pub(in crate::gpu) fetch: Option<Fetch>,
+    pub(in crate::gpu) sky: Option<SkyFetch>,
     /// Outputs that are made with it.
     pub(in crate::gpu) beside: Option<Beside>,
     pub(in crate::gpu) request: FrameRequest,
@@ -100,7 +102,7 @@ impl Handed {
     pub fn handover(&self, writes: bool, last: bool) -> Handover<'_> {
         let begins = !self.taken && (writes || last);
         Handover {
-            reads: None,
+            reads: &[],
             takes: if begins { &self.targets } else { &[] },
             gives: if last { &self.targets } else { &[] },
             waits: if begins { &self.sync.waits } else { &[] },
@@ -115,7 +117,7 @@ impl Handed {
     /// The semaphores of a frame that ends before its last step, or before its first.
     pub fn without_frame(&self) -> Handover<'_> {
         let waits: &[SemaphoreUse] = if self.taken { &[] } else { &self.sync.waits };
-        Handover { takes: &[], gives: &[], reads: None, waits, signals: &self.sync.signals }
+        Handover { takes: &[], gives: &[], reads: &[], waits, signals: &self.sync.signals }
     }
 }
 

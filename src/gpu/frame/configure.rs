@@ -64,7 +64,7 @@ impl GpuTracer {
                 light: scene.view == View::Light,
                 stars: scene.shows_stars() && !request.transparent,
                 milky_way: scene.shows_milky_way() && !request.transparent,
-                map: scene.shown_map().is_some() && !request.transparent,
+                map: scene.shows_map() && !request.transparent,
                 grid: scene.shows_grid() && !request.transparent,
                 map_sampler: self.samples_maps(scene),
                 all_effects: scene.effects.all_light(),

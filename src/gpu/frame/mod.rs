@@ -20,6 +20,7 @@ pub(in crate::gpu) mod rows;
 pub(in crate::gpu) mod settings;
 pub(in crate::gpu) mod setup;
 pub(in crate::gpu) mod sky_maps;
+pub(in crate::gpu) mod sky_target;
 pub(in crate::gpu) mod stages;
 pub(in crate::gpu) mod steps;
 mod streaks;

@@ -93,7 +93,7 @@ impl OccluderTexture {
         let Some(Distances::OnDevice(given)) = scene.occluder.as_ref().map(|occluder| &occluder.distances) else {
             return Ok(None);
         };
-        let target = given.clone().downcast::<GpuTarget>();
+        let target = given.0.clone().downcast::<GpuTarget>();
         let target = target.map_err(|_| Error::internal("an occluder that is no target"))?;
         let staged = self.staged.clone().ok_or_else(|| Error::internal("an occluder without its buffer"))?;
         Ok(Some(Fetch { read: TargetRead { target, staged }, texture: self.texture.clone_raw() }))

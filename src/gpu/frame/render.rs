@@ -16,6 +16,7 @@ use super::tables::Tables;
 use super::tiles::{MEMORY, TilePlan};
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
 use crate::scene::Scene;
 use crate::tracer::{FrameRequest, FrameStats, Progress, TileSink};
@@ -149,7 +150,8 @@ impl GpuTracer {
             .as_ref()
             .map(|scene| self.set_up_beside(scene, request, outputs, Some(&setup).filter(|_| pictured)));
         let beside = beside.transpose()?;
-        let needed = if pictured { setup.kernels() } else { Vec::new() };
+        let mut needed = if pictured { setup.kernels() } else { Vec::new() };
+        needed.extend(scene.shown_picture().map(|_| KernelKey::SkyLevel));
         let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();
         let batch = self.kernels.begin(&[&needed[..], &of_beside].concat());
         let samples = setup.samples;
@@ -190,6 +192,7 @@ impl GpuTracer {
         }
         // Meanwhile the sky and the buffers were made.
         self.kernels.finish(batch)?;
+        let sky = tables.sky_maps().fetch(&self.device, &self.kernels, scene)?;
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let beside = beside.map(|beside| {
             let (buffers, own) = (&mut self.buffers, &mut self.output_buffers);
@@ -206,6 +209,7 @@ impl GpuTracer {
         Ok(BegunFrame {
             stages,
             fetch,
+            sky,
             beside,
             request,
             target: kind,

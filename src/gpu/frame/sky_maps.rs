@@ -2,9 +2,11 @@
 //! The sky maps of a scene as textures: the Milky Way's, made when it is first shown, and the host's, made anew when
 //! it is another.
 
+use super::sky_target::{SkyFetch, SkyTarget};
 use crate::error::{Error, Result};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::slots::SKY_MAP;
 use crate::scene::Scene;
 use crate::sky::{Level, SkyMap};
@@ -14,16 +16,18 @@ use std::sync::{Arc, Weak};
 const BAND_BYTES: usize = 16 << 20;
 
 /// A map on the device.
-struct MapTexture {
-    texture: Texture,
+pub struct MapTexture {
+    pub texture: Texture,
     /// Size of its finest level.
-    finest: [u32; 2],
+    pub finest: [u32; 2],
 }
 
 pub struct SkyMaps {
     milky_way: Option<MapTexture>,
     /// Together with what it was made from.
     map: Option<(Weak<SkyMap>, MapTexture)>,
+    /// In its place: one that lies in a target of the host's.
+    target: Option<SkyTarget>,
     /// A dark texel, bound in the place of what is not shown.
     nothing: MapTexture,
     sampler: wgpu::Sampler,
@@ -47,6 +51,7 @@ impl SkyMaps {
         Ok(Self {
             milky_way: None,
             map: None,
+            target: None,
             nothing: MapTexture { texture, finest: [1, 1] },
             sampler: device.scoped("sky maps", |device| device.create_sampler(&sampler))?,
             for_sampler: false,
@@ -55,7 +60,7 @@ impl SkyMaps {
 
     /// The Milky Way's and the host's.
     fn bound(&self) -> [&MapTexture; 2] {
-        let map = self.map.as_ref().map(|(_, map)| map);
+        let map = self.target.as_ref().map(|target| &target.map).or(self.map.as_ref().map(|(_, map)| map));
         [self.milky_way.as_ref(), map].map(|map| map.unwrap_or(&self.nothing))
     }
 
@@ -79,7 +84,7 @@ impl SkyMaps {
     /// needed next.
     pub fn update(&mut self, device: &Device, scene: &Scene, for_sampler: bool) -> Result<()> {
         if for_sampler != self.for_sampler {
-            (self.milky_way, self.map) = (None, None);
+            (self.milky_way, self.map, self.target) = (None, None, None);
             self.for_sampler = for_sampler;
             device.bindings.clear();
         }
@@ -92,10 +97,28 @@ impl SkyMaps {
             self.map = None;
             device.bindings.clear();
         }
+        let serves =
+            |target: &SkyTarget| scene.sky_picture.as_ref().is_some_and(|picture| target.serves(picture, for_sampler));
+        if self.target.as_ref().is_some_and(|target| !serves(target)) {
+            self.target = None;
+            device.bindings.clear();
+        }
+        if let (Some(picture), None) = (scene.shown_picture(), &self.target) {
+            self.target = Some(SkyTarget::new(device, picture, for_sampler)?);
+        }
         if let (Some(map), None) = (scene.shown_map(), &self.map) {
             self.map = Some((Arc::downgrade(map), upload(device, map, for_sampler)?));
         }
         Ok(())
+    }
+}
+
+impl SkyMaps {
+    /// The work that a frame of the scene begins with; `None`: the host's map is no target, or not shown. Errors: as
+    /// [`SkyTarget::fetch`].
+    pub fn fetch(&self, device: &Device, kernels: &Kernels, scene: &Scene) -> Result<Option<SkyFetch>> {
+        let shown = scene.shown_picture().zip(self.target.as_ref());
+        shown.map(|(picture, target)| target.fetch(device, kernels, picture)).transpose()
     }
 }
 

@@ -116,9 +116,14 @@ impl FrameBuffers {
         if let Some(bloom) = &frame.bloom {
             self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
         }
-        let fetch = frame.fetch.as_ref().filter(|_| begins);
-        if let Some(fetch) = fetch {
+        let mut reads = ArrayVec::<_, 2>::new();
+        if let Some(fetch) = frame.fetch.as_ref().filter(|_| begins) {
             fetch.encode(&mut encoder);
+            reads.push(&fetch.read);
+        }
+        if let Some(sky) = frame.sky.as_ref().filter(|_| begins) {
+            sky.encode(&mut encoder);
+            reads.push(&sky.read);
         }
         let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
         self.edges.reset(&mut encoder);
@@ -189,9 +194,9 @@ impl FrameBuffers {
             then(&mut encoder)?;
         }
         // The waits are for what is read, too.
-        let writes = step.develops.is_some() || outputs.is_some() || fetch.is_some();
+        let writes = step.develops.is_some() || outputs.is_some() || !reads.is_empty();
         let handover = frame.handed.as_ref().map_or_else(Handover::default, |handed| handed.handover(writes, last));
-        let handover = Handover { reads: fetch.map(|fetch| &fetch.read), ..handover };
+        let handover = Handover { reads: &reads, ..handover };
         let submission = device.submit_handover(Some(encoder), &handover)?;
         if let Some(handed) = &mut frame.handed {
             handed.submitted(writes);

@@ -128,6 +128,11 @@ impl Tables {
         &self.occluder
     }
 
+    /// `sky_map` of shade/shade.wgsl, and the Milky Way's.
+    pub fn sky_maps(&self) -> &SkyMaps {
+        &self.sky_maps
+    }
+
     /// The texture and the sampler of emit/filaments.wgsl.
     pub fn filaments(&self) -> &FilamentTexture {
         &self.filaments

@@ -34,6 +34,8 @@ pub enum KernelKey {
     GatherBase,
     Upsample,
     Beam,
+    /// A level of the pyramid of a sky map that lies in a target.
+    SkyLevel,
     Export(RecordSource, bool, Option<Projection>),
     /// Whether something shines in the plane, and whether matter with depth lies between crossings.
     Outputs(RecordSource, bool, bool, Option<Projection>, OutputPlaces),
@@ -93,6 +95,7 @@ impl KernelKey {
             Self::Gather(..) | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
             Self::Beam => "spread_beam",
+            Self::SkyLevel => "make_level",
             Self::SchwarzschildEnds => "find_ends",
             Self::SchwarzschildColumns { .. } => "fill_columns",
             Self::KerrNodes { .. } => "trace_nodes",
@@ -117,6 +120,7 @@ impl KernelKey {
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
+            Self::SkyLevel => wgsl::kernel("sky/pyramid"),
             Self::Export(source, ..) => wgsl::export(source),
             Self::Outputs(source, .., places) => wgsl::outputs(source, places),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
@@ -153,6 +157,7 @@ impl KernelKey {
                 vec![vec![Slot::UniformPart], light, film.slots()]
             }
             Self::Beam => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
+            Self::SkyLevel => vec![vec![Slot::UniformPart, Slot::Read, Slot::Write]],
             Self::Gather(..) | Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }
@@ -214,7 +219,7 @@ impl KernelKey {
             Self::Develop(film, None) => film_constants(film),
             Self::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
             Self::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
-            Self::GatherBase | Self::Upsample | Self::Beam => Vec::new(),
+            Self::GatherBase | Self::Upsample | Self::Beam | Self::SkyLevel => Vec::new(),
             Self::Export(source, footprints, projection) => {
                 let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
                 [source.constants(), export].concat()

@@ -175,6 +175,7 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),
         ("bloom, beam", kernel("bloom/beam")),
+        ("sky map, level", kernel("sky/pyramid")),
         ("shade only for bloom", shade_only(kerr(false), FilmVariant::of_light())),
         ("refine, traced", refine(RecordSource::Traced, Some(film(PixelTarget::Packed)))),
         (

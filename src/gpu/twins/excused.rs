@@ -51,6 +51,11 @@ const HALF: Why = Tested(
     "the_tracers_agree",
     "media of pixels from blocks, in whole pictures, one tracer against the other",
 );
+const PYRAMID: Why = Tested(
+    "tests/tracers/sky_target.rs",
+    "levels_made_on_the_gpu_are_those_of_the_cpu",
+    "pictures of maps whose levels are made on the GPU against those of src/sky/map.rs",
+);
 const OUTPUTS: Why = Tested(
     "tests/tracers/outputs.rs",
     "outputs_are_what_rays_meet",
@@ -137,6 +142,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("shade/only", "take_light", HOOK),
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
     ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
+    ("sky/pyramid", "limited_light unpack_light pack_light source_light column_light make_level", PYRAMID),
     ("shade/packed_outputs", "put_numbers", HOOK),
     // As src/gpu/kernel/wgsl.rs writes it.
     ("shade/outputs", "put_numbers", HOOK),

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+// Makes a level of a sky map's pyramid from the host's texels, or from the level before. Mirrors src/sky/map.rs, where
+// the reasons are: the mean over solid angle, then over as many columns as make a texel as wide on the sky as it is
+// high. Knows no directions.
+
+#import constants
+#import shared/math
+
+struct SkyLevel {
+    size: vec2<u32>,
+    source_size: vec2<u32>,
+    // Words from row to row, of what is read and of what is written.
+    source_row: u32,
+    row: u32,
+    // SKY_SOURCE_*.
+    source: u32,
+    padding: u32,
+}
+
+@group(0) @binding(0) var<uniform> level: SkyLevel;
+@group(0) @binding(1) var<storage, read> source_words: array<u32>;
+@group(0) @binding(2) var<storage, read_write> level_words: array<u32>;
+
+const SKY_SOURCE_HALF: u32 = 0u;
+const SKY_SOURCE_FLOAT: u32 = 1u;
+const SKY_SOURCE_LEVEL: u32 = 2u;
+// 511 / 512 2^16.
+const MOST_SKY_LIGHT: f32 = 65408.0;
+
+// NaN and negative light become 0, infinite light the largest.
+fn limited_light(v: vec3<f32>) -> vec3<f32> {
+    return select(vec3<f32>(0.0), min(v, vec3<f32>(MOST_SKY_LIGHT)), v > vec3<f32>(0.0));
+}
+
+fn unpack_light(word: u32) -> vec3<f32> {
+    let scale = bitcast<f32>(((word >> 27u) + 103u) << 23u);
+    return vec3<f32>(vec3<u32>(word, word >> 9u, word >> 18u) & vec3<u32>(511u)) * scale;
+}
+
+fn pack_light(light: vec3<f32>) -> u32 {
+    let rgb = limited_light(light);
+    let top = max(rgb.x, max(rgb.y, rgb.z));
+    var exponent = min(max(bitcast<u32>(top) >> 23u, 111u) - 111u, 31u);
+    let first = u32(top * bitcast<f32>((151u - exponent) << 23u) + 0.5);
+    exponent = select(exponent, exponent + 1u, first > 511u);
+    let mantissas = min(vec3<u32>(rgb * bitcast<f32>((151u - exponent) << 23u) + 0.5), vec3<u32>(511u));
+    return mantissas.x | mantissas.y << 9u | mantissas.z << 18u | exponent << 27u;
+}
+
+// A texel of the source.
+fn source_light(x: u32, y: u32) -> vec3<f32> {
+    let row = y * level.source_row;
+    if level.source == SKY_SOURCE_LEVEL {
+        return unpack_light(source_words[row + x]);
+    }
+    if level.source == SKY_SOURCE_FLOAT {
+        let at = row + 4u * x;
+        let bits = vec3<u32>(source_words[at], source_words[at + 1u], source_words[at + 2u]);
+        return limited_light(bitcast<vec3<f32>>(bits));
+    }
+    let at = row + 2u * x;
+    return limited_light(vec3<f32>(unpack2x16float(source_words[at]), unpack2x16float(source_words[at + 1u]).x));
+}
+
+// The source's light under column `x` of row `y`.
+fn column_light(x: u32, y: u32) -> vec3<f32> {
+    let step = PI / f32(level.source_size.y);
+    let begins = vec2<u32>(x, y) * level.source_size;
+    let ends = begins + level.source_size;
+    let first = begins / level.size;
+    let last = min((ends + level.size - 1u) / level.size, level.source_size);
+    // Relative to the first item, which keeps them exact enough.
+    let low = vec2<f32>(begins - first * level.size) / vec2<f32>(level.size);
+    let high = vec2<f32>(ends - first * level.size) / vec2<f32>(level.size);
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    for (var j = first.y; j < last.y; j += 1u) {
+        let at = f32(j - first.y);
+        let begin = max(low.y, at);
+        let end = min(high.y, at + 1.0);
+        // cos(begin) - cos(end), without cancellation.
+        let weight = sin(0.5 * (begin + end + 2.0 * f32(first.y)) * step) * sin(0.5 * (end - begin) * step);
+        var row = vec3<f32>(0.0);
+        for (var i = first.x; i < last.x; i += 1u) {
+            let column = f32(i - first.x);
+            let share = min(high.x, column + 1.0) - max(low.x, column);
+            row += share * source_light(i, j);
+        }
+        sum += weight * row;
+        total += weight;
+    }
+    return sum * (f32(level.size.x) / (f32(level.source_size.x) * total));
+}
+
+@compute @workgroup_size(8, 16)
+fn make_level(@builtin(global_invocation_id) id: vec3<u32>) {
+    let size = level.size;
+    if id.x >= size.x || id.y >= size.y {
+        return;
+    }
+    let colatitude = PI * (f32(id.y) + 0.5) / f32(size.y);
+    let pole = id.y == 0u || id.y + 1u == size.y;
+    let wide = f32(size.x) / (2.0 * f32(size.y) * sin(colatitude));
+    let texels = select(min(wide, f32(size.x)), f32(size.x), pole);
+    let whole = texels >= f32(size.x);
+    // A window about the texel: its first column, less this one's, and its last.
+    let first = select(i32(floor(0.5 - 0.5 * texels)), 0, whole || texels <= 1.0);
+    let last = select(i32(floor(0.5 + 0.5 * texels)), select(0, i32(size.x) - 1, whole), whole || texels <= 1.0);
+    var sum = vec3<f32>(0.0);
+    var total = 0.0;
+    for (var k = first; k <= last; k += 1) {
+        let covered = min(0.5 + 0.5 * texels, f32(k) + 1.0) - max(0.5 - 0.5 * texels, f32(k));
+        let weight = select(covered, 1.0, whole || texels <= 1.0);
+        let x = (i32(id.x) + k + 2 * i32(size.x)) % i32(size.x);
+        sum += weight * column_light(u32(x), id.y);
+        total += weight;
+    }
+    level_words[id.y * level.row + id.x] = pack_light(sum / total);
+}

@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT OR Apache-2.0 */
+/* sky.c -- the host's surroundings from a target on the GPU: pictures are those with the same map from host memory,
+ * within one step of 255, whatever holds the map and however often it changes; and what is refused. Arguments: vulkan
+ * [validate]. */
+#include "../c/check.h"
+#include "vk.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define WIDTH 200u
+#define HEIGHT 120u
+#define MAP_WIDTH 509u
+#define MAP_HEIGHT 251u
+#define BAD BHR_ERROR_INVALID_ARGUMENT
+
+static BhrContext   *context;
+static Vk            host;
+static unsigned char from_memory[WIDTH * HEIGHT * 4], from_gpu[WIDTH * HEIGHT * 4];
+static float         map[MAP_WIDTH * MAP_HEIGHT * 4];
+static uint16_t      halves[MAP_WIDTH * MAP_HEIGHT * 4];
+static unsigned char rows[sizeof map + MAP_HEIGHT * 64];
+
+/* A half float of what lies in 2^-14 .. 65504, cut off. */
+static uint16_t half(float value) {
+    uint32_t bits;
+    memcpy(&bits, &value, 4);
+    return value < 6.2e-5f ? 0 : (uint16_t)((bits >> 13) - (112u << 10));
+}
+
+/* Smooth light, lines, a chequerboard and points; another for each `frame`. */
+static void paint(uint32_t frame) {
+    for (uint32_t y = 0; y < MAP_HEIGHT; y++)
+        for (uint32_t x = 0; x < MAP_WIDTH; x++) {
+            float *texel = map + 4 * (y * MAP_WIDTH + x);
+            float  wave = 0.5f + 0.5f * sinf(0.02f * (float)(x + 60 * frame)) * cosf(0.03f * (float)y);
+            int    line = (x + 7 * frame) % 32 == 0 || y % 25 == 0, point = (x * 31 + y * 17 + frame) % 997 == 0;
+            texel[0] = 0.3f * wave + (line ? 0.6f : 0.0f) + (point ? 900.0f : 0.0f);
+            texel[1] = 0.2f + (((x / 9) + (y / 9)) % 2 ? 0.25f : 0.0f) + (point ? 700.0f : 0.0f);
+            texel[2] = 0.4f - 0.3f * wave + (point ? 500.0f : 0.0f);
+            texel[3] = 0.5f;
+        }
+    map[0] = -1.0f, map[5] = NAN, map[10] = INFINITY;
+    for (size_t i = 0; i < COUNT_OF(map); i++) {
+        halves[i] = i == 0 ? 0xbc00 : i == 5 ? 0x7e00 : i == 10 ? 0x7c00 : half(map[i]);
+    }
+}
+
+static void render(unsigned char *pixels) {
+    BhrImage image;
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    image.width = WIDTH;
+    image.height = HEIGHT;
+    image.pixels = pixels;
+    image.byte_size = WIDTH * HEIGHT * 4;
+    memset(pixels, 0, WIDTH * HEIGHT * 4);
+    CHECK_OK(bhr_render_image(context, &image));
+}
+
+static BhrTargetOptions options_of(BhrFormat format, BhrTargetKind kind, uint64_t stride) {
+    BhrTargetOptions options;
+    CHECK_OK(bhr_target_options_init(&options, sizeof options));
+    options.kind = kind;
+    options.format = format;
+    options.width = MAP_WIDTH;
+    options.height = MAP_HEIGHT;
+    options.handle_type = BHR_HANDLE_OPAQUE_FD;
+    options.row_stride = stride;
+    return options;
+}
+
+static void compare(BhrFormat format, BhrTargetKind kind, uint64_t gap) {
+    uint32_t         bytes = format == BHR_FORMAT_RGBA16F ? 8 : 16;
+    uint64_t         row = (uint64_t)MAP_WIDTH * bytes, stride = row + gap, all = stride * (MAP_HEIGHT - 1) + row;
+    BhrTargetOptions options = options_of(format, kind, gap ? stride : 0);
+    BhrTargetInfo    info = {.struct_size = sizeof info};
+    BhrHandle        handle;
+    BhrTarget       *target;
+    BhrImage         image;
+    if (!CHECK_OK(bhr_target_create(context, &options, &target)))
+        return;
+    CHECK_OK(bhr_target_info(target, &info));
+    CHECK_OK(bhr_target_export(target, &handle));
+    VkPicture picture = vk_import(&host, &info, handle.fd, all);
+    for (uint32_t frame = 0; frame < 3; frame++) {
+        const unsigned char *texels = format == BHR_FORMAT_RGBA16F ? (unsigned char *)halves : (unsigned char *)map;
+        paint(frame);
+        CHECK_OK(bhr_image_init(&image, sizeof image));
+        image.format = format;
+        image.width = MAP_WIDTH;
+        image.height = MAP_HEIGHT;
+        image.pixels = (void *)(uintptr_t)texels;
+        image.byte_size = MAP_HEIGHT * row;
+        CHECK_OK(bhr_set_sky_map(context, &image));
+        render(from_memory);
+        for (uint32_t y = 0; y < MAP_HEIGHT; y++)
+            memcpy(rows + y * stride, texels + y * row, row);
+        vk_write(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, bytes, stride, all, rows);
+        CHECK_OK(bhr_set_sky_target(context, target));
+        render(from_gpu);
+        double   apart = vk_apart(BHR_FORMAT_RGBA8_SRGB, from_gpu, from_memory, sizeof from_gpu);
+        uint32_t bright = 0;
+        for (size_t i = 0; i < sizeof from_gpu; i++)
+            bright += i % 4 != 3 && from_gpu[i] > 40;
+        CHECK(apart <= 1, "format %d, kind %d, gap %u, frame %u: %g steps apart", format, kind, (unsigned)gap, frame,
+              apart);
+        CHECK(bright > WIDTH * HEIGHT / 4, "only %u channels are bright: the map is not shown", bright);
+    }
+    vk_write(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, bytes, stride, all, rows);
+    CHECK_FAILS(BAD, "sky", bhr_render_target(context, target, NULL, NULL));
+    BhrTargetOptions other = options;
+    BhrTarget       *light;
+    other.kind = BHR_TARGET_IMAGE, other.row_stride = 0;
+    CHECK_OK(bhr_target_create(context, &other, &light));
+    CHECK_OK(bhr_render_target(context, light, NULL, NULL)); /* in flight while the sky goes */
+    bhr_target_destroy(target);
+    BhrImage small = {.struct_size = sizeof small, .format = BHR_FORMAT_RGBA8_SRGB, .width = 8, .height = 8};
+    small.pixels = from_gpu, small.byte_size = sizeof from_gpu;
+    CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "sky", bhr_render_image(context, &small));
+    CHECK_OK(bhr_set_sky_target(context, NULL));
+    render(from_gpu);
+    CHECK(vk_apart(BHR_FORMAT_RGBA8_SRGB, from_gpu, from_memory, sizeof from_gpu) > 20, "the map is still there");
+    bhr_target_destroy(light);
+    vk_drop(&host, &picture);
+}
+
+static void refused(BhrBackend backend) {
+    static const struct {
+        BhrFormat   format;
+        uint32_t    width, height;
+        BhrStatus   status;
+        const char *words;
+    } list[] = {{BHR_FORMAT_RGBA8_SRGB, 64, 32, BAD, "RGBA16F or RGBA32F"},
+                {BHR_FORMAT_R32F, 64, 32, BAD, "RGBA16F or RGBA32F"},
+                {BHR_FORMAT_RGBA16F, 32, 33, BAD, "as wide as high"},
+                {BHR_FORMAT_RGBA16F, 16385, 2, BAD, "16384 x 8192"}};
+    Watch       watch;
+    BhrContext *other = check_context(backend);
+    watch_begin(&watch, context);
+    CHECK_FAILS(BAD, "context", bhr_set_sky_target(NULL, NULL));
+    for (size_t i = 0; i < COUNT_OF(list); i++) {
+        BhrTargetOptions options = options_of(list[i].format, BHR_TARGET_BUFFER, 0);
+        BhrTarget       *target;
+        options.width = list[i].width;
+        options.height = list[i].height;
+        if (!CHECK_OK(bhr_target_create(context, &options, &target)))
+            continue;
+        CHECK_REFUSED(&watch, list[i].status, list[i].words, bhr_set_sky_target(context, target));
+        bhr_target_destroy(target);
+    }
+    BhrTargetOptions options = options_of(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, 0);
+    BhrTarget       *target;
+    CHECK_OK(bhr_target_create(context, &options, &target));
+    CHECK_FAILS(BAD, "another context", bhr_set_sky_target(other, target));
+    bhr_target_destroy(target);
+    bhr_context_destroy(other);
+}
+
+int main(int argc, char **argv) {
+    BhrBackend        backend = check_begin(argc, argv);
+    int               validate = argc > 2 && strcmp(argv[2], "validate") == 0;
+    BhrContextOptions made = check_options(backend);
+    if (validate)
+        made.flags |= BHR_CONTEXT_VALIDATION, made.log_fn = vk_log;
+    context = check_context_with(&made);
+    BhrInteropInfo info = {.struct_size = sizeof info};
+    BhrSky         sky;
+    BhrCamera      camera = {.struct_size = sizeof camera};
+    CHECK_OK(bhr_interop_info(context, &info));
+    CHECK_OK(bhr_sky_init(&sky, sizeof sky));
+    sky.flags = BHR_SKY_MAP;
+    CHECK_OK(bhr_set_sky(context, &sky));
+    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
+    vk_open_device(&host);
+    compare(BHR_FORMAT_RGBA32F, BHR_TARGET_IMAGE, 0);
+    compare(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, 40);
+    /* From near by, where pixels see much of the sky. */
+    CHECK_OK(bhr_get_camera(context, &camera));
+    camera.projection = BHR_PROJECTION_EQUIRECT;
+    camera.position[1] = -8.0;
+    CHECK_OK(bhr_set_camera(context, &camera));
+    compare(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0);
+    compare(BHR_FORMAT_RGBA32F, BHR_TARGET_BUFFER, 0);
+    refused(backend);
+    bhr_context_destroy(context);
+    vk_close(&host);
+    CHECK(vk_complaints == 0, "the validation layers had %d complaints", vk_complaints);
+    return check_end();
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A sky map that lies in a target on the GPU against the same map in memory, whose pyramid the CPU makes: with levels
+//! as a sampler takes them, and as kernels read them. The map is a picture that bhr renders into the target.
+
+use crate::frames::{gpu, picture};
+use bhr::gpu::{TargetOrigin, TargetShape};
+use bhr::image::{ImageRef, PixelFormat, memory::Layout};
+use bhr::renderer::{HostSync, Submits};
+use bhr::scene::{Camera, Disk, Projection, Scene, Sky};
+use bhr::sky::SkyMap;
+use std::sync::Arc;
+
+const SIZE: [u32; 2] = [160, 100];
+
+/// A disk and stars before black, all round: bright edges, fine points and nothing.
+fn map_scene() -> Scene {
+    let mut scene = Scene::plain();
+    scene.camera = Camera { projection: Projection::Equirect, ..Camera::plain() };
+    scene.disk = Some(Disk::default());
+    scene.quality.refines = false;
+    scene
+}
+
+#[test]
+fn levels_made_on_the_gpu_are_those_of_the_cpu() {
+    for (map_size, sampler) in [([256, 128], false), ([301, 150], false), ([256, 128], true), ([301, 150], true)] {
+        let mut renderer = gpu();
+        renderer.scene = map_scene();
+        let [width, height] = map_size;
+        let format = PixelFormat::Rgba32F;
+        let row_stride = 16 * u64::from(width);
+        let shape = TargetShape { image: false, format, size: map_size, row_stride, layout: 0, handle: 0 };
+        let target = renderer.create_target(shape, false, TargetOrigin::New).unwrap();
+        let sync = HostSync { waits: &[], signals: &[] };
+        let job = renderer.render_target(&target, None, &sync, Submits::Now).unwrap();
+        job.wait(None, &mut |_| true).unwrap().unwrap();
+        let pixels = picture(&mut renderer, format, map_size, None, false);
+        let image = ImageRef::new(Layout::packed(format, width, height), &pixels).unwrap();
+
+        let mut scene = Scene::plain();
+        scene.sky.flags = Sky::MAP;
+        scene.quality.map_sampler = Some(sampler);
+        renderer.scene = scene.clone();
+        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&image).unwrap()));
+        let expected = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
+        renderer.scene = scene.clone();
+        let without = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
+        renderer.set_sky_target(&target).unwrap();
+        let found = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
+        let apart = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
+        assert!(apart(&found, &expected) <= 1, "{map_size:?} {sampler}: {} steps apart", apart(&found, &expected));
+        assert!(apart(&found, &without) > 50, "{map_size:?} {sampler}: the map is not seen");
+    }
+}
