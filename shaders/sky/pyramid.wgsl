@@ -47,6 +47,19 @@ fn pack_light(light: vec3<f32>) -> u32 {
     return mantissas.x | mantissas.y << 9u | mantissas.z << 18u | exponent << 27u;
 }
 
+// The light in the lower 16 bits, a half float. NaN and negative light are 0, infinite light is more than can be
+// stored.
+// (unpack2x16float takes a feature that not every device has.)
+fn half_light(bits: u32) -> f32 {
+    let exponent = (bits >> 10u) & 31u;
+    let mantissa = bits & 1023u;
+    let normal = bitcast<f32>(((exponent + 112u) << 23u) | (mantissa << 13u));
+    // Multiples of 2^-24.
+    let light = select(normal, f32(mantissa) * 5.960464477539063e-8, exponent == 0u);
+    let nothing = (bits & 0x8000u) != 0u || (exponent == 31u && mantissa != 0u);
+    return select(light, 0.0, nothing);
+}
+
 // A texel of the source.
 fn source_light(x: u32, y: u32) -> vec3<f32> {
     let row = y * level.source_row;
@@ -59,7 +72,8 @@ fn source_light(x: u32, y: u32) -> vec3<f32> {
         return limited_light(bitcast<vec3<f32>>(bits));
     }
     let at = row + 2u * x;
-    return limited_light(vec3<f32>(unpack2x16float(source_words[at]), unpack2x16float(source_words[at + 1u]).x));
+    let low = source_words[at];
+    return limited_light(vec3<f32>(half_light(low), half_light(low >> 16u), half_light(source_words[at + 1u])));
 }
 
 // The source's light under column `x` of row `y`.

@@ -92,7 +92,7 @@ pub fn check_sky(device: &Device, shape: &TargetShape) -> Result<()> {
     let side = limits.max_texture_dimension_2d;
     if width > side || texture_height(shape.size) > side {
         return Err(Error::unsupported(format!(
-            "target is {width} x {height}; as a sky map it takes a texture of {} rows, and this device's limit is {side}",
+            "target is {width} x {height}; a sky map takes a texture of {} rows, and this device's limit is {side}",
             texture_height(shape.size)
         )));
     }

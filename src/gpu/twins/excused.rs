@@ -142,7 +142,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("shade/only", "take_light", HOOK),
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
     ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
-    ("sky/pyramid", "limited_light unpack_light pack_light source_light column_light make_level", PYRAMID),
+    ("sky/pyramid", "limited_light unpack_light pack_light half_light source_light column_light make_level", PYRAMID),
     ("shade/packed_outputs", "put_numbers", HOOK),
     // As src/gpu/kernel/wgsl.rs writes it.
     ("shade/outputs", "put_numbers", HOOK),
