@@ -163,12 +163,13 @@ impl FrameBuffers {
             None => device.submit(encoder)?,
             Some(handed) => {
                 let submission = device.submit_handover(Some(encoder), &handed.handover(develops, last))?;
-                handed.submitted(develops);
+                handed.submitted(develops, last);
                 submission
             }
         };
-        copied.request(device)?;
+        // It runs, and signals, whatever fails from here on.
         frame.submitted += 1;
+        copied.request(device)?;
         let head = size.min(PIXELS);
         Ok(Some(Submission { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
     }
