@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 
 /// The sizes of the frames that are timed. The next one is taken while the time allows it and a frame is done so soon
 /// that its fixed costs may be a good part of it.
-const SIZES: [[u32; 2]; 5] = [[48, 27], [160, 90], [480, 270], [960, 540], [1920, 1080]];
+const SIZES: [[u32; 2]; 7] = [[4, 2], [16, 9], [48, 27], [160, 90], [480, 270], [960, 540], [1920, 1080]];
 const SOON_NS: f64 = 4e6;
-/// The least pixels that keep all threads of a tracer busy: fewer are not believed if there is time for more.
+/// Frames of fewer pixels are not believed while there is time for more.
 const FEW: f64 = 480.0 * 270.0;
 
 /// Frames of a size that are timed, of which the fastest counts.
@@ -21,6 +21,8 @@ const FRAMES: usize = 3;
 
 /// The time for all that is timed. Frames that would take longer are not begun, or are broken off.
 const TIME: Duration = Duration::from_millis(400);
+/// A frame that takes less may be all but fixed costs, and does not tell that the next size would not fit.
+const LITTLE_NS: f64 = 4e7;
 
 /// The spin of the hole that is timed: rays about one that spins take longer.
 const SPIN: f64 = 0.5;
@@ -76,13 +78,18 @@ impl Renderer {
     }
 
     fn time_pixel(&self, scene: &Scene) -> Result<f64> {
-        let (mut cost, mut left) = (f64::INFINITY, TIME);
+        let (mut cost, mut frame, mut left) = (f64::INFINITY, 0.0, TIME);
+        if matches!(self.runs_on, RunsOn::Cpu) {
+            // The first frame of all reads pictures and makes tables of noise.
+            let usual = Scene { quality: Quality::default(), ..scene.clone() };
+            self.time_frame(&usual, SIZES[0], &mut TIME.clone())?;
+        }
         for [width, height] in SIZES {
             let pixels = f64::from(width) * f64::from(height);
-            if cost.is_finite() && cost * pixels > left.as_nanos() as f64 {
+            if left.is_zero() || (frame > LITTLE_NS && cost * pixels > left.as_nanos() as f64) {
                 break;
             }
-            let frame = self.time_frame(scene, [width, height], &mut left)?;
+            frame = self.time_frame(scene, [width, height], &mut left)?;
             cost = frame / pixels;
             if frame >= SOON_NS && pixels >= FEW {
                 break;

@@ -29,5 +29,6 @@ mod sky;
 mod stars;
 mod structure;
 mod supersampling;
+mod targets;
 mod transfer;
 mod volumes;

@@ -115,8 +115,8 @@ impl GpuTracer {
     fn try_begin(&mut self, scene: &Scene, request: &FrameRequest, target: FrameTarget<'_>) -> Result<BegunFrame> {
         let kind = match target {
             FrameTarget::Image(_, format) => PixelTarget::Image(format),
-            FrameTarget::Buffer(..) | FrameTarget::Copied(_) => PixelTarget::Packed,
-            FrameTarget::Host => self.host_pixels(scene),
+            // One kernel for all of them: others, compiled apart, round a few pixels otherwise on hardware.
+            FrameTarget::Host | FrameTarget::Buffer(..) | FrameTarget::Copied(_) => self.host_pixels(scene),
         };
         let delivery = Delivery::of(target);
         let mut setup = self.set_up(scene, request, kind)?;
@@ -139,7 +139,9 @@ impl GpuTracer {
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         setup.uniform.map_sizes = tables.map_sizes();
-        let packed = if kind == PixelTarget::Packed && delivery.is_packed() { pixel_bytes } else { 0 };
+        // Rows for the host go where it maps them.
+        let staged = kind == PixelTarget::Rows && matches!(delivery, Delivery::Host);
+        let packed = if staged { 0 } else { pixel_bytes };
         let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
             self.buffers.bloom.prepare(&self.device, bloom, light)?;
