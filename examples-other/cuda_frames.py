@@ -233,7 +233,7 @@ class Frames:
         self.order("cuWaitExternalSemaphoresAsync", stream)
 
     def done(self, stream):
-        """What `stream` has done so far has read the frame: the next one may overwrite it."""
+        """`stream` has read the frame with all that it has been given so far: the next one may overwrite it."""
         self.value += 1
         self.order("cuSignalExternalSemaphoresAsync", stream)
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // Writes the pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory, and, so
-// that the same kernel makes the same bytes, in buffers that the host shares. The bus carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row
-// (H200: 49 against 24.5 GB/s). So a workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide,
-// gathers their words and then writes them row by row.
+// that the same kernel makes the same bytes, in buffers that the host shares. The bus carries whole lines of 128 bytes
+// twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row (H200: 49 against 24.5 GB/s). So a
+// workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide, gathers their words and then writes
+// them row by row.
 
 #import constants
 #import film/film

@@ -98,8 +98,8 @@ impl Renderer {
         Ok(cost)
     }
 
-    /// The least time of some frames, ns: on the GPU if its clock is there to be asked. Takes `left`, and no longer, but
-    /// for a GPU's first frame.
+    /// The least time of some frames, ns: on the GPU if its clock is there to be asked. Takes `left`, and no longer,
+    /// but for a GPU's first frame.
     fn time_frame(&self, scene: &Scene, [width, height]: [u32; 2], left: &mut Duration) -> Result<f64> {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         let request = FrameRequest { width, height, region, format: PixelFormat::Rgba8Srgb, transparent: false };

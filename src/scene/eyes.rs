@@ -159,7 +159,10 @@ mod tests {
         let strips = scene.camera.strips(&region, WIDTH).unwrap();
         assert!((2..500).contains(&strips.len()), "{}", strips.len());
         let mut rays = std::collections::HashMap::new();
-        scene.camera_rays(WIDTH, WIDTH / 2, None, &mut |index, ray| drop(rays.insert(index, ray))).unwrap();
+        let mut keep = |index, ray| {
+            rays.insert(index, ray);
+        };
+        scene.camera_rays(WIDTH, WIDTH / 2, None, &mut keep).unwrap();
         for strip in &strips {
             let alone = Scene { camera: strip.camera, ..scene.clone() };
             for x in [strip.begin, strip.begin + strip.width - 1] {

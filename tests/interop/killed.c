@@ -26,7 +26,7 @@
 
 static unsigned char expected[BYTES], seen[BYTES], again[BYTES];
 
-/* What one process tells the other of a target; the descriptors go along: the memory's, and the timeline's if any. */
+/* A target as one process tells the other of it. The descriptors go along: the memory's, and the timeline's if any. */
 typedef struct Passed {
     BhrTargetInfo info;
     uint8_t       uuid[16];
