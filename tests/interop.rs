@@ -85,7 +85,7 @@ impl Shared {
     }
 
     fn works(&self, value: u64) {
-        assert_eq!(self.frame(0, value, &mut null_mut()), BHR_OK);
+        assert_eq!(self.frame(0, value, &mut null_mut()), BHR_OK, "{value}: {}", message());
         // SAFETY: see `Shared`.
         unsafe { assert_eq!(bhr_semaphore_wait(self.timeline, value, u64::MAX), BHR_OK) };
     }
