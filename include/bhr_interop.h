@@ -346,12 +346,14 @@ typedef struct BhrSync {
  * make it and give the signals whatever the CPU does; it does not wait for the GPU, except where a frame has more
  * than 32 steps (large frames of many samples; bhr_render_target_async spares the caller that), for a job that is
  * being submitted, for programs that are compiled (bhr_prepare), and, with Mesa's llvmpipe, for the waits of
- * earlier frames. sync NULL: no semaphores; then the host waits
- * with the job. out_job NULL: no job; else the job ends when the GPU has made the frame, with bhr_job_wait and
- * bhr_job_stats as of images. bhr_job_cancel does not stop what is submitted, and bhr_job_destroy neither cancels
- * it nor waits for it. At most 64 frames and jobs of a context may be unfinished. The region (bhr_set_region)
- * counts. Any thread, not inside callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for a
- * target or semaphore of another context, a semaphore that is twice in a list, and a signal whose value does not
+ * earlier frames. sync NULL: no semaphores; then the host waits with the job. out_job NULL: no job; else the job
+ * ends when the GPU has made the frame, with bhr_job_wait and bhr_job_stats as of images. bhr_job_cancel does not
+ * stop what is submitted, and bhr_job_destroy neither cancels it nor waits for it. At most 64 frames and jobs of a
+ * context may be unfinished. The region (bhr_set_region) counts. Buffers, in every format, and images of BGRA8 are
+ * written by the kernels of bhr_render_image and get its bytes. Other images have kernels of their own, which a
+ * driver may round otherwise: a few pixels differ by a step of 8 bits, or by some units in the last place of a
+ * half float. Any thread, not inside callbacks. Errors: those of bhr_render_image; INVALID_ARGUMENT for NULL, for
+ * a target or semaphore of another context, a semaphore that is twice in a list, and a signal whose value does not
  * grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach,
  * and where BhrCamera.eye has effect; SURFACE_LOST for a target or semaphore whose context was recovered;
  * DEVICE_LOST. After an error no semaphore is waited for or signalled, unless steps were submitted: then all are.

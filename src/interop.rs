@@ -225,17 +225,20 @@ pub fn frame_sync(device: &Arc<Device>, waits: &[Use<'_>], signals: &[Use<'_>], 
     Ok(sync)
 }
 
-fn timelines(sync: &FrameSync) -> impl Iterator<Item = (&Arc<GpuSemaphore>, u64)> {
-    sync.signals.iter().filter_map(|signal| signal.value.map(|value| (&signal.semaphore, value)))
-}
-
 /// Errors: INVALID_ARGUMENT for a signal whose value does not grow.
 pub fn check_signals(sync: &FrameSync) -> Result<()> {
-    timelines(sync).try_for_each(|(semaphore, value)| semaphore.check_value(value))
+    sync.timelines().try_for_each(|(semaphore, value)| semaphore.check_value(value))
 }
 
 /// Notes that the signals will be given, after a look at all of them. Errors: as [`check_signals`].
 pub fn ask_signals(sync: &FrameSync) -> Result<()> {
     check_signals(sync)?;
-    timelines(sync).try_for_each(|(semaphore, value)| semaphore.ask(value))
+    for (count, (semaphore, value)) in sync.timelines().enumerate() {
+        if let Err(error) = semaphore.ask(value) {
+            // Another thread asked for more of this one meanwhile.
+            sync.timelines().take(count).for_each(|(semaphore, value)| semaphore.withdraw(value));
+            return Err(error);
+        }
+    }
+    Ok(())
 }

@@ -102,6 +102,14 @@ impl Shared {
         }
     }
 
+    /// Errors: that of a step, with which the job has ended.
+    fn check_failed(&self) -> Result<()> {
+        match &*lock(&self.outcome) {
+            Some(Err(error)) => Err(error.clone()),
+            Some(Ok(_)) | None => Ok(()),
+        }
+    }
+
     fn report(&self, fraction: f64) {
         // The lock is held, or a waiter could miss this between looking and sleeping.
         let _outcome = lock(&self.outcome);

@@ -247,6 +247,14 @@ impl Renderer {
         destroyed.or_else(|error| if error.kind == ErrorKind::DeviceLost { Ok(()) } else { Err(error) })
     }
 
+    /// Has a call of the GPU device fail, `passing` such calls from now: for tests.
+    #[doc(hidden)]
+    pub fn fail_device(&self, what: &'static str, passing: u32) {
+        if let RunsOn::Gpu(_, device) = &self.runs_on {
+            device.faults.arm(what, passing);
+        }
+    }
+
     /// How often frames found pipelines missing, once those that are made in the background are there; for tests.
     /// `None` on the CPU and on GL, where none are.
     #[doc(hidden)]

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Writes the packed pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory. The
-// bus carries whole lines of 128 bytes twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row
-// (H200: 49 against 24.5 GB/s). So a workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide,
-// gathers their words and then writes them row by row.
+// Writes the pixels of a tile as film/packed.wgsl does, for kernels whose `pixels` lie in the host's memory, and, so
+// that the same kernel makes the same bytes, in buffers that the host shares. The bus carries whole lines of 128 bytes
+// twice as fast as the 32 bytes that a block of 8 x 4 pixels has of each row (H200: 49 against 24.5 GB/s). So a
+// workgroup, which has a thread for each of ROWS_PIXELS pixels, ROWS_WIDTH wide, gathers their words and then writes
+// them row by row.
 
 #import constants
 #import film/film
@@ -44,7 +45,8 @@ fn write_rows(corner: vec2<u32>, i: u32) {
         let column = word % row_size;
         let id = corner + vec2<u32>(column / pixel_words(), word / row_size);
         if !outside_tile(id) {
-            pixels[pixel_words() * (id.y * (pass_.size.x - 2u) + corner.x) + column] = row_words[word];
+            let first = pass_.pixels_first + id.y * pass_.pixels_row + pixel_words() * corner.x;
+            pixels[first + column] = row_words[word];
         }
     }
 }

@@ -102,10 +102,10 @@ pub struct BhrCamera {
     /// stereo (omnidirectional stereo, ODS): each column is seen from where the eye is when the head, which turns
     /// about position and up, looks at that column. Columns share an eye, up to 64, where things half as far as the
     /// hole do not leap by more than a tenth of a pixel for it; each such strip is rendered as a frame of its own,
-    /// so that a picture takes longer. Bloom that the preset has is left out; other bloom, and a beam, are
-    /// INVALID_STATE; windows, bhr_project_point, outputs other than LIGHT, occluders and targets on the GPU are
-    /// UNSUPPORTED. Towards the poles, as in all such pictures, depth is wrong. Other projections ignore it. Default
-    /// MIDDLE. Since 0.2.0.
+    /// so that a picture takes longer. The rays of bhr_camera_rays are those of its pixels. Bloom that the preset
+    /// has is left out; other bloom, and a beam, are INVALID_STATE; windows, bhr_project_point, outputs other than
+    /// LIGHT, occluders and targets on the GPU are UNSUPPORTED. Towards the poles, as in all such pictures, depth is
+    /// wrong. Other projections ignore it. Default MIDDLE. Since 0.2.0.
     pub eye: BhrEye,
     /// Reserved: 0. Since 0.2.0.
     pub reserved2: u32,

@@ -283,6 +283,18 @@ pub unsafe fn lose_device(context: *mut BhrContext) -> BhrStatus {
     unsafe { on_context("lose_device", context, |state| state.renderer.lose_device()) }
 }
 
+/// Has a call of a context's GPU device fail, `passing` calls of the name `what` from now: for tests.
+#[doc(hidden)]
+pub unsafe fn fail_device(context: *mut BhrContext, what: &'static str, passing: u32) -> BhrStatus {
+    // SAFETY: NULL or valid, as for the API.
+    unsafe {
+        on_context("fail_device", context, |state| {
+            state.renderer.fail_device(what, passing);
+            Ok(())
+        })
+    }
+}
+
 /// Copies the message of the last call that failed on this context or on a surface of its, whichever thread it was on,
 /// into buffer. For hosts whose calls move between threads (goroutines, worker threads of Node or asyncio), where
 /// bhr_error_message may tell of another call. At most size - 1 bytes, cut between characters, and a NUL are written,

@@ -186,22 +186,25 @@ pub unsafe extern "C" fn bhr_preset_options_init(options: *mut BhrPresetOptions,
     anywhere("bhr_preset_options_init", || unsafe { versioned::init(options, "options", struct_size) })
 }
 
-/// Gives the scene a look, and decides its volumes as well: with DEEP they are that look's one, in place of the thin
-/// disk; with THIN there are none. Volumes that were set before are gone; hot spots stay. options NULL: all defaults.
-/// *out_matter becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now; out_matter may be NULL.
+/// Gives the scene a look, and decides its volumes as well: with DEEP they are that look's one, in place of the
+/// thin disk; with THIN there are none. Volumes that were set before are gone; hot spots stay. options NULL: all
+/// defaults. *out_matter becomes BHR_PRESET_MATTER_THIN or _DEEP, whichever the scene has now; out_matter may be
+/// NULL.
 ///
-/// THIN and DEEP give the same picture on every machine. AUTO measures, and may choose otherwise on another machine, or
-/// when the machine is busy: it renders the look with depth, as a new context's camera sees it, about a hole of
-/// spin 0.5, with the context's BhrQuality, and throws it away. Frames of 480 x 270 come first; where those take less
-/// than 4 ms larger ones follow, up to 1920 x 1080. The fastest of three counts, by the GPU's clock where BhrFrameStats
-/// has it (gpu_ns), else by the host's; after a second fewer do. DEEP is chosen if width x height pixels take at
-/// most frame_ms by that. Each preset is measured once in a context, and again when BhrQuality or, by
-/// bhr_context_recover, the device is another. That takes up to a second on a GPU, where programs are compiled first,
-/// and some seconds on the CPU tracer or a software driver. bhr_frame_stats does not count these frames and the
-/// progress callback is not told of them; the call waits for a job that is being rendered.
+/// THIN and DEEP give the same picture on every machine. AUTO measures, and may choose otherwise on another
+/// machine, or when the machine is busy: it renders the look with depth, as a new context's camera sees it, about a
+/// hole of spin 0.5, with the context's BhrQuality, and throws it away. Frames of 4 x 2 come first, larger ones
+/// follow, up to 1920 x 1080, until one of 480 x 270 or more takes 4 ms, and as long as the time allows. The
+/// fastest of three counts, by the GPU's clock where BhrFrameStats has it (gpu_ns), else by the host's. DEEP is
+/// chosen if width x height pixels take at most frame_ms by that. Each preset is measured once in a context, and
+/// again when BhrQuality or, by bhr_context_recover, the device is another. Measuring takes about half a second at
+/// most, whatever the quality; what comes on top is what the first frame of such a scene takes anyway: the sky's
+/// pictures and tables of noise are made, and on GPUs and software drivers programs compiled. bhr_frame_stats does
+/// not count these frames and the progress callback is not told of them; the call waits for a job that is being
+/// rendered.
 ///
-/// Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for an unknown preset or matter, or a number outside its
-/// range; with AUTO also DEVICE_LOST and OUT_OF_MEMORY. The scene then stays as it was. Since 0.2.0.
+/// Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for an unknown preset or matter, or a number outside
+/// its range; with AUTO also DEVICE_LOST and OUT_OF_MEMORY. The scene then stays as it was. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_preset_with(
     context: *mut BhrContext,

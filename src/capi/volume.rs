@@ -358,7 +358,7 @@ pub unsafe extern "C" fn bhr_set_volumes(
     // SAFETY: NULL or count elements, by the header's conventions.
     unsafe {
         on_context("bhr_set_volumes", context, |state| {
-            state.renderer.scene.volumes = read_array(volumes, volume_size, count, &VOLUMES)?;
+            state.renderer.scene.set_volumes(read_array(volumes, volume_size, count, &VOLUMES)?);
             Ok(())
         })
     }

@@ -32,7 +32,7 @@ pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requir
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};
-pub use frame::begun::{BegunFrame, ExtraCommands};
+pub use frame::begun::{BegunFrame, ExtraCommands, Handed};
 pub use frame::setup::FrameTarget;
 pub use frame::sky_target::check_sky;
 pub use frame::submission::Submission;

@@ -7,7 +7,7 @@
 use super::{Job, JobRequest, JobTarget, Shared, SharedFrame, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{BegunFrame, Device, FrameSync, FrameTarget, GpuTracer, Submission};
+use crate::gpu::{BegunFrame, Device, FrameTarget, GpuTracer, Handed, Submission};
 use crate::interop;
 use crate::thread_scope::{self, ThreadScope};
 use crate::tracer::{FrameStats, Tile};
@@ -25,6 +25,9 @@ pub const MAX_UNFINISHED: usize = 64;
 /// Submissions that are not finished, at most: one is copied to the host, one has run and waits for that, two keep the
 /// GPU busy.
 const AHEAD: usize = 4;
+
+/// A device that is lost signals nothing.
+const SIGNALS_LOST: &str = "the signals of a frame that failed cannot be given";
 
 /// The messages of the submitting thread to the finishing one. For each frame they are `Begun`, then its steps, and
 /// `Failed` if those are not all; or `Whole` alone.
@@ -327,8 +330,10 @@ fn submit(queue: &JobQueue, mut job_request: JobRequest) {
     let begun = match &mut *guard {
         Tracer::Gpu(tracer) if is_one => {
             let begun = cancelled.and_then(|()| begin(tracer, &job_request));
-            if let (Err(_), JobTarget::Shared(shared)) = (&begun, &job_request.target) {
-                give_signals(&tracer.device(), &shared.sync);
+            if let (Err(_), JobTarget::Shared(shared)) = (&begun, &job_request.target)
+                && let Err(error) = Handed::new(shared.targets(), shared.sync.clone()).end(&tracer.device())
+            {
+                log::warn!("{SIGNALS_LOST}: {error}");
             }
             begun
         }
@@ -380,16 +385,6 @@ fn begin_asked(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(Begu
     Ok(begun)
 }
 
-/// Waits and signals in the place of a frame that is not made. A device that is lost signals nothing.
-fn give_signals(device: &Device, sync: &FrameSync) {
-    if sync.waits.is_empty() && sync.signals.is_empty() {
-        return;
-    }
-    if let Err(error) = device.submit_handed([], &sync.waits, &sync.signals) {
-        log::warn!("the signals of a frame that failed cannot be given: {error}");
-    }
-}
-
 /// Makes a frame without overlap with the next one: the CPU is busy, GL is one thread's, and outputs and strips are
 /// several frames.
 fn render_whole(tracer: &mut Tracer, job_request: &mut JobRequest) -> Result<FrameStats> {
@@ -427,12 +422,13 @@ struct FrameSubmitter {
 
 impl FrameSubmitter {
     /// Submits the steps. After a failure the signals of a target are given all the same, but of a frame on the host's
-    /// thread only once it has waited. Errors: CANCELLED; as [`GpuTracer::submit`]; the job ends with them too.
+    /// thread only once a step was submitted. Errors: CANCELLED; that of a step that failed; as
+    /// [`GpuTracer::submit`]; the job ends with them too.
     fn submit(mut self, queue: &JobQueue, shared: &Shared) -> Result<()> {
         let submitted = self.submit_steps(queue, shared);
         if let Err(error) = &submitted {
             if let Err(error) = self.frame.give_signals(&self.device, self.background) {
-                log::warn!("the signals of a frame that failed cannot be given: {error}");
+                log::warn!("{SIGNALS_LOST}: {error}");
             }
             // While the tracer is held: after that another frame may begin.
             queue.send(Event::Failed(error.clone()));
@@ -447,6 +443,7 @@ impl FrameSubmitter {
             } else if self.frame.submitted() >= MOST_AHEAD as u64 {
                 queue.wait_for_room(MOST_AHEAD)?;
             }
+            shared.check_failed()?;
             shared.check_cancelled()?;
             let Some(Tracer::Gpu(tracer)) = self.guard.as_deref_mut() else {
                 return Err(Error::internal("a frame of the GPU on another tracer"));
@@ -504,8 +501,7 @@ impl RunningFrame {
     fn finish_step(mut self, queue: &JobQueue, step: Submission) -> Option<Self> {
         match self.take_pixels(step) {
             Err(error) => {
-                // Steps that are left need not be submitted any more.
-                self.job_request.shared.cancelled.store(true, Ordering::Relaxed);
+                // Steps that are left are not submitted any more (`Shared::check_failed`).
                 queue.finish(self.job_request, Err(error));
                 None
             }

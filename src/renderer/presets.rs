@@ -3,20 +3,26 @@
 //! values of presets, and nothing of C.
 
 use super::{Renderer, RunsOn};
-use crate::error::Result;
+use crate::error::{ErrorKind, Result};
 use crate::image::PixelFormat;
 use crate::scene::{Preset, PresetMatter, Quality, Region, Scene};
 use crate::tracer::FrameRequest;
 use std::time::{Duration, Instant};
 
-/// The sizes of the frames that are timed. The next one is taken while a frame is done so soon that its fixed costs
-/// may be a good part of it.
-const SIZES: [[u32; 2]; 3] = [[480, 270], [960, 540], [1920, 1080]];
+/// The sizes of the frames that are timed. The next one is taken while the time allows it and a frame is done so soon
+/// that its fixed costs may be a good part of it.
+const SIZES: [[u32; 2]; 7] = [[4, 2], [16, 9], [48, 27], [160, 90], [480, 270], [960, 540], [1920, 1080]];
 const SOON_NS: f64 = 4e6;
+/// Frames of fewer pixels are not believed while there is time for more.
+const FEW: f64 = 480.0 * 270.0;
 
-/// Frames of a size that are timed, of which the fastest counts; once this long has gone by no more are.
+/// Frames of a size that are timed, of which the fastest counts.
 const FRAMES: usize = 3;
-const ENOUGH: Duration = Duration::from_secs(1);
+
+/// The time for all that is timed. Frames that would take longer are not begun, or are broken off.
+const TIME: Duration = Duration::from_millis(400);
+/// A frame that takes less may be all but fixed costs, and does not tell that the next size would not fit.
+const LITTLE_NS: f64 = 4e7;
 
 /// The spin of the hole that is timed: rays about one that spins take longer.
 const SPIN: f64 = 0.5;
@@ -72,35 +78,58 @@ impl Renderer {
     }
 
     fn time_pixel(&self, scene: &Scene) -> Result<f64> {
-        let mut cost = f64::INFINITY;
+        let (mut cost, mut frame, mut left) = (f64::INFINITY, 0.0, TIME);
+        if matches!(self.runs_on, RunsOn::Cpu) {
+            // The first frame of all reads pictures and makes tables of noise.
+            let usual = Scene { quality: Quality::default(), ..scene.clone() };
+            self.time_frame(&usual, SIZES[0], &mut TIME.clone())?;
+        }
         for [width, height] in SIZES {
-            let frame = self.time_frame(scene, [width, height])?;
-            cost = frame / (f64::from(width) * f64::from(height));
-            if frame >= SOON_NS {
+            let pixels = f64::from(width) * f64::from(height);
+            if left.is_zero() || (frame > LITTLE_NS && cost * pixels > left.as_nanos() as f64) {
+                break;
+            }
+            frame = self.time_frame(scene, [width, height], &mut left)?;
+            cost = frame / pixels;
+            if frame >= SOON_NS && pixels >= FEW {
                 break;
             }
         }
         Ok(cost)
     }
 
-    /// The least time of some frames, ns: on the GPU if its clock is there to be asked.
-    fn time_frame(&self, scene: &Scene, [width, height]: [u32; 2]) -> Result<f64> {
+    /// The least time of some frames, ns: on the GPU if its clock is there to be asked. Takes `left`, and no longer,
+    /// but for a GPU's first frame.
+    fn time_frame(&self, scene: &Scene, [width, height]: [u32; 2], left: &mut Duration) -> Result<f64> {
         let region = Region { full_width: width, full_height: height, x: 0, y: 0 };
         let request = FrameRequest { width, height, region, format: PixelFormat::Rgba8Srgb, transparent: false };
         // A GPU's first frame makes kernels and buffers.
         let unmeasured = usize::from(!matches!(self.runs_on, RunsOn::Cpu));
         let mut tracer = self.tracer.lock();
-        let (mut least, mut spent) = (f64::INFINITY, Duration::ZERO);
+        let mut least = f64::INFINITY;
         for number in 0..unmeasured + FRAMES {
-            if spent > ENOUGH {
-                break;
-            }
             let start = Instant::now();
-            let stats = tracer.render(scene, &request, &mut |_, _, _| Ok(()), &mut |_| true)?;
-            let took = if stats.gpu_ns > 0 { stats.gpu_ns } else { start.elapsed().as_nanos() as u64 };
-            if number >= unmeasured {
-                spent += start.elapsed();
-                least = least.min(took as f64);
+            let (measured, mut done) = (number >= unmeasured, 0.0);
+            let mut progress = |fraction: f64| {
+                done = fraction;
+                !measured || start.elapsed() < *left
+            };
+            let rendered = tracer.render(scene, &request, &mut |_, _, _| Ok(()), &mut progress);
+            let spent = start.elapsed();
+            let took = match rendered {
+                Ok(stats) if stats.gpu_ns > 0 => stats.gpu_ns as f64,
+                Ok(_) => spent.as_nanos() as f64,
+                // It was broken off: the whole takes as long as the part lets expect.
+                Err(error) if error.kind == ErrorKind::Cancelled => spent.as_nanos() as f64 / done,
+                Err(error) => return Err(error),
+            };
+            if measured {
+                least = least.min(took);
+                *left = left.saturating_sub(spent);
+                // Another one would not fit.
+                if *left < spent {
+                    break;
+                }
             }
         }
         Ok(least)
@@ -111,6 +140,7 @@ impl Renderer {
 mod tests {
     use super::*;
     use crate::renderer::RendererOptions;
+    use crate::scene::Method;
     use crate::tracer::Backend;
 
     fn on_cpu() -> Renderer {
@@ -138,6 +168,23 @@ mod tests {
         assert_eq!(renderer.set_preset(Preset::Physical, within(2.0 * fits)).unwrap(), PresetMatter::Deep);
         assert_eq!(renderer.depth_costs[Preset::Physical as usize].unwrap().ns, ns);
         assert_eq!(renderer.stats().frame_index, 0);
+    }
+
+    /// However long its frames take, a look is timed for about half a second.
+    #[test]
+    fn timing_has_a_bound() {
+        let mut renderer = on_cpu();
+        renderer.scene.quality.method = Method::Rk4;
+        renderer.scene.quality.step = 1e-3;
+        renderer.scene.quality.max_steps = 100_000;
+        let began = Instant::now();
+        assert_eq!(renderer.set_preset(Preset::Cinematic, within(16e6)).unwrap(), PresetMatter::Thin);
+        let took = began.elapsed();
+        let ns = renderer.depth_costs[Preset::Cinematic as usize].unwrap().ns;
+        assert!(ns.is_finite() && ns * 640.0 * 360.0 > 16e6, "{ns} ns a pixel");
+        // The frame of 480 x 270 that was timed before takes longer than this on any CPU, and the bound is missed by
+        // one part of a frame at most.
+        assert!(took < Duration::from_secs(4), "{took:?}, {ns} ns a pixel");
     }
 
     /// A look without depth, and one whose matter is stated, are never timed.

@@ -273,7 +273,7 @@ impl Renderer {
             Some(sync) => {
                 worker.check_room()?;
                 ask_signals(&sync)?;
-                worker.enqueue(job_request)
+                worker.enqueue(job_request).inspect_err(|_| sync.withdraw())
             }
         }
     }

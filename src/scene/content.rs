@@ -77,7 +77,7 @@ pub struct Scene {
     /// Matter with depth, and hot spots.
     pub volumes: ArrayVec<Volume, { Volume::MOST }>,
     pub hot_spots: ArrayVec<HotSpot, { HotSpot::MOST }>,
-    /// The volume that the last preset set, if it did; the host may have changed or replaced it since.
+    /// The volume that the last preset set, if it did and the host has not set others since.
     pub preset_volume: Option<Volume>,
     pub sky: Sky,
     /// The picture of `Sky::MAP`; `None`: it shows nothing.
@@ -147,6 +147,13 @@ impl Scene {
             (also.places, also.beyond) = (true, true);
         }
         Emitters { disk, volumes: self.shown_volumes(), also }
+    }
+
+    /// Sets the host's volumes. One that a preset set is the preset's no more unless it is among them: one like it that
+    /// comes later is the host's.
+    pub fn set_volumes(&mut self, volumes: ArrayVec<Volume, { Volume::MOST }>) {
+        self.preset_volume = self.preset_volume.filter(|own| volumes.contains(own));
+        self.volumes = volumes;
     }
 
     /// The part of [`Self::emitters`] that has depth.

@@ -51,6 +51,17 @@ impl Camera {
         columns.clamp(1.0, WIDEST) as u32
     }
 
+    /// The camera at the place of the eye that sees column `x` of a frame, in the middle of the columns that share it.
+    /// Errors: as `strips`.
+    fn eye_of_column(&self, x: f64, full_width: u32) -> Result<Self> {
+        let (step, full) = (f64::from(self.strip_width()), f64::from(full_width));
+        let first = (x / step).floor() * step;
+        let middle = first + 0.5 * if first < full { step.min(full - first) } else { step };
+        let camera = self.eye_towards(TAU * (middle / full - 0.5))?;
+        camera.check()?;
+        Ok(camera)
+    }
+
     /// The strips of the columns of an image, `width` wide, that is a part of a frame: the same whatever the part is.
     /// Errors: as `eye_towards`; INVALID_ARGUMENT where an eye is in the hole's centre.
     pub fn strips(&self, region: &Region, width: u32) -> Result<Vec<Strip>> {
@@ -60,9 +71,7 @@ impl Camera {
         crate::allocate::reserve(&mut strips, (width / step) as usize + 2, "the strips of a stereo picture")?;
         while begin < end {
             let first = begin / step * step;
-            let middle = f64::from(first) + 0.5 * f64::from(step.min(region.full_width - first));
-            let camera = self.eye_towards(TAU * (middle / f64::from(region.full_width) - 0.5))?;
-            camera.check()?;
+            let camera = self.eye_of_column(begin.into(), region.full_width)?;
             let next = (first + step).min(end);
             strips.push(Strip { begin: begin - region.x, width: next - begin, camera });
             begin = next;
@@ -72,14 +81,13 @@ impl Camera {
 }
 
 impl Scene {
-    /// The scene as the eye sees it that looks at column `x` of a frame; `None`: as the camera does. Errors: as
-    /// `Camera::eye_towards`.
+    /// The scene as the eye sees it that sees column `x` of a frame; `None`: as the camera does. Errors: as
+    /// `Camera::strips`.
     pub(super) fn seen_by_eye(&self, x: f64, full_width: u32) -> Result<Option<Self>> {
         if !self.camera.is_omnistereo() {
             return Ok(None);
         }
-        let camera = self.camera.eye_towards(TAU * (x / f64::from(full_width) - 0.5))?;
-        camera.check()?;
+        let camera = self.camera.eye_of_column(x, full_width)?;
         Ok(Some(Self { camera, ..self.clone() }))
     }
 
@@ -140,5 +148,31 @@ mod tests {
             !Camera { eye_distance: 0.0, ..camera(Eye::Left) }.is_omnistereo() && !camera(Eye::Middle).is_omnistereo()
         );
         assert!(!Camera { projection: Projection::Cube, ..camera(Eye::Left) }.is_omnistereo());
+    }
+
+    /// A host's rays are those of the pixels of a picture, whose columns share eyes.
+    #[test]
+    fn rays_begin_where_the_strip_of_their_column_is_seen_from() {
+        const WIDTH: u32 = 1000;
+        let scene = Scene { camera: camera(Eye::Right), ..Scene::plain() };
+        let region = Region { full_width: WIDTH, full_height: WIDTH / 2, x: 0, y: 0 };
+        let strips = scene.camera.strips(&region, WIDTH).unwrap();
+        assert!((2..500).contains(&strips.len()), "{}", strips.len());
+        let mut rays = std::collections::HashMap::new();
+        let mut keep = |index, ray| {
+            rays.insert(index, ray);
+        };
+        scene.camera_rays(WIDTH, WIDTH / 2, None, &mut keep).unwrap();
+        for strip in &strips {
+            let alone = Scene { camera: strip.camera, ..scene.clone() };
+            for x in [strip.begin, strip.begin + strip.width - 1] {
+                let (column, row) = (f64::from(x) + 0.5, 100.5);
+                let own = scene.camera_ray(WIDTH, WIDTH / 2, None, column, row).unwrap();
+                let of_strip = alone.camera_ray(WIDTH, WIDTH / 2, None, column, row).unwrap();
+                assert_eq!((own.position, own.direction), (of_strip.position, of_strip.direction), "{x}");
+                let ray = rays[&((100 * WIDTH + x) as usize)];
+                assert_eq!((ray.position, ray.direction), (own.position, own.direction), "{x}");
+            }
+        }
     }
 }

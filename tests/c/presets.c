@@ -204,6 +204,12 @@ static void whose_volumes(BhrContext *context) {
     CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
     CHECK_OK(bhr_get_volumes(context, NULL, 0, 0, &count));
     CHECK(count == 1, "bhr_set_preset takes a volume that the host changed");
+    CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_OBSERVATORY, &deep, NULL));
+    CHECK_OK(bhr_set_volumes(context, NULL, sizeof volume, 0));
+    CHECK_OK(bhr_set_volumes(context, &own, sizeof own, 1));
+    CHECK_OK(bhr_set_preset(context, BHR_PRESET_PHYSICAL));
+    CHECK_OK(bhr_get_volumes(context, NULL, 0, 0, &count));
+    CHECK(count == 1, "bhr_set_preset takes the host's volume, set after the preset's was removed");
     CHECK_OK(bhr_set_preset_with(context, BHR_PRESET_PHYSICAL, &thin, NULL));
     CHECK_OK(bhr_get_volumes(context, NULL, 0, 0, &count));
     CHECK(count == 0, "THIN leaves a volume");

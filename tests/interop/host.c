@@ -146,8 +146,8 @@ static void frames_into(BhrContext *context, BhrContext *own, size_t at, uint64_
         if (frame % 8 == 0 || frame + 1 == frames) {
             expect(own, images[at].format, time);
             double apart = vk_apart(images[at].format, seen, expected, WIDTH * HEIGHT * images[at].bytes);
-            CHECK(apart <= vk_most_apart(own, images[at].format), "image %zu, frame %u differs by up to %g", at,
-                  (unsigned)frame, apart);
+            CHECK(apart <= vk_most_apart(own, BHR_TARGET_IMAGE, images[at].format),
+                  "image %zu, frame %u differs by up to %g", at, (unsigned)frame, apart);
         }
     }
     CHECK(released == 0, "released early");

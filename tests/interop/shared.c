@@ -69,7 +69,7 @@ static void frame_into(BhrTarget *target) {
 }
 
 /* Rows of `seen`, stride bytes apart, are those expected, and what is between them is `between`. */
-static void compare(size_t at, uint64_t stride, int between, const char *what) {
+static void compare(BhrTargetKind kind, size_t at, uint64_t stride, int between, const char *what) {
     uint64_t row = (uint64_t)WIDTH * formats[at].bytes;
     uint32_t wrong = 0, touched = 0;
     for (uint32_t y = 0; y < HEIGHT; y++) {
@@ -80,7 +80,7 @@ static void compare(size_t at, uint64_t stride, int between, const char *what) {
     double apart = 0;
     for (uint32_t y = 0; wrong && y < HEIGHT; y++)
         apart = fmax(apart, vk_apart(formats[at].format, seen + y * stride, expected + y * row, row));
-    CHECK(apart <= vk_most_apart(context, formats[at].format), "%s, %s: %u rows of %u differ, by up to %g",
+    CHECK(apart <= vk_most_apart(context, kind, formats[at].format), "%s, %s: %u rows of %u differ, by up to %g",
           formats[at].name, what, wrong, HEIGHT, apart);
     CHECK(touched == 0, "%s, %s: %u bytes between rows were written", formats[at].name, what, touched);
 }
@@ -107,12 +107,12 @@ static void exported(size_t at, BhrTargetKind kind, uint64_t stride, uint32_t fl
     expect(at, flags);
     frame_into(target);
     vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
-    compare(at, kind == BHR_TARGET_IMAGE ? row : step, -1, what);
+    compare(kind, at, kind == BHR_TARGET_IMAGE ? row : step, -1, what);
     /* The memory stays while the host has it. */
     bhr_target_destroy(target);
     memset(seen, 0, sizeof seen);
     vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
-    compare(at, kind == BHR_TARGET_IMAGE ? row : step, -1, "after bhr's end");
+    compare(kind, at, kind == BHR_TARGET_IMAGE ? row : step, -1, "after bhr's end");
     vk_drop(&host, &picture);
 }
 
@@ -132,7 +132,7 @@ static void imported_by_bhr(size_t at, BhrTargetKind kind, uint64_t stride) {
         expect(at, 0);
         frame_into(target);
         vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
-        compare(at, kind == BHR_TARGET_IMAGE ? row : step, -1, "the host's memory");
+        compare(kind, at, kind == BHR_TARGET_IMAGE ? row : step, -1, "the host's memory");
         bhr_target_destroy(target);
     }
     vk_drop(&host, &picture);
@@ -156,7 +156,7 @@ static void host_pixels(size_t at) {
         expect(at, 0);
         frame_into(target);
         memcpy(seen, pixels, stride * HEIGHT);
-        compare(at, stride, 0x5a, "the host's own pixels");
+        compare(BHR_TARGET_BUFFER, at, stride, 0x5a, "the host's own pixels");
         bhr_target_destroy(target);
         handle.handle = (char *)pixels + 16;
         CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "multiples of",
@@ -228,7 +228,7 @@ static void many_frames(uint32_t frames) {
         if (frame % 10 == 0 || frame == frames) {
             expect(2, 0);
             vk_read(&host, &pictures[frame % 2], VK_QUEUE_FAMILY_EXTERNAL, 8, bytes, NULL, seen);
-            compare(2, WIDTH * 8, -1, "one of many frames");
+            compare(BHR_TARGET_BUFFER, 2, WIDTH * 8, -1, "one of many frames");
         }
     }
     for (int i = 0; i < 2; i++) {

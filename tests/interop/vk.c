@@ -478,9 +478,10 @@ double vk_apart(BhrFormat format, const void *some, const void *others, size_t b
     return most;
 }
 
-double vk_most_apart(const BhrContext *context, BhrFormat format) {
+double vk_most_apart(const BhrContext *context, BhrTargetKind kind, BhrFormat format) {
     BhrAdapterInfo adapter = {.struct_size = sizeof adapter};
-    if (bhr_context_adapter(context, &adapter) != BHR_OK || adapter.flags & BHR_ADAPTER_SOFTWARE)
+    if (bhr_context_adapter(context, &adapter) != BHR_OK || adapter.flags & BHR_ADAPTER_SOFTWARE ||
+        kind == BHR_TARGET_BUFFER || format == BHR_FORMAT_BGRA8_SRGB)
         return 0;
     return format == BHR_FORMAT_RGBA16F ? 4 : format == BHR_FORMAT_RGBA32F || format == BHR_FORMAT_R32F ? 3000 : 1;
 }

@@ -85,10 +85,10 @@ VkSemaphore vk_timeline(Vk *vk);
 /* How far pixels of one of BHR_FORMAT_* are apart: so many codes of 8 bits, units in the last place of half floats, or
  * millionths of floats (of 0.001, where they are smaller). */
 double vk_apart(BhrFormat format, const void *some, const void *others, size_t bytes);
-/* How far pixels of targets may be from those of bhr_render_image, by vk_apart: not at all on software drivers.
- * Hardware drivers compile the kernels that write to memory apart from those that write to targets, and round
- * differently. */
-double vk_most_apart(const BhrContext *context, BhrFormat format);
+/* How far pixels of targets may be from those of bhr_render_image, by vk_apart: not at all in buffers, in images of
+ * BGRA8, and on software drivers. Hardware drivers compile the kernels that write other images apart from those that
+ * write to memory, and round differently. */
+double vk_most_apart(const BhrContext *context, BhrTargetKind kind, BhrFormat format);
 /* Open descriptors of the process. */
 int open_descriptors(void);
 

@@ -111,6 +111,8 @@ fn columns_are_seen_from_their_eyes() {
                 // A tenth of a pixel may be a step or two of an edge.
                 let far = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 40;
                 wrong += ours.iter().zip(&column).filter(|pair| far(*pair)).count();
+                // Rays are those of the pixels, which are seen from the middle of their strip.
+                renderer.scene.camera = stereo.strips(&region, 1).unwrap()[0].camera;
                 let ray = { &renderer.scene }.camera_ray(1, SIZE[1], Some(region), 0.5, 9.0).unwrap();
                 renderer.scene.camera = stereo;
                 let own = renderer.scene.camera_ray(1, SIZE[1], Some(region), 0.5, 9.0).unwrap();

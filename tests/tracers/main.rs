@@ -30,5 +30,6 @@ mod sky_target;
 mod stars;
 mod structure;
 mod supersampling;
+mod targets;
 mod transfer;
 mod volumes;

@@ -8,6 +8,7 @@ pub(in crate::gpu) mod buffer;
 #[doc(hidden)]
 pub mod driver_lock;
 pub(in crate::gpu) mod external;
+pub(in crate::gpu) mod faults;
 pub(in crate::gpu) mod gl_guard;
 pub(in crate::gpu) mod gl_thread;
 pub(in crate::gpu) mod handover;

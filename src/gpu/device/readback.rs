@@ -130,11 +130,12 @@ impl PendingReadback {
     pub fn request(&mut self, device: &Device) -> Result<()> {
         let (sender, outcome) = mpsc::sync_channel(1);
         let buffer = self.staging.buffer()?;
-        self.mapped = Some(outcome);
+        let (mapped, size) = (&mut self.mapped, self.size);
         // wgpu may submit what it has left to.
         let _turn = device.turns.take();
         device.scoped("mapping a buffer", |_| {
-            buffer.map_async(wgpu::MapMode::Read, 0..self.size, move |result| {
+            *mapped = Some(outcome);
+            buffer.map_async(wgpu::MapMode::Read, 0..size, move |result| {
                 // Nobody listens any more when the wait failed.
                 let _ = sender.try_send(result);
             });

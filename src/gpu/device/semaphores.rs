@@ -31,6 +31,10 @@ impl GpuSemaphore {
         match *self {}
     }
 
+    pub fn withdraw(&self, _: u64) {
+        match *self {}
+    }
+
     pub fn wait(&self, _: u64, _: std::time::Duration) -> Result<bool> {
         match *self {}
     }
@@ -52,4 +56,16 @@ pub struct SemaphoreUse {
 pub struct FrameSync {
     pub waits: Vec<SemaphoreUse>,
     pub signals: Vec<SemaphoreUse>,
+}
+
+impl FrameSync {
+    /// The timelines that it signals, and their values.
+    pub fn timelines(&self) -> impl Iterator<Item = (&Arc<GpuSemaphore>, u64)> {
+        self.signals.iter().filter_map(|signal| signal.value.map(|value| (&signal.semaphore, value)))
+    }
+
+    /// The frame is not made, and its signals are not given: their values may be asked for again.
+    pub fn withdraw(&self) {
+        self.timelines().for_each(|(semaphore, value)| semaphore.withdraw(value));
+    }
 }

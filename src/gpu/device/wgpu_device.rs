@@ -57,6 +57,8 @@ pub struct Device {
     pub(in crate::gpu) shaders: super::specialise::Shaders,
     pub(in crate::gpu) bindings: super::bindings::BindGroupCache,
     pub(in crate::gpu) uploads: Uploads,
+    /// The failures that tests ask for.
+    pub faults: super::faults::Faults,
     /// The turns that threads take with the queue.
     pub(in crate::gpu) turns: QueueTurns,
     /// Whether the device is a host's own.
@@ -160,6 +162,7 @@ impl Device {
             shaders: Default::default(),
             bindings: Default::default(),
             uploads: Default::default(),
+            faults: Default::default(),
         })
     }
 
@@ -264,6 +267,7 @@ impl Device {
     /// Errors: `DeviceLost`; `OutOfMemory`; `Internal` for whatever wgpu's validation or the driver rejects.
     pub fn scoped<T>(&self, what: &str, work: impl FnOnce(&wgpu::Device) -> T) -> Result<T> {
         self.check()?;
+        self.faults.check(what)?;
         match self.in_error_scopes(work) {
             (_, Some(error)) => Err(self.explain(from_wgpu(what, &error))),
             (done, None) => self.check().map(|()| done),
@@ -344,6 +348,7 @@ impl Device {
     ///
     /// Errors: `DeviceLost`, also when the device hangs for 60 s.
     pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<()> {
+        self.faults.check("waiting for work")?;
         let deadline = Instant::now() + hangs_after();
         loop {
             let wait = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(WAIT_SLICE) };

@@ -11,7 +11,7 @@ use super::steps::{Step, Steps};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::handover::Handover;
-use crate::gpu::device::semaphores::{FrameSync, SemaphoreUse};
+use crate::gpu::device::semaphores::FrameSync;
 use crate::gpu::device::sharing::GpuTarget;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
@@ -59,7 +59,7 @@ pub enum Delivery {
 pub struct Handed {
     targets: Vec<Arc<GpuTarget>>,
     sync: FrameSync,
-    /// A step that writes targets was submitted, with the waits.
+    /// The step that takes the targets over was submitted, with the waits.
     taken: bool,
 }
 
@@ -98,6 +98,10 @@ impl Delivery {
 }
 
 impl Handed {
+    pub fn new(targets: Vec<Arc<GpuTarget>>, sync: FrameSync) -> Self {
+        Self { targets, sync, taken: false }
+    }
+
     /// The part that goes with a submission. `writes`: it writes targets; `last` of the frame.
     pub fn handover(&self, writes: bool, last: bool) -> Handover<'_> {
         let begins = !self.taken && (writes || last);
@@ -110,14 +114,20 @@ impl Handed {
         }
     }
 
-    pub fn submitted(&mut self, writes: bool) {
-        self.taken |= writes;
+    pub fn submitted(&mut self, writes: bool, last: bool) {
+        self.taken |= writes || last;
     }
 
-    /// The semaphores of a frame that ends before its last step, or before its first.
-    pub fn without_frame(&self) -> Handover<'_> {
-        let waits: &[SemaphoreUse] = if self.taken { &[] } else { &self.sync.waits };
-        Handover { takes: &[], gives: &[], reads: &[], waits, signals: &self.sync.signals }
+    /// Ends a frame before its last step, or before its first: the semaphores are waited for and signalled all the
+    /// same, and the target is given back in its layout, whatever pixels it has. Errors: whatever the device reports;
+    /// the values of the signals may then be asked for again.
+    pub fn end(&self, device: &Device) -> Result<()> {
+        let handover = self.handover(false, true);
+        if !self.taken && handover.waits.is_empty() && handover.signals.is_empty() {
+            // Nobody waits for a target that is as it was.
+            return Ok(());
+        }
+        device.submit_handover(None, &handover).map(drop).inspect_err(|_| self.sync.withdraw())
     }
 }
 
@@ -127,17 +137,21 @@ pub type ExtraCommands<'a> = dyn FnMut(&mut wgpu::CommandEncoder) -> Result<()> 
 impl BegunFrame {
     /// The frame waits for the semaphores before it writes the targets, and signals when it has.
     pub fn hand_over(&mut self, targets: Vec<Arc<GpuTarget>>, sync: FrameSync) {
-        self.handed = Some(Handed { targets, sync, taken: false });
+        self.handed = Some(Handed::new(targets, sync));
     }
 
-    /// After a failure: gives the signals all the same, unless no step has taken the targets over yet and `always` is
-    /// false. Errors: whatever the device reports.
+    /// After a failure: gives the signals all the same; but, unless `always`, of a frame without a step that was
+    /// submitted takes them back. Errors: as [`Handed::end`].
     pub fn give_signals(&mut self, device: &Device, always: bool) -> Result<()> {
         match self.handed.take() {
-            Some(handed) if (always || handed.taken) && !self.is_submitted() => {
-                device.submit_handover(None, &handed.without_frame()).map(drop)
+            // They went with the last step.
+            Some(_) if self.is_submitted() => Ok(()),
+            Some(handed) if always || self.submitted > 0 => handed.end(device),
+            Some(handed) => {
+                handed.sync.withdraw();
+                Ok(())
             }
-            _ => Ok(()),
+            None => Ok(()),
         }
     }
 

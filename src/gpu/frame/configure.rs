@@ -20,7 +20,7 @@ use crate::tracer::{Backend, FrameRequest};
 use glam::DVec3;
 
 impl GpuTracer {
-    /// How pixels for the host's memory are written.
+    /// How pixels for the host's memory, and for buffers that it shares, are written.
     pub(in crate::gpu) fn host_pixels(&self, scene: &Scene) -> PixelTarget {
         if self.maps_pixels(scene) { PixelTarget::Rows } else { PixelTarget::Packed }
     }

@@ -141,8 +141,9 @@ impl GpuTracer {
         let scene = of_outputs.as_ref().filter(|_| !pictured).unwrap_or(scene);
         let kind = match target {
             FrameTarget::Image(_, format) => PixelTarget::Image(format),
-            FrameTarget::Buffer(..) | FrameTarget::Copied(_) | FrameTarget::Nowhere => PixelTarget::Packed,
-            FrameTarget::Host => self.host_pixels(scene),
+            FrameTarget::Nowhere => PixelTarget::Packed,
+            // One kernel for all of them: others, compiled apart, round a few pixels otherwise on hardware.
+            FrameTarget::Host | FrameTarget::Buffer(..) | FrameTarget::Copied(_) => self.host_pixels(scene),
         };
         let delivery = Delivery::of(target);
         let mut setup = self.set_up(scene, request, kind)?;
@@ -180,7 +181,9 @@ impl GpuTracer {
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         setup.uniform.map_sizes = tables.map_sizes();
         let fetch = tables.occluder().fetch(scene)?;
-        let packed = if kind == PixelTarget::Packed && delivery.is_packed() { pixel_bytes } else { 0 };
+        // Rows for the host go where it maps them.
+        let staged = kind == PixelTarget::Rows && matches!(delivery, Delivery::Host);
+        let packed = if staged { 0 } else { pixel_bytes };
         let size = Size { tile: steps.largest(), pixel_bytes: packed, several_samples: samples > 1 };
         if let Some((bloom, light)) = setup.bloom.as_ref().zip(steps.light()) {
             self.buffers.bloom.prepare(&self.device, bloom, light)?;

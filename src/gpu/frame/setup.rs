@@ -21,7 +21,7 @@ pub(in crate::gpu) struct ShadingVariants {
     /// The film of development, in frames with bloom.
     pub(in crate::gpu) developed: Option<FilmVariant>,
     pub(in crate::gpu) several_samples: bool,
-    /// Whether pixels are written row by row into the host's memory.
+    /// Whether pixels are written row by row, those for the host into its memory.
     pub(in crate::gpu) rows: bool,
 }
 

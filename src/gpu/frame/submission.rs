@@ -199,13 +199,14 @@ impl FrameBuffers {
         let handover = Handover { reads: &reads, ..handover };
         let submission = device.submit_handover(Some(encoder), &handover)?;
         if let Some(handed) = &mut frame.handed {
-            handed.submitted(writes);
+            handed.submitted(writes, last);
         }
-        copied.request(device)?;
+        // It runs, and signals, whatever fails from here on.
         frame.submitted += 1;
         if let Some(beside) = &mut frame.beside {
             beside.begun |= step.outputs;
         }
+        copied.request(device)?;
         let head = size.min(PIXELS);
         Ok(Some(Submission { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
     }

@@ -119,9 +119,9 @@ pub enum PixelKind {
 pub enum PixelTarget {
     /// Into an image on the device: a window's texture, or one that the host shares.
     Image(StoredFormat),
-    /// Into a buffer on the device: packed, or the rows of a whole frame.
+    /// Into a buffer, packed, or the rows of a whole frame, each thread its pixel.
     Packed,
-    /// Into a buffer in the host's memory, packed, row by row.
+    /// The same by workgroups, row by row: faster where the buffer is in the host's memory.
     Rows,
     /// Not pixels yet: exposed light, for bloom to spread.
     Light,

@@ -8,6 +8,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::external::{OPAQUE_FD, SemaphoreKind, SemaphoreOrigin};
 use ash::vk;
 use ash::vk::Handle;
+use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -26,10 +27,17 @@ pub struct GpuSemaphore {
 /// The values that a timeline is to have.
 #[derive(Default)]
 struct Values {
-    /// The largest value that a frame was asked to signal.
-    asked: u64,
+    /// Those of frames that are not submitted yet, as many as a context takes at most.
+    pending: BTreeSet<u64>,
     /// The largest one that went to the queue.
     submitted: u64,
+}
+
+impl Values {
+    /// The largest value that the timeline has or will have, as far as frames go.
+    fn asked(&self) -> u64 {
+        self.pending.last().map_or(self.submitted, |pending| self.submitted.max(*pending))
+    }
 }
 
 impl GpuSemaphore {
@@ -133,14 +141,19 @@ impl GpuSemaphore {
     /// Notes that a timeline is to be signalled. Errors: as [`Self::check_value`].
     pub fn ask(&self, value: u64) -> Result<()> {
         let mut values = self.values();
-        self.check_growth(value, values.asked)?;
-        values.asked = value;
+        self.check_growth(value, values.asked())?;
+        values.pending.insert(value);
         Ok(())
+    }
+
+    /// The frame that was to signal it failed, and nothing of it went to the queue.
+    pub fn withdraw(&self, value: u64) {
+        self.values().pending.remove(&value);
     }
 
     /// Errors: INVALID_ARGUMENT for a value that does not grow, or grows more than the device has it.
     pub fn check_value(&self, value: u64) -> Result<()> {
-        self.check_growth(value, self.values().asked)
+        self.check_growth(value, self.values().asked())
     }
 
     fn check_growth(&self, value: u64, asked: u64) -> Result<()> {
@@ -165,6 +178,7 @@ impl GpuSemaphore {
     /// A signal went to the queue.
     pub(in crate::gpu) fn has_submitted(&self, value: u64) {
         let mut values = self.values();
+        values.pending.remove(&value);
         values.submitted = values.submitted.max(value);
     }
 
@@ -187,7 +201,7 @@ impl GpuSemaphore {
     pub fn signal(&self, value: u64) -> Result<()> {
         self.timeline()?;
         let values = self.values();
-        let (pending, now) = (values.asked, self.counter()?);
+        let (pending, now) = (values.asked(), self.counter()?);
         if pending > now && value >= pending {
             return Err(Error::argument(format!(
                 "value is {value}; a frame that is under way will signal {pending}, and values grow"
