@@ -96,7 +96,9 @@ fn set_occluder(place: vec2<f32>) {
     let texel = clamp(vec2<i32>(floor(place)) - vec2<i32>(frame.occluder.xy), vec2<i32>(0), size - 1);
     occluder_farthest = textureLoad(occluder, texel, 0).x / frame.occluder.z;
     let n = aberrate(look_direction(place.x, place.y)).n;
-    occluder_ends = occluder_farthest < max(-n.x, 0.0) / frame.place.x;
+    let closest = max(-n.x, 0.0) / frame.place.x;
+    // Infinity may not be written as a constant.
+    occluder_ends = occluder_farthest < select(closest, 3e38, frame.occluder.w > 0.0);
 }
 
 fn is_occluded(crossing: Crossing) -> bool {

@@ -20,6 +20,8 @@ pub struct Occluder {
     pub distances: Arc<Vec<f32>>,
     /// The place of the first pixel in the full frame.
     pub origin: [u32; 2],
+    /// The things are where light shows them: rays end there, wherever it is.
+    pub lensed: bool,
 }
 
 /// The part of a ray that an occluder leaves.
@@ -52,7 +54,7 @@ impl Occluder {
                 distances.push(distance);
             }
         }
-        Ok(Self { width, height, distances: Arc::new(distances), origin: [0, 0] })
+        Ok(Self { width, height, distances: Arc::new(distances), origin: [0, 0], lensed: false })
     }
 
     /// The distance at a position of the full frame, scene lengths: that of the pixel there, or of the one nearest to
@@ -68,9 +70,9 @@ impl Occluder {
 
 impl Shown {
     /// For an occluder at a distance, M, before a ray that comes nearest to the hole, on its straight line, at
-    /// `closest`, M.
-    pub fn new(farthest: f64, closest: f64) -> Self {
-        Self { farthest, ends: farthest < closest }
+    /// `closest`, M. Things that are `lensed` are met by the ray itself.
+    pub fn new(farthest: f64, closest: f64, lensed: bool) -> Self {
+        Self { farthest, ends: farthest < if lensed { f64::INFINITY } else { closest } }
     }
 
     /// Whether a crossing is seen by an observer at `eye`, chart.
@@ -131,10 +133,12 @@ mod tests {
         for (farthest, shows) in
             [(10.0, [false; 3]), (25.0, [true, false, false]), (35.0, [true, false, true]), (50.0, [true; 3])]
         {
-            let shown = Shown::new(farthest, 29.0);
+            let shown = Shown::new(farthest, 29.0, false);
             assert_eq!([near, far, ring].map(|crossing| shown.shows(&crossing, eye)), shows, "{farthest}");
             assert_eq!(shown.ends, farthest < 29.0);
+            assert!(Shown::new(farthest, 29.0, true).ends);
         }
+        assert!(!Shown::new(f64::INFINITY, 29.0, true).ends);
     }
 
     #[test]

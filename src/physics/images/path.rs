@@ -3,14 +3,20 @@
 //! from the horizon. Where that fails, on the caustics that a spinning hole has, the point is approached from beside.
 
 use super::plane;
-use super::shooting::{Aim, COARSE, Effort, FINE, Target, bring};
+use super::shooting::{Aim, COARSE, Effort, Target, bring, fine};
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::horizon_outer;
 use glam::{DQuat, DVec3};
 
 /// Newton's method on the way, and at its end.
 const ON_THE_WAY: Effort = Effort { step: COARSE, tolerance: 1e-6, enough: 1e-5, iterations: 6, most: 0.3 };
-const AT_THE_END: Effort = Effort { step: FINE, tolerance: 1e-13, enough: 1e-8, iterations: 12, most: 0.3 };
+fn at_the_end(order: u32, target: &Target) -> Effort {
+    let tolerance = if order < 2 { 1e-10 } else { 1e-13 };
+    Effort { step: fine(order, target.u), tolerance, enough: 1e-8, iterations: 12, most: 0.3 }
+}
+
+/// The ray without spin, from which others are followed.
+const WITHOUT_SPIN: plane::Care = plane::Care { step: COARSE, tolerance: 1e-6 };
 
 /// The shortest stretch of the way, which is 1 long.
 const SHORTEST: f64 = 1e-5;
@@ -41,7 +47,8 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
 
 /// The ray with all digits.
 fn finished(frame: &LocalFrame, point: DVec3, aim: Aim, order: u32) -> Option<Aim> {
-    bring(frame, &Target::new(point), aim, order, &AT_THE_END).map(|(aim, _)| aim)
+    let target = Target::new(point);
+    bring(frame, &target, aim, order, &at_the_end(order, &target)).map(|(aim, _)| aim)
 }
 
 /// The ray that the one without spin becomes.
@@ -57,14 +64,17 @@ fn spun_up(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
         Some((turned, Target::new(n * (r + out))))
     };
     let (still, target) = way(0.0)?;
-    follow(way, plane::aim(&still, n, target.u, order)?, order)
+    // Rays of higher orders want more digits, by e^pi for each.
+    let care =
+        if order < 2 { WITHOUT_SPIN } else { plane::Care { step: fine(order, target.u), tolerance: f64::EPSILON } };
+    follow(way, plane::aim(&still, n, target.u, order, care)?, order)
 }
 
 /// Follows a ray along a way from 0 to 1, which gives observer and target.
 fn follow(way: impl Fn(f64) -> Option<(LocalFrame, Target)>, begin: Aim, order: u32) -> Option<Aim> {
     let mut passed = vec![(0.0, begin)];
     // Rays of higher orders keep to their image in a range that is smaller by e^pi for each half turn.
-    let mut stretch = 0.25 * (-2.0 * f64::from(order)).exp();
+    let mut stretch = (-2.0 * f64::from(order)).exp();
     while let Some(&(s, _)) = passed.last().filter(|(s, _)| *s < 1.0) {
         if passed.len() > MOST_STRETCHES {
             return None;

@@ -7,9 +7,14 @@ use crate::physics::integrator::{held_inside, nystrom_step, step_limit};
 use crate::physics::observer::LocalFrame;
 use glam::{DMat3, DVec3};
 
-/// Steps in sigma: of rays that lead to others, and of those that are handed out.
+/// Steps in sigma of rays that lead to others.
 pub const COARSE: f64 = 0.1;
-pub const FINE: f64 = 0.025;
+
+/// Steps in sigma of rays that are handed out: each half turn more makes them e^pi times as sensitive, and a small 1/r
+/// at their end that much to errors near the hole.
+pub fn fine(order: u32, u: f64) -> f64 {
+    if order < 2 && u > 1e-3 { 0.05 } else { 0.025 }
+}
 
 /// Most steps of a ray: beside the horizon they are small.
 const MOST_STEPS: usize = 4000;
@@ -96,7 +101,7 @@ pub struct Flight {
 
 impl Flight {
     /// Follows a ray, steps being `step` long in sigma. `None`: it does not come so far.
-    pub fn of(frame: &LocalFrame, aim: &Aim, step: f64) -> Option<Self> {
+    pub fn of(frame: &LocalFrame, aim: &Aim, step: f64, with_delay: bool) -> Option<Self> {
         let (constants, start) = frame.start(aim.look())?;
         let c = &constants;
         if aim.time.is_nan() || aim.time <= 0.0 {
@@ -108,7 +113,7 @@ impl Flight {
             let most = (step / c.scale).min(step_limit(c, &state, step));
             // No last step that is much shorter than the others.
             let h = if left > 1.5 * most { most } else { left };
-            state = held_inside(c, nystrom_step(c, &state, h, true));
+            state = held_inside(c, nystrom_step(c, &state, h, with_delay));
             left = if h == left { 0.0 } else { left - h };
             shares.push(h / tau);
             let captured = state.du > 0.0 && state.u * c.r_plus >= 1.0 - 1e-9;
@@ -155,7 +160,7 @@ pub struct Effort {
 /// Newton's method, damped. The number of iterations goes with the result.
 pub fn bring(frame: &LocalFrame, target: &Target, guess: Aim, order: u32, effort: &Effort) -> Option<(Aim, usize)> {
     let mut aim = guess;
-    let mut flight = Flight::of(frame, &aim, effort.step)?;
+    let mut flight = Flight::of(frame, &aim, effort.step, false)?;
     let mut miss = target.miss(&flight.there);
     if miss.is_nan() || miss.length() > effort.most {
         return None;
@@ -168,7 +173,7 @@ pub fn bring(frame: &LocalFrame, target: &Target, guess: Aim, order: u32, effort
         let mut share = 1.0;
         loop {
             let next = aim.with(aim.vector() - change * share);
-            let flown = Flight::of(frame, &next, effort.step).map(|flight| (target.miss(&flight.there), flight));
+            let flown = Flight::of(frame, &next, effort.step, false).map(|flight| (target.miss(&flight.there), flight));
             if let Some((closer, found)) = flown.filter(|(closer, _)| closer.length() < miss.length()) {
                 (aim, flight, miss) = (next, found, closer);
                 break;
