@@ -10,6 +10,7 @@
 mod path;
 mod plane;
 mod shooting;
+mod winding;
 
 use super::geodesic::{Constants, State};
 use super::observer::LocalFrame;
@@ -53,8 +54,9 @@ pub enum NoImage {
 /// The image of the chart place `point` that light makes after `order` half turns, for the observer at `frame`.
 pub fn image(frame: &LocalFrame, point: DVec3, order: u32) -> Result<Image, NoImage> {
     let Ok(at_point) = LocalFrame::new(frame.a, point) else { return Err(NoImage::None) };
-    let observer = frame.e_r * frame.r;
-    if at_point.rain || at_point.r <= horizon_outer(frame.a) || point.distance(observer) == 0.0 {
+    // The observer's place is known to rounding.
+    let beside = point.distance(frame.e_r * frame.r);
+    if at_point.rain || at_point.r <= horizon_outer(frame.a) || beside <= 4.0 * f64::EPSILON * frame.r {
         return Err(NoImage::None);
     }
     found(frame, point, &at_point, order).ok_or(NoImage::Lost)

@@ -36,13 +36,19 @@ impl Target {
     }
 
     /// How far a ray is beside the point: in ln r, and in angles about the hole.
-    fn miss(&self, there: &State) -> DVec3 {
+    pub fn miss(&self, there: &State) -> DVec3 {
         let direction = there.chart_direction();
         let beside = DVec3::new(0.0, direction.dot(self.across[0]), direction.dot(self.across[1]));
         let (sin, cos) = (beside.length(), direction.dot(self.n));
         // The angle, not its sine, which is 0 on the other side, too.
         let angle = if cos > 0.0 && sin < 1e-4 { 1.0 } else { sin.atan2(cos) / sin.max(1e-300) };
         DVec3::new((there.u - self.u) / self.u, beside.y * angle, beside.z * angle)
+    }
+
+    /// d(miss) / d(tau) of a ray that is near the point.
+    pub fn miss_rate(&self, flight: &Flight) -> DVec3 {
+        let velocity = flight.velocity();
+        DVec3::new(flight.there.du / self.u, velocity.dot(self.across[0]), velocity.dot(self.across[1]))
     }
 }
 
@@ -202,10 +208,7 @@ fn correction(
         let turned = aim.with(aim.vector() + change * step).look();
         Some((target.miss(&flight.again(frame, turned)?) - miss) / step)
     };
-    let velocity = flight.velocity();
-    let by_time =
-        DVec3::new(flight.there.du / target.u, velocity.dot(target.across[0]), velocity.dot(target.across[1]))
-            / flight.constants.nu_local;
+    let by_time = target.miss_rate(flight) / flight.constants.nu_local;
     let jacobian = DMat3::from_cols(by(DVec3::X)?, by(DVec3::Y)?, by_time);
     let change = jacobian.inverse() * miss;
     change.is_finite().then_some(change)

@@ -209,9 +209,13 @@ fn points_that_have_no_image_have_none() {
 
 #[test]
 fn timing_of_images() {
-    for (spins, orders, least) in
-        [([0.0], 0, [2.0, 1.0]), ([0.9], 0, [2.0, 1.0]), ([0.9], 1, [2.0, 1.0]), ([0.9], 3, [2.0, 1.0])]
-    {
+    for (spins, orders, least) in [
+        ([0.0], 0, [2.0, 1.0]),
+        ([0.9], 0, [2.0, 1.0]),
+        ([0.9], 1, [2.0, 1.0]),
+        ([0.9], 3, [2.0, 1.0]),
+        ([0.999], 3, [2.0, 1.0]),
+    ] {
         let cases = cases(400, &spins, orders, least, 7);
         let begun = Instant::now();
         let lost = cases
