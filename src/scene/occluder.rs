@@ -94,7 +94,7 @@ pub fn place(crossing: &Crossing) -> DVec3 {
 
 impl Scene {
     /// The scene of a frame's image of this size, with the host's things before it where the view is LIGHT. Errors:
-    /// INVALID_ARGUMENT for those of another size; UNSUPPORTED where matter has depth.
+    /// INVALID_ARGUMENT for those of another size.
     pub fn behind(&self, occluder: Option<&Occluder>, size: [u32; 2], region: &Region) -> Result<Cow<'_, Self>> {
         let Some(occluder) = occluder.filter(|_| self.view == View::Light) else { return Ok(Cow::Borrowed(self)) };
         self.check_one_eye("an occluder")?;
@@ -102,11 +102,6 @@ impl Scene {
         if given != size {
             let ([w, h], [width, height]) = (given, size);
             return Err(Error::argument(format!("the occluder is {w} x {h}; the image is {width} x {height}")));
-        }
-        if self.emitters().needs().parts {
-            return Err(Error::unsupported(
-                "an occluder is set, and the scene has volumes or hot spots, which it cannot cut; remove either",
-            ));
         }
         let occluder = Occluder { origin: [region.x, region.y], ..occluder.clone() };
         Ok(Cow::Owned(Self { occluder: Some(occluder), ..self.clone() }))

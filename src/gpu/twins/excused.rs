@@ -138,7 +138,9 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
     ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
     ("records/record", "crossing_place crossing_distance", OUTPUTS),
-    ("shade/shade", "set_occluder is_occluded", OCCLUDER),
+    ("emit/occluder", "set_occluder", OCCLUDER),
+    ("emit/shown_part", "beyond_occluder shown_stretch", OCCLUDER),
+    ("shade/shade", "is_occluded", OCCLUDER),
     ("emit/plane", "plane_opacity", OUTPUTS),
     ("shade/record", "take_record seen_crossing seen_sky", HOOK),
     (

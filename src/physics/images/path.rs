@@ -24,7 +24,7 @@ const SHORTEST: f64 = 1e-5;
 const MOST_STRETCHES: usize = 300;
 
 /// Turns about the spin axis and towards it, radians, of the places that a point is approached from.
-const BESIDE: [[f64; 2]; 3] = [[0.35, 0.1], [-0.35, -0.1], [0.9, 0.3]];
+pub const BESIDE: [[f64; 2]; 3] = [[0.35, 0.1], [-0.35, -0.1], [0.9, 0.3]];
 
 /// The ray to `point` after `order` half turns, for a spinning hole.
 pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {

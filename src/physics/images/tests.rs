@@ -82,7 +82,11 @@ fn cases(count: usize, spins: &[f64], orders: u32, least: [f64; 2], seed: u32) -
 fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
     let miss = |&(a, observer, point, order): &Case| {
         let frame = LocalFrame::new(a, observer).unwrap();
-        image(&frame, point, order).ok().map(|image| {
+        let found = image(&frame, point, order);
+        if let Err(why) = found {
+            println!("{why:?}: spin {a}, order {order}, {observer} {point}");
+        }
+        found.ok().map(|image| {
             let miss = least_distance(&frame, image.look, point) / point.distance(observer);
             if miss > 1e-6 {
                 println!("missed by {miss:e}: spin {a}, order {order}, {observer} {point}");
@@ -226,4 +230,13 @@ fn timing_of_images() {
             .count();
         println!("spin {spins:?} order {orders}: {:?} a point, {lost} lost", begun.elapsed() / 400);
     }
+}
+
+#[test]
+#[ignore]
+fn big_of_images() {
+    let all = cases(24_000, &SPINS, 3, [2.0, 1.0], 3);
+    lost_and_missed(&all);
+    let all = cases(8_000, &SPINS, 0, [0.3, 0.05], 3);
+    lost_and_missed(&all);
 }

@@ -9,12 +9,12 @@
 //! the curve of rays turns back in spin, and again. It is followed by its own length (Keller 1977, in Applications of
 //! Bifurcation Theory), which passes such turns.
 
-use super::path::spun_way;
+use super::path::{BESIDE, spun_way};
 use super::plane;
 use super::shooting::{Aim, Flight, Target, fine};
 use crate::physics::geodesic::Constants;
 use crate::physics::observer::LocalFrame;
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use std::f64::consts::PI;
 
 /// Steps in sigma on the way.
@@ -23,30 +23,39 @@ const STEP: f64 = 0.05;
 /// Lengths of the curve from ray to ray, in (x, alpha, ln time, spin): first, longest, shortest.
 const FIRST: f64 = 0.02;
 const LONGEST: f64 = 0.25;
-const SHORTEST: f64 = 1e-7;
+const SHORTEST: f64 = 1e-5;
 const MOST_STEPS: usize = 600;
 
 /// Changes for derivatives.
 const SMALL: f64 = 1e-6;
 
-/// Misses that end Newton's method on the way and at its end.
-const ON_THE_WAY: f64 = 1e-7;
+/// Misses that end Newton's method on the way and at its end. On the way it is more than what the end of a ray jumps by
+/// where it takes one step more.
+const ON_THE_WAY: f64 = 2e-5;
 const AT_THE_END: f64 = 1e-11;
 /// A miss that is good enough where rounding leaves no way on.
-const ENOUGH: f64 = 1e-8;
+const ENOUGH: f64 = 1e-7;
+
+/// Scales of `Winding` that are tried, times e^-pi for each half turn. Where a curve is hard to follow in the
+/// coordinates of one it often is not in those of the other.
+const SCALES: [f64; 2] = [0.01, 1.0];
 
 /// The ray to `point` after `order` half turns.
 pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
-    let way = |s: f64| spun_way(frame, point, s);
-    let (still, target) = way(0.0)?;
-    let care = plane::Care { step: fine(order, target.u), tolerance: f64::EPSILON };
-    let begin = plane::aim(&still, point.normalize(), target.u, order, care)?;
-    let winding = Winding { scale: 0.01 * (-PI * f64::from(order)).exp() };
-    let begin = winding.of_aim(&still, &begin)?;
-    let (frame, target) = way(1.0)?;
-    let near = winding.follow(&way, begin.extend(0.0))?;
-    let end = winding.finish(&frame, &target, near, fine(order, target.u))?;
-    winding.to_aim(&frame, end)
+    let mut tries = SCALES.iter().map(|scale| Winding { scale: scale * (-PI * f64::from(order)).exp() });
+    let straight = tries.clone().find_map(|winding| winding.spun_up(frame, point, order));
+    straight.or_else(|| {
+        // From the image of a point beside it.
+        tries.find_map(|winding| {
+            BESIDE.iter().find_map(|[turn, lift]| {
+                let beside = DQuat::from_rotation_z(*turn) * (DQuat::from_axis_angle(frame.e_phi, *lift) * point);
+                let aim = winding.spun_up(frame, beside, order)?;
+                let arc = DQuat::from_rotation_arc(beside.normalize(), point.normalize());
+                let way = |s: f64| Some((*frame, Target::new(DQuat::IDENTITY.slerp(arc, s) * beside)));
+                winding.led(&way, &aim, order)
+            })
+        })
+    })
 }
 
 /// Whether the ray in a direction falls into the hole, told by the barrier of its radial motion: u'^2 = E^2 + (a^2 E^2 -
@@ -99,6 +108,24 @@ struct Winding {
 }
 
 impl Winding {
+    /// The ray that the one without spin becomes.
+    fn spun_up(&self, frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
+        let way = |s: f64| spun_way(frame, point, s);
+        let (still, target) = way(0.0)?;
+        let care = plane::Care { step: fine(order, target.u), tolerance: f64::EPSILON };
+        let begin = plane::aim(&still, point.normalize(), target.u, order, care)?;
+        self.led(&way, &begin, order)
+    }
+
+    /// The ray at the end of a way that the one at its begin becomes, with all digits.
+    fn led(&self, way: &Way<'_>, begin: &Aim, order: u32) -> Option<Aim> {
+        let (from, _) = way(0.0)?;
+        let (to, target) = way(1.0)?;
+        let near = self.follow(way, self.of_aim(&from, begin)?.extend(0.0))?;
+        let end = self.finish(&to, &target, near, fine(order, target.u))?;
+        self.to_aim(&to, end)
+    }
+
     fn of_aim(&self, frame: &LocalFrame, aim: &Aim) -> Option<DVec3> {
         let look = aim.look();
         let across = look.y.hypot(look.z);
@@ -171,7 +198,7 @@ impl Winding {
         Some(([by.x_axis, by.y_axis, by.z_axis, by_spin], miss))
     }
 
-    /// Follows the curve of rays from spin 0 to 1 (times the hole's); the coordinates near its end.
+    /// Follows the curve of rays from the way's begin to its end; the coordinates near there.
     fn follow(&self, way: &Way<'_>, begin: DVec4) -> Option<DVec3> {
         let mut at = begin;
         let (columns, _) = self.jacobian(way, at)?;
