@@ -335,6 +335,8 @@ static void add_glows(const World *world, size_t i, double alpha, double out[3])
     }
 }
 
+static const Choice MATTERS[] = {{"thin", BHR_PRESET_MATTER_THIN}, {"deep", BHR_PRESET_MATTER_DEEP}, {NULL, 0}};
+
 static BhrImage image_of(const World *world, BhrFormat format, float *pixels) {
     BhrImage image;
     bhr_image_init(&image, sizeof image);
@@ -449,9 +451,22 @@ static BhrStatus save(const World *world, const char *path) {
     return status;
 }
 
-static int compose(World *world, const char *path) {
+/* A thin disk, translucent, so that what is sunk into it shows through; or one with depth. */
+static BhrStatus set_matter(BhrContext *context, int32_t matter) {
+    if (matter == BHR_PRESET_MATTER_DEEP) {
+        BhrPresetOptions options;
+        bhr_preset_options_init(&options, sizeof options);
+        options.matter = matter;
+        return bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
+    }
+    BhrDisk disk;
+    bhr_disk_init(&disk, sizeof disk);
+    disk.opacity = 0.8;
+    return bhr_set_disk(context, &disk);
+}
+
+static int compose(World *world, int32_t matter, const char *path) {
     const size_t count = (size_t)world->width * world->height;
-    BhrDisk      disk;
     world->rays = calloc(count, sizeof *world->rays);
     world->things = calloc(count, sizeof *world->things);
     world->ghosts = calloc(count, sizeof *world->ghosts);
@@ -465,10 +480,7 @@ static int compose(World *world, const char *path) {
                 (unsigned)world->height);
         return EXIT_FAILURE;
     }
-    /* Translucent, so that what is sunk into it shows through. */
-    bhr_disk_init(&disk, sizeof disk);
-    disk.opacity = 0.8;
-    BhrStatus status = bhr_set_disk(world->context, &disk);
+    BhrStatus status = set_matter(world->context, matter);
     if (status >= 0) {
         status = cast(world);
     }
@@ -484,11 +496,12 @@ static int compose(World *world, const char *path) {
 int main(int argc, char **argv) {
     const char  *path = "composite.png";
     uint32_t     size[2] = {1280, 720};
-    int32_t      backend = BHR_BACKEND_AUTO;
+    int32_t      backend = BHR_BACKEND_AUTO, matter = BHR_PRESET_MATTER_THIN;
     int          help = 0;
     const Option options[] = {
         {"--output", OPTION_TEXT, &path, "FILE", "the picture, .png or .ppm", NULL, NULL},
         {"--size", OPTION_SIZE, size, "WxH", "of the picture", NULL, "1 to 8192 a side"},
+        {"--matter", OPTION_CHOICE, &matter, NULL, "a thin disk, or one with depth", MATTERS, NULL},
         {"--backend", OPTION_CHOICE, &backend, NULL, "what traces it", BACKENDS, NULL},
         {"--help", OPTION_FLAG, &help, NULL, "this text", NULL, NULL},
     };
@@ -512,7 +525,7 @@ int main(int argc, char **argv) {
     world.width = size[0] * SAMPLES;
     world.height = size[1] * SAMPLES;
     const BhrStatus made = create_context_on(backend, &world.context);
-    const int       result = made < 0 ? report_failure("make a context", made) : compose(&world, path);
+    const int       result = made < 0 ? report_failure("make a context", made) : compose(&world, matter, path);
     bhr_context_destroy(world.context);
     free(world.rays);
     free(world.things);

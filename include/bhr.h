@@ -4,6 +4,15 @@
  * Made by cbindgen from the Rust sources in src/capi; do not edit. A host developer needs to read nothing else: make a
  * context, set the hole and the camera, and render into memory of your own.
  *
+ * Sections, in this order, each after a line "---- title ----"
+ *   version; status, messages; log; adapters; windows of the host; context; the black hole;
+ *   the camera: an observer with a lens; cameras as matrices; accretion disk; matter with depth: volumes and hot spots;
+ *   images in the host's memory; sky; film; relativistic effects, time; presets: named looks; quality;
+ *   what a pixel shows; parts of a larger frame; rendering into memory; rendering in the background;
+ *   outputs beside the picture; the host's things before the camera; rendering into windows;
+ *   rays: the same tracer, asked directly; points on the screen; the matter with depth along rays;
+ *   numbers about the last finished frame.
+ *
  * Example
  *   #include "bhr.h"
  *
@@ -1887,11 +1896,16 @@ BHR_NODISCARD BhrStatus bhr_save_outputs(const BhrContext *context,
  * With BHR_IMAGE_LENSED the host has drawn its things at their lensed places, by bhr_project_points at order 0, and
  * each distance is BhrProjectedPoint.distance, from the camera straight to the thing itself. Then the ray ends at the
  * thing wherever it is, behind the hole as well: beyond it nothing is left, of orders above 0 nothing at all, because
- * their crossings lie beyond the direct images of all things. Glare (BhrFilm.bloom)
- * goes over things, too. Images of a region take distances for that region. Frames in windows, views and the other
- * outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT, and scenes with volumes
- * or hot spots UNSUPPORTED, when they are rendered. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
- * or a distance below 0; OUT_OF_MEMORY; the occluder then stays as it was. Since 0.2.0.
+ * their crossings lie beyond the direct images of all things.
+ *
+ * Matter with depth, volumes and hot spots, counts up to where the ray's straight distance from the camera is that of
+ * the thing, and where the ray does not end there also where it has come nearer again; each ray is summed by itself
+ * then, whatever BhrQuality.volume_resolution says.
+ *
+ * Glare (BhrFilm.bloom) goes over things, too. Images of a region take distances for that region. Frames in windows,
+ * views and the other outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT when
+ * they are rendered. Errors: INVALID_ARGUMENT for a bad image, another format, NaN, or a distance below 0;
+ * OUT_OF_MEMORY; the occluder then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_occluder(BhrContext *context, const BhrImage *distances);
 
@@ -2126,14 +2140,14 @@ typedef struct BhrProjectedPoint {
  * is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin the image of an order is
  * the one that the image of this order without spin becomes as the spin grows from 0.
  *
- * Without spin every point outside the horizon has one image of each order, also behind the hole. With spin some
- * have more or fewer, by the caustics that a spinning hole has, and the search may end there: of random points
- * outside r+ + 1 M, seen from outside r+ + 2 M, two in a thousand are not found at orders 0 and 1, one in a
- * hundred at order 2, a fifth at order 3; beside the horizon more. The ray of an image that is found passes the
- * point within 1e-6 of its distance. Whether matter is before the point is for the host to ask (bhr_trace_rays).
+ * Every point outside the horizon has an image of each order, also behind the hole. With spin some have more, by the
+ * caustics that a spinning hole has; where the image has ended in another as the spin grew, it is the one of the same
+ * orientation that took its place. Of 24,000 random points outside r+ + 1 M, seen from outside r+ + 2 M at spins up
+ * to 0.999, all were found. The ray of an image that is found passes the point within 1e-6 of its distance. Whether
+ * matter is before the point is for the host to ask (bhr_trace_rays).
  *
- * It is computed in double precision on the CPU, on this thread, whatever the backend: in about a millisecond, at
- * orders 2 and 3 with spin in about ten; a search that fails takes up to a second. Errors: INVALID_ARGUMENT for
+ * It is computed in double precision on the CPU, on this thread, whatever the backend: in about 40 microseconds, at
+ * order 1 with spin 0.2 ms, at orders 2 and 3 with spin in about 5 ms. Errors: INVALID_ARGUMENT for
  * NULL, a wrong struct_size, numbers not finite, an order above the highest; INVALID_STATE for a point farther
  * than 1e15 M; else as bhr_camera_ray. Since 0.2.0.
  */

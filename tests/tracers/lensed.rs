@@ -2,10 +2,10 @@
 //! A host's spheres as meshes whose vertices lie where light shows them, and the part of the disk's direct image that
 //! they leave, against the curves of bhr's rays.
 
-use crate::frames::{both, floats, picture};
+use crate::frames::{both, floats, gpu, picture};
 use bhr::image::{ImageRef, PixelFormat, memory::Layout};
 use bhr::scene::project::{Projected, ProjectedPoint};
-use bhr::scene::{Camera, LensTables, Occluder, Scene};
+use bhr::scene::{Camera, Crossing, Hit, LensTables, Occluder, Scene};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -119,6 +119,48 @@ fn lensed_things_hide_what_lies_beyond_them_along_the_ray() {
             assert!(shown > 80 && hidden > 300, "{name}, spin {spin}: {shown} {hidden}");
             // Those on outlines and on edges of the disk.
             assert!(off * 100 < shown + hidden, "{name}, spin {spin}, {tables:?}: {off} of {}", shown + hidden);
+        }
+    }
+}
+
+/// Rays that a GPU traces in single precision, through the places of the screen that points of the plane are seen at,
+/// cross the plane there.
+#[test]
+fn rays_of_gpus_pass_projected_points() {
+    let mut renderer = gpu();
+    for spin in [0.0, 0.9, -0.998] {
+        let mut scene = Scene::plain();
+        let position = DVec3::new(9.0, -20.0, 7.0);
+        scene.hole.spin = spin;
+        scene.camera = Camera { position, forward: -position, fov_y: 1.1, ..Camera::plain() };
+        renderer.scene = scene.clone();
+        for order in 0..=1 {
+            let place = |i: u32| {
+                let (r, phi) = (4.0 + 0.15 * f64::from(i), 2.4 * f64::from(i));
+                DVec3::new(r * phi.cos(), r * phi.sin(), 0.0)
+            };
+            let points = (0..200).map(place).collect::<Vec<_>>();
+            let mut found = vec![Projected::Lost; points.len()];
+            scene.projector(SIZE[0], SIZE[1], None, order).unwrap().points(&points, &mut found);
+            let ray = |projected: &Projected| match projected {
+                Projected::At(image) => {
+                    let at = image.position.expect("before the camera");
+                    scene.camera_ray(SIZE[0], SIZE[1], None, at.x, at.y).unwrap()
+                }
+                other => panic!("{other:?}"),
+            };
+            let rays = found.iter().map(ray).collect::<Vec<_>>();
+            let mut hits = vec![Hit::default(); rays.len()];
+            renderer.trace_rays(&rays, &mut hits).unwrap();
+            let miss = |(hit, point): (&Hit, &DVec3)| {
+                let crossings = &hit.crossings[..hit.crossing_count as usize];
+                let place = |x: &Crossing| DVec3::new(x.radius * x.azimuth.cos(), x.radius * x.azimuth.sin(), 0.0);
+                let misses = crossings.iter().map(|x| place(x).distance(*point) / point.distance(position));
+                misses.fold(f64::INFINITY, f64::min)
+            };
+            let worst = hits.iter().zip(&points).map(miss).fold(0.0, f64::max);
+            println!("spin {spin}, order {order}: rays miss by at most {worst:.1e} of the distance");
+            assert!(worst < 1e-4, "spin {spin}, order {order}: {worst:e}");
         }
     }
 }

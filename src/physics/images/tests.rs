@@ -126,17 +126,17 @@ fn rays_of_images_pass_their_points_with_spin() {
     let cases = cases(count(50_000), &SPINS, 1, [2.0, 1.0], 2);
     let [lost, missed] = lost_and_missed(&cases);
     assert_eq!(missed, 0);
-    assert!(lost * 400 <= cases.len(), "{lost} lost");
+    assert!(lost * 10_000 <= cases.len(), "{lost} lost");
 }
 
-/// Higher orders, and places beside the horizon, where some have no image: those that have one have the right one.
+/// Higher orders, where caustics are wide, and places beside the horizon.
 #[test]
 fn images_that_are_hard_to_find() {
-    for (orders, least, share) in [(0, [0.3, 0.05], 0.01), (3, [2.0, 1.0], 0.12)] {
-        let cases = cases(count(4000), &SPINS, orders, least, 3);
+    for (orders, least) in [(0, [0.3, 0.05]), (3, [2.0, 1.0])] {
+        let cases = cases(count(24_000), &SPINS, orders, least, 3);
         let [lost, missed] = lost_and_missed(&cases);
         assert_eq!(missed, 0);
-        assert!(lost as f64 <= share * cases.len() as f64, "{lost} lost");
+        assert!(lost * 10_000 <= cases.len(), "{lost} lost");
     }
 }
 
@@ -209,34 +209,4 @@ fn points_that_have_no_image_have_none() {
             assert_eq!(image(&frame, point, 0).err(), Some(NoImage::None), "{point}");
         }
     }
-}
-
-#[test]
-fn timing_of_images() {
-    for (spins, orders, least) in [
-        ([0.0], 0, [2.0, 1.0]),
-        ([0.9], 0, [2.0, 1.0]),
-        ([0.9], 1, [2.0, 1.0]),
-        ([0.9], 3, [2.0, 1.0]),
-        ([0.999], 3, [2.0, 1.0]),
-    ] {
-        let cases = cases(400, &spins, orders, least, 7);
-        let begun = Instant::now();
-        let lost = cases
-            .iter()
-            .filter(|(a, observer, point, order)| {
-                image(&LocalFrame::new(*a, *observer).unwrap(), *point, *order).is_err()
-            })
-            .count();
-        println!("spin {spins:?} order {orders}: {:?} a point, {lost} lost", begun.elapsed() / 400);
-    }
-}
-
-#[test]
-#[ignore]
-fn big_of_images() {
-    let all = cases(24_000, &SPINS, 3, [2.0, 1.0], 3);
-    lost_and_missed(&all);
-    let all = cases(8_000, &SPINS, 0, [0.3, 0.05], 3);
-    lost_and_missed(&all);
 }

@@ -65,7 +65,8 @@ fn is_captured(frame: &LocalFrame, look: DVec3) -> bool {
     let barrier = barrier(&c);
     let Some((place, height)) = barrier else { return start.du > 0.0 };
     match start.du > 0.0 {
-        true => place <= start.u || height > 0.0,
+        // Within the horizon it is no barrier.
+        true => place <= start.u || place * c.r_plus >= 1.0 || height > 0.0,
         false => place < start.u && height < 0.0,
     }
 }
