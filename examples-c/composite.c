@@ -98,7 +98,8 @@ static void add_patch(Mesh *mesh, int columns, int rows, const double colour[3],
         }
     }
     for (int i = 0; i < columns * rows; i++) {
-        const uint32_t width = (uint32_t)columns + 1, a = first + (uint32_t)(i / columns) * width + (uint32_t)(i % columns);
+        const uint32_t width = (uint32_t)columns + 1, row = (uint32_t)(i / columns);
+        const uint32_t a = first + row * width + (uint32_t)(i % columns);
         const uint32_t corners[2][3] = {{a, a + 1, a + width}, {a + 1, a + width + 1, a + width}};
         memcpy(mesh->triangles[mesh->triangle_count], corners, sizeof corners);
         mesh->triangle_count += 2;
@@ -457,7 +458,17 @@ static BhrStatus set_matter(BhrContext *context, int32_t matter) {
         BhrPresetOptions options;
         bhr_preset_options_init(&options, sizeof options);
         options.matter = matter;
-        return bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
+        BhrStatus status = bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
+        BhrFilm   film;
+        film.struct_size = sizeof film;
+        if (status >= 0) {
+            status = bhr_get_film(context, &film);
+        }
+        if (status >= 0) {
+            film.exposure_ev -= 1.2; /* the program's own film is softer than bhr's */
+            status = bhr_set_film(context, &film);
+        }
+        return status;
     }
     BhrDisk disk;
     bhr_disk_init(&disk, sizeof disk);

@@ -5,7 +5,7 @@
 use crate::frames::{both, floats, gpu, picture};
 use bhr::image::{ImageRef, PixelFormat, memory::Layout};
 use bhr::scene::project::{Projected, ProjectedPoint};
-use bhr::scene::{Camera, Crossing, Hit, LensTables, Occluder, Scene};
+use bhr::scene::{Camera, Crossing, Hit, LensTables, Occluder, Projection, Scene};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -132,7 +132,7 @@ fn rays_of_gpus_pass_projected_points() {
         let mut scene = Scene::plain();
         let position = DVec3::new(9.0, -20.0, 7.0);
         scene.hole.spin = spin;
-        scene.camera = Camera { position, forward: -position, fov_y: 1.1, ..Camera::plain() };
+        scene.camera = Camera { position, forward: -position, projection: Projection::Equirect, ..Camera::plain() };
         renderer.scene = scene.clone();
         for order in 0..=1 {
             let place = |i: u32| {
@@ -160,7 +160,9 @@ fn rays_of_gpus_pass_projected_points() {
             };
             let worst = hits.iter().zip(&points).map(miss).fold(0.0, f64::max);
             println!("spin {spin}, order {order}: rays miss by at most {worst:.1e} of the distance");
-            assert!(worst < 1e-4, "spin {spin}, order {order}: {worst:e}");
+            // A crossing is farther from the point than the ray where the ray grazes the plane, and errors of single
+            // precision grow by e^pi with each half turn.
+            assert!(worst < if order == 0 { 1e-4 } else { 1e-3 }, "spin {spin}, order {order}: {worst:e}");
         }
     }
 }

@@ -40,7 +40,8 @@ pub fn aim(frame: &LocalFrame, n: DVec3, u: f64, order: u32, care: Care) -> Opti
         (DVec3::new(-cos, 0.0, 0.0) + across * sin).normalize()
     };
     let f = |t: f64| excess(frame, look(t), swept, u, care.step);
-    let t = root(&f, around(&f, straight(frame, apart, u, order)), care.tolerance)?;
+    let range = around(&f, straight(frame, apart, u, order));
+    let t = root(f, range, care.tolerance)?;
     let (constants, _) = frame.start(look(t))?;
     // Stereographic coordinates straight from t: small angles keep their digits.
     let pole = if t > 0.0 { 1.0 } else { -1.0 };
