@@ -50,6 +50,7 @@ typedef struct World {
     float      *light;     /* RGBA32F: disk and shadow, without a sky */
     float      *sky;       /* RGBA32F: the lens map */
     float      *depth;     /* R32F: to the disk */
+    double      gain;      /* of the disk's light beside that of the program's things */
     BhrProjectedPoint glows[2];
 } World;
 
@@ -412,7 +413,7 @@ static void join(const World *world, size_t i, double out[3]) {
         scale(behind, g * g * g * g);
     }
     for (int c = 0; c < 3; c++) {
-        out[c] = light[c] + (1.0 - light[3]) * behind[c];
+        out[c] = world->gain * light[c] + (1.0 - light[3]) * behind[c];
     }
     add_glows(world, i, light[3], out);
 }
@@ -458,17 +459,7 @@ static BhrStatus set_matter(BhrContext *context, int32_t matter) {
         BhrPresetOptions options;
         bhr_preset_options_init(&options, sizeof options);
         options.matter = matter;
-        BhrStatus status = bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
-        BhrFilm   film;
-        film.struct_size = sizeof film;
-        if (status >= 0) {
-            status = bhr_get_film(context, &film);
-        }
-        if (status >= 0) {
-            film.exposure_ev -= 1.2; /* the program's own film is softer than bhr's */
-            status = bhr_set_film(context, &film);
-        }
-        return status;
+        return bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
     }
     BhrDisk disk;
     bhr_disk_init(&disk, sizeof disk);
@@ -491,6 +482,7 @@ static int compose(World *world, int32_t matter, const char *path) {
                 (unsigned)world->height);
         return EXIT_FAILURE;
     }
+    world->gain = matter == BHR_PRESET_MATTER_DEEP ? 0.35 : 1.0;
     BhrStatus status = set_matter(world->context, matter);
     if (status >= 0) {
         status = cast(world);

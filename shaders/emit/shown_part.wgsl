@@ -38,7 +38,7 @@ fn shown_stretch(c: Constants, from_state: State, begin: f32, end: f32) -> vec2<
     var seen = vec2<f32>(begin, select(end, begin, hidden));
     if !hidden && before != after {
         for (var i = 0u; i < not_inlined(LIMIT_SECANTS); i += 1u) {
-            // Of a border that stays, half of the value counts: the Illinois variant of false position.
+            // A border that stays counts by half of its value: the Illinois variant of false position.
             let x = low + (high - low) * (at_low / (at_low - at_high));
             let here = beyond_occluder(c, from_state, x);
             if (here > 0.0) == before {

@@ -52,7 +52,7 @@ impl Limit {
             _ => {}
         }
         let leaves = at_high > 0.0;
-        // Of a border that stays, half of the value counts: the Illinois variant of false position.
+        // A border that stays counts by half of its value: the Illinois variant of false position.
         for _ in 0..LIMIT_SECANTS {
             let x = low + (high - low) * (at_low / (at_low - at_high));
             let here = beyond(x);

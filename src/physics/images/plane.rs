@@ -17,7 +17,7 @@ const RADIAL: f64 = 60.0;
 pub struct Care {
     /// Steps in sigma.
     pub step: f64,
-    /// Of ln tan(psi / 2), relatively.
+    /// The relative error of ln tan(psi / 2).
     pub tolerance: f64,
 }
 
