@@ -9,8 +9,8 @@
 #import shared/frame
 #import shared/not_inlined
 
-// How far the place at `tau` since a step's begin is beyond the host's things, in d / (d + r) of distances d, r being the
-// eye's: along radial rays outwards that grows evenly in Mino time.
+// How far the place at `tau` since a step's begin is beyond the host's things, in d / (d + r) of distances d, r being
+// the eye's: along radial rays outwards that grows evenly in Mino time.
 fn beyond_occluder(c: Constants, from_state: State, tau: f32) -> f32 {
     let there = step_ray(c, from_state, tau).state;
     // Near infinity, and past it, where u < 0, everything is; squares of such distances are beyond single precision.

@@ -276,7 +276,8 @@ static void many_points(Watch *watch, BhrContext *context) {
     memset(found, 0x5a, sizeof found);
     CHECK_OK(bhr_project_points(context, 16, 9, NULL, 0, 0, NULL, size));
     CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_project_points(NULL, 16, 9, from, 4, 0, out, size));
-    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "points", bhr_project_points(context, 16, 9, NULL, 4, 0, out, size));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "points",
+                  bhr_project_points(context, 16, 9, NULL, 4, 0, out, size));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_images",
                   bhr_project_points(context, 16, 9, from, 4, 0, NULL, size));
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width", bhr_project_points(context, 0, 9, from, 4, 0, out, size));

@@ -263,7 +263,7 @@ class Context:
         """Gives SkyFlags.MAP its all-round picture, which is copied; None removes it. The north pole is at the top,
         right ascension 0 in the middle, and it grows to the left."""
         frame = Frame(picture) if isinstance(picture, np.ndarray) else picture
-        self._set(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image(flags=lib.BHR_IMAGE_LENSED if lensed else 0))
+        self._set(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
 
     @property
     def film(self) -> Film:
@@ -351,7 +351,8 @@ class Context:
         """Sets the program's own things before the camera: distances along the pixels' lines of sight, float32 of shape
         (height, width) as large as the frames to come, np.inf where there is nothing; None: none."""
         frame = distances if isinstance(distances, Frame) or distances is None else Frame(distances)
-        self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image())
+        flags = lib.BHR_IMAGE_LENSED if lensed else 0
+        self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image(flags=flags))
 
     # ---- frames ----
 

@@ -5,8 +5,7 @@
 //! of the time the rays of all orders change alike, and Newton's method finds them from afar.
 //!
 //! The ray without spin is followed while the spin grows. Where the point meets a caustic the image ends in another of
-//! the opposite orientation, and that one in a third of its own, as fewer points than rays are on one side of a caustic:
-//! the curve of rays turns back in spin, and again. It is followed by its own length (Keller 1977, in Applications of
+//! the opposite orientation, and that one in a third of its own: the curve of rays turns back in spin, and again. It is followed by its own length (Keller 1977, in Applications of
 //! Bifurcation Theory), which passes such turns.
 
 use super::path::{BESIDE, spun_way};
@@ -58,8 +57,8 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
     })
 }
 
-/// Whether the ray in a direction falls into the hole, told by the barrier of its radial motion: u'^2 = E^2 + (a^2 E^2 -
-/// K) u^2 + 2 B u^3 - a^2 Q u^4 is least at a place u* > 0, which is a photon orbit's where it is 0.
+/// Whether the ray in a direction falls into the hole, told by the barrier of its radial motion: u'^2 = E^2 +
+/// (a^2 E^2 - K) u^2 + 2 B u^3 - a^2 Q u^4 is least at a place u* > 0, which is a photon orbit's where it is 0.
 fn is_captured(frame: &LocalFrame, look: DVec3) -> bool {
     let Some((c, start)) = frame.start(look) else { return true };
     let barrier = barrier(&c);
