@@ -522,9 +522,8 @@ class Context {
     Result<ProjectedPoint> project_point(std::uint32_t width, std::uint32_t height, const Vector &point,
                                          std::uint32_t order = 0) const {
         return detail::ask_struct<ProjectedPoint, BhrProjectedPoint>(
-            [&](BhrProjectedPoint *image) { return bhr_project_point(get(), width, height, point.data(), order, image); });
+            [&](BhrProjectedPoint *to) { return bhr_project_point(get(), width, height, point.data(), order, to); });
     }
-
     /// bhr_project_points.
     Result<std::vector<ProjectedPoint>> project_points(std::uint32_t w, std::uint32_t h, span<const Vector> from,
                                                        std::uint32_t order = 0) const {

@@ -341,7 +341,8 @@ static void points(Watch *watch, BhrContext *context) {
     const double *const nowhere[] = {centre, watch->camera.position};
     for (size_t i = 0; i < COUNT_OF(nowhere); i++) {
         CHECK_OK(bhr_project_point(context, 16, 9, nowhere[i], 0, &image));
-        CHECK(image.found == 0 && image.on_screen == 0 && image.lost == 0 && isnan(image.x) && isnan(image.magnification) &&
+        CHECK(image.found == 0 && image.on_screen == 0 && image.lost == 0 && isnan(image.x) &&
+                  isnan(image.magnification) &&
                   image.ray.direction[0] == 0.0,
               "an image of nothing: %g %g", image.x, image.magnification);
     }

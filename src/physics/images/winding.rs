@@ -5,7 +5,8 @@
 //! of the time the rays of all orders change alike, and Newton's method finds them from afar.
 //!
 //! The ray without spin is followed while the spin grows. Where the point meets a caustic the image ends in another of
-//! the opposite orientation, and that one in a third of its own: the curve of rays turns back in spin, and again. It is followed by its own length (Keller 1977, in Applications of
+//! the opposite orientation, and that one in a third of its own: the curve of rays turns back in spin, and again. It is
+//! followed by its own length (Keller 1977, in Applications of
 //! Bifurcation Theory), which passes such turns.
 
 use super::path::{BESIDE, spun_way};
