@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* composite.c -- a program's own world around the hole, in one picture: a ship and moons that a plain ray caster draws,
- * before the disk, sunk into it and beside it; and the program's own sky, bent by the lens map. bhr makes the light of
- * the disk between them (bhr_set_occluder), and says where each pixel looks (bhr_render_outputs). The film is the
- * program's own as well. Knows no window. */
+/* composite.c -- a program's own world around the hole, in one picture: a ship and moons that a plain rasteriser draws,
+ * before the disk, sunk into it, beside and behind the hole; and the program's own sky, bent by the lens map. Vertices
+ * are drawn where light shows them (bhr_project_points), by direct light and by that which went half round the hole.
+ * bhr makes the light of the disk between them (bhr_set_occluder), and says where each pixel looks
+ * (bhr_render_outputs). The film is the program's own as well. Knows no window. */
 #include "options.h"
 #include "vectors.h"
 
@@ -19,28 +20,47 @@ typedef struct Box {
     double centre[3], half[3], colour[3];
 } Box;
 
-/* Where a line of sight meets a thing; t is INFINITY where it meets none. */
-typedef struct Meeting {
-    double t, normal[3], colour[3];
-} Meeting;
+/* A corner of a triangle: where it is, and how its surface looks. */
+typedef struct Vertex {
+    double place[3], normal[3], colour[3];
+} Vertex;
+
+/* The thing that a pixel shows; distance is INFINITY where it shows none. */
+typedef struct Seen {
+    double distance;
+    Vertex at;
+} Seen;
+
+/* All things as triangles. */
+typedef struct Mesh {
+    Vertex            *vertices;
+    uint32_t         (*triangles)[3];
+    BhrProjectedPoint *images; /* of the vertices */
+    size_t             vertex_count, triangle_count;
+} Mesh;
 
 typedef struct World {
     BhrContext *context;
     uint32_t    width, height; /* of the frame, SAMPLES times the picture's */
     BhrRay     *rays;
-    Meeting    *things;
+    Mesh        mesh;
+    Seen       *things; /* by direct light */
+    Seen       *ghosts; /* by light that went half round the hole */
     float      *distances; /* R32F: to the things */
     float      *light;     /* RGBA32F: disk and shadow, without a sky */
     float      *sky;       /* RGBA32F: the lens map */
     float      *depth;     /* R32F: to the disk */
+    double      gain;      /* of the disk's light beside that of the program's things */
+    BhrProjectedPoint glows[2];
 } World;
 
 /* Lengths in M: the disk reaches from 6 to 17, the camera is at (0, 26, 2.5). The first moon is cut by the disk; the
- * second is beside the hole, a little farther than it; the third passes near the camera. */
+ * second is beside the hole, a little farther than it; the third passes near the camera, the fourth behind the hole. */
 static const Sphere MOONS[] = {
     {{-6.3, 10.2, 0.15}, 1.35, {0.62, 0.56, 0.50}},
     {{13.2, -2.5, 1.5}, 1.0, {0.42, 0.52, 0.64}},
     {{5.1, 16.6, 4.2}, 0.62, {0.66, 0.44, 0.32}},
+    {{-3.5, -24.0, 4.0}, 2.2, {0.70, 0.58, 0.46}},
 };
 
 static const double SHIP[3] = {-1.9, 19.3, 3.05};
@@ -62,54 +82,148 @@ static void turn(double v[3], double angle) {
     rotate(v, up, angle);
 }
 
-static void take(Meeting *nearest, double t, const double normal[3], const double colour[3]) {
-    if (t > 0.0 && t < nearest->t) {
-        nearest->t = t;
-        memcpy(nearest->normal, normal, sizeof nearest->normal);
-        memcpy(nearest->colour, colour, sizeof nearest->colour);
-    }
-}
+/* Squares of a sphere along its equator and from pole to pole, and along each side of a box: small, because the lens
+ * bends long edges. */
+enum { AROUND = 120, DOWN = 60, SIDE = 8 };
+enum { PATCH_MOST = (AROUND + 1) * (DOWN + 1) };
 
-static void meet_sphere(Meeting *nearest, const BhrRay *ray, const Sphere *sphere) {
-    double from[3], normal[3];
-    memcpy(from, ray->position, sizeof from);
-    add(from, -1.0, sphere->centre);
-    const double along = dot(from, ray->direction);
-    const double rest = along * along - dot(from, from) + sphere->radius * sphere->radius;
-    if (rest <= 0.0) {
-        return;
-    }
-    const double t = -along - sqrt(rest);
-    memcpy(normal, from, sizeof normal);
-    add(normal, t, ray->direction);
-    scale(normal, 1.0 / sphere->radius);
-    take(nearest, t, normal, sphere->colour);
-}
-
-/* By the slabs between opposite sides (Kay and Kajiya 1986). */
-static void meet_box(Meeting *nearest, const BhrRay *ray, const Box *box) {
-    double from[3], direction[3], normal[3] = {0.0, 0.0, 0.0}, enter = -INFINITY, leave = INFINITY;
-    memcpy(from, ray->position, sizeof from);
-    memcpy(direction, ray->direction, sizeof direction);
-    add(from, -1.0, SHIP);
-    turn(from, -SHIP_TURN);
-    turn(direction, -SHIP_TURN);
-    int side = 0;
-    for (int i = 0; i < 3; i++) {
-        const double first = (box->centre[i] - box->half[i] - from[i]) / direction[i];
-        const double second = (box->centre[i] + box->half[i] - from[i]) / direction[i];
-        if (fmin(first, second) > enter) {
-            enter = fmin(first, second);
-            side = i;
+/* Adds a patch of `columns` x `rows` squares; at gives a place of it and its normal from shares 0 .. 1. */
+static void add_patch(Mesh *mesh, int columns, int rows, const double colour[3], const void *thing, int side,
+                      void (*at)(const void *thing, int side, double x, double y, Vertex *out)) {
+    const uint32_t first = (uint32_t)mesh->vertex_count;
+    for (int y = 0; y <= rows; y++) {
+        for (int x = 0; x <= columns; x++) {
+            Vertex *vertex = &mesh->vertices[mesh->vertex_count++];
+            memcpy(vertex->colour, colour, sizeof vertex->colour);
+            at(thing, side, (double)x / columns, (double)y / rows, vertex);
         }
-        leave = fmin(leave, fmax(first, second));
     }
-    if (enter >= leave) {
+    for (int i = 0; i < columns * rows; i++) {
+        const uint32_t width = (uint32_t)columns + 1, row = (uint32_t)(i / columns);
+        const uint32_t a = first + row * width + (uint32_t)(i % columns);
+        const uint32_t corners[2][3] = {{a, a + 1, a + width}, {a + 1, a + width + 1, a + width}};
+        memcpy(mesh->triangles[mesh->triangle_count], corners, sizeof corners);
+        mesh->triangle_count += 2;
+    }
+}
+
+static void on_sphere(const void *thing, int side, double x, double y, Vertex *out) {
+    const Sphere *sphere = thing;
+    const double  phi = 2.0 * PI * x, theta = PI * y;
+    (void)side;
+    out->normal[0] = sin(theta) * cos(phi);
+    out->normal[1] = sin(theta) * sin(phi);
+    out->normal[2] = cos(theta);
+    memcpy(out->place, sphere->centre, sizeof out->place);
+    add(out->place, sphere->radius, out->normal);
+}
+
+/* side: 0 .. 5, the axis twice and whether it is the far one. */
+static void on_box(const void *thing, int side, double x, double y, Vertex *out) {
+    const Box   *box = thing;
+    const int    axis = side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const double out_of = side % 2 == 0 ? 1.0 : -1.0;
+    memcpy(out->place, box->centre, sizeof out->place);
+    out->place[axis] += out_of * box->half[axis];
+    out->place[u] += (2.0 * x - 1.0) * box->half[u];
+    out->place[v] += (2.0 * y - 1.0) * box->half[v];
+    memset(out->normal, 0, sizeof out->normal);
+    out->normal[axis] = out_of;
+    turn(out->place, SHIP_TURN);
+    turn(out->normal, SHIP_TURN);
+    add(out->place, 1.0, SHIP);
+}
+
+/* 0, or -1 without memory. */
+static int build(Mesh *mesh) {
+    const size_t sides = 6 * COUNT_OF(BOXES), most = COUNT_OF(MOONS) * PATCH_MOST + sides * (SIDE + 1) * (SIDE + 1);
+    mesh->vertices = calloc(most, sizeof *mesh->vertices);
+    mesh->images = calloc(most, sizeof *mesh->images);
+    mesh->triangles = calloc(2 * most, sizeof *mesh->triangles);
+    if (mesh->vertices == NULL || mesh->images == NULL || mesh->triangles == NULL) {
+        return -1;
+    }
+    for (size_t i = 0; i < COUNT_OF(MOONS); i++) {
+        add_patch(mesh, AROUND, DOWN, MOONS[i].colour, &MOONS[i], 0, on_sphere);
+    }
+    for (size_t i = 0; i < sides; i++) {
+        add_patch(mesh, SIDE, SIDE, BOXES[i / 6].colour, &BOXES[i / 6], (int)(i % 6), on_box);
+    }
+    return 0;
+}
+
+/* Where a mesh is seen by light of an order. */
+static BhrStatus project(World *world, uint32_t order) {
+    Mesh   *mesh = &world->mesh;
+    double *places = malloc(mesh->vertex_count * 3 * sizeof *places);
+    if (places == NULL) {
+        return BHR_ERROR_OUT_OF_MEMORY;
+    }
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        memcpy(&places[3 * i], mesh->vertices[i].place, 3 * sizeof *places);
+    }
+    const BhrStatus status = bhr_project_points(world->context, world->width, world->height, places,
+                                                mesh->vertex_count, order, mesh->images, sizeof *mesh->images);
+    free(places);
+    return status;
+}
+
+/* A triangle of the screen into the pixels whose middles it covers, where it is the nearest. */
+static void raster(const World *world, const uint32_t triangle[3], Seen *pixels) {
+    double x[3], y[3], low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int i = 0; i < 3; i++) {
+        const BhrProjectedPoint *image = &world->mesh.images[triangle[i]];
+        if (!image->found || isnan(image->x)) {
+            return;
+        }
+        x[i] = image->x, y[i] = image->y;
+        low[0] = fmin(low[0], x[i]), high[0] = fmax(high[0], x[i]);
+        low[1] = fmin(low[1], y[i]), high[1] = fmax(high[1], y[i]);
+    }
+    const double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    /* Across the line straight behind the hole images are rings, and a triangle's corners on all sides of them. */
+    if (area == 0.0 || high[0] - low[0] > 0.1 * world->width || high[1] - low[1] > 0.1 * world->width) {
         return;
     }
-    normal[side] = direction[side] < 0.0 ? 1.0 : -1.0;
-    turn(normal, SHIP_TURN);
-    take(nearest, enter, normal, box->colour);
+    const double right = fmin(high[0], world->width - 0.5), bottom = fmin(high[1], world->height - 0.5);
+    for (double py = fmax(floor(low[1]), 0.0) + 0.5; py <= bottom; py += 1.0) {
+        for (double px = fmax(floor(low[0]), 0.0) + 0.5; px <= right; px += 1.0) {
+            const double b = ((px - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (py - y[0])) / area;
+            const double c = ((x[1] - x[0]) * (py - y[0]) - (px - x[0]) * (y[1] - y[0])) / area;
+            const double weights[3] = {1.0 - b - c, b, c};
+            if (b < 0.0 || c < 0.0 || b + c > 1.0) {
+                continue;
+            }
+            double distance = 0.0;
+            for (int i = 0; i < 3; i++) {
+                distance += weights[i] * world->mesh.images[triangle[i]].distance;
+            }
+            Seen *seen = &pixels[(size_t)py * world->width + (size_t)px];
+            if (distance < seen->distance) {
+                memset(seen, 0, sizeof *seen);
+                seen->distance = distance;
+                /* Triangles are a few pixels wide: weights on the screen serve for their surface. */
+                for (int i = 0; i < 3; i++) {
+                    const Vertex *vertex = &world->mesh.vertices[triangle[i]];
+                    add(seen->at.place, weights[i], vertex->place);
+                    add(seen->at.normal, weights[i], vertex->normal);
+                    add(seen->at.colour, weights[i], vertex->colour);
+                }
+            }
+        }
+    }
+}
+
+/* The things by light of an order. */
+static BhrStatus draw(World *world, uint32_t order, Seen *pixels) {
+    const BhrStatus status = project(world, order);
+    for (size_t i = 0; i < (size_t)world->width * world->height; i++) {
+        pixels[i].distance = INFINITY;
+    }
+    for (size_t i = 0; status >= 0 && i < world->mesh.triangle_count; i++) {
+        raster(world, world->mesh.triangles[i], pixels);
+    }
+    return status;
 }
 
 /* A number in 0 .. 1 for each cell of a lattice: the finish of MurmurHash3 (A. Appleby 2011). */
@@ -193,39 +307,37 @@ static void own_sky(const double d[3], double out[3]) {
 }
 
 /* The colour of a thing, lit by the disk's warm light from the hole, and by the sky's. */
-static void shade(const BhrRay *ray, const Meeting *thing, double out[3]) {
-    double place[3], to_hole[3];
-    memcpy(place, ray->position, sizeof place);
-    add(place, thing->t, ray->direction);
-    for (int i = 0; i < 3; i++) {
-        to_hole[i] = -place[i];
-    }
+static void shade(const Vertex *thing, double out[3]) {
+    const double to_hole[3] = {-thing->place[0], -thing->place[1], -thing->place[2]};
     const double distance = length(to_hole), facing = dot(to_hole, thing->normal) / distance;
     const double warm = fmax(0.5 * facing + 0.25, 0.0) * 260.0 / (distance * distance + 60.0);
     const double rim = 0.05 + 0.05 * thing->normal[2];
-    const double grain = 0.85 + 0.3 * noise(place, 5.0, 30);
+    const double grain = 0.85 + 0.3 * noise(thing->place, 5.0, 30);
     out[0] = grain * thing->colour[0] * (1.00 * warm + 0.8 * rim);
     out[1] = grain * thing->colour[1] * (0.72 * warm + 0.9 * rim);
     out[2] = grain * thing->colour[2] * (0.45 * warm + 1.3 * rim);
 }
 
-/* The engines' light along a line of sight: what lies behind the disk comes through as far as alpha leaves it. */
-static void add_glows(const BhrRay *ray, double thing, double disk, double alpha, double out[3]) {
-    for (size_t i = 0; i < COUNT_OF(GLOWS); i++) {
-        double place[3];
-        memcpy(place, GLOWS[i], sizeof place);
-        turn(place, SHIP_TURN);
-        add(place, 1.0, SHIP);
+/* The engines' light along a line of sight, from where they seem to be: what lies behind the disk comes through as far
+ * as alpha leaves it. */
+static void add_glows(const World *world, size_t i, double alpha, double out[3]) {
+    for (size_t k = 0; k < COUNT_OF(GLOWS); k++) {
+        const BhrRay *ray = &world->rays[i];
+        double        place[3];
+        memcpy(place, world->glows[k].apparent, sizeof place);
         add(place, -1.0, ray->position);
         const double t = dot(place, ray->direction), off2 = (dot(place, place) - t * t) / (GLOW_SIZE * GLOW_SIZE);
-        if (t > 0.0 && t < thing) {
-            const double power = (2.4 * exp(-6.0 * off2) + 0.7 * exp(-0.9 * off2)) * (t < disk ? 1.0 : 1.0 - alpha);
+        if (t > 0.0 && t < world->things[i].distance) {
+            const double through = t < world->depth[i] ? 1.0 : 1.0 - alpha;
+            const double power = (2.4 * exp(-6.0 * off2) + 0.7 * exp(-0.9 * off2)) * through;
             out[0] += 0.25 * power;
             out[1] += 0.65 * power;
             out[2] += 1.30 * power;
         }
     }
 }
+
+static const Choice MATTERS[] = {{"thin", BHR_PRESET_MATTER_THIN}, {"deep", BHR_PRESET_MATTER_DEEP}, {NULL, 0}};
 
 static BhrImage image_of(const World *world, BhrFormat format, float *pixels) {
     BhrImage image;
@@ -238,24 +350,33 @@ static BhrImage image_of(const World *world, BhrFormat format, float *pixels) {
     return image;
 }
 
-/* The program's things by lines of sight, and their distances for bhr. */
+/* The program's things, and their distances for bhr. */
 static BhrStatus cast(World *world) {
-    const BhrStatus status = bhr_camera_rays(world->context, world->width, world->height, world->rays);
+    double    glows[COUNT_OF(GLOWS)][3];
+    BhrStatus status = bhr_camera_rays(world->context, world->width, world->height, world->rays);
+    for (size_t i = 0; i < COUNT_OF(GLOWS); i++) {
+        memcpy(glows[i], GLOWS[i], sizeof glows[i]);
+        turn(glows[i], SHIP_TURN);
+        add(glows[i], 1.0, SHIP);
+    }
+    if (status >= 0) {
+        status = bhr_project_points(world->context, world->width, world->height, glows[0], COUNT_OF(GLOWS), 0,
+                                    world->glows, sizeof *world->glows);
+    }
+    if (status >= 0) {
+        status = draw(world, 1, world->ghosts);
+    }
+    if (status >= 0) {
+        status = draw(world, 0, world->things);
+    }
     if (status < 0) {
         return status;
     }
     for (size_t i = 0; i < (size_t)world->width * world->height; i++) {
-        Meeting nearest = {INFINITY, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-        for (size_t k = 0; k < COUNT_OF(MOONS); k++) {
-            meet_sphere(&nearest, &world->rays[i], &MOONS[k]);
-        }
-        for (size_t k = 0; k < COUNT_OF(BOXES); k++) {
-            meet_box(&nearest, &world->rays[i], &BOXES[k]);
-        }
-        world->things[i] = nearest;
-        world->distances[i] = (float)nearest.t;
+        world->distances[i] = (float)world->things[i].distance;
     }
-    const BhrImage distances = image_of(world, BHR_FORMAT_R32F, world->distances);
+    BhrImage distances = image_of(world, BHR_FORMAT_R32F, world->distances);
+    distances.flags = BHR_IMAGE_LENSED;
     return bhr_set_occluder(world->context, &distances);
 }
 
@@ -278,11 +399,13 @@ static BhrStatus trace(World *world) {
 /* The linear colour of a pixel of the frame. */
 static void join(const World *world, size_t i, double out[3]) {
     const float   *light = world->light + 4 * i, *sky = world->sky + 4 * i;
-    const Meeting *thing = &world->things[i];
+    const Seen    *thing = &world->things[i], *ghost = &world->ghosts[i];
     const double   g = sky[3];
     double         behind[3] = {0.0, 0.0, 0.0};
-    if (isfinite(thing->t)) {
-        shade(&world->rays[i], thing, behind);
+    if (isfinite(thing->distance)) {
+        shade(&thing->at, behind);
+    } else if (isfinite(ghost->distance)) {
+        shade(&ghost->at, behind);
     } else if (g > 0.0) {
         const double d[3] = {sky[0], sky[1], sky[2]};
         own_sky(d, behind);
@@ -290,9 +413,9 @@ static void join(const World *world, size_t i, double out[3]) {
         scale(behind, g * g * g * g);
     }
     for (int c = 0; c < 3; c++) {
-        out[c] = light[c] + (1.0 - light[3]) * behind[c];
+        out[c] = world->gain * light[c] + (1.0 - light[3]) * behind[c];
     }
-    add_glows(&world->rays[i], thing->t, world->depth[i], light[3], out);
+    add_glows(world, i, light[3], out);
 }
 
 /* Film: K. Narkowicz's fit of ACES (2016), and the sRGB curve. */
@@ -330,24 +453,37 @@ static BhrStatus save(const World *world, const char *path) {
     return status;
 }
 
-static int compose(World *world, const char *path) {
+/* A thin disk, translucent, so that what is sunk into it shows through; or one with depth. */
+static BhrStatus set_matter(BhrContext *context, int32_t matter) {
+    if (matter == BHR_PRESET_MATTER_DEEP) {
+        BhrPresetOptions options;
+        bhr_preset_options_init(&options, sizeof options);
+        options.matter = matter;
+        return bhr_set_preset_with(context, BHR_PRESET_CINEMATIC, &options, NULL);
+    }
+    BhrDisk disk;
+    bhr_disk_init(&disk, sizeof disk);
+    disk.opacity = 0.8;
+    return bhr_set_disk(context, &disk);
+}
+
+static int compose(World *world, int32_t matter, const char *path) {
     const size_t count = (size_t)world->width * world->height;
-    BhrDisk      disk;
     world->rays = calloc(count, sizeof *world->rays);
     world->things = calloc(count, sizeof *world->things);
+    world->ghosts = calloc(count, sizeof *world->ghosts);
     world->distances = calloc(count, sizeof(float));
     world->light = calloc(count, 4 * sizeof(float));
     world->sky = calloc(count, 4 * sizeof(float));
     world->depth = calloc(count, sizeof(float));
-    if (!world->rays || !world->things || !world->distances || !world->light || !world->sky || !world->depth) {
+    if (build(&world->mesh) < 0 || !world->rays || !world->things || !world->ghosts || !world->distances ||
+        !world->light || !world->sky || !world->depth) {
         fprintf(stderr, "composite: no memory for a frame of %u x %u\n", (unsigned)world->width,
                 (unsigned)world->height);
         return EXIT_FAILURE;
     }
-    /* Translucent, so that what is sunk into it shows through. */
-    bhr_disk_init(&disk, sizeof disk);
-    disk.opacity = 0.8;
-    BhrStatus status = bhr_set_disk(world->context, &disk);
+    world->gain = matter == BHR_PRESET_MATTER_DEEP ? 0.35 : 1.0;
+    BhrStatus status = set_matter(world->context, matter);
     if (status >= 0) {
         status = cast(world);
     }
@@ -363,11 +499,12 @@ static int compose(World *world, const char *path) {
 int main(int argc, char **argv) {
     const char  *path = "composite.png";
     uint32_t     size[2] = {1280, 720};
-    int32_t      backend = BHR_BACKEND_AUTO;
+    int32_t      backend = BHR_BACKEND_AUTO, matter = BHR_PRESET_MATTER_THIN;
     int          help = 0;
     const Option options[] = {
         {"--output", OPTION_TEXT, &path, "FILE", "the picture, .png or .ppm", NULL, NULL},
         {"--size", OPTION_SIZE, size, "WxH", "of the picture", NULL, "1 to 8192 a side"},
+        {"--matter", OPTION_CHOICE, &matter, NULL, "a thin disk, or one with depth", MATTERS, NULL},
         {"--backend", OPTION_CHOICE, &backend, NULL, "what traces it", BACKENDS, NULL},
         {"--help", OPTION_FLAG, &help, NULL, "this text", NULL, NULL},
     };
@@ -386,12 +523,19 @@ int main(int argc, char **argv) {
                 (unsigned)size[1]);
         return EXIT_USAGE;
     }
-    World           world = {NULL, size[0] * SAMPLES, size[1] * SAMPLES, NULL, NULL, NULL, NULL, NULL, NULL};
+    World world;
+    memset(&world, 0, sizeof world);
+    world.width = size[0] * SAMPLES;
+    world.height = size[1] * SAMPLES;
     const BhrStatus made = create_context_on(backend, &world.context);
-    const int       result = made < 0 ? report_failure("make a context", made) : compose(&world, path);
+    const int       result = made < 0 ? report_failure("make a context", made) : compose(&world, matter, path);
     bhr_context_destroy(world.context);
     free(world.rays);
     free(world.things);
+    free(world.ghosts);
+    free(world.mesh.vertices);
+    free(world.mesh.triangles);
+    free(world.mesh.images);
     free(world.distances);
     free(world.light);
     free(world.sky);

@@ -414,7 +414,8 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
 /**
  * bhr_set_occluder with distances on the GPU: target is one of R32F, made, imported or wrapped, that holds them as
  * bhr_set_occluder describes it, and that frames of LIGHT read anew each time, without a way through host memory.
- * NULL: none; each of the two functions replaces what the other has set.
+ * NULL: none; each of the two functions replaces what the other has set. flags: 0, or BHR_IMAGE_LENSED for things at
+ * their lensed places.
  *
  * There are no semaphores of its own, because values grow with each frame: a frame reads the target first of all,
  * after every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
@@ -429,11 +430,11 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
  * or NULL is set. It cannot be a frame's target as well. The sides are those of the frames' images, and at most those
  * of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
  * Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
- * another format, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
+ * another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
  * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. (Backends that share nothing have no targets.) Since
  * 0.2.0.
  */
-BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *target);
+BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *target, uint32_t flags);
 
 /* ---- the sky, from a target ---- */
 

@@ -51,7 +51,8 @@ pub struct RendererOptions {
 /// Where the distances of the host's things are.
 enum HostsThings {
     Copied(Occluder),
-    Target(Arc<Target>),
+    /// Whether they are at their lensed places.
+    Target(Arc<Target>, bool),
 }
 
 /// One scene, one tracer.

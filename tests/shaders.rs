@@ -156,6 +156,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("emit/layers", "add_layers", "for (var span = 0u; span < spans && !is_dark(); span += 1u)", LAYERS),
     ("emit/layers", "add_layers", "for (var i = 0u; i < nodes; i += 1u)", CONSTANT),
     ("emit/layers", "add_layers", "for (var layer = span; layer < last && !is_dark(); layer += 1u)", LAYERS),
+    ("emit/shown_part", "shown_stretch", "for (var i = 0u; i < not_inlined(LIMIT_SECANTS); i += 1u)", CONSTANT),
     ("emit/streaks", "streak_exponent", "for (var i = 0u; i < u32(count); i += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var k = 0u; k < shown.count; k += 1u)", TURBULENCE),
     ("emit/turbulence", "turbulent_brightness", "for (var old = 0u; old < alive.count; old += 1u)", TURBULENCE),

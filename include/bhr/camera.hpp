@@ -100,13 +100,15 @@ struct ProjectedPoint {
     std::uint32_t struct_size = sizeof(ProjectedPoint);
     std::uint32_t found = 0;
     std::uint32_t on_screen = 0;
-    std::uint32_t reserved = 0;
+    std::uint32_t lost = 0;
     double x = 0.0;
     double y = 0.0;
     Ray ray = {};
     double magnification = 0.0;
     double delay = 0.0;
     double redshift = 0.0;
+    double distance = 0.0;
+    Vector apparent = {};
 };
 
 } // namespace bhr

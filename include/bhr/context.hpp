@@ -521,11 +521,16 @@ class Context {
     /// bhr_project_point.
     Result<ProjectedPoint> project_point(std::uint32_t width, std::uint32_t height, const Vector &point,
                                          std::uint32_t order = 0) const {
-        return detail::ask_struct<ProjectedPoint, BhrProjectedPoint>([&](BhrProjectedPoint *image) {
-            return bhr_project_point(get(), width, height, point.data(), order, image);
-        });
+        return detail::ask_struct<ProjectedPoint, BhrProjectedPoint>(
+            [&](BhrProjectedPoint *to) { return bhr_project_point(get(), width, height, point.data(), order, to); });
     }
-
+    /// bhr_project_points.
+    Result<std::vector<ProjectedPoint>> project_points(std::uint32_t w, std::uint32_t h, span<const Vector> from,
+                                                       std::uint32_t order = 0) const {
+        return detail::ask(std::vector<ProjectedPoint>(from.size()), [&](std::vector<ProjectedPoint> &to) {
+            return bhr_project_points(get(), w, h, reinterpret_cast<const double *>(from.data()), from.size(), order,
+                                      reinterpret_cast<BhrProjectedPoint *>(to.data()), sizeof(ProjectedPoint)); });
+    }
     /// bhr_trace_path: at most `capacity` points.
     Result<std::vector<PathPoint>> trace_path(const Ray &ray, std::uint32_t capacity = 4096) {
         const std::uint32_t most = capacity < 65536 ? capacity : 65536; // it never has more

@@ -209,6 +209,7 @@ enum class ImageFlags : std::uint32_t {
     none = 0,
     transparent = BHR_IMAGE_TRANSPARENT,
     bottom_up = BHR_IMAGE_BOTTOM_UP,
+    lensed = BHR_IMAGE_LENSED,
 };
 
 /// BhrSky.flags.

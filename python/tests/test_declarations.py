@@ -43,7 +43,8 @@ ENUMS = {
 
 #: Constants of C that Python has by other means: arguments, logging's levels, numpy's strides. Windows are left out.
 ELSEWHERE = re.compile(
-    r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|MAX_CROSSINGS"
+    r"BHR_(VERSION_\w+|ABI_VERSION|LOG_\w+|CONTEXT_VALIDATION|IMAGE_TRANSPARENT|IMAGE_BOTTOM_UP|IMAGE_LENSED"
+    r"|MAX_CROSSINGS"
     r"|MAX_VOLUMES|MAX_IMAGE_ORDER|MAX_HOT_SPOTS|MAX_OUTPUTS|WINDOW_\w+|PRESENT_\w+)"
 )
 
@@ -134,6 +135,7 @@ def test_defaults_are_the_librarys(struct):
 
 
 RAYS = [(bhr.RAY, "BhrRay"), (bhr.HIT, "BhrHit"), (bhr.CROSSING, "BhrCrossing"), (bhr.TRANSFER, "BhrTransfer")]
+RAYS += [(bhr.PROJECTED, "BhrProjectedPoint")]
 
 
 @pytest.mark.parametrize(("dtype", "name"), RAYS)

@@ -157,5 +157,10 @@ def test_points_on_the_screen(ctx):
     other = ctx.project_point(320, 180, (2.0, -8.0, 1.0), order=1)
     assert other.found and other.magnification < 0.0 and other.delay > direct.delay
     assert not ctx.project_point(320, 180, (0.1, 0.0, 0.0)).found
+    assert np.allclose(np.linalg.norm(np.subtract(direct.apparent, ctx.camera.position)), direct.distance)
+    many = ctx.project_points(320, 180, [[(2.0, -8.0, 1.0), (0.1, 0.0, 0.0)]])
+    assert many.shape == (1, 2) and list(many["found"][0]) == [1, 0] and many["x"][0, 0] == direct.x
+    with pytest.raises(ValueError, match="last side"):
+        ctx.project_points(320, 180, [[1.0, 2.0]])
     with pytest.raises(bhr.InvalidArgument):
         ctx.project_point(320, 180, (2.0, -8.0, 1.0), order=4)

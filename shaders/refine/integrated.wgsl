@@ -5,6 +5,8 @@
 #import constants
 #import camera/observer
 #import camera/projection
+#import emit/occluder
+#import emit/shown_part
 #import emit/volumes
 #import geodesic/geodesic
 #import geodesic/trace
@@ -41,7 +43,13 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
-    add_part(c, observer, from_state, to_state, h, begin, end, kept_ratio);
+    var seen = vec2<f32>(begin, end);
+    if OCCLUDED {
+        seen = shown_stretch(c, from_state, begin, end);
+    }
+    if !OCCLUDED || seen.x < seen.y {
+        add_part(c, observer, from_state, to_state, h, seen.x, seen.y, kept_ratio);
+    }
 }
 
 fn medium_before(k: u32) -> vec4<f32> {
@@ -60,6 +68,9 @@ fn integrated_record(id: vec2<u32>) -> Record {
         begin_medium(pass_.refined);
     }
     let place = pixel_place(id);
+    if OCCLUDED {
+        set_occluder(place);
+    }
     let begin = begin_ray(look_direction(place.x, place.y));
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;

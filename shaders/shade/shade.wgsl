@@ -5,6 +5,7 @@
 #import constants
 #import camera/observer
 #import camera/projection
+#import emit/occluder
 #import emit/plane
 #import emit/shift
 #import records/record
@@ -32,8 +33,6 @@
 @group(0) @binding(5) var sky_map: texture_2d<f32>;
 // Linear between texels and levels, around in u, to the border in v.
 @group(0) @binding(6) var map_sampler: sampler;
-// Distances of the host's things, scene lengths: with OCCLUDED a texel for each pixel of the image, else one.
-@group(0) @binding(9) var occluder: texture_2d<f32>;
 
 // Choices that a pipeline is made for; the host compiles one for each combination that it needs: lavapipe runs both
 // sides of every `if`.
@@ -44,8 +43,6 @@ override SHOWS_MAP: bool = true;
 override SHOWS_GRID: bool = true;
 override OPAQUE: bool = false;
 override REFINES: bool = true;
-// The host has things before the camera (src/scene/occluder.rs).
-override OCCLUDED: bool = false;
 
 fn light_table(i: u32) -> vec4<f32> {
     return textureLoad(light_tables, vec2<u32>(i % TABLE_WIDTH, i / TABLE_WIDTH), 0);
@@ -85,20 +82,7 @@ fn least_patch() -> f32 {
     return frame.sky_z.w;
 }
 
-// The farthest that light of the direct image comes from, M, and whether the ray ends there: `Shown` of
-// src/scene/occluder.rs.
-var<private> occluder_farthest: f32;
-var<private> occluder_ends: bool;
-
-// Goes to the sample at `place` of the full frame.
-fn set_occluder(place: vec2<f32>) {
-    let size = vec2<i32>(textureDimensions(occluder));
-    let texel = clamp(vec2<i32>(floor(place)) - vec2<i32>(frame.occluder.xy), vec2<i32>(0), size - 1);
-    occluder_farthest = textureLoad(occluder, texel, 0).x / frame.occluder.z;
-    let n = aberrate(look_direction(place.x, place.y)).n;
-    occluder_ends = occluder_farthest < max(-n.x, 0.0) / frame.place.x;
-}
-
+// Whether the host's things hide a crossing.
 fn is_occluded(crossing: Crossing) -> bool {
     return select(occluder_ends, crossing_distance(crossing) > occluder_farthest, crossing.order == 0u);
 }

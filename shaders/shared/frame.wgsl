@@ -71,7 +71,7 @@ struct Frame {
     shown_edges: vec4<f32>,
     // Plunge of src/physics/plunge.rs: ISCO, E, a x, x; 0 where no matter plunges.
     plunge: vec4<f32>,
-    // The first pixel of the occluder in the full frame, M in scene lengths; 0.
+    // The first pixel of the occluder in the full frame, M in scene lengths; 1 where its things are lensed, else 0.
     occluder: vec4<f32>,
     // Bands of the turbulence: age, time from birth to birth (f32), number of the youngest generation; 0.
     bands: array<vec4<u32>, MOST_BANDS>,

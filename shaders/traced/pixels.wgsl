@@ -5,6 +5,8 @@
 #import constants
 #import camera/observer
 #import camera/projection
+#import emit/occluder
+#import emit/shown_part
 #import emit/volumes
 #import geodesic/geodesic
 #import geodesic/trace
@@ -75,7 +77,13 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
-    add_part(c, observer, from_state, to_state, h, begin, end, frequency_ratio);
+    var seen = vec2<f32>(begin, end);
+    if OCCLUDED {
+        seen = shown_stretch(c, from_state, begin, end);
+    }
+    if !OCCLUDED || seen.x < seen.y {
+        add_part(c, observer, from_state, to_state, h, seen.x, seen.y, frequency_ratio);
+    }
 }
 
 // Leaves the medium since the crossing before.
@@ -103,6 +111,9 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     beside_orders = 0u;
     plane_u = 0.0;
     begin_medium(1u);
+    if OCCLUDED {
+        set_occluder(place);
+    }
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local,
         polar_momentum(begin, frequency_ratio) * frame.place.x);

@@ -23,6 +23,10 @@ pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 /// 0.2.0.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
+/// BhrImage.flags: for bhr_set_occluder, the distances are of things drawn at their lensed places, as
+/// bhr_project_points gives them. Since 0.2.0.
+pub const BHR_IMAGE_LENSED: u32 = 4u32;
+
 /// A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring
 /// that BhrDisk.reference names, if the disk's brightness is 1.
 pub type BhrFormat = i32;
@@ -63,7 +67,8 @@ pub struct BhrImage {
     /// Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
     /// |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
     pub byte_size: u64,
-    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only.
+    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only,
+    /// BHR_IMAGE_LENSED for bhr_set_occluder only.
     pub flags: u32,
     /// Reserved: 0.
     pub reserved: u32,
@@ -109,6 +114,7 @@ pub(super) fn format(value: BhrFormat) -> Result<PixelFormat> {
 pub(super) struct HostImage<'a> {
     pub pixels: ImageMut<'a>,
     pub transparent: bool,
+    pub lensed: bool,
 }
 
 /// The image's layout and flags, without its block. Errors: INVALID_ARGUMENT for NULL or a field that breaks the
@@ -125,7 +131,7 @@ pub(super) unsafe fn read_layout(image: *const BhrImage, name: &str) -> Result<(
 /// The layout and the flags.
 fn layout(given: &BhrImage, name: &str) -> Result<(Layout, u32)> {
     check_reserved(given.reserved, name)?;
-    let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP;
+    let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP | BHR_IMAGE_LENSED;
     let flags = check_flags(given.flags, known, &format!("{name} flags"))?;
     let layout = Layout {
         format: format(given.format)?,
@@ -155,7 +161,8 @@ pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<Host
             _ => ImageMut::from_raw_bottom_up(layout, given.pixels.cast(), given.byte_size),
         }
     }?;
-    Ok(HostImage { pixels, transparent: flags & BHR_IMAGE_TRANSPARENT != 0 })
+    let [transparent, lensed] = [BHR_IMAGE_TRANSPARENT, BHR_IMAGE_LENSED].map(|flag| flags & flag != 0);
+    Ok(HostImage { pixels, transparent, lensed })
 }
 
 /// Clears struct_size bytes and fills in the defaults. Any thread, inside callbacks too. Errors: INVALID_ARGUMENT

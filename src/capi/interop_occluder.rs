@@ -3,12 +3,15 @@
 
 use super::call::on_context;
 use super::context::BhrContext;
+use super::image::BHR_IMAGE_LENSED;
 use super::interop_target::BhrTarget;
 use super::status::BhrStatus;
+use crate::error::Error;
 
 /// bhr_set_occluder with distances on the GPU: target is one of R32F, made, imported or wrapped, that holds them as
 /// bhr_set_occluder describes it, and that frames of LIGHT read anew each time, without a way through host memory.
-/// NULL: none; each of the two functions replaces what the other has set.
+/// NULL: none; each of the two functions replaces what the other has set. flags: 0, or BHR_IMAGE_LENSED for things at
+/// their lensed places.
 ///
 /// There are no semaphores of its own, because values grow with each frame: a frame reads the target first of all,
 /// after every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
@@ -23,15 +26,22 @@ use super::status::BhrStatus;
 /// or NULL is set. It cannot be a frame's target as well. The sides are those of the frames' images, and at most those
 /// of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
 /// Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
-/// another format, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
+/// another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
 /// SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. (Backends that share nothing have no targets.) Since
 /// 0.2.0.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn bhr_set_occluder_target(context: *mut BhrContext, target: *mut BhrTarget) -> BhrStatus {
+pub unsafe extern "C" fn bhr_set_occluder_target(
+    context: *mut BhrContext,
+    target: *mut BhrTarget,
+    flags: u32,
+) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         on_context("bhr_set_occluder_target", context, |state| match target.as_ref() {
-            Some(target) => state.renderer.set_occluder_target(&target.target),
+            _ if flags & !BHR_IMAGE_LENSED != 0 => {
+                Err(Error::argument(format!("flags {flags:#x}: BHR_IMAGE_LENSED alone is known here")))
+            }
+            Some(target) => state.renderer.set_occluder_target(&target.target, flags & BHR_IMAGE_LENSED != 0),
             None => {
                 state.renderer.set_occluder(None);
                 Ok(())

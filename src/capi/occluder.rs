@@ -17,12 +17,22 @@ use crate::scene::Occluder;
 /// ray ends there: higher orders, the hole and the sky are left out as well, and BHR_IMAGE_TRANSPARENT's alpha is
 /// that of what lies before. So the picture goes over the host's, premultiplied. A thing behind the hole is hidden
 /// by what bends its light; it belongs into the sky (BHR_OUTPUT_SKY). Lines of sight are straight here, and light
-/// is not: things are where light shows them to about M / r of their angle from the hole. Glare (BhrFilm.bloom)
-/// goes over things, too. Images of a region take distances for that region. Frames in windows, views and the other
-/// outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT, and scenes with volumes
-/// or hot spots UNSUPPORTED, when they are rendered; so are, on GPUs, sides of more than a texture may have: 16384, or
-/// less if the adapter has less. Errors: INVALID_ARGUMENT for a bad image, another format, NaN,
-/// or a distance below 0; OUT_OF_MEMORY; the occluder then stays as it was. Since 0.2.0.
+/// is not: things are where light shows them to about M / r of their angle from the hole.
+///
+/// With BHR_IMAGE_LENSED the host has drawn its things at their lensed places, by bhr_project_points at order 0, and
+/// each distance is BhrProjectedPoint.distance, from the camera straight to the thing itself. Then the ray ends at the
+/// thing wherever it is, behind the hole as well: beyond it nothing is left, of orders above 0 nothing at all, because
+/// their crossings lie beyond the direct images of all things.
+///
+/// Matter with depth, volumes and hot spots, counts up to where the ray's straight distance from the camera is that of
+/// the thing, and where the ray does not end there also where it has come nearer again; each ray is summed by itself
+/// then, whatever BhrQuality.volume_resolution says.
+///
+/// Glare (BhrFilm.bloom) goes over things, too. Images of a region take distances for that region. Frames in windows,
+/// views and the other outputs do not regard it. While it is set, images of another size are INVALID_ARGUMENT when
+/// they are rendered; UNSUPPORTED are, on GPUs, sides of more than a texture may have: 16384, or less if the adapter
+/// has less. Errors: INVALID_ARGUMENT for a bad image, another format, NaN, or a distance below 0; OUT_OF_MEMORY; the
+/// occluder then stays as it was. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_occluder(context: *mut BhrContext, distances: *const BhrImage) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
@@ -30,7 +40,10 @@ pub unsafe extern "C" fn bhr_set_occluder(context: *mut BhrContext, distances: *
         on_context("bhr_set_occluder", context, |state| {
             state.renderer.set_occluder(match distances.is_null() {
                 true => None,
-                false => Some(Occluder::new(&image::read(distances, "distances")?.pixels.as_image_ref())?),
+                false => {
+                    let given = image::read(distances, "distances")?;
+                    Some(Occluder { lensed: given.lensed, ..Occluder::new(&given.pixels.as_image_ref())? })
+                }
             });
             Ok(())
         })

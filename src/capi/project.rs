@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! BhrProjectedPoint: where on the screen points of the scene appear.
+//! BhrProjectedPoint: where on the screen points of the scene appear. Knows no rays but those that it hands out.
 
 use super::call::on_context;
 use super::context::BhrContext;
 use super::pointer::read_vector;
-use super::rays::{BhrRay, frame_pixels};
+use super::rays::{Array, BhrRay, CHUNK, frame_pixels};
 use super::status::BhrStatus;
-use super::versioned::{OutStruct, Versioned};
+use super::versioned::{self, OutStruct, Versioned, check_named_size};
+use crate::allocate::{filled, with_room};
 use crate::scene::Ray;
-use crate::scene::project::{HIGHEST_ORDER, ProjectedPoint};
+use crate::scene::project::{HIGHEST_ORDER, Projected, ProjectedPoint};
 use glam::DVec3;
+use std::mem::size_of;
 
 /// The highest order that bhr_project_point looks for. Since 0.2.0.
 pub const BHR_MAX_IMAGE_ORDER: u32 = 3u32;
@@ -22,12 +24,13 @@ const _: () = assert!(BHR_MAX_IMAGE_ORDER == HIGHEST_ORDER);
 pub struct BhrProjectedPoint {
     /// sizeof(BhrProjectedPoint), set by the caller.
     pub struct_size: u32,
-    /// 1: a ray to the point was found. 0: there is none, or none was found; the numbers are then NaN, the ray's 0.
+    /// 1: a ray to the point was found. 0: there is none (the point is in the hole, or where the camera is), or it is
+    /// lost; the numbers are then NaN, the ray's 0.
     pub found: u32,
     /// 1: it is seen within the image, whatever matter or sky may be before it. 0: beside it, or not found.
     pub on_screen: u32,
-    /// Reserved: 0.
-    pub reserved: u32,
+    /// 1: none was found, though there may be one.
+    pub lost: u32,
     /// Pixel position to the right, as of bhr_camera_ray; beyond the image where it is not on the screen. NaN where the
     /// projection has no place for the direction: behind a PERSPECTIVE or FRUSTUM.
     pub x: f64,
@@ -43,32 +46,46 @@ pub struct BhrProjectedPoint {
     pub delay: f64,
     /// g = nu(camera) / nu(observer at rest at the point, with spin the ZAMO).
     pub redshift: f64,
+    /// The straight distance from the camera to the point, scene lengths: the depth of the image, as
+    /// BHR_OUTPUT_DEPTH and bhr_set_occluder measure it.
+    pub distance: f64,
+    /// Where the point seems to be, scene axes: as far from the camera as it is, in the direction in which the camera
+    /// sees its image. A rasteriser that draws a vertex here, with the camera's own matrices, draws it at x, y and
+    /// with the depth that belongs to it; so do cameras that move.
+    pub apparent: [f64; 3],
 }
 
 // SAFETY: repr(C), size first, no padding, numbers only.
 unsafe impl Versioned for BhrProjectedPoint {
     const NAME: &'static str = "BhrProjectedPoint";
-    const SIZES: &'static [usize] = &[112];
+    const SIZES: &'static [usize] = &[144];
     fn defaults() -> Self {
-        None.into()
+        Projected::Nowhere.into()
     }
 }
 
-impl From<Option<ProjectedPoint>> for BhrProjectedPoint {
-    fn from(image: Option<ProjectedPoint>) -> Self {
+impl From<Projected> for BhrProjectedPoint {
+    fn from(projected: Projected) -> Self {
+        let image = match projected {
+            Projected::At(image) => Some(image),
+            Projected::Nowhere | Projected::Lost => None,
+        };
         let nothing = Ray { position: DVec3::ZERO, direction: DVec3::ZERO, frequency_ratio: 0.0 };
         let position = image.and_then(|image| image.position);
+        let number = |of: fn(&ProjectedPoint) -> f64| image.as_ref().map_or(f64::NAN, of);
         Self {
             struct_size: 0,
             found: image.is_some().into(),
             on_screen: image.is_some_and(|image| image.on_screen).into(),
-            reserved: 0,
+            lost: (projected == Projected::Lost).into(),
             x: position.map_or(f64::NAN, |at| at.x),
             y: position.map_or(f64::NAN, |at| at.y),
             ray: image.map_or(nothing, |image| image.ray).into(),
-            magnification: image.map_or(f64::NAN, |image| image.magnification),
-            delay: image.map_or(f64::NAN, |image| image.delay),
-            redshift: image.map_or(f64::NAN, |image| image.redshift),
+            magnification: number(|image| image.magnification),
+            delay: number(|image| image.delay),
+            redshift: number(|image| image.redshift),
+            distance: number(|image| image.distance),
+            apparent: image.map_or(DVec3::NAN, |image| image.apparent).to_array(),
         }
     }
 }
@@ -78,14 +95,14 @@ impl From<Option<ProjectedPoint>> for BhrProjectedPoint {
 /// is the direct image, 1 that on the hole's other side, to BHR_MAX_IMAGE_ORDER. With spin the image of an order is
 /// the one that the image of this order without spin becomes as the spin grows from 0.
 ///
-/// Without spin every point outside the horizon has one image of each order, also behind the hole. With spin some
-/// have more or fewer, by the caustics that a spinning hole has, and the search may end there: of random points
-/// outside r+ + 1 M, seen from outside r+ + 2 M, two in a thousand are not found at orders 0 and 1, one in a
-/// hundred at order 2, a fifth at order 3; beside the horizon more. The ray of an image that is found passes the
-/// point within 1e-6 of its distance. Whether matter is before the point is for the host to ask (bhr_trace_rays).
+/// Every point outside the horizon has an image of each order, also behind the hole. With spin some have more, by the
+/// caustics that a spinning hole has; where the image has ended in another as the spin grew, it is the one of the same
+/// orientation that took its place. Of 24,000 random points outside r+ + 1 M, seen from outside r+ + 2 M at spins up
+/// to 0.999, all were found. The ray of an image that is found passes the point within 1e-6 of its distance. Whether
+/// matter is before the point is for the host to ask (bhr_trace_rays).
 ///
-/// It is computed in double precision on the CPU, on this thread, whatever the backend: in about a millisecond, at
-/// orders 2 and 3 with spin in about ten; a search that fails takes up to a second. Errors: INVALID_ARGUMENT for
+/// It is computed in double precision on the CPU, on this thread, whatever the backend: in about 40 microseconds, at
+/// order 1 with spin 0.2 ms, at orders 2 and 3 with spin in about 5 ms. Errors: INVALID_ARGUMENT for
 /// NULL, a wrong struct_size, numbers not finite, an order above the highest; INVALID_STATE for a point farther
 /// than 1e15 M; else as bhr_camera_ray. Since 0.2.0.
 ///
@@ -105,8 +122,55 @@ pub unsafe extern "C" fn bhr_project_point(
         on_context("bhr_project_point", context, |state| {
             frame_pixels(width, height)?;
             let point = read_vector(point, "point")?;
-            let image = state.renderer.scene.project_point(width, height, state.region, point, order)?;
-            out.set(&image.into())
+            let projector = state.renderer.scene.projector(width, height, state.region, order)?;
+            out.set(&projector.point(point)?.into())
+        })
+    }
+}
+
+/// bhr_project_point for many points, on as many threads as the machine has cores: the vertices of a mesh, say, so
+/// that a host's things are where light shows them (docs/compositing.md). points: 3 count doubles, x, y, z of each.
+/// image_size: sizeof(BhrProjectedPoint) as the caller was compiled; out_images has room for count, packed, and each
+/// gets that size as its struct_size, which need not be set before. A point that is not finite, or farther than 1e15
+/// M, has no image and is no error of the others. With count 0 the call does nothing. A point takes 20 to 40
+/// microseconds of one core at order 0, 0.2 ms at order 1 with spin. Errors: INVALID_ARGUMENT for NULL or a size below
+/// the first version's; else as bhr_project_point. An error leaves out_images alone. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_project_points(
+    context: *const BhrContext,
+    width: u32,
+    height: u32,
+    points: *const f64,
+    count: usize,
+    order: u32,
+    out_images: *mut BhrProjectedPoint,
+    image_size: usize,
+) -> BhrStatus {
+    // SAFETY: NULL or count elements, by the header's conventions.
+    unsafe {
+        on_context("bhr_project_points", context, |state| {
+            frame_pixels(width, height)?;
+            let element = 3 * size_of::<f64>();
+            let from = Array::new(points.cast_mut().cast(), element, element, count, ["points", "size of a point"])?;
+            check_named_size::<BhrProjectedPoint>(image_size, "image_size")?;
+            let first = BhrProjectedPoint::SIZES[0];
+            let to = Array::new(out_images.cast(), image_size, first, count, ["out_images", "image_size"])?;
+            let projector = state.renderer.scene.projector(width, height, state.region, order)?;
+            let most = CHUNK.min(count);
+            let mut places = with_room(most, "points to project")?;
+            let mut found = filled(most, Projected::Nowhere, "images of points")?;
+            let mut begin = 0;
+            while begin < count {
+                let length = CHUNK.min(count - begin);
+                places.clear();
+                places.extend((begin..begin + length).map(|index| from.read_vector(index)));
+                projector.points(&places, &mut found[..length]);
+                for (index, projected) in (begin..).zip(&found[..length]) {
+                    versioned::fill(to.at(index).cast(), image_size, &BhrProjectedPoint::from(*projected));
+                }
+                begin += length;
+            }
+            Ok(())
         })
     }
 }

@@ -12,6 +12,7 @@ use crate::image::MAX_SIDE;
 use crate::renderer::Renderer;
 use crate::scene::{Crossing, Hit, MAX_CROSSINGS, Ray};
 use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
 use std::mem::size_of;
 
 /// A ray, followed backward in time from an observer. It does not grow within one BHR_ABI_VERSION, because some calls
@@ -250,6 +251,20 @@ impl Array {
             }
             Ok(at.cast::<BhrRay>().read_unaligned().into())
         }
+    }
+
+    /// # Safety
+    /// `index` is less than the count, and elements are three doubles or longer.
+    pub(super) unsafe fn read_vector(self, index: usize) -> DVec3 {
+        // SAFETY: this function's contract.
+        unsafe { self.at(index).cast::<[f64; 3]>().read_unaligned() }.into()
+    }
+
+    /// # Safety
+    /// `index` is less than the count.
+    pub(super) unsafe fn at(self, index: usize) -> *mut u8 {
+        // SAFETY: this function's contract.
+        unsafe { self.begin.add(index * self.element) }
     }
 
     /// # Safety

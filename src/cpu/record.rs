@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Ray records of pixels, made by tracing each ray in f64; derivatives come from the neighbours' rays.
 
-use crate::emit::along::MediaAlong;
+use crate::emit::along::{Limit, MediaAlong};
 use crate::emit::medium::{Media, Medium};
 use crate::emit::volumes::Seen;
 use crate::emit::{Crossing, EmissionPoint, Emitters};
 use crate::physics::geodesic::{Constants, wrap_angle};
 use crate::physics::plunge::Matter;
 use crate::physics::trace::{Fate, RayTrace, Settings, trace_look, trace_look_visited};
-use crate::scene::Scene;
 use crate::scene::observer::Lens;
+use crate::scene::occluder::Shown;
 use crate::scene::projection::Mapping;
 use crate::scene::record::{Record, UNKNOWN_DIRECTION, UNKNOWN_EMISSION_POINT, polar_momentum};
 use crate::scene::refine::{Edge, is_steep, turn_of, turning_edge};
+use crate::scene::{Occluder, Scene};
 use glam::DVec3;
 
 /// Traces the records of a frame.
@@ -24,6 +25,8 @@ pub struct Recorder<'a> {
     pub(super) plane_u: Option<[f64; 2]>,
     pub(super) disk_u: Option<[f64; 2]>,
     pub(super) matter: Matter,
+    occluder: Option<Occluder>,
+    mass: f64,
 }
 
 /// The records one pixel to the left, right, above and below; none across a border between two faces of a cube.
@@ -44,6 +47,8 @@ impl<'a> Recorder<'a> {
             disk_u: emitters.disk_u(),
             emitters,
             matter: scene.matter(),
+            occluder: scene.occluder.clone(),
+            mass: scene.hole.mass,
         }
     }
 
@@ -72,6 +77,15 @@ impl<'a> Recorder<'a> {
         self.trace_with(x, y, false, 1)
     }
 
+    /// How far the matter along the ray through (x, y) is seen before the host's things.
+    fn limit(&self, x: f64, y: f64) -> Option<Limit> {
+        let occluder = self.occluder.as_ref()?;
+        let farthest = occluder.at(x, y) / self.mass;
+        let ends = Shown::new(farthest, self.lens.closest_approach(x, y), occluder.lensed).ends;
+        let eye = self.lens.observer.frame.e_r * self.lens.observer.frame.r;
+        (farthest < f64::INFINITY).then_some(Limit { eye, farthest, ends, ended: false })
+    }
+
     fn trace_with(&self, x: f64, y: f64, parts: bool, rays: u32) -> Record {
         let observer = &self.lens.observer;
         let (n, frequency_ratio) = observer.aberrate(self.lens.look_direction(x, y));
@@ -82,7 +96,8 @@ impl<'a> Recorder<'a> {
             let pixel_angle = self.lens.mapping.pixel_angle * frequency_ratio;
             let static_lapse = observer.frame.static_lapse();
             let seen = Seen { frequency_ratio, static_lapse, pixel_angle, swept: 0.0, rays };
-            let mut along = MediaAlong { emitters, seen, plane_u, media, medium };
+            let limit = self.limit(x, y);
+            let mut along = MediaAlong { emitters, seen, plane_u, media, medium, limit };
             let (constants, traced) = trace_look_visited(&observer.frame, n, &self.settings, &mut along);
             (constants, traced, along.finish())
         } else {

@@ -61,7 +61,8 @@ impl<'a> Shader<'a> {
     /// The part of the ray through (x, y) that the host's things leave; `None`: there are none.
     fn shown(&self, x: f64, y: f64) -> Option<Shown> {
         let occluder = self.scene.occluder.as_ref()?;
-        Some(Shown::new(occluder.at(x, y) / self.scene.hole.mass, self.lens.closest_approach(x, y)))
+        let distance = occluder.at(x, y) / self.scene.hole.mass;
+        Some(Shown::new(distance, self.lens.closest_approach(x, y), occluder.lensed))
     }
 
     /// Linear premultiplied Rec. 709 and alpha = 1 - the sky's share. `shown`: the part of the ray that is seen; where

@@ -154,6 +154,12 @@ impl Part<'_> {
         }
     }
 
+    /// The part from one share of its Mino time to another.
+    pub fn between(&self, from: f64, to: f64) -> Self {
+        let at = |x: f64| self.begin + (self.end - self.begin) * x;
+        Self { begin: at(from), end: at(to), ..*self }
+    }
+
     /// The state at the share `x`, 0 .. 1, of the part's Mino time. A part may reach past infinity, where u < 0.
     pub fn at(&self, x: f64) -> State {
         let tau = self.begin + (self.end - self.begin) * x;

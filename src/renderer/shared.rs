@@ -117,9 +117,9 @@ impl Renderer {
             None => None,
             Some(HostsThings::Copied(occluder)) => Some(occluder),
             // Views and frames without LIGHT do not ask for it.
-            Some(HostsThings::Target(_)) if self.scene.view != View::Light => None,
-            Some(HostsThings::Target(target)) => {
-                on_device = self.occluder_of(target)?;
+            Some(HostsThings::Target(..)) if self.scene.view != View::Light => None,
+            Some(HostsThings::Target(target, lensed)) => {
+                on_device = self.occluder_of(target, *lensed)?;
                 Some(&on_device)
             }
         };
@@ -134,14 +134,14 @@ impl Renderer {
     /// Sets a target whose pixels are the distances of the host's things, read by each frame when it begins. Errors:
     /// UNSUPPORTED, on tracers without targets and for an image that cannot be copied; INVALID_ARGUMENT for another
     /// format than R32F, or a target of another renderer; SURFACE_LOST; the occluder then stays as it was.
-    pub fn set_occluder_target(&mut self, target: &Arc<Target>) -> Result<()> {
+    pub fn set_occluder_target(&mut self, target: &Arc<Target>, lensed: bool) -> Result<()> {
         self.check_device()?;
         let format = target.shape().format;
         if format != PixelFormat::R32F {
             return Err(Error::argument(format!("target format is {format}; an occluder's is R32F")));
         }
         target.on(self.gpu()?)?.check_is_read()?;
-        self.occluder = Some(HostsThings::Target(target.clone()));
+        self.occluder = Some(HostsThings::Target(target.clone(), lensed));
         Ok(())
     }
 
@@ -163,19 +163,19 @@ impl Renderer {
     }
 
     /// The distances in a target. Errors: as `Target::on`.
-    pub(super) fn occluder_of(&self, target: &Arc<Target>) -> Result<Occluder> {
+    pub(super) fn occluder_of(&self, target: &Arc<Target>, lensed: bool) -> Result<Occluder> {
         let on_device = target.on(self.gpu()?).map_err(|error| {
             Error::new(error.kind, format!("the occluder's {}", error.message.trim_start_matches("the ")))
         })?;
         let [width, height] = target.shape().size;
-        Ok(Occluder { width, height, distances: Distances::OnDevice(OnDevice(on_device)), origin: [0, 0] })
+        Ok(Occluder { width, height, distances: Distances::OnDevice(OnDevice(on_device)), origin: [0, 0], lensed })
     }
 
     /// Errors: INVALID_ARGUMENT for a target that frames read.
     fn check_is_not_read(&self, target: &Arc<Target>, on_device: &Arc<GpuTarget>) -> Result<()> {
         let sky = self.scene.sky_picture.as_ref().and_then(|sky| sky.place.0.downcast_ref::<Weak<GpuTarget>>());
         let read = match &self.occluder {
-            Some(HostsThings::Target(occluder)) if Arc::ptr_eq(occluder, target) => "occluder",
+            Some(HostsThings::Target(occluder, _)) if Arc::ptr_eq(occluder, target) => "occluder",
             _ if sky.is_some_and(|sky| std::ptr::eq(sky.as_ptr(), Arc::as_ptr(on_device))) => "sky",
             _ => return Ok(()),
         };

@@ -30,7 +30,7 @@ pub fn transfer_ray(scene: &Scene, settings: &Settings, emitters: &Emitters, ray
     let (frequency_ratio, static_lapse) = (ray.frequency_ratio, frame.static_lapse());
     let seen = Seen { frequency_ratio, static_lapse, pixel_angle: 0.0, swept: 0.0, rays: 1 };
     let (media, medium) = (Media::new(), Medium::default());
-    let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium };
+    let mut along = MediaAlong { emitters, seen, plane_u: None, media, medium, limit: None };
     let traced = trace_visited(&constants, &state, settings, &mut along);
     let Medium { light, depth, intensity, .. } = along.medium;
     let fate = scene.hit(ray, &frame, Some(&constants), &traced).fate;

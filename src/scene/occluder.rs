@@ -28,6 +28,8 @@ pub struct Occluder {
     pub distances: Distances,
     /// The place of the first pixel in the full frame.
     pub origin: [u32; 2],
+    /// The things are where light shows them: rays end there, wherever it is.
+    pub lensed: bool,
 }
 
 /// The part of a ray that an occluder leaves.
@@ -60,7 +62,7 @@ impl Occluder {
                 distances.push(distance);
             }
         }
-        Ok(Self { width, height, distances: Distances::Copied(Arc::new(distances)), origin: [0, 0] })
+        Ok(Self { width, height, distances: Distances::Copied(Arc::new(distances)), origin: [0, 0], lensed: false })
     }
 
     /// The distance at a position of the full frame, scene lengths: that of the pixel there, or of the one nearest to
@@ -77,9 +79,9 @@ impl Occluder {
 
 impl Shown {
     /// For an occluder at a distance, M, before a ray that comes nearest to the hole, on its straight line, at
-    /// `closest`, M.
-    pub fn new(farthest: f64, closest: f64) -> Self {
-        Self { farthest, ends: farthest < closest }
+    /// `closest`, M. Things that are `lensed` are met by the ray itself.
+    pub fn new(farthest: f64, closest: f64, lensed: bool) -> Self {
+        Self { farthest, ends: farthest < if lensed { f64::INFINITY } else { closest } }
     }
 
     /// Whether a crossing is seen by an observer at `eye`, chart.
@@ -101,7 +103,7 @@ pub fn place(crossing: &Crossing) -> DVec3 {
 
 impl Scene {
     /// The scene of a frame's image of this size, with the host's things before it where the view is LIGHT. Errors:
-    /// INVALID_ARGUMENT for those of another size; UNSUPPORTED where matter has depth.
+    /// INVALID_ARGUMENT for those of another size.
     pub fn behind(&self, occluder: Option<&Occluder>, size: [u32; 2], region: &Region) -> Result<Cow<'_, Self>> {
         let Some(occluder) = occluder.filter(|_| self.view == View::Light) else { return Ok(Cow::Borrowed(self)) };
         self.check_one_eye("an occluder")?;
@@ -109,11 +111,6 @@ impl Scene {
         if given != size {
             let ([w, h], [width, height]) = (given, size);
             return Err(Error::argument(format!("the occluder is {w} x {h}; the image is {width} x {height}")));
-        }
-        if self.emitters().needs().parts {
-            return Err(Error::unsupported(
-                "an occluder is set, and the scene has volumes or hot spots, which it cannot cut; remove either",
-            ));
         }
         let occluder = Occluder { origin: [region.x, region.y], ..occluder.clone() };
         Ok(Cow::Owned(Self { occluder: Some(occluder), ..self.clone() }))
@@ -140,10 +137,12 @@ mod tests {
         for (farthest, shows) in
             [(10.0, [false; 3]), (25.0, [true, false, false]), (35.0, [true, false, true]), (50.0, [true; 3])]
         {
-            let shown = Shown::new(farthest, 29.0);
+            let shown = Shown::new(farthest, 29.0, false);
             assert_eq!([near, far, ring].map(|crossing| shown.shows(&crossing, eye)), shows, "{farthest}");
             assert_eq!(shown.ends, farthest < 29.0);
+            assert!(Shown::new(farthest, 29.0, true).ends);
         }
+        assert!(!Shown::new(f64::INFINITY, 29.0, true).ends);
     }
 
     #[test]

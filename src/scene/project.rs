@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Where a point of the scene appears on the screen: the inverse of `query`'s camera rays. Knows no tracer: rays are
-//! found in f64 on the calling thread.
+//! found in f64, those of many points on several threads.
 
+use super::query::PixelRays;
 use super::{Ray, Region, Scene};
+use crate::allocate::{THREAD_ROOM, check_room};
 use crate::error::{Error, Number, Result};
-use crate::physics::images::image;
+use crate::physics::images::{Image, NoImage, image};
 use crate::physics::observer::Observer;
 use crate::physics::orbit::horizon_outer;
 use glam::{DVec2, DVec3};
+use parking_lot::Mutex;
 
 pub use crate::physics::images::HIGHEST_ORDER;
 
@@ -24,63 +27,130 @@ pub struct ProjectedPoint {
     /// Scene lengths; NaN from inside the horizon.
     pub delay: f64,
     pub redshift: f64,
+    /// Straight, from the camera to the point.
+    pub distance: f64,
+    /// The place as far from the camera as the point, in the direction in which its image is seen.
+    pub apparent: DVec3,
 }
 
+/// How a point is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Projected {
+    At(ProjectedPoint),
+    /// There is no such image.
+    Nowhere,
+    /// None was found, though there may be one.
+    Lost,
+}
+
+/// A camera that points are seen by.
+#[derive(Clone, Copy, Debug)]
+pub struct Projector<'a> {
+    scene: &'a Scene,
+    pixel_rays: PixelRays,
+    region: Region,
+    size: DVec2,
+    order: u32,
+}
+
+/// Points that a thread takes at a time, and the fewest that another thread is worth.
+const POINTS_AT_A_TIME: usize = 64;
+const POINTS_A_THREAD: usize = 256;
+
 impl Scene {
-    /// The image of a scene point that light makes after `order` half turns about the hole, in a `width` x `height`
-    /// image of the camera's (`region`: of the part of a frame that it is). `None`: there is none, or none was found.
+    /// For images that light makes after `order` half turns about the hole, in a `width` x `height` image of the
+    /// camera's (`region`: of the part of a frame that it is).
     ///
-    /// Errors: as `camera_ray`; UNSUPPORTED for a camera of several places; INVALID_ARGUMENT for a point not finite or
-    /// an order above `HIGHEST_ORDER`; INVALID_STATE for a point farther than 1e15 M.
-    pub fn project_point(
-        &self,
-        width: u32,
-        height: u32,
-        region: Option<Region>,
-        point: DVec3,
-        order: u32,
-    ) -> Result<Option<ProjectedPoint>> {
-        if !point.is_finite() {
-            let (x, y, z) = (Number(point.x), Number(point.y), Number(point.z));
-            return Err(Error::argument(format!("point is ({x}, {y}, {z}); it must be finite")));
-        }
+    /// Errors: as `camera_ray`; UNSUPPORTED for a camera of several places; INVALID_ARGUMENT for an order above
+    /// `HIGHEST_ORDER`.
+    pub fn projector(&self, width: u32, height: u32, region: Option<Region>, order: u32) -> Result<Projector<'_>> {
         self.check_one_eye("bhr_project_point")?;
         if order > HIGHEST_ORDER {
             return Err(Error::argument(format!("order is {order}; the highest is {HIGHEST_ORDER}")));
         }
         let (pixel_rays, region) = self.pixel_rays(width, height, region)?;
-        let there = self.hole.scene_to_chart() * point / self.hole.mass;
-        if there.length() <= horizon_outer(self.hole.spin) {
-            return Ok(None);
+        Ok(Projector { scene: self, pixel_rays, region, size: DVec2::new(width.into(), height.into()), order })
+    }
+}
+
+impl Projector<'_> {
+    /// The image of a scene point. Errors: INVALID_ARGUMENT for a point not finite; INVALID_STATE for one farther than
+    /// 1e15 M.
+    pub fn point(&self, point: DVec3) -> Result<Projected> {
+        if !point.is_finite() {
+            let (x, y, z) = (Number(point.x), Number(point.y), Number(point.z));
+            return Err(Error::argument(format!("point is ({x}, {y}, {z}); it must be finite")));
         }
-        self.local_frame(point)?;
-        let observer = pixel_rays.aberration;
-        let Some(image) = image(&observer.frame, there, order) else { return Ok(None) };
+        let scene = self.scene;
+        let there = scene.hole.scene_to_chart() * point / scene.hole.mass;
+        if there.length() <= horizon_outer(scene.hole.spin) {
+            return Ok(Projected::Nowhere);
+        }
+        scene.local_frame(point)?;
+        Ok(match image(&self.pixel_rays.aberration.frame, there, self.order) {
+            Ok(image) => Projected::At(self.seen(&image, point)),
+            Err(NoImage::None) => Projected::Nowhere,
+            Err(NoImage::Lost) => Projected::Lost,
+        })
+    }
+
+    /// The images of many points, on as many threads as the machine has cores. One that `point` refuses is nowhere.
+    pub fn points(&self, points: &[DVec3], found: &mut [Projected]) {
+        // Threads of their own: in a pool, one that waits could come to wait for itself.
+        let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
+        let threads = cores.min(points.len() / POINTS_A_THREAD);
+        let parts = Mutex::new(points.chunks(POINTS_AT_A_TIME).zip(found.chunks_mut(POINTS_AT_A_TIME)));
+        let work = || {
+            loop {
+                let Some((points, found)) = parts.lock().next() else { return };
+                for (point, found) in points.iter().zip(found) {
+                    *found = self.point(*point).unwrap_or(Projected::Nowhere);
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for i in 1..threads {
+                let thread = std::thread::Builder::new().name(format!("bhr-points-{i}"));
+                // Without memory for a thread, or without a thread, there are fewer: this one is enough.
+                let room = check_room(THREAD_ROOM, "a thread that looks for points");
+                if room.is_err() || thread.spawn_scoped(scope, work).is_err() {
+                    break;
+                }
+            }
+            work();
+        });
+    }
+
+    /// An image in the host's terms.
+    fn seen(&self, image: &Image, point: DVec3) -> ProjectedPoint {
+        let (scene, observer, lens) = (self.scene, &self.pixel_rays.aberration, &self.pixel_rays.lens);
+        let [begin_x, begin_y] = [self.region.x, self.region.y].map(f64::from);
         // Back from the local frame to the camera's own, whose axes are not turned by the boost.
         let (look, ratio) = Observer::moving(observer.frame, -observer.beta).aberrate(image.look);
         let frequency_ratio = 1.0 / ratio;
-        let position = pixel_rays.lens.position(look).map(|at| at - DVec2::new(region.x.into(), region.y.into()));
-        let inside = |at: DVec2| at.min_element() >= 0.0 && at.x <= f64::from(width) && at.y <= f64::from(height);
-        let shown = |at: DVec2| {
-            pixel_rays.lens.mapping.has_look_direction(at.x + f64::from(region.x), at.y + f64::from(region.y))
-        };
-        let chart = observer.frame.vector(image.look);
-        Ok(Some(ProjectedPoint {
+        let position = lens.position(look).map(|at| at - DVec2::new(begin_x, begin_y));
+        let inside = |at: DVec2| at.min_element() >= 0.0 && at.x <= self.size.x && at.y <= self.size.y;
+        let shown = |at: DVec2| lens.mapping.has_look_direction(at.x + begin_x, at.y + begin_y);
+        let to_scene = scene.hole.scene_to_chart().transpose();
+        let distance = point.distance(scene.camera.position);
+        ProjectedPoint {
             position,
             on_screen: position.is_some_and(|at| inside(at) && shown(at)),
             ray: Ray {
-                position: self.camera.position,
-                direction: self.hole.scene_to_chart().transpose() * chart,
+                position: scene.camera.position,
+                direction: to_scene * observer.frame.vector(image.look),
                 frequency_ratio,
             },
             // Aberration makes solid angles as much smaller as the square of frequencies larger.
             magnification: image.magnification / (frequency_ratio * frequency_ratio),
             delay: match observer.frame.rain {
                 true => f64::NAN,
-                false => self.hole.mass * image.constants.retardation(&image.start, &image.there),
+                false => scene.hole.mass * image.constants.retardation(&image.start, &image.there),
             },
             redshift: frequency_ratio * image.redshift,
-        }))
+            distance,
+            apparent: scene.camera.position + to_scene * observer.frame.vector(look) * distance,
+        }
     }
 }
 
@@ -92,6 +162,14 @@ mod tests {
     use std::f64::consts::TAU;
 
     const SIZE: [u32; 2] = [600, 100];
+
+    fn image_at(scene: &Scene, region: Option<Region>, point: DVec3, order: u32) -> ProjectedPoint {
+        let [width, height] = if region.is_some() { [520, 80] } else { SIZE };
+        match scene.projector(width, height, region, order).unwrap().point(point).unwrap() {
+            Projected::At(image) => image,
+            other => panic!("{point}: {other:?}"),
+        }
+    }
 
     /// The least distance of a ray's curve from a point: the points of a path are joined by circles through three.
     fn passes(scene: &Scene, ray: &Ray, point: DVec3) -> f64 {
@@ -142,7 +220,7 @@ mod tests {
                     let point = chart(10.0 + 8.0 * f64::from(k), 1.3, turn);
                     let order = u32::from(k == 3);
                     let region = Region { full_width: 600, full_height: 100, x: 40, y: 7 };
-                    let image = scene.project_point(520, 80, Some(region), point, order).unwrap().unwrap();
+                    let image = image_at(&scene, Some(region), point, order);
                     let Some(at) = image.position else { continue };
                     on_screen += u32::from(image.on_screen);
                     let ray = scene.camera_ray(520, 80, Some(region), at.x, at.y).unwrap();
@@ -153,6 +231,12 @@ mod tests {
                         let miss = passes(&scene, &ray, point) / point.distance(position);
                         assert!(miss < 1e-6, "{case}: {miss:e}");
                     }
+                    // A straight line through the apparent place leads to the same pixel.
+                    let lens = scene.lens(&region).unwrap();
+                    let chart = scene.hole.scene_to_chart() * (image.apparent - position);
+                    let line = lens.position(lens.observer.frame.components(chart)).unwrap();
+                    assert!(line.abs_diff_eq(at + DVec2::new(40.0, 7.0), 1e-6), "{case}: {line} {at}");
+                    assert!((image.apparent.distance(position) / image.distance - 1.0).abs() < 1e-12, "{case}");
                     assert!(image.delay > 0.0 && image.redshift > 0.0 && image.magnification.is_finite(), "{image:?}");
                 }
             }
@@ -167,7 +251,7 @@ mod tests {
         scene.camera.forward = scene.camera.position;
         scene.camera.motion = Motion::FreeFall;
         for (point, order) in [(DVec3::new(9.0, 2.0, 3.0), 0), (DVec3::new(-6.0, 9.0, 0.0), 0)] {
-            let image = scene.project_point(SIZE[0], SIZE[1], None, point, order).unwrap().unwrap();
+            let image = image_at(&scene, None, point, order);
             assert!(image.delay.is_nan() && image.redshift > 0.0);
             assert!(passes(&scene, &image.ray, point) < 1e-6 * point.length(), "{point}");
         }
@@ -176,11 +260,30 @@ mod tests {
     #[test]
     fn points_and_orders_are_checked() {
         let scene = Scene::plain();
-        let project = |point, order| scene.project_point(SIZE[0], SIZE[1], None, point, order);
+        let project = |point, order| scene.projector(SIZE[0], SIZE[1], None, order)?.point(point);
         assert!(project(DVec3::new(0.0, f64::NAN, 1.0), 0).unwrap_err().message.contains("finite"));
         assert!(project(DVec3::ONE * 9.0, HIGHEST_ORDER + 1).unwrap_err().message.contains("order"));
         assert!(project(DVec3::ONE * 1e16, 0).unwrap_err().message.contains("1e15"));
-        assert_eq!(project(DVec3::new(0.1, 0.2, 0.3), 0).unwrap(), None);
-        assert_eq!(project(scene.camera.position, 0).unwrap(), None);
+        assert_eq!(project(DVec3::new(0.1, 0.2, 0.3), 0).unwrap(), Projected::Nowhere);
+        assert_eq!(project(scene.camera.position, 0).unwrap(), Projected::Nowhere);
+    }
+
+    /// Threads find the same images as one point after the other, and a bad point harms no other.
+    #[test]
+    fn many_points_are_found_as_one_is() {
+        let mut scene = Scene::plain();
+        scene.hole.spin = 0.9;
+        let mut points =
+            (0..1500).map(|i| chart(3.0 + 0.01 * f64::from(i), 1.0, 0.37 * f64::from(i))).collect::<Vec<_>>();
+        (points[700], points[701], points[702]) = (DVec3::NAN, DVec3::ONE * 1e17, DVec3::ZERO);
+        let projector = scene.projector(SIZE[0], SIZE[1], None, 0).unwrap();
+        let mut found = vec![Projected::Lost; points.len()];
+        projector.points(&points, &mut found);
+        for (i, (point, found)) in points.iter().zip(&found).enumerate() {
+            match i {
+                700..=702 => assert_eq!(*found, Projected::Nowhere, "{point}"),
+                _ => assert_eq!(*found, projector.point(*point).unwrap(), "{point}"),
+            }
+        }
     }
 }

@@ -232,6 +232,7 @@ fn angles(indices: &[usize]) -> i32 {
 }
 
 /// The camera's lens and the boost into the frame in which its rays are stated.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct PixelRays {
     pub(super) lens: Lens,
     pub(super) aberration: Observer,

@@ -106,7 +106,9 @@ impl Scene {
 
     /// The rule by which pixels get their matter with depth from blocks. `None`: each sums its own.
     pub fn half_resolution(&self) -> Option<Evenness> {
-        let half = self.quality.volume_resolution == VolumeResolution::Half && !self.shown_volumes().is_empty();
+        // Blocks do not know where the edges of the host's things run.
+        let half = self.quality.volume_resolution == VolumeResolution::Half && self.occluder.is_none();
+        let half = half && !self.shown_volumes().is_empty();
         let structured = self.volumes.iter().any(|volume| volume.turbulence > 0.0);
         let tolerance = if structured { STRUCTURE_TOLERANCE } else { TOLERANCE };
         // Light that the film shows as white is 1 after exposure.

@@ -244,6 +244,55 @@ static void matrices(void) {
 
 /* ---- points on the screen ---- */
 
+/* Many points: each as one alone, whatever the others are, and structs of hosts that know longer ones. */
+static void many_points(Watch *watch, BhrContext *context) {
+    static const double points[4][3] = {{1.0, 8.0, 3.0}, {NAN, 0.0, 0.0}, {0.0, 0.0, 0.0}, {-4.0, 2.0, 30.0}};
+    struct Longer {
+        BhrProjectedPoint image;
+        double            later;
+    } found[4];
+    BhrProjectedPoint   one;
+    const size_t        size = sizeof found[0];
+    const double *const from = points[0];
+    memset(found, 0xff, sizeof found);
+    CHECK_OK(bhr_project_points(context, 16, 9, from, 4, 0, &found[0].image, size));
+    for (int i = 0; i < 4; i++) {
+        const BhrProjectedPoint *image = &found[i].image;
+        CHECK(image->struct_size == size && found[i].later == 0.0, "size %u", (unsigned)image->struct_size);
+        CHECK(image->found == (i == 0 || i == 3) && image->lost == 0, "point %d: %u", i, (unsigned)image->found);
+        one.struct_size = sizeof one;
+        if (image->found) {
+            CHECK_OK(bhr_project_point(context, 16, 9, points[i], 0, &one));
+            CHECK(one.x == image->x && one.y == image->y && one.apparent[1] == image->apparent[1], "point %d", i);
+            double sum = 0.0;
+            for (int k = 0; k < 3; k++) {
+                const double off = points[i][k] - watch->camera.position[k];
+                sum += off * off;
+            }
+            CHECK(fabs(sqrt(sum) / image->distance - 1.0) < 1e-12, "distance %g", image->distance);
+        }
+    }
+    BhrProjectedPoint *const out = &found[0].image;
+    memset(found, 0x5a, sizeof found);
+    CHECK_OK(bhr_project_points(context, 16, 9, NULL, 0, 0, NULL, size));
+    CHECK_FAILS(BHR_ERROR_INVALID_ARGUMENT, "context", bhr_project_points(NULL, 16, 9, from, 4, 0, out, size));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "points",
+                  bhr_project_points(context, 16, 9, NULL, 4, 0, out, size));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "out_images",
+                  bhr_project_points(context, 16, 9, from, 4, 0, NULL, size));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "width", bhr_project_points(context, 0, 9, from, 4, 0, out, size));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "order",
+                  bhr_project_points(context, 16, 9, from, 4, BHR_MAX_IMAGE_ORDER + 1, out, size));
+    CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "count",
+                  bhr_project_points(context, 16, 9, from, SIZE_MAX / 8, 0, out, size));
+    static const size_t wrong[] = {0, 4, 143, 1u << 20, SIZE_MAX};
+    for (size_t i = 0; i < COUNT_OF(wrong); i++) {
+        CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "image_size",
+                      bhr_project_points(context, 16, 9, from, 4, 0, out, wrong[i]));
+    }
+    CHECK(out->struct_size == 0x5a5a5a5au, "a call that fails writes images: %x", (unsigned)out->struct_size);
+}
+
 static void points(Watch *watch, BhrContext *context) {
     static const double point[3] = {1.0, 8.0, 3.0};
     BhrProjectedPoint   image;
@@ -280,7 +329,7 @@ static void points(Watch *watch, BhrContext *context) {
     static const double far_away[3] = {0.0, 1e300, 0.0};
     CHECK_REFUSED(watch, BHR_ERROR_INVALID_STATE, "position",
                   bhr_project_point(context, 16, 9, far_away, 0, &image));
-    static const uint32_t wrong[] = {0, 4, 111, 1u << 20, UINT32_MAX};
+    static const uint32_t wrong[] = {0, 4, 143, 1u << 20, UINT32_MAX};
     for (size_t i = 0; i < COUNT_OF(wrong); i++) {
         image.struct_size = wrong[i];
         CHECK_REFUSED(watch, BHR_ERROR_INVALID_ARGUMENT, "struct_size",
@@ -292,7 +341,8 @@ static void points(Watch *watch, BhrContext *context) {
     const double *const nowhere[] = {centre, watch->camera.position};
     for (size_t i = 0; i < COUNT_OF(nowhere); i++) {
         CHECK_OK(bhr_project_point(context, 16, 9, nowhere[i], 0, &image));
-        CHECK(image.found == 0 && image.on_screen == 0 && isnan(image.x) && isnan(image.magnification) &&
+        CHECK(image.found == 0 && image.on_screen == 0 && image.lost == 0 && isnan(image.x) &&
+                  isnan(image.magnification) &&
                   image.ray.direction[0] == 0.0,
               "an image of nothing: %g %g", image.x, image.magnification);
     }
@@ -310,6 +360,7 @@ int main(int argc, char **argv) {
     from_matrices();
     matrices();
     points(&watch, context);
+    many_points(&watch, context);
     bhr_context_destroy(context);
     return check_end();
 }

@@ -305,6 +305,9 @@ static void rays() {
     EXPECT(label.found == 0);
     const bhr::ProjectedPoint image = context.project_point(8, 4, {1.0, -8.0, 3.0}).value();
     EXPECT(image.found == 1 && image.magnification > 0.0 && image.delay > 0.0 && image.ray.frequency_ratio > 0.0);
+    const bhr::Vector places[2] = {{1.0, -8.0, 3.0}, {0.0, 0.0, 0.0}};
+    const std::vector<bhr::ProjectedPoint> several = context.project_points(8, 4, places).value();
+    EXPECT(several.size() == 2 && several[0].x == image.x && several[0].distance > 0.0 && several[1].found == 0);
     const std::vector<bhr::PathPoint> path = context.trace_path(inward, 100).value();
     EXPECT(path.size() >= 2 && path.size() <= 100 && near(path[0].z, 30.0));
     EXPECT(path.back().z < 2.1 && path.back().t < 0.0);

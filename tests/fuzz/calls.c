@@ -327,6 +327,9 @@ static void ray_call(BhrContext *context) {
         BhrProjectedPoint image;
         image.struct_size = mostly(sizeof image, 3);
         check(bhr_project_point(context, count(), count(), rays[0].position, mostly(0, byte()), &image));
+        BhrProjectedPoint many[4];
+        check(bhr_project_points(context, count(), count(), rays[0].position, byte() % 3, mostly(0, byte()), many,
+                                 mostly(sizeof many[0], 3)));
         break;
     }
     case 4:

@@ -235,7 +235,9 @@ fn plain(name: &str) -> String {
 pub fn generate() -> String {
     let mut config = config("cbindgen.toml");
     let preface = config.header.take().unwrap_or_default();
-    with_sections(format!("{}\n{OPENING}", preface.trim()), &SECTIONS, &config)
+    let (begin, rest) = preface.trim().split_once("\n *\n * Example\n").expect("the preface has an example");
+    let preface = format!("{begin}\n{}\n *\n * Example\n{rest}", contents());
+    with_sections(format!("{preface}\n{OPENING}"), &SECTIONS, &config)
 }
 
 pub fn generate_interop() -> String {
@@ -246,6 +248,21 @@ pub fn generate_interop() -> String {
 
 fn config(file: &str) -> cbindgen::Config {
     cbindgen::Config::from_file(root().join(file)).unwrap()
+}
+
+/// The titles of all sections, as lines of the preface.
+fn contents() -> String {
+    let mut lines =
+        vec![" *".to_string(), " * Sections, in this order, each after a line \"---- title ----\"".to_string()];
+    for (i, (_, title)) in SECTIONS.iter().enumerate() {
+        let end = if i + 1 < SECTIONS.len() { ";" } else { "." };
+        let word = format!(" {title}{end}");
+        match lines.last_mut().filter(|line| i > 0 && line.len() + word.len() <= MAX_LINE) {
+            Some(line) => line.push_str(&word),
+            None => lines.push(format!(" *  {word}")),
+        }
+    }
+    lines.join("\n")
 }
 
 fn with_sections(mut header: String, sections: &[(&str, &str)], config: &cbindgen::Config) -> String {

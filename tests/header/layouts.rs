@@ -128,7 +128,7 @@ fn layouts_hold_in_rust() {
         output::BhrOutput { struct_size, kind, index, reserved, image, target }
         region::BhrRegion { struct_size, full_width, full_height, x, y, reserved }
         project::BhrProjectedPoint {
-            struct_size, found, on_screen, reserved, x, y, ray, magnification, delay, redshift
+            struct_size, found, on_screen, lost, x, y, ray, magnification, delay, redshift, distance, apparent
         }
         rays::BhrRay { position, direction, frequency_ratio }
         rays::BhrCrossing { radius, azimuth, redshift, delay }

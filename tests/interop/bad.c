@@ -64,7 +64,7 @@ static void without_sharing(void) {
     CHECK_OK(bhr_output_init(&output, sizeof output));
     CHECK_FAILS(BAD, "target", bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL));
     CHECK_FAILS(BAD, "target", bhr_render_outputs_shared_async(context, &output, sizeof output, 1, NULL, NULL));
-    CHECK_OK(bhr_set_occluder_target(context, NULL));
+    CHECK_OK(bhr_set_occluder_target(context, NULL, 0));
     CHECK_OK(bhr_set_sky_target(context, NULL));
     CHECK(fcntl(0, F_GETFD) != -1, "the host's descriptor was closed");
 }

@@ -129,7 +129,8 @@ static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const c
             if (memcmp(seen + y * stride, expected[at] + y * row, row) != 0)
                 wrong++, apart = fmax(apart, vk_apart(kinds[at].format, seen + y * stride, expected[at] + y * row,
                                                       row));
-        CHECK(apart <= vk_most_apart(context, kinds[at].format), "%s, way %d: output %zu differs in %u rows, up to %g",
+        CHECK(apart <= vk_most_apart(context, BHR_TARGET_IMAGE, kinds[at].format),
+              "%s, way %d: output %zu differs in %u rows, up to %g",
               what, (int)way, at, wrong, apart);
     }
     if (job) {
@@ -282,6 +283,7 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
         image.format = BHR_FORMAT_RGBA32F;
         image.pixels = in_memory;
         image.byte_size = sizeof in_memory;
+        given.flags = frame % 2 ? BHR_IMAGE_LENSED : 0;
         CHECK_OK(bhr_set_occluder(context, &given));
         CHECK_OK(bhr_render_image(context, &image));
         image.format = BHR_FORMAT_RGBA16F;
@@ -289,14 +291,14 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
         image.byte_size = MOST;
         CHECK_OK(bhr_render_image(context, &image));
         fill(&picture, distances, step);
-        CHECK_OK(bhr_set_occluder_target(context, target));
+        CHECK_OK(bhr_set_occluder_target(context, target, given.flags));
         image.format = BHR_FORMAT_RGBA32F;
         image.pixels = from_gpu;
         image.byte_size = sizeof from_gpu;
         CHECK_OK(bhr_render_image(context, &image));
         double apart = vk_apart(BHR_FORMAT_RGBA32F, from_gpu, in_memory, sizeof in_memory);
-        CHECK(apart <= vk_most_apart(context, BHR_FORMAT_RGBA32F), "kind %d, stride %u, frame %d: %g apart", kind,
-              (unsigned)stride, frame, apart);
+        CHECK(apart <= vk_most_apart(context, BHR_TARGET_IMAGE, BHR_FORMAT_RGBA32F),
+              "kind %d, stride %u, frame %d: %g apart", kind, (unsigned)stride, frame, apart);
         BhrOutput output = output_of(1, light);
         BhrJob   *job;
         fill(&picture, distances, step);
@@ -306,7 +308,7 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
         bhr_job_destroy(job);
         vk_read(&host, &seen_light, VK_QUEUE_FAMILY_EXTERNAL, 8, 0, NULL, seen);
         apart = vk_apart(BHR_FORMAT_RGBA16F, seen, expected_light, WIDTH * HEIGHT * 8);
-        CHECK(apart <= vk_most_apart(context, BHR_FORMAT_RGBA16F), "into a target: %g apart", apart);
+        CHECK(apart <= vk_most_apart(context, BHR_TARGET_IMAGE, BHR_FORMAT_RGBA16F), "into a target: %g apart", apart);
     }
     /* It is set, and goes: frames say so until another is set. */
     fill(&picture, distances, step);
@@ -317,7 +319,7 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
     CHECK_OK(bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, NULL)); /* in flight while it goes */
     bhr_target_destroy(target);
     CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "occluder", bhr_render_image(context, &image));
-    CHECK_OK(bhr_set_occluder_target(context, NULL));
+    CHECK_OK(bhr_set_occluder_target(context, NULL, 0));
     CHECK_OK(bhr_render_image(context, &image));
     CHECK(memcmp(from_gpu, in_memory, sizeof in_memory) != 0, "the occluder is still there");
     bhr_target_destroy(light);
@@ -332,10 +334,11 @@ static void occluder_refused(BhrBackend backend) {
     BhrImage    image;
     Watch       watch;
     watch_begin(&watch, context);
-    CHECK_FAILS(BAD, "context", bhr_set_occluder_target(NULL, depth));
-    CHECK_REFUSED(&watch, BAD, "R32F", bhr_set_occluder_target(context, colours));
-    CHECK_FAILS(BAD, "another context", bhr_set_occluder_target(other, depth));
-    CHECK_OK(bhr_set_occluder_target(context, depth));
+    CHECK_FAILS(BAD, "context", bhr_set_occluder_target(NULL, depth, 0));
+    CHECK_REFUSED(&watch, BAD, "R32F", bhr_set_occluder_target(context, colours, 0));
+    CHECK_FAILS(BAD, "another context", bhr_set_occluder_target(other, depth, 0));
+    CHECK_REFUSED(&watch, BAD, "flags 0x1", bhr_set_occluder_target(context, depth, BHR_IMAGE_TRANSPARENT));
+    CHECK_OK(bhr_set_occluder_target(context, depth, 0));
     CHECK_OK(bhr_image_init(&image, sizeof image));
     image.width = WIDTH, image.height = 4, image.pixels = seen, image.byte_size = sizeof seen;
     CHECK_FAILS(BAD, "the occluder is", bhr_render_image(context, &image));

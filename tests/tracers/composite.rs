@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A host's own picture put together with bhr's: its sky along the lens map against bhr's own map of the same sky, and
-//! its spheres on straight lines of sight against the same spheres on the curves of bhr's rays.
+//! its spheres, on straight lines of sight and at their lensed places, against the same spheres on the curves of bhr's
+//! rays.
 
 use crate::frames::{both, cpu, floats, picture};
+use crate::lensed::Mesh;
 use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
@@ -86,9 +88,18 @@ fn the_lens_map_shows_a_sky_as_bhr_does() {
     }
 }
 
-/// The greatest distance, pixels, between the outline of a sphere on straight lines of sight and on bhr's rays.
-fn outline(renderer: &Renderer, [width, height]: [u32; 2], (centre, radius): (DVec3, f64)) -> f64 {
+/// How a host draws a sphere.
+#[derive(Clone, Copy, PartialEq)]
+enum Drawn {
+    Straight,
+    /// A mesh, its vertices at their lensed places.
+    Lensed,
+}
+
+/// The greatest distance, pixels, between the outline of a sphere as a host draws it and on bhr's rays.
+fn outline(renderer: &Renderer, [width, height]: [u32; 2], (centre, radius): (DVec3, f64), drawn: Drawn) -> f64 {
     let scene = &renderer.scene;
+    let mesh = (drawn == Drawn::Lensed).then(|| Mesh::new(scene, [width, height], centre, radius));
     let near = |a: DVec3, b: DVec3| {
         let along = ((centre - a).dot(b - a) / (b - a).length_squared()).clamp(0.0, 1.0);
         (a + (b - a) * along - centre).length()
@@ -103,17 +114,22 @@ fn outline(renderer: &Renderer, [width, height]: [u32; 2], (centre, radius): (DV
         let place = |p: &[f64; 4]| DVec3::new(p[0], p[1], p[2]);
         path.windows(2).any(|pair| near(place(&pair[0]), place(&pair[1])) < radius)
     };
-    // The middle of the straight image, by its direction.
-    let camera = &scene.camera;
-    let right = camera.forward.cross(camera.up).normalize();
-    let up = right.cross(camera.forward).normalize();
-    let seen = centre - camera.position;
-    let ahead = seen.dot(camera.forward.normalize());
-    let scale = f64::from(height) / (2.0 * (camera.fov_y / 2.0).tan());
-    let middle = [
-        0.5 * f64::from(width) + scale * seen.dot(right) / ahead,
-        0.5 * f64::from(height) - scale * seen.dot(up) / ahead,
-    ];
+    let host = |x: f64, y: f64| mesh.as_ref().map_or_else(|| straight(x, y), |mesh| mesh.distance(x, y).is_some());
+    // The middle of the image.
+    let middle = match &mesh {
+        Some(mesh) => mesh.middle(),
+        None => {
+            let camera = &scene.camera;
+            let right = camera.forward.cross(camera.up).normalize();
+            let up = right.cross(camera.forward).normalize();
+            let seen = centre - camera.position;
+            let ahead = seen.dot(camera.forward.normalize());
+            let scale = f64::from(height) / (2.0 * (camera.fov_y / 2.0).tan());
+            let (x, y) = (scale * seen.dot(right) / ahead, scale * seen.dot(up) / ahead);
+            [0.5 * f64::from(width) + x, 0.5 * f64::from(height) - y]
+        }
+    };
+    assert!(host(middle[0], middle[1]) && curved(middle[0], middle[1]), "{centre}: {middle:?}");
     let mut worst = 0.0_f64;
     for k in 0..12 {
         let (sin, cos) = (TAU * f64::from(k) / 12.0).sin_cos();
@@ -125,7 +141,7 @@ fn outline(renderer: &Renderer, [width, height]: [u32; 2], (centre, radius): (DV
             }
             low
         };
-        worst = worst.max((edge(&straight) - edge(&curved)).abs());
+        worst = worst.max((edge(&host) - edge(&curved)).abs());
     }
     worst
 }
@@ -146,8 +162,34 @@ fn spheres_on_straight_lines_are_where_rays_see_them_far_from_the_hole() {
     for (r, fov_y, centre, radius, most) in sights {
         let position = DVec3::new(0.0, -r, 0.0);
         renderer.scene.camera = Camera { position, forward: -position, fov_y, ..Camera::plain() };
-        let off = outline(&renderer, [320, 180], (centre, radius));
+        let off = outline(&renderer, [320, 180], (centre, radius), Drawn::Straight);
         println!("from {r} M, a sphere at {centre}: its outline is off by {off:.3} pixels");
         assert!(off < most, "from {r} M, a sphere at {centre}: {off} pixels");
+    }
+}
+
+/// Vertices at the places where `bhr_project_points` sees them: outlines are right from near, too, before the hole,
+/// beside it and behind it, with spin and without.
+#[test]
+fn spheres_at_their_lensed_places_are_where_rays_see_them() {
+    let mut renderer = cpu();
+    let sights = [
+        (26.0, 0.78, DVec3::new(3.0, -20.0, 1.0), 1.0),
+        (26.0, 0.78, DVec3::new(-5.0, -4.0, 2.0), 1.5),
+        (26.0, 0.78, DVec3::new(6.0, 9.0, -3.0), 2.0),
+        (12.0, 1.3, DVec3::new(2.5, -7.0, 1.5), 0.8),
+        (12.0, 1.3, DVec3::new(-4.0, 1.0, 1.0), 0.7),
+        (12.0, 1.3, DVec3::new(4.0, 8.0, 2.0), 1.0),
+    ];
+    for spin in [0.0, 0.9] {
+        renderer.scene = Scene { disk: None, ..Scene::plain() };
+        renderer.scene.hole.spin = spin;
+        for (r, fov_y, centre, radius) in sights {
+            let position = DVec3::new(0.0, -r, 0.0);
+            renderer.scene.camera = Camera { position, forward: -position, fov_y, ..Camera::plain() };
+            let off = outline(&renderer, [320, 180], (centre, radius), Drawn::Lensed);
+            println!("spin {spin}, from {r} M, a sphere at {centre}: its outline is off by {off:.3} pixels");
+            assert!(off < 0.5, "spin {spin}, from {r} M, a sphere at {centre}: {off} pixels");
+        }
     }
 }

@@ -15,6 +15,7 @@ mod half;
 mod jobs;
 mod kernels;
 mod lens;
+mod lensed;
 mod light;
 mod matter;
 mod observers;

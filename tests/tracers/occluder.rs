@@ -3,10 +3,11 @@
 //! distances that outputs give, one tracer against the other, parts of frames, and what they must not change.
 
 use crate::frames::{both, cpu, differing, floats, gpu, picture};
+use crate::volumes::{haze, in_haze, radial};
 use bhr::image::{ImageMut, ImageRef, PixelFormat, memory::Layout};
 use bhr::job::OutputTarget;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, LensTables, Occluder, RayOutputKind, Region, Scene, View};
+use bhr::scene::{Camera, HotSpot, LensTables, Occluder, RayOutputKind, Region, Scene, View, Volume, VolumeResolution};
 use glam::DVec3;
 
 const SIZE: [u32; 2] = [120, 80];
@@ -131,5 +132,106 @@ fn nothing_else_changes() {
         renderer.scene.view = View::Order;
         picture(&mut renderer, PixelFormat::R32F, SIZE, None, false);
         renderer.set_occluder(None);
+    }
+}
+
+/// A haze along a radial ray, cut at a distance: light and alpha are integrals up to there.
+#[test]
+fn matter_with_depth_is_cut_at_the_distance() {
+    for (name, mut renderer) in both() {
+        for (distance, lensed) in [(0.05, false), (1.3, true), (2.7, false), (6.1, true), (11.0, false), (1e4, true)] {
+            let haze = haze(6.0, 0.05, 0.08);
+            let r0 = 8.0;
+            let position = DVec3::new(0.0, r0, 0.0);
+            renderer.scene = in_haze(haze);
+            renderer.scene.camera =
+                Camera { position, forward: position, fov_y: 1e-3, up: DVec3::Z, ..Camera::plain() };
+            renderer.set_occluder(Some(Occluder { lensed, ..occluder([1, 1], |_, _| distance) }));
+            let pixel = floats(&picture(&mut renderer, PixelFormat::Rgba32F, [1, 1], None, true));
+            renderer.set_occluder(None);
+            let (light, depth) = radial(&haze, r0, f64::from(distance).min(72.0));
+            let light = light * renderer.scene.film.exposure_ev.exp2();
+            let alpha = -f64::exp_m1(-depth);
+            let off = [(f64::from(pixel[1]) - light) / light, (f64::from(pixel[3]) - alpha) / alpha];
+            println!("{name}, {distance} M: light and alpha are off by {:.1e} and {:.1e}", off[0], off[1]);
+            assert!(off.iter().all(|off| off.abs() < 1e-3), "{name}, {distance}: {pixel:?}, {light} {alpha}");
+        }
+    }
+}
+
+/// Without spin a ray is alike on both sides of its place nearest to the hole, and so is a haze at rest: half of its
+/// depth lies before that place. That holds where light is bent by much, too.
+#[test]
+fn half_of_the_matter_lies_before_the_nearest_place() {
+    for (name, mut renderer) in both() {
+        renderer.scene = in_haze(haze(8.0, 0.02, 0.03));
+        let position = DVec3::new(0.0, -100.0, 0.0);
+        renderer.scene.camera = Camera { position, forward: -position, fov_y: 0.3, ..Camera::plain() };
+        let distances = (0..SIZE[0] * SIZE[1]).map(|i| {
+            let (x, y) = (f64::from(i % SIZE[0]) + 0.5, f64::from(i / SIZE[0]) + 0.5);
+            let ray = renderer.scene.camera_ray(SIZE[0], SIZE[1], None, x, y).unwrap();
+            let path = renderer.trace_path(&ray, 4096).unwrap();
+            let place = |p: &[f64; 4]| DVec3::new(p[0], p[1], p[2]);
+            let places = path.iter().map(place).collect::<Vec<_>>();
+            let i = (1..places.len() - 1).min_by(|i, j| places[*i].length().total_cmp(&places[*j].length())).unwrap();
+            // Between its points the path is a parabola.
+            let [a, b, c] = [places[i - 1], places[i], places[i + 1]];
+            let at = |t: f64| b + 0.5 * t * (c - a) + 0.5 * t * t * (a + c - 2.0 * b);
+            let nearest = (-100..=100)
+                .map(|t| at(f64::from(t) / 100.0))
+                .min_by(|a, b| a.length().total_cmp(&b.length()))
+                .unwrap();
+            // Farther in, rays wind about the hole, and come nearer to the camera again.
+            if nearest.length() > 5.5 { (nearest - position).length() as f32 } else { f32::INFINITY }
+        });
+        let distances = distances.collect::<Vec<_>>();
+        let plain = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
+        let halved = occluder(SIZE, |x, y| distances[(y * SIZE[0] + x) as usize]);
+        renderer.set_occluder(Some(Occluder { lensed: true, ..halved }));
+        let half = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, None, true));
+        renderer.set_occluder(None);
+        let (mut compared, mut worst) = (0, 0.0_f32);
+        let pixels = half.chunks_exact(4).zip(plain.chunks_exact(4)).zip(&distances);
+        for ((half, plain), _) in pixels.filter(|(_, distance)| distance.is_finite()) {
+            worst = worst.max((1.0 - half[3] - (1.0 - plain[3]).sqrt()).abs());
+            compared += 1;
+        }
+        println!("{name}: {compared} rays, half of the depth within {worst:.1e}");
+        assert!(compared > 5000 && worst < 5e-3, "{name}: {compared} {worst}");
+    }
+}
+
+/// Matter with and without structure, a spot and a disk behind things of any shape, edges refined: the tracers agree.
+#[test]
+fn the_tracers_agree_about_matter_behind_things() {
+    let shape = |x: u32, y: u32| match (x / 17 + y / 13) % 4 {
+        0 => f32::INFINITY,
+        1 => 60.0,
+        2 => 75.0 + x as f32 / 8.0,
+        _ => 70.0 + y as f32 / 4.0,
+    };
+    for (spin, turbulence, lensed, half) in
+        [(0.0, 0.0, false, false), (0.9, 0.0, true, false), (0.9, 1.0, true, true), (0.9, 1.0, false, false)]
+    {
+        let mut scene = scene(spin, LensTables::Never);
+        scene.disk = (turbulence == 0.0).then_some(scene.disk).flatten();
+        let disk = Volume { turbulence, thickness: 0.2, absorption: 0.4, ..Volume::default() };
+        scene.volumes = [disk].into_iter().collect();
+        if turbulence == 0.0 {
+            scene.hot_spots = [HotSpot { radius: 9.0, ..HotSpot::default() }].into_iter().collect();
+        }
+        scene.quality.volume_resolution = if half { VolumeResolution::Half } else { VolumeResolution::Full };
+        let pictures = [cpu(), gpu()].map(|mut renderer| {
+            renderer.scene = scene.clone();
+            let plain = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
+            renderer.set_occluder(Some(Occluder { lensed, ..occluder(SIZE, shape) }));
+            let made = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, true);
+            renderer.set_occluder(None);
+            (differing(&plain, &made), made)
+        });
+        let [(hidden, cpu), (_, gpu)] = pictures;
+        let off = differing(&cpu, &gpu);
+        println!("spin {spin}, turbulence {turbulence}, lensed {lensed}: {hidden} pixels hidden, {off} differ");
+        assert!(hidden > 1000 && off < 60, "spin {spin}, turbulence {turbulence}: {hidden} {off}");
     }
 }

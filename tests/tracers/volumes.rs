@@ -8,7 +8,7 @@ use bhr::scene::{Camera, Disk, Effects, FlowLaw, HotSpot, Projection, Scene, Sha
 use glam::DVec3;
 
 /// Density e^(-r^2 / 2 R^2) of matter that is at rest for the local ZAMO, with the same light at every frequency.
-fn haze(radius: f64, brightness: f64, absorption: f64) -> Volume {
+pub fn haze(radius: f64, brightness: f64, absorption: f64) -> Volume {
     Volume {
         power_law: true,
         shape: Shape::Halo,
@@ -26,7 +26,7 @@ fn haze(radius: f64, brightness: f64, absorption: f64) -> Volume {
     }
 }
 
-fn in_haze(volume: Volume) -> Scene {
+pub fn in_haze(volume: Volume) -> Scene {
     Scene { disk: None, sky: Sky::black(), volumes: [volume].into_iter().collect(), ..Scene::plain() }
 }
 
@@ -38,10 +38,11 @@ fn outside(distance: f64, elevation: f64) -> Camera {
 
 /// Along a radial ray outwards from a static observer at r0 about a hole without spin, light has frequency 1 / sqrt(1 -
 /// 2/r) times its energy, and nu d lambda is the proper length dr / sqrt(1 - 2/r). Its absorption goes as nu^-2.5.
-fn radial(haze: &Volume, r0: f64) -> (f64, f64) {
+/// `length`: in r.
+pub fn radial(haze: &Volume, r0: f64, length: f64) -> (f64, f64) {
     let (mut light, mut depth) = (0.0, 0.0);
     let n = 200_000;
-    let h = 12.0 * haze.radius / f64::from(n);
+    let h = length / f64::from(n);
     for i in 0..n {
         let r = r0 + h * (f64::from(i) + 0.5);
         let lapse = |r: f64| (1.0 - 2.0 / r).sqrt();
@@ -65,7 +66,7 @@ fn radial_light_and_depth_are_integrals_over_proper_length() {
             renderer.scene.camera =
                 Camera { position, forward: position, fov_y: 1e-3, up: DVec3::Z, ..Camera::plain() };
             let pixel = floats(&picture(&mut renderer, PixelFormat::Rgba32F, [1, 1], None, true));
-            let (light, depth) = radial(&haze, r0);
+            let (light, depth) = radial(&haze, r0, 12.0 * haze.radius);
             let light = light * renderer.scene.film.exposure_ev.exp2();
             assert!((f64::from(pixel[1]) / light - 1.0).abs() < tolerance, "{name}: {pixel:?}, {light}");
             let alpha = -f64::exp_m1(-depth);

@@ -46,7 +46,7 @@ from ._ffi import ffi as _ffi
 from ._frame import Frame, load
 from ._job import Job
 from ._library import Cancelled, DeviceLost, Error, FileError, InvalidArgument, OutOfMemory, lib as _lib
-from ._rays import CROSSING, HIT, RAY, TRANSFER, rays
+from ._rays import CROSSING, HIT, PROJECTED, RAY, TRANSFER, rays
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -104,6 +104,7 @@ __all__ = [
     "Preset",
     "PresetMatter",
     "Projection",
+    "PROJECTED",
     "ProjectedPoint",
     "Quality",
     "RAY",

@@ -21,7 +21,7 @@ from ._frame import Frame, _path
 from ._gate import Gate, end_orphans, log_level
 from ._job import Job, Waiter
 from ._library import Call, Progress, begin, cancel_frames, check, error, forked, inside_callback, lib
-from ._rays import HIT, RAY, TRANSFER
+from ._rays import HIT, PROJECTED, RAY, TRANSFER
 from ._structs import (
     AdapterInfo,
     Camera,
@@ -347,11 +347,12 @@ class Context:
         self._set(lib.bhr_set_region, ffi.NULL if region is None else region.to_c())
         self._region = region
 
-    def set_occluder(self, distances: Frame | npt.NDArray[Any] | None) -> None:
+    def set_occluder(self, distances: Frame | npt.NDArray[Any] | None, *, lensed: bool = False) -> None:
         """Sets the program's own things before the camera: distances along the pixels' lines of sight, float32 of shape
         (height, width) as large as the frames to come, np.inf where there is nothing; None: none."""
         frame = distances if isinstance(distances, Frame) or distances is None else Frame(distances)
-        self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image())
+        flags = lib.BHR_IMAGE_LENSED if lensed else 0
+        self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image(flags=flags))
 
     # ---- frames ----
 
@@ -477,6 +478,20 @@ class Context:
         with self._gate as context:
             check(lib.bhr_project_point(context, width, height, doubles(point, 3, "point"), order, struct))
         return ProjectedPoint.from_c(struct)
+
+    def project_points(
+        self, width: int, height: int, points: npt.ArrayLike, order: int = 0
+    ) -> npt.NDArray[np.void]:
+        """project_point for many points, of the shape (..., 3), on several threads: dtype PROJECTED, of the shape
+        (...). `apparent` is where a rasteriser draws a vertex so that it appears where light shows it."""
+        places = np.ascontiguousarray(points, np.float64)
+        if places.ndim < 1 or places.shape[-1] != 3:
+            raise ValueError(f"points have the shape {places.shape}; the last side must be 3")
+        found = np.zeros(places.shape[:-1], PROJECTED)
+        with self._gate as context:
+            begin, out = _pointer("double *", places), _pointer("BhrProjectedPoint *", found)
+            check(lib.bhr_project_points(context, width, height, begin, found.size, order, out, PROJECTED.itemsize))
+        return found
 
     def trace(
         self, rays: npt.NDArray[np.void] | np.void, *, out: npt.NDArray[np.void] | None = None

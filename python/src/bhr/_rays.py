@@ -36,6 +36,9 @@ HIT: np.dtype[Any] = _dtype(ffi.typeof("BhrHit"))
 #: The matter with depth along a ray: `fate`, `intensity`, `optical_depth` (NaN unless escaped) and `light`.
 TRANSFER: np.dtype[Any] = _dtype(ffi.typeof("BhrTransfer"))
 
+#: The image of a point: the fields of ProjectedPoint.
+PROJECTED: np.dtype[Any] = _dtype(ffi.typeof("BhrProjectedPoint"))
+
 
 def rays(
     position: npt.ArrayLike, direction: npt.ArrayLike, frequency_ratio: npt.ArrayLike = 1.0

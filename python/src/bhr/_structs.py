@@ -342,6 +342,8 @@ class ProjectedPoint(_Struct):
     found: int
     #: 1: it lies within the image.
     on_screen: int
+    #: 1: none was found, though there may be one.
+    lost: int
     #: Pixels; NaN behind a flat picture.
     x: float
     y: float
@@ -353,12 +355,16 @@ class ProjectedPoint(_Struct):
     delay: float
     #: nu(camera) / nu(observer at rest at the point).
     redshift: float
+    #: Straight, from the camera to the point: the depth that belongs to the image.
+    distance: float
+    #: As far from the camera as the point, in the direction in which it is seen: where a rasteriser draws it.
+    apparent: tuple[float, float, float]
 
     @classmethod
     def from_c(cls: type[_Self], struct: Any) -> _Self:
-        names = [name for name in _names(cls) if name != "ray"]
+        names = [name for name in _names(cls) if name not in ("ray", "apparent")]
         ray = np.frombuffer(ffi.buffer(ffi.addressof(struct.ray)), RAY)[0].copy()
-        return cls(ray=ray, **{name: getattr(struct, name) for name in names})
+        return cls(ray=ray, apparent=tuple(struct.apparent), **{name: getattr(struct, name) for name in names})
 
 
 @dataclasses.dataclass(frozen=True)

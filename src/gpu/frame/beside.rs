@@ -196,7 +196,8 @@ impl BesideSetup {
         let structure = [uniforms.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
         let step_sum = fixed.step_sum.as_entire_binding();
         let common = [frame.clone(), pass.clone(), light_tables.clone()];
-        let shared = Shared { frame, pass, step_sum, light_tables, structure, software };
+        let occluder = tables.occluder().resource();
+        let shared = Shared { frame, pass, step_sum, light_tables, structure, occluder, software };
         let store = if self.own_tables { &mut own.frame.record_store } else { &mut buffers.record_store };
         let records = match self.reads_again {
             true => None,

@@ -96,7 +96,8 @@ impl GpuTracer {
         let software = self.adapter.info.software;
         let [filaments, filament_sampler] = tables.filaments().resources();
         let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
-        let shared = Shared { frame: frame.clone(), pass: pass.clone(), step_sum, light_tables, structure, software };
+        let (frame, pass, occluder) = (frame.clone(), pass.clone(), tables.occluder().resource());
+        let shared = Shared { frame, pass, step_sum, light_tables, structure, occluder, software };
         let records = buffers.record_store.stages(device, &self.kernels, &setup.record_setup, &shared)?;
         let group = buffers.record_store.group(setup.record_setup.source)?;
         let take = |kernels: &Kernels, source| {

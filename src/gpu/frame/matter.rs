@@ -8,7 +8,7 @@ use crate::emit::volumes::Volumes;
 use crate::gpu::kernel::sizes::MOST_MATTER;
 use crate::gpu::kernel::variant::{MatterVariant, MotionCode, SHAPE_SPOT};
 use crate::physics::flow::{Flow, Motion};
-use crate::scene::Scene;
+use crate::scene::{Scene, View};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec4, Vec4};
 
@@ -116,6 +116,7 @@ pub fn matter_variant(volumes: &Volumes, scene: &Scene) -> Option<MatterVariant>
         all_effects: scene.effects.all_light(),
         shows_depth: scene.view.shows_depth_only(),
         structure: volumes.has_structure(),
+        occluded: scene.view == View::Light && scene.occluder.is_some(),
         ..MatterVariant::default()
     };
     variant.alone = variant.structure && count == 1 && variant.all_effects && !variant.shows_depth;

@@ -233,7 +233,8 @@ impl OutputBuffers {
         let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
         let step_sum = fixed.step_sum.as_entire_binding();
         let common = [frame.clone(), pass.clone(), light_tables.clone()];
-        let shared = Shared { frame, pass, step_sum, light_tables, structure, software };
+        let occluder = tables.occluder().resource();
+        let shared = Shared { frame, pass, step_sum, light_tables, structure, occluder, software };
         let records = self.frame.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
         let group = self.frame.record_store.group(setup.record_setup.source)?;
         let target = [uniform.buffer.as_entire_binding(), sized.packed.as_entire_binding()];

@@ -122,7 +122,8 @@ impl FrameBuffers {
         let [light_tables, ..] = tables.resources();
         let [filaments, filament_sampler] = tables.filaments().resources();
         let structure = [fixed.clouds.buffer.as_entire_binding(), filaments, filament_sampler];
-        let shared = Shared { frame, pass, step_sum, light_tables, structure, software };
+        let occluder = tables.occluder().resource();
+        let shared = Shared { frame, pass, step_sum, light_tables, structure, occluder, software };
         let made = self.record_store.stages(device, kernels, &setup.record_setup, &shared)?;
         let edges = self.edges.group(device, &kernels.edge_list()?)?;
         if let FrameTarget::Nowhere = target {

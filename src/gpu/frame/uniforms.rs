@@ -207,7 +207,8 @@ impl FrameUniform {
             surface: four(f64::from(u8::from(disk.emission_law == EmissionLaw::LimbDarkened)), hottest, least, 0.0),
             shown_edges: four(edges.least[0], edges.least[1], least_light, tolerance),
             occluder: scene.occluder.as_ref().map_or(four(0.0, 0.0, 1.0, 0.0), |occluder| {
-                four(occluder.origin[0].into(), occluder.origin[1].into(), scene.hole.mass, 0.0)
+                let [x, y] = occluder.origin.map(f64::from);
+                four(x, y, scene.hole.mass, f64::from(u8::from(occluder.lensed)))
             }),
             plunge: scene.matter().plunge.map_or(Vec4::ZERO, |p| four(p.isco, p.energy, p.spin_term, p.x)),
             bands: turbulence.map_or([[0; 4]; MOST_BANDS], |t| bands(&t.bands)),

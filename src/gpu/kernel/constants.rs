@@ -6,7 +6,7 @@ use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};
-use crate::emit::{bands, clouds, filaments, glow, half, matter, medium, shape, streaks, turbulence, volumes};
+use crate::emit::{along, bands, clouds, filaments, glow, half, matter, medium, shape, streaks, turbulence, volumes};
 use crate::film::bloom::BEAM_SHARES;
 use crate::film::{self, colour_map, tone_map};
 use crate::image::PixelFormat;
@@ -202,6 +202,7 @@ fn all() -> Vec<(&'static str, String)> {
         MARGIN_U: f32 = volumes::MARGIN_U;
         MARGIN_COS: f32 = volumes::MARGIN_COS;
         MARGIN_STEP: f32 = volumes::MARGIN_STEP;
+        LIMIT_SECANTS: u32 = along::LIMIT_SECANTS;
         CELL_LN_R: f32 = shape::CELL_LN_R;
         CELL_ANGLE: f32 = shape::CELL_ANGLE;
         LEAST_SIN2: f32 = flow::LEAST_SIN2;

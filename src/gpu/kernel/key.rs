@@ -276,7 +276,7 @@ fn trace_constants(variant: TraceVariant) -> Vec<(&'static str, f64)> {
 fn pixel_constants(variant: TraceVariant) -> Vec<(&'static str, f64)> {
     let pixels = vec![("AZIMUTH", flag(variant.azimuth)), projection_constant(variant.projection)];
     let matter = variant.matter.unwrap_or_default();
-    let effects = vec![("ALL_EFFECTS", flag(matter.all_effects))];
+    let effects = vec![("ALL_EFFECTS", flag(matter.all_effects)), ("OCCLUDED", flag(matter.occluded))];
     [trace_constants(variant), matter_constants(matter), pixels, effects].concat()
 }
 

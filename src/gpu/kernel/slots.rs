@@ -151,7 +151,7 @@ pub fn output_slots(places: OutputPlaces) -> Vec<Slot> {
 pub fn pixel_slots() -> Vec<Slot> {
     let [sky, meta, disk] = TRACED.map(Slot::TextureWrite);
     let records = [Slot::Uniform, Slot::UniformPart, sky, meta, disk, Slot::Texture(TABLES[0])];
-    [&records[..], &structure_slots()].concat()
+    [&records[..], &structure_slots(), &[Slot::Texture(OCCLUDER)]].concat()
 }
 
 /// Group 0 of shade/shade.wgsl and emit/streaks.wgsl.

@@ -44,6 +44,8 @@ pub struct MatterVariant {
     pub structure: bool,
     /// A volume with structure is all the matter that there is, in a picture with all effects.
     pub alone: bool,
+    /// The host has things before it.
+    pub occluded: bool,
 }
 
 /// `SHAPE_SPOT` of emit/shape.wgsl, for which volumes have no shape.

@@ -240,6 +240,8 @@ pub struct Shared<'a> {
     pub light_tables: wgpu::BindingResource<'a>,
     /// `structure_slots` of gpu/kernel/slots.rs.
     pub structure: [wgpu::BindingResource<'a>; 3],
+    /// `occluder` of emit/occluder.wgsl.
+    pub occluder: wgpu::BindingResource<'a>,
     /// Whether the driver is software.
     pub software: bool,
 }
@@ -286,9 +288,9 @@ pub fn pixel_group<'a>(
     textures: &[wgpu::BindingResource<'a>; 3],
     shared: &Shared<'a>,
 ) -> Vec<wgpu::BindingResource<'a>> {
-    let Shared { frame, pass, light_tables, structure: [clouds, filaments, sampler], .. } = shared.clone();
+    let Shared { frame, pass, light_tables, structure: [clouds, filaments, sampler], occluder, .. } = shared.clone();
     let [sky, meta, disk] = textures.clone();
-    vec![frame, pass, sky, meta, disk, light_tables, clouds, filaments, sampler]
+    vec![frame, pass, sky, meta, disk, light_tables, clouds, filaments, sampler, occluder]
 }
 
 /// The stages that trace pixels into `textures`.

@@ -147,7 +147,9 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     // As src/gpu/kernel/wgsl.rs writes it.
     ("shade/outputs", "put_numbers", HOOK),
     ("records/record", "crossing_place crossing_distance", OUTPUTS),
-    ("shade/shade", "set_occluder is_occluded", OCCLUDER),
+    ("emit/occluder", "set_occluder", OCCLUDER),
+    ("emit/shown_part", "beyond_occluder shown_stretch", OCCLUDER),
+    ("shade/shade", "is_occluded", OCCLUDER),
     ("emit/plane", "plane_opacity", OUTPUTS),
     ("shade/record", "take_record seen_crossing seen_sky", HOOK),
     (

@@ -10,12 +10,13 @@
 mod path;
 mod plane;
 mod shooting;
+mod winding;
 
 use super::geodesic::{Constants, State};
 use super::observer::LocalFrame;
 use super::orbit::{horizon_outer, zamo_omega};
 use glam::DVec3;
-use shooting::{Aim, FINE, Flight, Target};
+use shooting::{Aim, Flight, Target, fine};
 
 /// The highest order that is looked for: each half turn more makes rays e^pi times as sensitive, and beyond this
 /// doubles do not hold a direction well enough.
@@ -41,27 +42,42 @@ pub struct Image {
     pub redshift: f64,
 }
 
-/// The image of the chart place `point` that light makes after `order` half turns, for the observer at `frame`. `None`:
-/// the point is not outside the horizon, or it is where the observer is, or no ray was found.
-pub fn image(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Image> {
-    let observer = frame.e_r * frame.r;
-    let distance = point.distance(observer);
-    let at_point = LocalFrame::new(frame.a, point).ok()?;
-    if at_point.rain || at_point.r <= horizon_outer(frame.a) || distance == 0.0 {
-        return None;
+/// Why there is no image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoImage {
+    /// No light comes from there: the point is not outside the horizon, or it is where the observer is.
+    None,
+    /// No ray was found, though there may be one.
+    Lost,
+}
+
+/// The image of the chart place `point` that light makes after `order` half turns, for the observer at `frame`.
+pub fn image(frame: &LocalFrame, point: DVec3, order: u32) -> Result<Image, NoImage> {
+    let Ok(at_point) = LocalFrame::new(frame.a, point) else { return Err(NoImage::None) };
+    // The observer's place is known to rounding.
+    let beside = point.distance(frame.e_r * frame.r);
+    if at_point.rain || at_point.r <= horizon_outer(frame.a) || beside <= 4.0 * f64::EPSILON * frame.r {
+        return Err(NoImage::None);
     }
+    found(frame, point, &at_point, order).ok_or(NoImage::Lost)
+}
+
+/// The image of a point outside the horizon.
+fn found(frame: &LocalFrame, point: DVec3, at_point: &LocalFrame, order: u32) -> Option<Image> {
+    let distance = point.distance(frame.e_r * frame.r);
+    let step = fine(order, 1.0 / at_point.r);
     let aim = if frame.a == 0.0 {
-        plane::aim(frame, point.normalize(), 1.0 / at_point.r, order)?
+        plane::aim(frame, point.normalize(), 1.0 / at_point.r, order, plane::Care { step, tolerance: f64::EPSILON })?
     } else {
         path::aim(frame, point, order)?
     };
     let target = Target::new(point);
-    let flight = Flight::of(frame, &aim, FINE)?;
+    let flight = Flight::of(frame, &aim, step, true)?;
     let miss = (flight.there.chart_direction() / flight.there.u).distance(point);
     if miss.is_nan() || miss > PASSES * distance.min(at_point.r) {
         return None;
     }
-    let area = beam_area(frame, &aim, &flight, &at_point, order);
+    let area = beam_area(frame, &aim, &flight, at_point, order);
     let (c, omega) = (flight.constants, zamo_omega(frame.a, at_point.r, at_point.sin));
     let emitted = (c.energy - omega * c.angular_momentum) / at_point.lapse;
     debug_assert!(target.u > 0.0);

@@ -2,15 +2,20 @@
 //! Images of a point with spin: the ray without spin is followed while the spin grows, places keeping their distance
 //! from the horizon. Where that fails, on the caustics that a spinning hole has, the point is approached from beside.
 
-use super::plane;
-use super::shooting::{Aim, COARSE, Effort, FINE, Target, bring};
+use super::shooting::{Aim, COARSE, Effort, Target, bring, fine};
+use super::{plane, winding};
 use crate::physics::observer::LocalFrame;
 use crate::physics::orbit::horizon_outer;
 use glam::{DQuat, DVec3};
 
 /// Newton's method on the way, and at its end.
 const ON_THE_WAY: Effort = Effort { step: COARSE, tolerance: 1e-6, enough: 1e-5, iterations: 6, most: 0.3 };
-const AT_THE_END: Effort = Effort { step: FINE, tolerance: 1e-13, enough: 1e-8, iterations: 12, most: 0.3 };
+fn at_the_end(order: u32, target: &Target) -> Effort {
+    Effort { step: fine(order, target.u), tolerance: 1e-10, enough: 1e-8, iterations: 12, most: 0.3 }
+}
+
+/// The ray without spin, from which others are followed.
+const WITHOUT_SPIN: plane::Care = plane::Care { step: COARSE, tolerance: 1e-6 };
 
 /// The shortest stretch of the way, which is 1 long.
 const SHORTEST: f64 = 1e-5;
@@ -19,12 +24,15 @@ const SHORTEST: f64 = 1e-5;
 const MOST_STRETCHES: usize = 300;
 
 /// Turns about the spin axis and towards it, radians, of the places that a point is approached from.
-const BESIDE: [[f64; 2]; 3] = [[0.35, 0.1], [-0.35, -0.1], [0.9, 0.3]];
+pub const BESIDE: [[f64; 2]; 3] = [[0.35, 0.1], [-0.35, -0.1], [0.9, 0.3]];
 
 /// The ray to `point` after `order` half turns, for a spinning hole.
 pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
+    if order >= 2 {
+        return winding::aim(frame, point, order);
+    }
     let straight = spun_up(frame, point, order).and_then(|aim| finished(frame, point, aim, order));
-    straight.or_else(|| {
+    straight.or_else(|| winding::aim(frame, point, order)).or_else(|| {
         BESIDE.iter().find_map(|[turn, lift]| {
             let beside = DQuat::from_rotation_z(*turn) * (DQuat::from_axis_angle(frame.e_phi, *lift) * point);
             let aim = spun_up(frame, beside, order)?;
@@ -41,30 +49,33 @@ pub fn aim(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
 
 /// The ray with all digits.
 fn finished(frame: &LocalFrame, point: DVec3, aim: Aim, order: u32) -> Option<Aim> {
-    bring(frame, &Target::new(point), aim, order, &AT_THE_END).map(|(aim, _)| aim)
+    let target = Target::new(point);
+    bring(frame, &target, aim, order, &at_the_end(order, &target)).map(|(aim, _)| aim)
+}
+
+/// Observer and point at a share `s` of the hole's spin, as far from the horizon.
+pub fn spun_way(frame: &LocalFrame, point: DVec3, s: f64) -> Option<(LocalFrame, Target)> {
+    let (n, r) = (point.normalize(), point.length());
+    let out = horizon_outer(s * frame.a) - horizon_outer(frame.a);
+    let mut turned = LocalFrame::new(s * frame.a, frame.e_r * (frame.r + out)).ok()?;
+    // The axes are the frame's own to the last digit, on the axis too.
+    (turned.e_r, turned.e_theta, turned.e_phi) = (frame.e_r, frame.e_theta, frame.e_phi);
+    (turned.sin, turned.cos) = (frame.sin, frame.cos);
+    Some((turned, Target::new(n * (r + out))))
 }
 
 /// The ray that the one without spin becomes.
 fn spun_up(frame: &LocalFrame, point: DVec3, order: u32) -> Option<Aim> {
-    let horizon = horizon_outer(frame.a);
-    let (observer, n, r) = (frame.e_r, point.normalize(), point.length());
-    let way = |s: f64| {
-        let out = horizon_outer(s * frame.a) - horizon;
-        let mut turned = LocalFrame::new(s * frame.a, observer * (frame.r + out)).ok()?;
-        // The axes are the frame's own to the last digit, on the axis too.
-        (turned.e_r, turned.e_theta, turned.e_phi) = (frame.e_r, frame.e_theta, frame.e_phi);
-        (turned.sin, turned.cos) = (frame.sin, frame.cos);
-        Some((turned, Target::new(n * (r + out))))
-    };
+    let way = |s: f64| spun_way(frame, point, s);
     let (still, target) = way(0.0)?;
-    follow(way, plane::aim(&still, n, target.u, order)?, order)
+    follow(way, plane::aim(&still, point.normalize(), target.u, order, WITHOUT_SPIN)?, order)
 }
 
 /// Follows a ray along a way from 0 to 1, which gives observer and target.
 fn follow(way: impl Fn(f64) -> Option<(LocalFrame, Target)>, begin: Aim, order: u32) -> Option<Aim> {
     let mut passed = vec![(0.0, begin)];
     // Rays of higher orders keep to their image in a range that is smaller by e^pi for each half turn.
-    let mut stretch = 0.25 * (-2.0 * f64::from(order)).exp();
+    let mut stretch = (-2.0 * f64::from(order)).exp();
     while let Some(&(s, _)) = passed.last().filter(|(s, _)| *s < 1.0) {
         if passed.len() > MOST_STRETCHES {
             return None;

@@ -7,9 +7,14 @@ use crate::physics::integrator::{held_inside, nystrom_step, step_limit};
 use crate::physics::observer::LocalFrame;
 use glam::{DMat3, DVec3};
 
-/// Steps in sigma: of rays that lead to others, and of those that are handed out.
+/// Steps in sigma of rays that lead to others.
 pub const COARSE: f64 = 0.1;
-pub const FINE: f64 = 0.025;
+
+/// Steps in sigma of rays that are handed out: each half turn more makes them e^pi times as sensitive, and a small 1/r
+/// at their end that much to errors near the hole.
+pub fn fine(order: u32, u: f64) -> f64 {
+    if order < 2 && u > 1e-3 { 0.05 } else { 0.025 }
+}
 
 /// Most steps of a ray: beside the horizon they are small.
 const MOST_STEPS: usize = 4000;
@@ -31,13 +36,19 @@ impl Target {
     }
 
     /// How far a ray is beside the point: in ln r, and in angles about the hole.
-    fn miss(&self, there: &State) -> DVec3 {
+    pub fn miss(&self, there: &State) -> DVec3 {
         let direction = there.chart_direction();
         let beside = DVec3::new(0.0, direction.dot(self.across[0]), direction.dot(self.across[1]));
         let (sin, cos) = (beside.length(), direction.dot(self.n));
         // The angle, not its sine, which is 0 on the other side, too.
         let angle = if cos > 0.0 && sin < 1e-4 { 1.0 } else { sin.atan2(cos) / sin.max(1e-300) };
         DVec3::new((there.u - self.u) / self.u, beside.y * angle, beside.z * angle)
+    }
+
+    /// d(miss) / d(tau) of a ray that is near the point.
+    pub fn miss_rate(&self, flight: &Flight) -> DVec3 {
+        let velocity = flight.velocity();
+        DVec3::new(flight.there.du / self.u, velocity.dot(self.across[0]), velocity.dot(self.across[1]))
     }
 }
 
@@ -96,7 +107,7 @@ pub struct Flight {
 
 impl Flight {
     /// Follows a ray, steps being `step` long in sigma. `None`: it does not come so far.
-    pub fn of(frame: &LocalFrame, aim: &Aim, step: f64) -> Option<Self> {
+    pub fn of(frame: &LocalFrame, aim: &Aim, step: f64, with_delay: bool) -> Option<Self> {
         let (constants, start) = frame.start(aim.look())?;
         let c = &constants;
         if aim.time.is_nan() || aim.time <= 0.0 {
@@ -108,7 +119,7 @@ impl Flight {
             let most = (step / c.scale).min(step_limit(c, &state, step));
             // No last step that is much shorter than the others.
             let h = if left > 1.5 * most { most } else { left };
-            state = held_inside(c, nystrom_step(c, &state, h, true));
+            state = held_inside(c, nystrom_step(c, &state, h, with_delay));
             left = if h == left { 0.0 } else { left - h };
             shares.push(h / tau);
             let captured = state.du > 0.0 && state.u * c.r_plus >= 1.0 - 1e-9;
@@ -155,7 +166,7 @@ pub struct Effort {
 /// Newton's method, damped. The number of iterations goes with the result.
 pub fn bring(frame: &LocalFrame, target: &Target, guess: Aim, order: u32, effort: &Effort) -> Option<(Aim, usize)> {
     let mut aim = guess;
-    let mut flight = Flight::of(frame, &aim, effort.step)?;
+    let mut flight = Flight::of(frame, &aim, effort.step, false)?;
     let mut miss = target.miss(&flight.there);
     if miss.is_nan() || miss.length() > effort.most {
         return None;
@@ -168,7 +179,7 @@ pub fn bring(frame: &LocalFrame, target: &Target, guess: Aim, order: u32, effort
         let mut share = 1.0;
         loop {
             let next = aim.with(aim.vector() - change * share);
-            let flown = Flight::of(frame, &next, effort.step).map(|flight| (target.miss(&flight.there), flight));
+            let flown = Flight::of(frame, &next, effort.step, false).map(|flight| (target.miss(&flight.there), flight));
             if let Some((closer, found)) = flown.filter(|(closer, _)| closer.length() < miss.length()) {
                 (aim, flight, miss) = (next, found, closer);
                 break;
@@ -197,10 +208,7 @@ fn correction(
         let turned = aim.with(aim.vector() + change * step).look();
         Some((target.miss(&flight.again(frame, turned)?) - miss) / step)
     };
-    let velocity = flight.velocity();
-    let by_time =
-        DVec3::new(flight.there.du / target.u, velocity.dot(target.across[0]), velocity.dot(target.across[1]))
-            / flight.constants.nu_local;
+    let by_time = target.miss_rate(flight) / flight.constants.nu_local;
     let jacobian = DMat3::from_cols(by(DVec3::X)?, by(DVec3::Y)?, by_time);
     let change = jacobian.inverse() * miss;
     change.is_finite().then_some(change)

@@ -82,7 +82,11 @@ fn cases(count: usize, spins: &[f64], orders: u32, least: [f64; 2], seed: u32) -
 fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
     let miss = |&(a, observer, point, order): &Case| {
         let frame = LocalFrame::new(a, observer).unwrap();
-        image(&frame, point, order).map(|image| {
+        let found = image(&frame, point, order);
+        if let Err(why) = found {
+            println!("{why:?}: spin {a}, order {order}, {observer} {point}");
+        }
+        found.ok().map(|image| {
             let miss = least_distance(&frame, image.look, point) / point.distance(observer);
             if miss > 1e-6 {
                 println!("missed by {miss:e}: spin {a}, order {order}, {observer} {point}");
@@ -95,7 +99,12 @@ fn lost_and_missed(cases: &[Case]) -> [usize; 2] {
     let lost = found.iter().filter(|miss| miss.is_none()).count();
     let missed = found.iter().flatten().filter(|miss| miss.is_nan() || **miss > 1e-6).count();
     let [first, last] = [cases[0].0, cases[cases.len() - 1].0];
-    println!("spins {first} to {last}: {lost} of {} lost, {missed} missed, {:?}", cases.len(), begun.elapsed());
+    let worst = found.iter().flatten().copied().fold(0.0, f64::max);
+    println!(
+        "spins {first} to {last}: {lost} of {} lost, {missed} missed, at most by {worst:.1e}, {:?}",
+        cases.len(),
+        begun.elapsed()
+    );
     [lost, missed]
 }
 
@@ -117,17 +126,17 @@ fn rays_of_images_pass_their_points_with_spin() {
     let cases = cases(count(50_000), &SPINS, 1, [2.0, 1.0], 2);
     let [lost, missed] = lost_and_missed(&cases);
     assert_eq!(missed, 0);
-    assert!(lost * 400 <= cases.len(), "{lost} lost");
+    assert!(lost * 10_000 <= cases.len(), "{lost} lost");
 }
 
-/// Higher orders, and places beside the horizon, where some have no image: those that have one have the right one.
+/// Higher orders, where caustics are wide, and places beside the horizon.
 #[test]
 fn images_that_are_hard_to_find() {
-    for (orders, least, share) in [(0, [0.3, 0.05], 0.01), (3, [2.0, 1.0], 0.12)] {
-        let cases = cases(count(4000), &SPINS, orders, least, 3);
+    for (orders, least) in [(0, [0.3, 0.05]), (3, [2.0, 1.0])] {
+        let cases = cases(count(24_000), &SPINS, orders, least, 3);
         let [lost, missed] = lost_and_missed(&cases);
         assert_eq!(missed, 0);
-        assert!(lost as f64 <= share * cases.len() as f64, "{lost} lost");
+        assert!(lost * 10_000 <= cases.len(), "{lost} lost");
     }
 }
 
@@ -138,7 +147,7 @@ fn images_are_reciprocal() {
     let mut compared = 0;
     for (a, observer, point, order) in cases(120, &[0.0, 0.6, -0.95], 1, [2.0, 1.0], 4) {
         let frames = [LocalFrame::new(a, observer).unwrap(), LocalFrame::new(-a, point).unwrap()];
-        let there = image(&frames[0], point, order).zip(image(&frames[1], observer, order));
+        let there = image(&frames[0], point, order).ok().zip(image(&frames[1], observer, order).ok());
         let Some((to, fro)) = there else { continue };
         let delay = |image: &Image| image.constants.retardation(&image.start, &image.there);
         let [one, other] = [delay(&to), delay(&fro)];
@@ -197,7 +206,7 @@ fn points_that_have_no_image_have_none() {
     for a in [0.0, 0.9] {
         let frame = LocalFrame::new(a, observer).unwrap();
         for point in [observer, DVec3::ZERO, DVec3::X * horizon_outer(a), DVec3::Y * 0.5, DVec3::splat(f64::NAN)] {
-            assert!(image(&frame, point, 0).is_none(), "{point}");
+            assert_eq!(image(&frame, point, 0).err(), Some(NoImage::None), "{point}");
         }
     }
 }
