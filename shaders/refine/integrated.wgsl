@@ -57,12 +57,14 @@ fn integrated_record(id: vec2<u32>) -> Record {
     kept_count = 0u;
     if PARTS {
         kept_given = 0u;
-        begin_medium(pass_.refined);
     }
     let place = pixel_place(id);
     let begin = begin_ray(look_direction(place.x, place.y));
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;
+    if PARTS {
+        begin_medium(begin.c, begin.state, pass_.refined);
+    }
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
         begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0, 0.0,
         vec3<f32>(0.0), UNKNOWN_FOOTPRINT);

@@ -102,7 +102,7 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     disk_orders = 0u;
     beside_orders = 0u;
     plane_u = 0.0;
-    begin_medium(1u);
+    begin_medium(c, begin.state, 1u);
     var sky = vec4<f32>(0.0);
     var m = TracedMeta(FATE_CAPTURED, 0u, 0u, 0u, c.energy / c.nu_local, c.angular_momentum / c.nu_local,
         polar_momentum(begin, frequency_ratio) * frame.place.x);

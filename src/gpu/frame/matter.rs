@@ -118,7 +118,7 @@ pub fn matter_variant(volumes: &Volumes, scene: &Scene) -> Option<MatterVariant>
         structure: volumes.has_structure(),
         ..MatterVariant::default()
     };
-    variant.alone = variant.structure && count == 1 && variant.all_effects && !variant.shows_depth;
+    variant.alone = volumes.is_alone();
     for matter in &all[..count as usize] {
         let [shape, motion, power_law, _] = matter.kind;
         variant.shapes |= 1 << shape;

@@ -78,7 +78,12 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/volumes", "begin_medium add_part width_at cut_of weight_of add_piece coefficients_at", VOLUMES),
     ("emit/course", "step_course", VOLUMES),
-    ("emit/layers", "is_dark slow_at add_layers", VOLUMES),
+    ("emit/generations", "piece_clouds piece_weights piece_blur piece_filaments", VOLUMES),
+    (
+        "emit/layers",
+        "is_dark begin_layers next_step slow_at slow_course lights_of light_at add_alone add_cells",
+        VOLUMES,
+    ),
     ("geodesic/rays", "on_part", NO_VOLUMES),
     ("lens/kerr_nodes", "on_part", NO_VOLUMES),
     ("lens/kerr_pixel", "medium_before", NO_VOLUMES),
