@@ -9,6 +9,11 @@
 // The shapes that a kernel's matter has, as bits of SHAPE_*: others are left out when it is compiled.
 override SHAPES: u32 = 31u;
 
+// Whether matter of `shape` is `one`. Where a kernel knows one shape it is known when that is compiled.
+fn has_shape(shape: u32, one: u32) -> bool {
+    return (SHAPES & (1u << one)) != 0u && (SHAPES == (1u << one) || shape == one);
+}
+
 fn gaussian(x: f32) -> f32 {
     // Beyond, e^-x is no number that shows, and x^2 might be none at all.
     let cut = min(abs(x), 15.0);
@@ -65,19 +70,19 @@ fn density_at(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> 
     let form = matter.form;
     let shape = matter.kind.x;
     var density = 0.0;
-    if (SHAPES & (1u << SHAPE_DISK)) != 0u && shape == SHAPE_DISK {
+    if has_shape(shape, SHAPE_DISK) {
         density = disk_density(r, cosine, radii.x, radii.y, form.z, form.x);
     }
-    if (SHAPES & (1u << SHAPE_TORUS)) != 0u && shape == SHAPE_TORUS {
+    if has_shape(shape, SHAPE_TORUS) {
         density = torus_density(r, cosine, radii.z, radii.w, form.x);
     }
-    if (SHAPES & (1u << SHAPE_HALO)) != 0u && shape == SHAPE_HALO {
+    if has_shape(shape, SHAPE_HALO) {
         density = halo_density(r, cosine, radii.z, form.x);
     }
-    if (SHAPES & (1u << SHAPE_JET)) != 0u && shape == SHAPE_JET {
+    if has_shape(shape, SHAPE_JET) {
         density = jet_density(r, cosine, matter);
     }
-    if (SHAPES & (1u << SHAPE_SPOT)) != 0u && shape == SHAPE_SPOT {
+    if has_shape(shape, SHAPE_SPOT) {
         return spot_density(r, cosine, azimuth, later, matter);
     }
     return select(density, 0.0, r > radii.y);
@@ -87,7 +92,7 @@ fn density_at(r: f32, cosine: f32, azimuth: f32, later: f32, matter: Matter) -> 
 fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32 {
     let near = 1.0 / u.x;
     let far = 1.0 / u.y;
-    if (SHAPES & (1u << SHAPE_SPOT)) != 0u && matter.kind.x == SHAPE_SPOT {
+    if has_shape(matter.kind.x, SHAPE_SPOT) {
         let run = near - far;
         let across = swept / max(min(u.x, u.y), 1e-30);
         return sqrt(run * run + across * across) / matter.radii.y;
@@ -100,16 +105,16 @@ fn cells_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, matter: Matter) -> f32
         let most = max(abs(cosines.x), abs(cosines.y));
         cells += 0.5 * swept / sqrt(max(1.0 - most * most, NEAR_AXIS * NEAR_AXIS));
     }
-    if (SHAPES & (1u << SHAPE_TORUS)) != 0u && matter.kind.x == SHAPE_TORUS {
+    if has_shape(matter.kind.x, SHAPE_TORUS) {
         let sines = sqrt(max(1.0 - cosines * cosines, vec2<f32>(0.0)));
         return cells + abs(sines.y * far - sines.x * near) / (1.5 * matter.radii.w)
             + abs(cosines.y * far - cosines.x * near) / (1.5 * thickness * matter.radii.z);
     }
-    if (SHAPES & (1u << SHAPE_JET)) != 0u && matter.kind.x == SHAPE_JET {
+    if has_shape(matter.kind.x, SHAPE_JET) {
         let wall = jet_wall(far, matter.form.y, matter.radii.z) - jet_wall(near, matter.form.y, matter.radii.z);
         return cells + (change + abs(wall)) / thickness;
     }
-    if (SHAPES & (1u << SHAPE_HALO)) != 0u && matter.kind.x == SHAPE_HALO {
+    if has_shape(matter.kind.x, SHAPE_HALO) {
         cells += abs(near - far) / (1.5 * matter.radii.z);
     }
     return cells + change / (1.5 * thickness);

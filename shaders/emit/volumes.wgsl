@@ -27,11 +27,21 @@ var<private> ray_swept: f32;
 // Whether MANY_RAYS are traced for its pixel.
 var<private> among_many: bool;
 
-// A ray begins, one of `rays` of a pixel.
-fn begin_medium(rays: u32) {
+// A ray begins at `observer`, one of `rays` of a pixel.
+fn begin_medium(c: Constants, observer: State, rays: u32) {
     medium = NO_MEDIUM;
     ray_swept = 0.0;
     among_many = rays >= MANY_RAYS;
+    if ALONE {
+        begin_layers(c, observer);
+    }
+}
+
+// A part of a ray begins, `begin` in tau since the begin of its step, whether or not matter is seen in it.
+fn next_part(begin: f32) {
+    if ALONE && begin == 0.0 {
+        next_step();
+    }
 }
 
 // Adds the matter along a part of a ray to the medium: the step of the length `h` in tau from `from_state` to
@@ -55,6 +65,12 @@ fn add_part(
     if max(from_state.u, to_state.u) * MARGIN_STEP < outer || is_dark() {
         return;
     }
+    // cos th goes as a sine along a ray: between crossings of the plane it is nowhere less than at the nearer end.
+    let heights = vec2<f32>(from_state.n.z, to_state.n.z);
+    let least = select(0.0, min(abs(heights.x), abs(heights.y)), heights.x * heights.y > 0.0);
+    if ALONE && least > frame.matter[0].reach.z * (1.0 + MARGIN_U) + MARGIN_COS {
+        return;
+    }
     let course = step_course(c, from_state, to_state, h);
     let first = begin / h;
     let run = (end - begin) / h;
@@ -67,7 +83,9 @@ fn add_part(
     let from_share = select(0.0, enters, u < edge && v > edge);
     let to_share = select(1.0, enters, v < edge && u > edge);
     let quotient = max(v, edge) / max(u, edge);
-    let wanted = max(abs(log(quotient)) / PIECE_LN_R, swept / PIECE_ANGLE);
+    // A piece in layers lies in two bands at most (emit/generations.wgsl).
+    let widest = select(PIECE_LN_R, min(PIECE_LN_R, BANDS_APART), ALONE && STRUCTURE);
+    let wanted = max(abs(log(quotient)) / widest, swept / PIECE_ANGLE);
     // u32 of NaN may be any number.
     let count = clamp(u32(min(ceil(wanted), MOST_PIECES)), 1u, u32(MOST_PIECES));
     var at = from_share;
@@ -86,7 +104,7 @@ fn add_part(
             let ends = first + run * (at + (next - at) * cut.share);
             let widths = width + (next_width - width) * cut.share;
             if ALONE {
-                add_layers(c, observer, course, ends, h, cut.count, widths, ratio);
+                add_alone(c, observer, course, ends, h, cut.count, widths, ratio);
             } else {
                 add_piece(c, observer, course, ends, h, cut, widths, ratio);
             }
@@ -163,11 +181,15 @@ fn cut_of(u: vec2<f32>, cosines: vec2<f32>, swept: f32, width: f32) -> Cut {
             }
         }
     }
-    let layers = ALONE || (STRUCTURE && places > 0.0);
+    let layers = STRUCTURE && (ALONE || places > 0.0);
     let wants = select(1.0, MANY_SHARE, among_many);
     let wanted = select(FINENESS * cells, max(wants * places, LAYERS * cells), layers);
     let part = share.y - share.x;
-    return Cut(share, select(0.0, clamp(ceil(wanted * part), 1.0, MOST_CELLS), part > 0.0), layers);
+    // One that is alone comes in blocks of layers (emit/layers.wgsl).
+    let blocks = BLOCK_LAYERS * clamp(ceil(wanted * part / BLOCK_LAYERS - BLOCK_ROUNDING), 1.0,
+        MOST_CELLS / BLOCK_LAYERS);
+    let count = select(clamp(ceil(wanted * part), 1.0, MOST_CELLS), blocks, ALONE && STRUCTURE);
+    return Cut(share, select(0.0, count, part > 0.0), layers);
 }
 
 // How much of the light it may send that a stretch sends, at most, if it were even.

@@ -43,6 +43,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
+    next_part(begin);
     var seen = vec2<f32>(begin, end);
     if OCCLUDED {
         seen = shown_stretch(c, from_state, begin, end);
@@ -65,7 +66,6 @@ fn integrated_record(id: vec2<u32>) -> Record {
     kept_count = 0u;
     if PARTS {
         kept_given = 0u;
-        begin_medium(pass_.refined);
     }
     let place = pixel_place(id);
     if OCCLUDED {
@@ -74,6 +74,9 @@ fn integrated_record(id: vec2<u32>) -> Record {
     let begin = begin_ray(look_direction(place.x, place.y));
     kept_constants = begin.c;
     kept_ratio = begin.frequency_ratio;
+    if PARTS {
+        begin_medium(begin.c, begin.state, pass_.refined);
+    }
     var record = Record(FATE_CAPTURED, 0u, begin.c.energy / begin.c.nu_local,
         begin.c.angular_momentum / begin.c.nu_local, polar_momentum(begin, begin.frequency_ratio), 0.0, 0.0,
         vec3<f32>(0.0), UNKNOWN_FOOTPRINT);

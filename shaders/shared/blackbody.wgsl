@@ -30,15 +30,14 @@ fn shifted_blackbody(temperature: f32, log_reference: f32, g_colour: f32, g_beam
 // The same with the table that begins at entry `first`.
 fn shifted_light(first: u32, temperature: f32, log_reference: f32, g_colour: f32, g_beaming: f32) -> vec3<f32> {
     let observed = temperature * g_colour;
-    if observed >= MIN_TEMPERATURE && g_beaming > 0.0 {
-        let taken = min(observed, MAX_TEMPERATURE);
-        let value = blackbody_lookup(first, taken);
-        let beaming = min(g_beaming / g_colour, MAX_BEAMING);
-        let gain = (beaming * beaming) * (beaming * beaming);
-        let luminance = exp(min(value.w - log_reference, MAX_LN_RATIO)) * gain * taken;
-        return into_gamut(value.xyz) * min(luminance, MAX_RATIO);
-    }
-    return vec3<f32>(0.0);
+    // Found in any case: a branch would keep GPUs from waiting for several at once.
+    let taken = clamp(observed, MIN_TEMPERATURE, MAX_TEMPERATURE);
+    let value = blackbody_lookup(first, taken);
+    let beaming = min(g_beaming / g_colour, MAX_BEAMING);
+    let gain = (beaming * beaming) * (beaming * beaming);
+    let luminance = exp(min(value.w - log_reference, MAX_LN_RATIO)) * gain * taken;
+    let shows = observed >= MIN_TEMPERATURE && g_beaming > 0.0;
+    return select(vec3<f32>(0.0), into_gamut(value.xyz) * min(luminance, MAX_RATIO), shows);
 }
 
 // A colour of luminance 1 mixed with white until no component is negative.

@@ -77,6 +77,7 @@ fn on_crossing(c: Constants, crossing: PlaneCrossing) {
 }
 
 fn on_part(c: Constants, observer: State, from_state: State, to_state: State, h: f32, begin: f32, end: f32) {
+    next_part(begin);
     var seen = vec2<f32>(begin, end);
     if OCCLUDED {
         seen = shown_stretch(c, from_state, begin, end);
@@ -110,7 +111,7 @@ fn trace_pixel(at: vec2<u32>, place: vec2<f32>) {
     disk_orders = 0u;
     beside_orders = 0u;
     plane_u = 0.0;
-    begin_medium(1u);
+    begin_medium(c, begin.state, 1u);
     if OCCLUDED {
         set_occluder(place);
     }

@@ -30,6 +30,8 @@ pub struct Accuracy {
     /// Whether stretches that have structure are summed in even layers, not in cells: structure is so rough that
     /// polynomials gain nothing.
     pub layers: bool,
+    /// Whether a volume that is alone may be summed as GPUs do it fastest (shaders/emit/layers.wgsl).
+    pub alone: bool,
     /// Thinner matter is left out; of matter that absorbs, in optical depths per M.
     pub least: f64,
     /// Matter behind so great an optical depth is left out.
@@ -38,11 +40,13 @@ pub struct Accuracy {
 
 impl Accuracy {
     /// For pixels: 1e-5 of a picture's peak.
-    pub const PICTURE: Self = Self { fineness: 1.0, beside_bends: 1.0, layers: true, least: 1e-7, dark: 12.0 };
+    pub const PICTURE: Self =
+        Self { fineness: 1.0, beside_bends: 1.0, layers: true, alone: true, least: 1e-7, dark: 12.0 };
     /// For pixels that show a number.
-    pub const VIEW: Self = Self { dark: 300.0, ..Self::PICTURE };
+    pub const VIEW: Self = Self { dark: 300.0, alone: false, ..Self::PICTURE };
     /// For rays whose numbers count: 1e-8 of it.
-    pub const EXACT: Self = Self { fineness: 4.0, beside_bends: 16.0, layers: false, least: 1e-13, dark: 300.0 };
+    pub const EXACT: Self =
+        Self { fineness: 4.0, beside_bends: 16.0, layers: false, alone: false, least: 1e-13, dark: 300.0 };
 }
 
 impl Default for Accuracy {

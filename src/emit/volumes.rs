@@ -10,6 +10,7 @@
 //! its optical depth is more than 1, it is cut again. Pieces with structure (`clouds`), which is as fine as a pixel
 //! lets it be, are cut into even layers instead, the fewer the less light they send.
 
+use super::bands::BANDS_APART;
 use super::bands::When;
 use super::clouds::{Blur, CloudPlace, Structure, bend, footprint, worth};
 use super::effects::Effects;
@@ -19,7 +20,7 @@ use super::hot_spot::HotSpot;
 use super::matter::{Accuracy, BENDS, SpotMatter, VolumeMatter};
 use super::medium::{GAUSS_NODES, GAUSS_WEIGHTS, Medium};
 use super::shape::{Reach, Stretch};
-use super::volume::Volume;
+use super::volume::{Shape, Volume};
 use crate::error::Result;
 use crate::physics::flow::{Place, Velocity, ZamoLight};
 use crate::physics::geodesic::{Constants, State};
@@ -43,6 +44,10 @@ pub(crate) const MANY_RAYS: u32 = 16;
 pub(crate) const MANY_SHARE: f64 = 0.7;
 /// Layers for each cell of even matter.
 pub(crate) const LAYERS: f64 = 2.0;
+/// Layers of a volume that is alone come in blocks of so many, which GPUs sum side by side. Rounding takes so much less
+/// than all of a block that has begun.
+pub(crate) const BLOCK_LAYERS: f64 = 4.0;
+pub(crate) const BLOCK_ROUNDING: f64 = 0.375;
 /// The most bends between two places: those of all volumes.
 const MOST_BENDS: usize = BENDS * Volume::MOST;
 
@@ -187,6 +192,21 @@ impl Volumes {
         self.volumes.iter().any(|volume| volume.clouds.is_some())
     }
 
+    /// Whether one volume that stays away from the axis is all the matter that there is, in a picture with all effects:
+    /// GPUs sum it in a way of its own.
+    pub fn is_alone(&self) -> bool {
+        let away = |volume: &VolumeMatter| !matches!(volume.cloud.shape, Shape::Jet);
+        matches!(&self.volumes[..], [volume] if away(volume))
+            && self.hot_spots.is_empty()
+            && self.effects.all_light()
+            && self.accuracy.alone
+    }
+
+    /// Whether that is so, and it is summed in layers.
+    fn is_alone_in_layers(&self) -> bool {
+        self.is_alone() && self.has_structure()
+    }
+
     /// Makes the structure of the matter, if there is any, so that `along` has it. Errors: OUT_OF_MEMORY.
     pub fn prepare(&self) -> Result<()> {
         if self.has_structure() { Filaments::shared().map(|_| ()) } else { Ok(()) }
@@ -210,7 +230,9 @@ impl Volumes {
         let sum = Sum { volumes: self, part, seen };
         let course = part.course();
         let [first, last] = [0.0, 1.0].map(|x| course.at(x)[0]);
-        let pieces = Pieces::new([first, last], part.swept(), outer * (1.0 - MARGIN_U));
+        // GPUs have the structure of two bands at hand for a piece (shaders/emit/generations.wgsl).
+        let widest = if self.is_alone_in_layers() { PIECE_LN_R.min(BANDS_APART) } else { PIECE_LN_R };
+        let pieces = Pieces::new([first, last], part.swept(), outer * (1.0 - MARGIN_U), widest);
         let begin = pieces.border(0);
         let mut before = sum.border(begin, course.at(begin));
         for k in 1..=pieces.count {
@@ -374,7 +396,13 @@ impl Sum<'_, '_> {
             // Three places a cell. Structure is rough: finer cells gain less there than the sixth order in them.
             false => (cut.cells * fineness).max(cut.places / 3.0 * fineness.sqrt()),
         };
-        let count = (wanted * (high - low)).ceil().clamp(1.0, MOST_CELLS);
+        let wanted = wanted * (high - low);
+        let count = match self.volumes.is_alone_in_layers() {
+            true => {
+                BLOCK_LAYERS * (wanted / BLOCK_LAYERS - BLOCK_ROUNDING).ceil().clamp(1.0, MOST_CELLS / BLOCK_LAYERS)
+            }
+            false => wanted.ceil().clamp(1.0, MOST_CELLS),
+        };
         // Layers that are wider than structure is are so because it matters little there.
         let apart = |passed: &f64| if layers { 0.0 } else { passed * (high - low) / (3.0 * count) };
         let grain = Grain { footprints: [width(low), width(high)], spacing: passed.iter().map(apart).collect() };
@@ -455,13 +483,14 @@ struct Pieces {
 }
 
 impl Pieces {
-    /// `u`: 1/r at the ends of the part; `swept`: its angle; nothing is where 1/r is less than `outer`.
-    fn new([u, v]: [f64; 2], swept: f64, outer: f64) -> Self {
+    /// `u`: 1/r at the ends of the part; `swept`: its angle; nothing is where 1/r is less than `outer`; `widest`: the
+    /// greatest change of ln r over a piece.
+    fn new([u, v]: [f64; 2], swept: f64, outer: f64, widest: f64) -> Self {
         let share = |at: f64| (outer - at) / (v - u);
         let begin = if u < outer && v > outer { share(u).abs() } else { 0.0 };
         let end = if v < outer && u > outer { share(u).abs() } else { 1.0 };
         let ratio = v.max(outer) / u.max(outer);
-        let count = (ratio.ln().abs() / PIECE_LN_R).max(swept / PIECE_ANGLE).ceil().clamp(1.0, MOST_PIECES);
+        let count = (ratio.ln().abs() / widest).max(swept / PIECE_ANGLE).ceil().clamp(1.0, MOST_PIECES);
         Self { count: count as u32, ends: [begin, end], ratio }
     }
 
@@ -484,7 +513,7 @@ mod tests {
             [(1e-6, 0.05, 0.2), (0.05, 1e-9, 0.01), (0.1, 0.1, 0.6), (0.3, -0.02, 0.25), (0.2, 0.3, 0.0)]
         {
             let outer = 0.01;
-            let pieces = Pieces::new([u, v], swept, outer);
+            let pieces = Pieces::new([u, v], swept, outer, PIECE_LN_R);
             let at = |k: u32| u + (v - u) * pieces.border(k);
             let within = |u: f64| u.max(outer);
             assert!((at(0) - within(u)).abs() < 1e-12 && (at(pieces.count) - within(v)).abs() < 1e-12, "{u} {v}");

@@ -119,7 +119,7 @@ pub fn matter_variant(volumes: &Volumes, scene: &Scene) -> Option<MatterVariant>
         occluded: scene.view == View::Light && scene.occluder.is_some(),
         ..MatterVariant::default()
     };
-    variant.alone = variant.structure && count == 1 && variant.all_effects && !variant.shows_depth;
+    variant.alone = volumes.is_alone();
     for matter in &all[..count as usize] {
         let [shape, motion, power_law, _] = matter.kind;
         variant.shapes |= 1 << shape;

@@ -161,6 +161,7 @@ fn all() -> Vec<(&'static str, String)> {
         STREAK_WHOLE: f32 = streaks::STREAK_WHOLE;
         BAND: f32 = bands::BAND;
         BAND_FADE: f32 = bands::BAND_FADE;
+        BANDS_APART: f32 = bands::BANDS_APART;
         PLUNGE_FADE: f32 = turbulence::PLUNGE_FADE;
         GENERATION_FADE: f32 = bands::GENERATION_FADE;
         MOST_BANDS: u32 = bands::MOST_BANDS;
@@ -211,6 +212,8 @@ fn all() -> Vec<(&'static str, String)> {
         DARK_PICTURE: f32 = matter::Accuracy::PICTURE.dark;
         CLUMPED: f32 = matter::CLUMPED;
         LAYERS: f32 = volumes::LAYERS;
+        BLOCK_LAYERS: f32 = volumes::BLOCK_LAYERS;
+        BLOCK_ROUNDING: f32 = volumes::BLOCK_ROUNDING;
         MANY_RAYS: u32 = volumes::MANY_RAYS;
         MANY_SHARE: f32 = volumes::MANY_SHARE;
         WORTH: f32 = clouds::WORTH;
