@@ -13,12 +13,13 @@ use crate::interop::{Semaphore, Target};
 use crate::job::{Job, JobRequest, JobTarget, OutputFrame, OutputTarget, Worker};
 use crate::scene::host_rays::{transfer_ray, transfer_setup};
 use crate::scene::record::Record;
-use crate::scene::{Hit, MOST_OUTPUTS, Occluder, Output, Preset, Ray, Region, Scene, Transfer, View};
+use crate::scene::{Hit, MOST_OUTPUTS, Output, Preset, Ray, Region, Scene, Transfer, View};
 use crate::surface::{ShowOutcome, ShowRequest, Surface, WindowTracer, frame_request};
 use crate::tracers::{RunsOn, SharedTracer, Tracer};
 use crate::window::{NativeWindow, PresentMode, Window};
 use parking_lot::Mutex;
 use presets::DepthCost;
+use shared::HostsThings;
 use std::borrow::Cow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -46,13 +47,6 @@ pub struct RendererOptions {
     pub validation: bool,
     /// Only adapters that can present to this window.
     pub compatible_window: Option<NativeWindow>,
-}
-
-/// Where the distances of the host's things are.
-enum HostsThings {
-    Copied(Occluder),
-    /// Whether they are at their lensed places.
-    Target(Arc<Target>, bool),
 }
 
 /// One scene, one tracer.

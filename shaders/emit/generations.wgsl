@@ -20,7 +20,7 @@ struct PieceClouds {
     fading: vec2<f32>,
     // At the reference time: before its birth a generation's age is negative, and it does not show.
     ages: vec4<f32>,
-    // Of ln r per M.
+    // How fast ln r changes, per M.
     drifts: vec4<f32>,
     // The places of the generations in the block, in periods (azimuth, ln r, height).
     turns: vec4<f32>,

@@ -82,8 +82,8 @@ fn slow_at(c: Constants, course: StepCourse, x: f32, h: f32, ratio: f32) -> Slow
         vec2<f32>(angular_velocity(c.a, at, velocity) * r * sqrt(r), g));
 }
 
-// What changes slowly along a piece, as parabolas: at its begin, and the factors of the share of it and of its square;
-// and the blur.
+// All that changes slowly along a piece, as parabolas: at its begin, and the factors of the share of it and of its
+// square; and the blur.
 struct SlowCourse {
     begin: Slow,
     rise: Slow,
@@ -176,10 +176,10 @@ fn light_at(matter: Matter, density: f32, heat: f32, r: f32, g: f32, ratio: f32)
     return vec4<f32>(found.light, found.absorption);
 }
 
-// Adds a piece between two shares of a step in `count` cells, or so many layers in blocks. `widths`: of a pixel at its ends.
+// Adds a piece between two shares of a step in `count` cells, or so many layers in blocks. `widths`: of a pixel at its
+// ends.
 fn add_alone(
     c: Constants,
-    observer: State,
     course: StepCourse,
     ends: vec2<f32>,
     h: f32,
@@ -200,7 +200,7 @@ fn add_alone(
     let margin = select(select(GAUSS_NODES.x, 0.125, STRUCTURE), 0.0, is_smooth);
     let tau = (ends.y - ends.x) / f32(blocks) * h * c.nu_local;
     for (var span = 0u; span < spans && !is_dark(); span += 1u) {
-        // What is at the begin is what was at the end of the piece before.
+        // The begin is as the end of the piece before was, which lies within it where that was not smooth.
         var slow = array<Slow, 3>(Slow(), Slow(), last_slow);
         var piece: PieceClouds;
         var blurs = array<PieceBlur, 3>();
@@ -221,7 +221,7 @@ fn add_alone(
             }
         }
         last_slow = slow[2];
-        last_end = ends.y;
+        last_end = select(-1e9, ends.y, is_smooth);
         let along = slow_course(slow, blurs);
         let parts = select(1u, blocks, is_smooth);
         if STRUCTURE {

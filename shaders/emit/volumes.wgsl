@@ -104,7 +104,7 @@ fn add_part(
             let ends = first + run * (at + (next - at) * cut.share);
             let widths = width + (next_width - width) * cut.share;
             if ALONE {
-                add_alone(c, observer, course, ends, h, cut.count, widths, ratio);
+                add_alone(c, course, ends, h, cut.count, widths, ratio);
             } else {
                 add_piece(c, observer, course, ends, h, cut, widths, ratio);
             }

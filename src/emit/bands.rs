@@ -18,7 +18,7 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 /// The width of a band in ln r, and the share of it over which it blends with its neighbours.
 pub(crate) const BAND: f64 = 0.3;
 pub(crate) const BAND_FADE: f64 = 0.35;
-/// What lies no farther apart in ln r has the two bands that meet nearest to its middle, and no third.
+/// A stretch no wider in ln r shows the two bands that meet nearest to its middle, and no third.
 pub(crate) const BANDS_APART: f64 = BAND * (1.0 - BAND_FADE);
 /// The time in which a generation fades in, and the one before it out, in times from birth to birth.
 pub(crate) const GENERATION_FADE: f64 = 0.35;

@@ -3,7 +3,7 @@
 //! may lie in a target, and renderers on a host's device. Knows
 //! nothing of C.
 
-use super::{HostsThings, Renderer, RendererOptions};
+use super::{Renderer, RendererOptions};
 use crate::error::{Error, Result};
 use crate::gpu::{
     self, AdapterIds, Device, GpuTarget, HostVulkan, ReleaseGuard, SemaphoreKind, SemaphoreOrigin, Sharing,
@@ -17,6 +17,13 @@ use crate::tracer::FrameRequest;
 use crate::tracers::{RunsOn, Tracer};
 use std::borrow::Cow;
 use std::sync::{Arc, Weak};
+
+/// Where the distances of the host's things are.
+pub(super) enum HostsThings {
+    Copied(Occluder),
+    /// And whether they are at their lensed places.
+    Target(Arc<Target>, bool),
+}
 
 /// Semaphores that a frame waits for, and that it signals.
 pub struct HostSync<'a> {
