@@ -125,13 +125,13 @@ pub(super) struct HostImage<'a> {
 pub(super) unsafe fn read_layout(image: *const BhrImage, name: &str) -> Result<(Layout, u32)> {
     // SAFETY: this function's contract.
     let given = unsafe { versioned::read(image, name) }?;
-    layout(&given, name)
+    layout(&given, name, 0)
 }
 
-/// The layout and the flags.
-fn layout(given: &BhrImage, name: &str) -> Result<(Layout, u32)> {
+/// The layout and the flags, `also` among them.
+fn layout(given: &BhrImage, name: &str, also: u32) -> Result<(Layout, u32)> {
     check_reserved(given.reserved, name)?;
-    let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP | BHR_IMAGE_LENSED;
+    let known = BHR_IMAGE_TRANSPARENT | BHR_IMAGE_BOTTOM_UP | also;
     let flags = check_flags(given.flags, known, &format!("{name} flags"))?;
     let layout = Layout {
         format: format(given.format)?,
@@ -152,8 +152,17 @@ fn layout(given: &BhrImage, name: &str) -> Result<(Layout, u32)> {
 /// `image` is NULL or points to a BhrImage whose block is the host's during `'a`.
 pub(super) unsafe fn read<'a>(image: *const BhrImage, name: &str) -> Result<HostImage<'a>> {
     // SAFETY: this function's contract.
+    unsafe { read_with(image, name, 0) }
+}
+
+/// As [`read`], of an image that may have the flags `also` as well.
+///
+/// # Safety
+/// As [`read`].
+pub(super) unsafe fn read_with<'a>(image: *const BhrImage, name: &str, also: u32) -> Result<HostImage<'a>> {
+    // SAFETY: this function's contract.
     let given = unsafe { versioned::read(image, name) }?;
-    let (layout, flags) = layout(&given, name)?;
+    let (layout, flags) = layout(&given, name, also)?;
     // SAFETY: the block of byte_size bytes is the host's, by this function's contract.
     let pixels = unsafe {
         match flags & BHR_IMAGE_BOTTOM_UP {

@@ -41,7 +41,7 @@ pub unsafe extern "C" fn bhr_set_occluder(context: *mut BhrContext, distances: *
             state.renderer.set_occluder(match distances.is_null() {
                 true => None,
                 false => {
-                    let given = image::read(distances, "distances")?;
+                    let given = image::read_with(distances, "distances", image::BHR_IMAGE_LENSED)?;
                     Some(Occluder { lensed: given.lensed, ..Occluder::new(&given.pixels.as_image_ref())? })
                 }
             });
