@@ -368,7 +368,8 @@ BHR_NODISCARD BhrStatus bhr_context_adapter(const BhrContext *context, BhrAdapte
 
 /**
  * Opens the device anew after BHR_ERROR_DEVICE_LOST, on the same adapter if it is still there. The scene stays, the
- * sky's map included. Surfaces made before are lost: destroy them and make them again. Jobs that a loss of the
+ * sky's map included, but for a sky or an occluder in a target (bhr_interop.h): set those anew. Surfaces made before
+ * are lost: destroy them and make them again. Jobs that a loss of the
  * device left unfinished fail with DEVICE_LOST. Until this call every call that renders or traces returns
  * DEVICE_LOST; setters go on working. Errors: as bhr_context_create; the context then stays lost, and the call may
  * be tried again; UNSUPPORTED on a device of the host's (bhr_context_create_vulkan).

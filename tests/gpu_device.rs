@@ -280,7 +280,8 @@ fn an_error_outside_every_scope_is_returned_once() {
 fn sizes_beyond_the_limits_name_the_size_and_the_limit() {
     let device = device();
     let limits = device.limits().clone();
-    assert!(limits.max_storage_buffers_per_shader_stage <= 4, "asks for more than old GPUs have");
+    // Outputs in targets take one each; adapters with fewer serve all else.
+    assert!(limits.max_storage_buffers_per_shader_stage <= 12, "asks for more than it uses");
     let cases = [
         (BufferUsages::COPY_DST, limits.max_buffer_size),
         (BufferUsages::STORAGE, limits.max_storage_buffer_binding_size),

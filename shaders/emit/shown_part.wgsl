@@ -19,8 +19,8 @@ fn beyond_occluder(c: Constants, from_state: State, tau: f32) -> f32 {
         distance = length(chart_direction(there.n, there.drag) / there.u - frame.e_r.xyz / frame.place.x);
     }
     let eye = 1.0 / frame.place.x;
-    // Beyond infinite distances nothing is.
-    let farthest = min(occluder_farthest, 1e30);
+    // Beyond infinite distances nothing is, nor beyond NaN; all is beyond those below 0.
+    let farthest = select(1e30, clamp(occluder_farthest, 0.0, 1e30), occluder_farthest < 1e30);
     return distance / (distance + eye) - farthest / (farthest + eye);
 }
 

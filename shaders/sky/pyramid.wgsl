@@ -21,9 +21,6 @@ struct SkyLevel {
 @group(0) @binding(1) var<storage, read> source_words: array<u32>;
 @group(0) @binding(2) var<storage, read_write> level_words: array<u32>;
 
-const SKY_SOURCE_HALF: u32 = 0u;
-const SKY_SOURCE_FLOAT: u32 = 1u;
-const SKY_SOURCE_LEVEL: u32 = 2u;
 // 511 / 512 2^16.
 const MOST_SKY_LIGHT: f32 = 65408.0;
 

@@ -7,11 +7,11 @@ use super::interop_target::BhrTarget;
 use super::status::BhrStatus;
 
 /// bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported or
-/// wrapped, as wide as high at least and 16384 x 8192 at most, laid out as bhr_set_sky_map has it, that frames with
-/// BHR_SKY_MAP read anew each time, without a way through host memory. bhr makes its coarser levels on the GPU, and
-/// pictures are those with the same map from host memory to within rounding, one step of 255. NULL: none; each of
-/// the two functions replaces what the other has set. A cube is no such target; its faces go into an equirect by a
-/// pass of the host's.
+/// wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has
+/// it, that frames with BHR_SKY_MAP read anew each time, without a way through host memory. bhr makes its coarser
+/// levels on the GPU, and pictures are those with the same map from host memory to within rounding, one step of 255.
+/// NULL: none; each of the two functions replaces what the other has set. A cube is no such target; its faces go into
+/// an equirect by a pass of the host's.
 ///
 /// When a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
 /// bhr_set_occluder_target. It cannot be a frame's target as well. The map is shown in windows, too, and its pixels

@@ -9,6 +9,8 @@ use crate::scene::{Preset, PresetMatter, Quality, Region, Scene};
 use crate::tracer::FrameRequest;
 use std::time::{Duration, Instant};
 
+/// A frame that was broken off counts as done to this share at least, so that its cost stays finite.
+const LEAST_DONE: f64 = 0.01;
 /// The sizes of the frames that are timed. The next one is taken while the time allows it and a frame is done so soon
 /// that its fixed costs may be a good part of it.
 const SIZES: [[u32; 2]; 7] = [[4, 2], [16, 9], [48, 27], [160, 90], [480, 270], [960, 540], [1920, 1080]];
@@ -120,7 +122,7 @@ impl Renderer {
                 Ok(stats) if stats.gpu_ns > 0 => stats.gpu_ns as f64,
                 Ok(_) => spent.as_nanos() as f64,
                 // It was broken off: the whole takes as long as the part lets expect.
-                Err(error) if error.kind == ErrorKind::Cancelled => spent.as_nanos() as f64 / done,
+                Err(error) if error.kind == ErrorKind::Cancelled => spent.as_nanos() as f64 / done.max(LEAST_DONE),
                 Err(error) => return Err(error),
             };
             if measured {

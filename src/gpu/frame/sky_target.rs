@@ -13,6 +13,7 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::slots::SKY_MAP;
+use crate::gpu::kernel::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_HALF, SKY_SOURCE_LEVEL};
 use crate::image::PixelFormat;
 use crate::scene::SkyPicture;
 use crate::sky::MAX_MAP_SIZE;
@@ -37,11 +38,6 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
     crate::gpu::kernel::layout::layout!(SkyLevelUniform as "SkyLevel": size, source_size, source_row, row, source,
         padding)
 }
-
-/// `SKY_SOURCE_*` of sky/pyramid.wgsl.
-const SOURCE_HALF: u32 = 0;
-const SOURCE_FLOAT: u32 = 1;
-const SOURCE_LEVEL: u32 = 2;
 
 /// The textures and buffers of a map of one size.
 pub struct SkyTarget {
@@ -131,9 +127,9 @@ impl SkyTarget {
         let second = sizes.get(1).copied().unwrap_or([1, 1]);
         let stride = uniform_stride::<SkyLevelUniform>(device) as usize;
         let mut bytes = vec![0; stride * sizes.len()];
-        let kind = if format == PixelFormat::Rgba16F { SOURCE_HALF } else { SOURCE_FLOAT };
+        let kind = if format == PixelFormat::Rgba16F { SKY_SOURCE_HALF } else { SKY_SOURCE_FLOAT };
         let given = (size, (shape.row_stride / 4) as u32, kind);
-        let levels = sizes.iter().map(|size| (*size, row_words(size[0]), SOURCE_LEVEL));
+        let levels = sizes.iter().map(|size| (*size, row_words(size[0]), SKY_SOURCE_LEVEL));
         let sources = std::iter::once(given).chain(levels);
         for ((slot, size), (source_size, source_row, source)) in bytes.chunks_exact_mut(stride).zip(&sizes).zip(sources)
         {

@@ -4,6 +4,7 @@
 
 use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
+use super::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_HALF, SKY_SOURCE_LEVEL};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};
 use crate::emit::{along, bands, clouds, filaments, glow, half, matter, medium, shape, streaks, turbulence, volumes};
@@ -159,6 +160,9 @@ fn all() -> Vec<(&'static str, String)> {
         STREAK_TAPS: f32 = streaks::STREAK_TAPS;
         STREAK_TEXEL: f32 = streaks::STREAK_TEXEL;
         STREAK_WHOLE: f32 = streaks::STREAK_WHOLE;
+        SKY_SOURCE_HALF: u32 = SKY_SOURCE_HALF;
+        SKY_SOURCE_FLOAT: u32 = SKY_SOURCE_FLOAT;
+        SKY_SOURCE_LEVEL: u32 = SKY_SOURCE_LEVEL;
         BAND: f32 = bands::BAND;
         BAND_FADE: f32 = bands::BAND_FADE;
         BANDS_APART: f32 = bands::BANDS_APART;
@@ -352,7 +356,7 @@ mod tests {
 
     /// Constants that shaders have for themselves although Rust has one of the same name without the first word, here
     /// the second. The reason, and what was measured, stands beside the shader's.
-    const OTHERWISE: [(&str, &str); 9] = [
+    const OTHERWISE: [(&str, &str); 10] = [
         ("HORIZON_ROOM", "ROOM"),
         ("DEFERRED_GROUP", "GROUP"),
         ("OWN_GROUP", "GROUP"),
@@ -362,6 +366,7 @@ mod tests {
         ("KERR_STEPS", "STEPS"),
         ("END_STEP", "STEP"),
         ("END_STEPS", "STEPS"),
+        ("MOST_SKY_LIGHT", "LIGHT"),
     ];
 
     #[test]

@@ -160,6 +160,11 @@ impl StoredFormat {
     }
 }
 
+/// The sources of a level of a sky target: texels of half floats, of floats, or the level before.
+pub const SKY_SOURCE_HALF: u32 = 0;
+pub const SKY_SOURCE_FLOAT: u32 = 1;
+pub const SKY_SOURCE_LEVEL: u32 = 2;
+
 /// The value of a constant whose choice the kernel asks the uniform for while it runs.
 pub(in crate::gpu) const FROM_UNIFORM: u32 = u32::MAX;
 

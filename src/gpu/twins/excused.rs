@@ -80,6 +80,7 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("bloom/glare", "tile_light", BLOOM),
     ("bloom/upsample", "between upsample", BLOOM),
     ("emit/disk", "disk_at_crossing disk_opacity", Plumbing("the twin of `pixel_light` calls it")),
+    ("emit/shape", "has_shape", Plumbing("it asks what a kernel was compiled for")),
     ("emit/plane", "emitted_at_crossing", Plumbing("the twin of `pixel_light` calls it")),
     ("emit/volumes", "begin_medium next_part add_part width_at cut_of weight_of add_piece coefficients_at", VOLUMES),
     ("emit/course", "step_course", VOLUMES),

@@ -24,11 +24,16 @@ pub struct GpuSemaphore {
     values: Mutex<Values>,
 }
 
+/// So many values may run before it is asked which were reached.
+const MOST_RUNNING: usize = 64;
+
 /// The values that a timeline is to have.
 #[derive(Default)]
 struct Values {
     /// Those of frames that are not submitted yet, as many as a context takes at most.
     pending: BTreeSet<u64>,
+    /// Those that went to the queue, as far as they are not known to be reached.
+    running: BTreeSet<u64>,
     /// The largest one that went to the queue.
     submitted: u64,
 }
@@ -180,6 +185,15 @@ impl GpuSemaphore {
         let mut values = self.values();
         values.pending.remove(&value);
         values.submitted = values.submitted.max(value);
+        if self.kind != SemaphoreKind::Timeline {
+            return;
+        }
+        values.running.insert(value);
+        if values.running.len() > MOST_RUNNING {
+            // Where the driver does not tell, the oldest is the likeliest to be reached.
+            let reached = self.counter().ok().or(values.running.first().copied()).unwrap_or(0);
+            values.running.retain(|value| *value > reached);
+        }
     }
 
     /// Waits on the CPU until a timeline has a value; false: not within `time`. Errors: UNSUPPORTED for a binary one;
@@ -201,8 +215,9 @@ impl GpuSemaphore {
     pub fn signal(&self, value: u64) -> Result<()> {
         self.timeline()?;
         let values = self.values();
-        let (pending, now) = (values.asked(), self.counter()?);
-        if pending > now && value >= pending {
+        let now = self.counter()?;
+        let next = values.pending.iter().chain(&values.running).copied().filter(|value| *value > now).min();
+        if let Some(pending) = next.filter(|next| value >= *next) {
             return Err(Error::argument(format!(
                 "value is {value}; a frame that is under way will signal {pending}, and values grow"
             )));
