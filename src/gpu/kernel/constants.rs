@@ -4,7 +4,7 @@
 
 use super::sizes;
 use super::variant::{FROM_UNIFORM, MethodCode, MotionCode, PixelKind, ROWS_GROUP, SHAPE_SPOT};
-use super::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_HALF, SKY_SOURCE_LEVEL};
+use super::variant::{SKY_SOURCE_FLOAT, SKY_SOURCE_LEVEL};
 use crate::emit::hot_spot::HotSpot;
 use crate::emit::volume::{Shape, Volume};
 use crate::emit::{along, bands, clouds, filaments, glow, half, matter, medium, shape, streaks, turbulence, volumes};
@@ -160,7 +160,6 @@ fn all() -> Vec<(&'static str, String)> {
         STREAK_TAPS: f32 = streaks::STREAK_TAPS;
         STREAK_TEXEL: f32 = streaks::STREAK_TEXEL;
         STREAK_WHOLE: f32 = streaks::STREAK_WHOLE;
-        SKY_SOURCE_HALF: u32 = SKY_SOURCE_HALF;
         SKY_SOURCE_FLOAT: u32 = SKY_SOURCE_FLOAT;
         SKY_SOURCE_LEVEL: u32 = SKY_SOURCE_LEVEL;
         BAND: f32 = bands::BAND;
