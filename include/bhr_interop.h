@@ -329,8 +329,8 @@ typedef struct BhrSemaphoreValue {
 } BhrSemaphoreValue;
 
 /**
- * The semaphores that a frame waits for before it writes its target, and those that it signals when it has. Since
- * 0.2.0.
+ * The semaphores that a frame waits for before it reads the targets of occluder and sky and writes its own, and those
+ * that it signals when it has done both. Since 0.2.0.
  */
 typedef struct BhrSync {
     uint32_t struct_size;             /**< sizeof(BhrSync). */
@@ -357,7 +357,8 @@ typedef struct BhrSync {
  * grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach,
  * and where BhrCamera.eye has effect; SURFACE_LOST for a target or semaphore whose context was recovered;
  * DEVICE_LOST. After an error no semaphore is waited for or signalled, unless steps were submitted: then all are.
- * Since 0.2.0.
+ * The GPU makes frames in the order of their submission: one that waits for the signal of a frame or job that is
+ * submitted after it waits for ever, and the device counts as lost after 60 s. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_render_target(BhrContext *context,
                                           BhrTarget *target,
@@ -447,13 +448,14 @@ BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *
  * an equirect by a pass of the host's.
  *
  * When a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
- * bhr_set_occluder_target. It cannot be a frame's target as well. The map is shown in windows, too, and its pixels
- * are taken as bhr_set_sky_map takes numbers. Memory on the device: 19 bytes a texel of RGBA16F, 27 of RGBA32F. Any
- * thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format or shape, or a target of
- * another context; UNSUPPORTED for an image without TRANSFER_SRC usage, one that is larger than the device's textures
- * (a map takes one and a half times its rows), or one that its kernels do not reach (4096 x 2048 of RGBA32F they do
- * anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. (Backends that share nothing have no targets.)
- * Since 0.2.0.
+ * bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
+ * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. The map is shown in
+ * windows, too, and its pixels are taken as bhr_set_sky_map takes numbers. Memory on the device: 19 bytes a texel of
+ * RGBA16F, 27 of RGBA32F. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another
+ * format or shape, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage, one that is
+ * larger than the device's textures (a map takes one and a half times its rows), or one that its kernels do not reach
+ * (4096 x 2048 of RGBA32F they do anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. (Backends that
+ * share nothing have no targets.) Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *target);
 

@@ -49,6 +49,7 @@ impl<T> OnDevice<T> {
             // The images that hosts wrap have to be gone when this returns, not when another frame is made.
             device.bindings_forgotten();
             drop(thing);
+            device.let_go_of_done();
             drop(device);
         }
     }
@@ -186,16 +187,14 @@ impl Semaphore {
 /// A semaphore and its value, as a host gives them.
 pub type Use<'a> = (&'a Semaphore, u64);
 
-/// The semaphores of a frame on `device`. `binary`: whether there may be binary ones. Notes the values of the signals.
+/// The semaphores of a frame on `device`. `binary`: whether there may be binary ones.
 ///
-/// Errors: INVALID_ARGUMENT for a semaphore of another device, one that is signalled twice, a binary one, or a value
-/// that does not grow; SURFACE_LOST.
+/// Errors: INVALID_ARGUMENT for a semaphore of another device, one that is twice in a list, a binary one, or a signal
+/// that is not above the wait for the same; SURFACE_LOST.
 pub fn frame_sync(device: &Arc<Device>, waits: &[Use<'_>], signals: &[Use<'_>], binary: bool) -> Result<FrameSync> {
     let of = |(semaphore, value): &Use<'_>| {
         if semaphore.kind == SemaphoreKind::Binary && !binary {
-            return Err(Error::argument(
-                "sync has a BINARY semaphore; frames of bhr_render_target_async take TIMELINE ones only",
-            ));
+            return Err(Error::argument("sync has a BINARY semaphore; jobs take TIMELINE ones only"));
         }
         let value = (semaphore.kind == SemaphoreKind::Timeline).then_some(*value);
         Ok(SemaphoreUse { semaphore: semaphore.on(device)?, value })

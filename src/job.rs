@@ -174,7 +174,8 @@ impl JobRequest {
     }
 
     /// The job's end. The target is its owner's again.
-    fn finish(self, outcome: Result<FrameStats>) {
+    fn finish(mut self, outcome: Result<FrameStats>) {
+        self.let_go();
         let touched = self.target.is_touched();
         let outcome = outcome.map(|stats| self.stats.publish(stats, self.requested.elapsed())).map_err(|mut error| {
             if touched {
@@ -186,6 +187,16 @@ impl JobRequest {
         self.end(outcome);
     }
 
+    /// Lets go of what the host shares: whoever has seen the job's end may destroy it.
+    fn let_go(&mut self) {
+        self.scene.occluder = None;
+        if let JobTarget::Shared(frame) = &mut self.target {
+            frame.light = None;
+            frame.outputs.clear();
+            frame.sync = FrameSync::default();
+        }
+    }
+
     fn end(&self, outcome: Result<FrameStats>) {
         lock(&self.shared.outcome).get_or_insert(outcome);
         self.shared.changed.notify_all();
@@ -194,6 +205,7 @@ impl JobRequest {
 
 impl Drop for JobRequest {
     fn drop(&mut self) {
+        self.let_go();
         self.end(Err(Error::internal("a thread that renders in the background failed")));
     }
 }

@@ -4,6 +4,7 @@
 
 #import camera/observer
 #import camera/projection
+#import constants
 #import shared/frame
 
 // Distances of the host's things, scene lengths: with OCCLUDED a texel for each pixel of the image, else one.
@@ -25,7 +26,6 @@ fn set_occluder(place: vec2<f32>) {
     occluder_farthest = textureLoad(occluder, texel, 0).x / frame.occluder.z;
     let n = aberrate(look_direction(place.x, place.y)).n;
     let closest = max(-n.x, 0.0) / frame.place.x;
-    // Infinity may not be written as a constant.
-    occluder_ends = occluder_farthest < select(closest, 3e38, frame.occluder.w > 0.0);
+    occluder_ends = occluder_farthest < select(closest, NO_THING, frame.occluder.w > 0.0);
     occluder_passed = false;
 }

@@ -27,8 +27,8 @@ pub struct BhrSemaphoreValue {
     pub value: u64,
 }
 
-/// The semaphores that a frame waits for before it writes its target, and those that it signals when it has. Since
-/// 0.2.0.
+/// The semaphores that a frame waits for before it reads the targets of occluder and sky and writes its own, and those
+/// that it signals when it has done both. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrSync {
@@ -145,7 +145,8 @@ unsafe fn render_target(
 /// grow; INVALID_STATE for too many unfinished frames; UNSUPPORTED for rows that the device's kernels do not reach,
 /// and where BhrCamera.eye has effect; SURFACE_LOST for a target or semaphore whose context was recovered;
 /// DEVICE_LOST. After an error no semaphore is waited for or signalled, unless steps were submitted: then all are.
-/// Since 0.2.0.
+/// The GPU makes frames in the order of their submission: one that waits for the signal of a frame or job that is
+/// submitted after it waits for ever, and the device counts as lost after 60 s. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_target(
     context: *mut BhrContext,

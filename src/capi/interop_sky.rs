@@ -14,13 +14,14 @@ use super::status::BhrStatus;
 /// an equirect by a pass of the host's.
 ///
 /// When a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
-/// bhr_set_occluder_target. It cannot be a frame's target as well. The map is shown in windows, too, and its pixels
-/// are taken as bhr_set_sky_map takes numbers. Memory on the device: 19 bytes a texel of RGBA16F, 27 of RGBA32F. Any
-/// thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format or shape, or a target of
-/// another context; UNSUPPORTED for an image without TRANSFER_SRC usage, one that is larger than the device's textures
-/// (a map takes one and a half times its rows), or one that its kernels do not reach (4096 x 2048 of RGBA32F they do
-/// anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. (Backends that share nothing have no targets.)
-/// Since 0.2.0.
+/// bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
+/// destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. The map is shown in
+/// windows, too, and its pixels are taken as bhr_set_sky_map takes numbers. Memory on the device: 19 bytes a texel of
+/// RGBA16F, 27 of RGBA32F. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another
+/// format or shape, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage, one that is
+/// larger than the device's textures (a map takes one and a half times its rows), or one that its kernels do not reach
+/// (4096 x 2048 of RGBA32F they do anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. (Backends that
+/// share nothing have no targets.) Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_target(context: *mut BhrContext, target: *mut BhrTarget) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.

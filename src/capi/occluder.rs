@@ -22,7 +22,7 @@ use crate::scene::Occluder;
 /// With BHR_IMAGE_LENSED the host has drawn its things at their lensed places, by bhr_project_points at order 0, and
 /// each distance is BhrProjectedPoint.distance, from the camera straight to the thing itself. Then the ray ends at the
 /// thing wherever it is, behind the hole as well: beyond it nothing is left, of orders above 0 nothing at all, because
-/// their crossings lie beyond the direct images of all things.
+/// their crossings lie beyond the direct images of all things. A distance of 1e15 M or more is nothing, as infinity is.
 ///
 /// Matter with depth, volumes and hot spots, counts up to where the ray's straight distance from the camera is that of
 /// the thing, and where the ray does not end there also where it has come nearer again; each ray is summed by itself

@@ -302,6 +302,11 @@ impl JobQueue {
         };
         self.to_submit.notify_one();
         self.to_finish.notify_one();
+        for job_request in &left.1 {
+            if let JobTarget::Shared(frame) = &job_request.target {
+                frame.sync.withdraw();
+            }
+        }
         drop(left);
     }
 }

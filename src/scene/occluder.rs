@@ -32,6 +32,9 @@ pub struct Occluder {
     pub lensed: bool,
 }
 
+/// From this distance on, M, beyond which there are no observers, there is no thing that is met by rays.
+pub const NO_THING: f64 = 1e15;
+
 /// The part of a ray that an occluder leaves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shown {
@@ -79,9 +82,9 @@ impl Occluder {
 
 impl Shown {
     /// For an occluder at a distance, M, before a ray that comes nearest to the hole, on its straight line, at
-    /// `closest`, M. Things that are `lensed` are met by the ray itself.
+    /// `closest`, M. Things that are `lensed` are met by the ray itself; beyond all observers there is none.
     pub fn new(farthest: f64, closest: f64, lensed: bool) -> Self {
-        Self { farthest, ends: farthest < if lensed { f64::INFINITY } else { closest } }
+        Self { farthest, ends: farthest < if lensed { NO_THING } else { closest } }
     }
 
     /// Whether a crossing is seen by an observer at `eye`, chart.
@@ -142,7 +145,9 @@ mod tests {
             assert_eq!(shown.ends, farthest < 29.0);
             assert!(Shown::new(farthest, 29.0, true).ends);
         }
-        assert!(!Shown::new(f64::INFINITY, 29.0, true).ends);
+        for nothing in [f64::INFINITY, f32::MAX.into(), 1e15] {
+            assert!(!Shown::new(nothing, 29.0, true).ends, "{nothing}");
+        }
     }
 
     #[test]

@@ -4,10 +4,11 @@
 
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::sharing::GpuTarget;
-use super::turns::InUse;
+use super::turns::{InUse, Submitted};
 use super::wgpu_device::{Device, hangs_after};
 use crate::error::Result;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Waiting goes in pieces of this, between which the device may be lost.
 #[cfg(not(target_vendor = "apple"))]
@@ -40,7 +41,7 @@ impl Device {
         encoders: [wgpu::CommandEncoder; N],
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
-    ) -> Result<wgpu::SubmissionIndex> {
+    ) -> Result<Submitted> {
         self.submit_all(encoders.into(), waits, signals, Vec::new())
     }
 
@@ -49,7 +50,7 @@ impl Device {
         &self,
         encoder: Option<wgpu::CommandEncoder>,
         handover: &Handover<'_>,
-    ) -> Result<wgpu::SubmissionIndex> {
+    ) -> Result<Submitted> {
         #[cfg(not(target_vendor = "apple"))]
         if let Some(parts) = &self.vulkan {
             use super::vulkan::barrier;
@@ -86,7 +87,7 @@ impl Device {
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
         read: Vec<Arc<GpuTarget>>,
-    ) -> Result<wgpu::SubmissionIndex> {
+    ) -> Result<Submitted> {
         let queue = self.queue()?;
         let uploads = self.uploads.take();
         let carried = uploads.is_some();
@@ -104,7 +105,7 @@ impl Device {
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
         read: Vec<Arc<GpuTarget>>,
-    ) -> Result<wgpu::SubmissionIndex> {
+    ) -> Result<Submitted> {
         // Mistakes in what was recorded come to light here, before anything is staged.
         let commands =
             self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
@@ -112,7 +113,13 @@ impl Device {
         let submitted = {
             let _turn = self.turns.take();
             self.stage(queue, waits, signals);
-            let submitted = self.scoped("submitting work", |_| queue.submit(commands));
+            let submitted = self.scoped("submitting work", |_| {
+                let index = queue.submit(commands);
+                let done = Arc::new(AtomicBool::new(false));
+                let seen = done.clone();
+                queue.on_submitted_work_done(move || seen.store(true, Ordering::Release));
+                Submitted { index, done }
+            });
             if submitted.is_err() {
                 self.unstage(queue, waits, signals);
             }
@@ -132,7 +139,7 @@ impl Device {
     }
 
     /// Lets go of the semaphores, and of targets that were read, of submissions that have run.
-    fn let_go_of_done(&self) {
+    pub fn let_go_of_done(&self) {
         let mut done = Vec::new();
         let mut in_use = self.turns.in_use();
         while let Some(first) = in_use.front()

@@ -15,6 +15,7 @@ use crate::physics::integrator::{self, Method};
 use crate::physics::lens::{critical, kerr, schwarzschild};
 use crate::physics::trace::{CROSSINGS_KEPT, Fate};
 use crate::physics::{blackbody, flow, geodesic};
+use crate::scene::occluder::NO_THING;
 use crate::scene::refine::{self, Edge};
 use crate::scene::{ColourMap, Effects, MAX_CROSSINGS, MOST_OUTPUTS, Projection, RayOutputKind, ToneMap, View};
 use crate::sky::{filter, galaxy, grid, index, shift, stars};
@@ -71,6 +72,7 @@ fn all() -> Vec<(&'static str, String)> {
         OUTPUT_ORDER: u32 = RayOutputKind::Order;
         OUTPUT_DEFLECTION: u32 = RayOutputKind::Deflection;
         MOST_OUTPUTS: u32 = MOST_OUTPUTS;
+        NO_THING: f32 = NO_THING;
         FATE_CAPTURED: u32 = Fate::Captured;
         FATE_ESCAPED: u32 = Fate::Escaped;
         FATE_UNRESOLVED: u32 = Fate::Unresolved;
