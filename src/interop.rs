@@ -49,7 +49,7 @@ impl<T> OnDevice<T> {
             // The images that hosts wrap have to be gone when this returns, not when another frame is made.
             device.bindings_forgotten();
             drop(thing);
-            device.let_go_of_done();
+            device.forget_reads();
             drop(device);
         }
     }

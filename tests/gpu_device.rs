@@ -553,13 +553,8 @@ fn a_failure_is_looked_into_without_submitting_anything() {
     let submit = || device.submit(device.encoder("empty").unwrap()).unwrap();
     let layout = layout(&device).unwrap();
     // wgpu counts submissions, and shows the count nowhere else.
-    let number = |submitted: bhr::gpu::Submitted| {
-        format!("{:?}", submitted.index)
-            .chars()
-            .filter(char::is_ascii_digit)
-            .collect::<String>()
-            .parse::<u64>()
-            .unwrap()
+    let number = |index: wgpu::SubmissionIndex| {
+        format!("{index:?}").chars().filter(char::is_ascii_digit).collect::<String>().parse::<u64>().unwrap()
     };
     let before = number(submit());
     assert_eq!(number(submit()), before + 1);

@@ -31,7 +31,6 @@ pub use device::semaphores::{FrameSync, GpuSemaphore, SemaphoreUse};
 pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requirements};
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
-pub use device::turns::Submitted;
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};
 pub use frame::begun::{BegunFrame, ExtraCommands, Handed};
 pub use frame::setup::FrameTarget;

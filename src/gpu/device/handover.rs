@@ -4,11 +4,10 @@
 
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::sharing::GpuTarget;
-use super::turns::{InUse, Submitted};
+use super::turns::InUse;
 use super::wgpu_device::{Device, hangs_after};
 use crate::error::Result;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Waiting goes in pieces of this, between which the device may be lost.
 #[cfg(not(target_vendor = "apple"))]
@@ -41,7 +40,7 @@ impl Device {
         encoders: [wgpu::CommandEncoder; N],
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
-    ) -> Result<Submitted> {
+    ) -> Result<wgpu::SubmissionIndex> {
         self.submit_all(encoders.into(), waits, signals, Vec::new())
     }
 
@@ -50,7 +49,7 @@ impl Device {
         &self,
         encoder: Option<wgpu::CommandEncoder>,
         handover: &Handover<'_>,
-    ) -> Result<Submitted> {
+    ) -> Result<wgpu::SubmissionIndex> {
         #[cfg(not(target_vendor = "apple"))]
         if let Some(parts) = &self.vulkan {
             use super::vulkan::barrier;
@@ -87,7 +86,7 @@ impl Device {
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
         read: Vec<Arc<GpuTarget>>,
-    ) -> Result<Submitted> {
+    ) -> Result<wgpu::SubmissionIndex> {
         let queue = self.queue()?;
         let uploads = self.uploads.take();
         let carried = uploads.is_some();
@@ -105,7 +104,7 @@ impl Device {
         waits: &[SemaphoreUse],
         signals: &[SemaphoreUse],
         read: Vec<Arc<GpuTarget>>,
-    ) -> Result<Submitted> {
+    ) -> Result<wgpu::SubmissionIndex> {
         // Mistakes in what was recorded come to light here, before anything is staged.
         let commands =
             self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
@@ -113,13 +112,7 @@ impl Device {
         let submitted = {
             let _turn = self.turns.take();
             self.stage(queue, waits, signals);
-            let submitted = self.scoped("submitting work", |_| {
-                let index = queue.submit(commands);
-                let done = Arc::new(AtomicBool::new(false));
-                let seen = done.clone();
-                queue.on_submitted_work_done(move || seen.store(true, Ordering::Release));
-                Submitted { index, done }
-            });
+            let submitted = self.scoped("submitting work", |_| queue.submit(commands));
             if submitted.is_err() {
                 self.unstage(queue, waits, signals);
             }
@@ -132,14 +125,14 @@ impl Device {
         };
         if !waits.is_empty() || !signals.is_empty() || !read.is_empty() {
             let (submission, waits) = (submitted.clone(), waits.to_vec());
-            self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec(), _read: read });
+            self.turns.in_use().push_back(InUse { submission, waits, _signals: signals.to_vec(), read });
         }
         self.let_go_of_done();
         Ok(submitted)
     }
 
     /// Lets go of the semaphores, and of targets that were read, of submissions that have run.
-    pub fn let_go_of_done(&self) {
+    fn let_go_of_done(&self) {
         let mut done = Vec::new();
         let mut in_use = self.turns.in_use();
         while let Some(first) = in_use.front()
@@ -149,6 +142,14 @@ impl Device {
         }
         drop(in_use);
         drop(done);
+    }
+
+    /// A target ends: those that submissions have read, and which have run, go now instead of with the next submission.
+    pub fn forget_reads(&self) {
+        let reads = self.turns.in_use().iter().any(|one| !one.read.is_empty());
+        if reads {
+            self.let_go_of_done();
+        }
     }
 
     /// A host's own semaphore ends, which no submission under way keeps: it is not asked any more.

@@ -3,7 +3,6 @@
 //! is copied out while the next are being made. Knows nothing of pixels.
 
 use super::buffer::Buffer;
-use super::turns::Submitted;
 use super::wgpu_device::Device;
 use crate::deferred::hold;
 use crate::error::{Error, Result};
@@ -146,14 +145,19 @@ impl PendingReadback {
     /// Waits for `submission`, which fills the piece, and hands its bytes to `take`, as [`MappedReadback::part`] does.
     ///
     /// Errors: as [`Self::wait`] and [`MappedReadback::part`].
-    pub fn read<T>(self, device: &Device, submission: &Submitted, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
+    pub fn read<T>(
+        self,
+        device: &Device,
+        submission: &wgpu::SubmissionIndex,
+        take: impl FnOnce(&[u8]) -> Result<T>,
+    ) -> Result<T> {
         let size = self.size;
         self.wait(device, submission)?.part(0..size, take)
     }
 
     /// Waits for `submission`, which fills the piece. Errors: those of [`Device::wait`]; `Internal` when it was not
     /// submitted.
-    pub fn wait<'a>(mut self, device: &'a Device, submission: &Submitted) -> Result<MappedReadback<'a>> {
+    pub fn wait<'a>(mut self, device: &'a Device, submission: &wgpu::SubmissionIndex) -> Result<MappedReadback<'a>> {
         if self.mapped.is_none() {
             self.request(device)?;
         }

@@ -3,7 +3,6 @@
 
 use super::buffer::Buffer;
 use super::readback::{PendingReadback, Readback};
-use super::turns::Submitted;
 use super::wgpu_device::Device;
 use crate::error::{Error, Result};
 
@@ -75,7 +74,7 @@ impl GpuTimer {
 }
 
 /// Nanoseconds that the passes of `submission` took together. Errors: as [`PendingReadback::read`].
-pub fn read_time(device: &Device, copied: PendingReadback, submission: &Submitted) -> Result<u64> {
+pub fn read_time(device: &Device, copied: PendingReadback, submission: &wgpu::SubmissionIndex) -> Result<u64> {
     let ticks = copied.read(device, submission, sum_of_spans)?;
     Ok(in_nanoseconds(device, ticks))
 }

@@ -6,7 +6,6 @@ use super::external::QueueLock;
 use super::semaphores::SemaphoreUse;
 use super::sharing::GpuTarget;
 use std::collections::VecDeque;
-use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The turns that threads take with a queue, and the semaphores that are in use.
@@ -16,20 +15,12 @@ pub struct QueueTurns {
     in_use: Mutex<VecDeque<InUse>>,
 }
 
-/// Work that went to the queue.
-#[derive(Clone, Debug)]
-pub struct Submitted {
-    pub index: wgpu::SubmissionIndex,
-    /// It has run, and a poll has seen it.
-    pub(in crate::gpu::device) done: Arc<AtomicBool>,
-}
-
 /// The semaphores of a submission that may not have run, and targets that it reads without wgpu knowing.
 pub struct InUse {
-    pub submission: Submitted,
+    pub submission: wgpu::SubmissionIndex,
     pub waits: Vec<SemaphoreUse>,
     pub _signals: Vec<SemaphoreUse>,
-    pub _read: Vec<Arc<GpuTarget>>,
+    pub read: Vec<Arc<GpuTarget>>,
 }
 
 /// While it lives, no other thread touches the queue.

@@ -6,7 +6,7 @@
 use super::adapter::{Adapter, device_descriptor};
 use super::driver_lock;
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
-use super::turns::{HostTurn, QueueTurns, Submitted};
+use super::turns::{HostTurn, QueueTurns};
 #[cfg(not(target_vendor = "apple"))]
 use super::vulkan::{self, parts::VulkanParts};
 use crate::deferred::hold;
@@ -340,19 +340,18 @@ impl Device {
 
     /// Starts what was written since the last submission, and then what `encoder` has recorded. Errors: as
     /// [`Self::scoped`].
-    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<Submitted> {
+    pub fn submit(&self, encoder: wgpu::CommandEncoder) -> Result<wgpu::SubmissionIndex> {
         self.submit_handed([encoder], &[], &[])
     }
 
     /// Waits until `submission` has run and the callbacks of its buffers were called.
     ///
     /// Errors: `DeviceLost`, also when the device hangs for 60 s.
-    pub fn wait(&self, submission: &Submitted) -> Result<()> {
+    pub fn wait(&self, submission: &wgpu::SubmissionIndex) -> Result<()> {
         self.faults.check("waiting for work")?;
         let deadline = Instant::now() + hangs_after();
         loop {
-            let submission_index = Some(submission.index.clone());
-            let wait = wgpu::PollType::Wait { submission_index, timeout: Some(WAIT_SLICE) };
+            let wait = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(WAIT_SLICE) };
             match self.poll(wait)? {
                 Ok(_) => return self.check(),
                 Err(wgpu::PollError::WrongSubmissionIndex(..)) => {
@@ -388,15 +387,14 @@ impl Device {
     }
 
     /// Whether `submission` has run. Errors: `DeviceLost`.
-    ///
-    /// It does not wait for no time instead: wgpu 30 panics where a wait runs out of time while another thread's poll
-    /// finds that all has run (in the function `maintain` of wgpu-core).
-    pub fn is_done(&self, submission: &Submitted) -> Result<bool> {
-        if !submission.done.load(Ordering::Acquire) {
-            let _ = self.poll(wgpu::PollType::Poll)?;
+    pub fn is_done(&self, submission: &wgpu::SubmissionIndex) -> Result<bool> {
+        let look = wgpu::PollType::Wait { submission_index: Some(submission.clone()), timeout: Some(Duration::ZERO) };
+        let looked = self.poll(look)?;
+        if let Err(wgpu::PollError::WrongSubmissionIndex(..)) = looked {
+            self.learn_loss()?;
         }
         self.check()?;
-        Ok(submission.done.load(Ordering::Acquire))
+        Ok(looked.is_ok())
     }
 
     /// [`Self::submit`], then [`Self::wait`].

@@ -13,7 +13,6 @@ use super::uniforms::pass_of;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer::{self, GpuTimer};
-use crate::gpu::device::turns::Submitted;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{Kernels, check_groups, pixel_groups};
 use crate::gpu::kernel::key::KernelKey;
@@ -100,7 +99,7 @@ pub struct OutputBuffers {
 /// A tile that has been submitted.
 struct OutputTile {
     tile: Tile,
-    submission: Submitted,
+    submission: wgpu::SubmissionIndex,
     copied: PendingReadback,
     counts: bool,
     tick_bytes: u64,

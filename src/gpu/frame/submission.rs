@@ -11,7 +11,6 @@ use crate::gpu::device::handover::Handover;
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer;
 use crate::gpu::device::timer::GpuTimer;
-use crate::gpu::device::turns::Submitted;
 use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{check_groups, pixel_groups};
 use crate::gpu::kernel::variant::PixelTarget;
@@ -34,7 +33,7 @@ const NO_CELLS: Tile = Tile { x: 0, y: 0, width: 0, height: 0 };
 
 /// A submission that has not been read yet.
 pub struct Submission {
-    submission: Submitted,
+    submission: wgpu::SubmissionIndex,
     /// Ticks of the passes, from `TICKS` on; the sum of the steps; packed pixels.
     copied: PendingReadback,
     tick_bytes: u64,
@@ -215,7 +214,7 @@ impl FrameBuffers {
 
 impl Submission {
     /// The submission to wait for.
-    pub fn submission(&self) -> &Submitted {
+    pub fn submission(&self) -> &wgpu::SubmissionIndex {
         &self.submission
     }
 
