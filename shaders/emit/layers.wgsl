@@ -26,6 +26,9 @@ override ALONE: bool = false;
 // Nearer to the axis (sin^2 theta) and to the horizon (1 - r+ / r) parabolas do not tell azimuth and g.
 const ROUND_AXIS: f32 = 0.1;
 const ROUND_HORIZON: f32 = 0.1;
+// Nor do they tell levels of blur, which go as ln of a pixel's width, where that grows by more than this factor along a
+// piece: next to an observer within the matter, where it grows from 0.
+const MOST_WIDENING: f32 = 4.0;
 
 // Whether so much matter is in front that what is behind does not matter.
 fn is_dark() -> bool {
@@ -191,7 +194,8 @@ fn add_alone(
     let u = vec2<f32>(quintic_at(course.u, ends.x), quintic_at(course.u, ends.y));
     let cosines = vec2<f32>(quintic_at(course.n_z, ends.x), quintic_at(course.n_z, ends.y));
     let is_smooth = max(u.x, u.y) * c.r_plus < 1.0 - ROUND_HORIZON
-        && max(cosines.x * cosines.x, cosines.y * cosines.y) < 1.0 - ROUND_AXIS;
+        && max(cosines.x * cosines.x, cosines.y * cosines.y) < 1.0 - ROUND_AXIS
+        && max(widths.x, widths.y) <= MOST_WIDENING * min(widths.x, widths.y);
     // A block is a cell, or four layers. u32 of NaN may be any number.
     let blocks = clamp(u32(round(select(count, count / BLOCK_LAYERS, STRUCTURE))), 1u, u32(MOST_CELLS));
     // Where they are not smooth each block has what changes slowly for itself, at places within it: the last block
