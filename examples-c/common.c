@@ -56,6 +56,7 @@ const Choice PROJECTIONS[] = {{"perspective", BHR_PROJECTION_PERSPECTIVE},
                               {"fisheye", BHR_PROJECTION_FISHEYE},
                               {"equirect", BHR_PROJECTION_EQUIRECT},
                               {"cube", BHR_PROJECTION_CUBE},
+                              {"frustum", BHR_PROJECTION_FRUSTUM},
                               {NULL, 0}};
 
 const char *choice_name(const Choice *choices, int32_t value) {

@@ -296,7 +296,8 @@ static int run(int argc, char **argv) {
     begin_look(&input.scene);
     options_add(&options, own, COUNT_OF(own));
     options_add_scene(&options, &input,
-                      SCENE_PRESET | SCENE_DISK | SCENE_MATTER | SCENE_SKY | SCENE_FILM | SCENE_EFFECTS);
+                      SCENE_PRESET | SCENE_LENS | SCENE_EYES | SCENE_DISK | SCENE_MATTER | SCENE_SKY | SCENE_FILM |
+                          SCENE_EFFECTS);
     int result = options_parse(options.list, options.count, argc, argv);
     if (result != 0) {
         return result;

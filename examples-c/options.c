@@ -59,6 +59,22 @@ static const char *read_uint(const char *text, uint32_t *out) {
     return text;
 }
 
+/* How many numbers a value has that is numbers with commas between them; 0: it is none. */
+static int number_count(OptionKind kind) {
+    switch (kind) {
+    case OPTION_DOUBLE:
+        return 1;
+    case OPTION_PAIR:
+        return 2;
+    case OPTION_VECTOR:
+        return 3;
+    case OPTION_FOUR:
+        return 4;
+    default:
+        return 0;
+    }
+}
+
 /* Reads `count` numbers, four at most, with commas between them. */
 static int read_numbers(const char *text, int count, double *out) {
     double value[4];
@@ -129,13 +145,12 @@ static int read_value(const Option *option, const char *text) {
     double        number;
     uint32_t      whole;
     switch (option->kind) {
-    case OPTION_DOUBLE:
     case OPTION_DEGREES:
         end = option_read_double(text, &number);
         if (end == NULL || *end != '\0') {
             return 0;
         }
-        *(double *)option->target = option->kind == OPTION_DEGREES ? number * PI / 180.0 : number;
+        *(double *)option->target = number * PI / 180.0;
         return 1;
     case OPTION_UINT:
         end = read_uint(text, &whole);
@@ -146,10 +161,11 @@ static int read_value(const Option *option, const char *text) {
         return 1;
     case OPTION_UINT64:
         return option_read_uint64(text, option->target);
+    case OPTION_DOUBLE:
+    case OPTION_PAIR:
     case OPTION_VECTOR:
-        return read_numbers(text, 3, option->target);
-    case OPTION_QUATERNION:
-        return read_numbers(text, 4, option->target);
+    case OPTION_FOUR:
+        return read_numbers(text, number_count(option->kind), option->target);
     case OPTION_SIZE:
         return read_size(text, option->target);
     case OPTION_CHOICE:
@@ -230,9 +246,10 @@ static void print_default(FILE *out, const Option *option) {
     const uint32_t *whole = option->target;
     switch (option->kind) {
     case OPTION_DOUBLE:
+    case OPTION_PAIR:
     case OPTION_VECTOR:
-    case OPTION_QUATERNION:
-        for (int i = 0; i < (option->kind == OPTION_DOUBLE ? 1 : option->kind == OPTION_VECTOR ? 3 : 4); i++) {
+    case OPTION_FOUR:
+        for (int i = 0; i < number_count(option->kind); i++) {
             if (numbers[i] == numbers[i]) {
                 fprintf(out, "%s%.10g", i == 0 ? "; default " : ",", numbers[i]);
             }

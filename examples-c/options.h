@@ -16,8 +16,9 @@ typedef enum OptionKind {  /* what Option.target points to */
     OPTION_BIT,            /* uint32_t: gets the bit of the first of `choices`; takes no value */
     OPTION_DOUBLE,         /* double */
     OPTION_DEGREES,        /* double: radians, written in degrees */
+    OPTION_PAIR,           /* double[2], written X,Y */
     OPTION_VECTOR,         /* double[3], written X,Y,Z */
-    OPTION_QUATERNION,     /* double[4], written X,Y,Z,W */
+    OPTION_FOUR,           /* double[4], written A,B,C,D */
     OPTION_UINT,           /* uint32_t */
     OPTION_UINT64,         /* uint64_t */
     OPTION_SIZE,           /* uint32_t[2], written WxH */

@@ -15,6 +15,8 @@ static const Choice DISK_REFERENCES[] = {{"hottest", BHR_DISK_AT_HOTTEST}, {"med
 static const Choice SKY_PARTS[] = {{"stars", BHR_SKY_STARS}, {"procedural", BHR_SKY_PROCEDURAL},
                                    {"milky-way", BHR_SKY_MILKY_WAY}, {"map", BHR_SKY_MAP}, {"grid", BHR_SKY_GRID},
                                    {NULL, 0}};
+static const Choice EYES[] = {
+    {"middle", BHR_EYE_MIDDLE}, {"left", BHR_EYE_LEFT}, {"right", BHR_EYE_RIGHT}, {NULL, 0}};
 static const Choice EFFECTS[] = {{"doppler", BHR_EFFECT_DOPPLER_SHIFT}, {"gravity", BHR_EFFECT_GRAVITY_SHIFT},
                                  {"beaming", BHR_EFFECT_BEAMING}, {"delay", BHR_EFFECT_LIGHT_DELAY}, {NULL, 0}};
 
@@ -57,6 +59,14 @@ static const SceneOption TABLE[] = {
      "vertical field of view; fisheye: across", NULL},
     {"--projection", SCENE_CAMERA, OPTION_CHOICE, AT(scene.camera.projection), NULL, NULL,
      "equirect: W = 2 H; cube: W = 6 H", PROJECTIONS},
+    {"--frustum", SCENE_LENS, OPTION_FOUR, AT(scene.camera.tan_left), "L,R,D,U", "L below R, D below U",
+     "tangents of the picture's left, right, lower and upper border, for --projection frustum", NULL},
+    {"--jitter", SCENE_LENS, OPTION_PAIR, AT(scene.camera.jitter), "X,Y", "-1 to 1",
+     "pixels by which a flat picture moves to the right and down", NULL},
+    {"--eye", SCENE_EYES, OPTION_CHOICE, AT(scene.camera.eye), NULL, NULL,
+     "for --projection equirect and --bloom 0: that of a pair for 360-degree stereo", EYES},
+    {"--eye-distance", SCENE_EYES, OPTION_DOUBLE, AT(eye_distance), "X", "from 0 on",
+     "of the two eyes in M, for --eye; 0: no stereo", NULL},
 
     {"--no-disk", SCENE_DISK, OPTION_UNFLAG, AT(scene.has_disk), NULL, NULL, "leaves the disk out", NULL},
     {"--retrograde", SCENE_DISK, OPTION_BIT, AT(scene.disk.flags), NULL, NULL, "the disk turns towards -azimuth",
@@ -94,7 +104,7 @@ static const SceneOption TABLE[] = {
     {"--stars-brightness", SCENE_SKY, OPTION_DOUBLE, AT(scene.sky.stars_brightness), "X", "0 to 1e6", "a factor", NULL},
     {"--map-brightness", SCENE_SKY, OPTION_DOUBLE, AT(scene.sky.map_brightness), "X", "0 to 1e6",
      "a factor on map and Milky Way", NULL},
-    {"--sky-orientation", SCENE_SKY, OPTION_QUATERNION, AT(scene.sky.orientation), "X,Y,Z,W", "length 1",
+    {"--sky-orientation", SCENE_SKY, OPTION_FOUR, AT(scene.sky.orientation), "X,Y,Z,W", "length 1",
      "a turn from the sky's axes to the scene's", NULL},
     {"--sky-seed", SCENE_SKY, OPTION_UINT64, AT(scene.sky.seed), "N", NULL, "of the procedural stars", NULL},
 
@@ -240,6 +250,7 @@ int scene_input_finish(SceneInput *input, BhrContext *context, const Options *op
     }
     if (status >= 0) {
         input->scene.time = input->time * input->scene.mass;
+        input->scene.camera.eye_distance = input->eye_distance * input->scene.mass;
         status = place_camera(input);
     }
     return status < 0 ? report_failure("set the scene", status) : 0;

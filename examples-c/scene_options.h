@@ -19,7 +19,9 @@
 #define SCENE_VIEW 256u
 #define SCENE_QUALITY 512u
 #define SCENE_MATTER 1024u /* volumes and hot spots */
-#define ALL_OF_SCENE 2047u
+#define SCENE_LENS 2048u   /* the picture's borders as hosts have them */
+#define SCENE_EYES 4096u   /* 360-degree stereo, which windows do not show */
+#define ALL_OF_SCENE 8191u
 
 #define MOST_OPTIONS 96u
 
@@ -32,6 +34,7 @@ typedef struct SceneInput {
     double      distance, azimuth, elevation;  /* about the hole: in M, degrees */
     double      position[3], forward[3];       /* in M; NaN: by those above, and towards the hole */
     double      time;                          /* in M */
+    double      eye_distance;                  /* in M */
     const char *sky_map;                       /* a file; NULL: none */
     TextList    volumes, hot_spots;            /* as matter.h reads them */
 } SceneInput;

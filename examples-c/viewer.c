@@ -483,7 +483,8 @@ static int run(int argc, char **argv) {
     scene_input_begin(&input, &SCENE_DEFAULTS);
     input.preset_options.matter = BHR_PRESET_MATTER_AUTO;
     options_add(&options, first, COUNT_OF(first));
-    options_add_scene(&options, &input, ALL_OF_SCENE & ~SCENE_QUALITY); /* the quality follows the rate */
+    /* The quality follows the rate, and a window shows no eye of a pair. */
+    options_add_scene(&options, &input, ALL_OF_SCENE & ~(SCENE_QUALITY | SCENE_EYES));
     options_add(&options, last, COUNT_OF(last));
     int result = options_parse(options.list, options.count, argc, argv);
     if (result != 0) {
