@@ -57,15 +57,31 @@ impl SoftEdges {
     }
 }
 
-/// The radius of the profile's hottest ring, and the flux there (`page_thorne`), for the spin asked for last: scenes
-/// ask again and again.
+/// The value of `find` at `key`, which `last` holds if it was asked for last: frames of a scene ask again and again.
+fn asked_last<K: PartialEq + Copy, V: Copy>(last: &Mutex<Option<(K, V)>>, key: K, find: impl FnOnce(K) -> V) -> V {
+    let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+    match *last {
+        Some((asked, value)) if asked == key => value,
+        _ => last.insert((key, find(key))).1,
+    }
+}
+
+/// The radius of the profile's hottest ring, and the flux there (`page_thorne`).
 fn hottest_ring(matter_spin: f64) -> (f64, f64) {
     static LAST: Mutex<Option<(f64, (f64, f64))>> = Mutex::new(None);
-    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
-    match *last {
-        Some((spin, ring)) if spin == matter_spin => ring,
-        _ => last.insert((matter_spin, page_thorne_maximum(matter_spin))).1,
+    asked_last(&LAST, matter_spin, page_thorne_maximum)
+}
+
+/// The radius, M, from which on the flux is `share` of the hottest ring's, or more.
+fn flux_suffices(matter_spin: f64, share: f64) -> f64 {
+    let (r, most) = hottest_ring(matter_spin);
+    // The flux rises from the ISCO to the hottest ring: bisection finds where it is as large as is needed.
+    let (mut faint, mut bright) = (isco(matter_spin), r);
+    for _ in 0..30 {
+        let middle = 0.5 * (faint + bright);
+        if page_thorne(matter_spin, middle) >= share * most { bright = middle } else { faint = middle }
     }
+    bright
 }
 
 impl ThinDisk {
@@ -129,15 +145,8 @@ impl ThinDisk {
 
     /// The radius, M, from which on the flux is as large as an opaque disk with soft edges needs.
     fn flux_suffices(&self) -> f64 {
-        let (r, most) = hottest_ring(self.matter_spin);
-        // The flux rises from the ISCO to the hottest ring: bisection finds where it is as large as is needed.
-        let (mut faint, mut bright) = (isco(self.matter_spin), r);
-        for _ in 0..30 {
-            let middle = 0.5 * (faint + bright);
-            let suffices = page_thorne(self.matter_spin, middle) >= self.disk.edge_softness * most;
-            if suffices { bright = middle } else { faint = middle }
-        }
-        bright
+        static LAST: Mutex<Option<([f64; 2], f64)>> = Mutex::new(None);
+        asked_last(&LAST, [self.matter_spin, self.disk.edge_softness], |[spin, share]| flux_suffices(spin, share))
     }
 
     /// The change of 1/r over which the disk fades from nothing to its opacity at its outer and its inner edge; 0 where

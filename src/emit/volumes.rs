@@ -102,8 +102,10 @@ type Texels = ArrayVec<f64, { Volume::MOST }>;
 /// All matter with depth of a frame.
 #[derive(Clone, Debug, Default)]
 pub struct Volumes {
-    pub volumes: ArrayVec<VolumeMatter, { Volume::MOST }>,
-    pub hot_spots: ArrayVec<SpotMatter, { HotSpot::MOST }>,
+    /// [`Volume::MOST`] at most; no array, which would be copied with each of a frame's settings.
+    pub volumes: Vec<VolumeMatter>,
+    /// [`HotSpot::MOST`] at most.
+    pub hot_spots: Vec<SpotMatter>,
     effects: Effects,
     pub when: When,
     accuracy: Accuracy,

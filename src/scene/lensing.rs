@@ -45,7 +45,8 @@ impl Scene {
     /// How the rays of a frame of `pixels` pixels (the full frame's, of which an image may be a part) are found by an
     /// observer at `frame`.
     pub fn lensing(&self, frame: &LocalFrame, pixels: u64, kerr_threshold: KerrThreshold) -> Lensing {
-        let needs = self.emitters().needs();
+        let emitters = self.emitters();
+        let needs = emitters.needs();
         // METRIC shows places where no disk is; tables end before. They hold no steps, and no headings.
         if self.quality.method != Method::Auto || self.view == View::Metric || needs.parts || needs.headings {
             return Lensing::Traced;
@@ -60,7 +61,7 @@ impl Scene {
         if frame.a == 0.0 && range.contains(&frame.r) && pays(SCHWARZSCHILD_THRESHOLD) {
             return Lensing::Schwarzschild;
         }
-        let settings = self.pixel_settings();
+        let settings = self.pixel_settings_of(&emitters);
         let layers = settings.max_crossings.div_ceil(if needs.places { 1 } else { 4 });
         let fits = layers <= if frame.r <= KERR_NEAR { KERR_ORDERS_NEAR } else { KERR_ORDERS };
         if frame.a != 0.0 && critical::reaches(frame) && fits && pays(kerr_threshold.0) {

@@ -47,14 +47,18 @@ impl Quality {
 impl Scene {
     /// The settings of the f64 tracer for pixels.
     pub fn pixel_settings(&self) -> Settings {
+        self.pixel_settings_of(&self.emitters())
+    }
+
+    /// The same for those who have [`Self::emitters`] at hand, which take a while to make.
+    pub fn pixel_settings_of(&self, emitters: &Emitters) -> Settings {
         let mut settings = self.quality.ray_settings(self.hole.spin);
         if self.quality.method == Method::Auto {
             settings.step = PIXEL_STEP;
         }
         settings.max_crossings = self.quality.max_disk_order as usize + 1;
-        let emitters = self.emitters();
         settings.delay = emitters.needs().delays;
-        settings.capture_u = self.pixel_capture_u(&emitters);
+        settings.capture_u = self.pixel_capture_u(emitters);
         settings.opaque_u = emitters.opaque_u().filter(|_| self.view == super::View::Light);
         settings
     }

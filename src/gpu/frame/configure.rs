@@ -7,6 +7,7 @@ use super::settings::{for_f32, variant};
 use super::setup::{Setup, ShadingVariants};
 use super::tracer::GpuTracer;
 use super::uniforms::FrameUniform;
+use crate::emit::Emitters;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
@@ -42,7 +43,7 @@ impl GpuTracer {
     pub(in crate::gpu) fn set_up(&self, scene: &Scene, request: &FrameRequest, target: PixelTarget) -> Result<Setup> {
         let lens = scene.lens(&request.region)?;
         let emitters = scene.emitters();
-        let settings = for_f32(scene.pixel_settings());
+        let settings = for_f32(scene.pixel_settings_of(&emitters));
         let samples = if scene.view == View::Light { scene.quality.samples_per_pixel } else { 1 };
         let film = FilmParams::new(&scene.film, scene.view, request.format, request.transparent);
         let bloom = Bloom::new(scene, request.format, [request.width, request.height], request.is_whole())?;
@@ -82,8 +83,8 @@ impl GpuTracer {
             several_samples: samples > 1,
             rows: target == PixelTarget::Rows,
         };
-        let record_setup = self.record_setup(scene, &lens, &settings, &request.region, projection);
-        let uniform = FrameUniform::new(scene, &lens, &settings, record_setup.crossings)?;
+        let record_setup = self.record_setup(scene, &emitters, &lens, &settings, &request.region, projection);
+        let uniform = FrameUniform::new(scene, &emitters, &lens, &settings, record_setup.crossings)?;
         let clouds = emitters.volumes.has_structure().then(|| CloudsUniform::new(&emitters.volumes));
         Ok(Setup { record_setup, variants, samples, uniform, clouds, film, bloom })
     }
@@ -92,13 +93,13 @@ impl GpuTracer {
     fn record_setup(
         &self,
         scene: &Scene,
+        emitters: &Emitters,
         lens: &Lens,
         settings: &Settings,
         region: &Region,
         projection: Option<Projection>,
     ) -> RecordSetup {
         let observer = lens.observer.frame;
-        let emitters = scene.emitters();
         let pattern = emitters.needs().places;
         let (delay, moving) = (settings.delay, lens.observer.beta != DVec3::ZERO);
         let pixels = u64::from(region.full_width) * u64::from(region.full_height);

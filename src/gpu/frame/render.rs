@@ -159,15 +159,15 @@ impl GpuTracer {
         let pixel_bytes = if delivery.is_packed() { request.format.bytes_per_pixel() as u64 } else { 0 };
         let sums = if samples > 1 { 2 * RADIANCE_BYTES } else { 0 };
         // A pixel looked up takes as long as a step or two; of a Kerr lens some may have to be integrated, all of them
-        // in a view of nothing but the shadow's edge.
-        let steps_of = |source| match source {
+        // in a view of nothing but the shadow's edge: three rays of each for a picture, one for outputs.
+        let steps_of = |source, in_kerr| match source {
             RecordSource::Traced => scene.expected_steps(),
             RecordSource::Schwarzschild { .. } => 2,
-            RecordSource::Kerr { .. } => 8,
+            RecordSource::Kerr { .. } => in_kerr,
         };
         let traced = beside.as_ref().filter(|beside| beside.takes_rays());
-        let ray_steps = steps_of(setup.record_setup.source)
-            + traced.map_or(0, |beside| steps_of(beside.setup.record_setup.source).div_ceil(samples.into()));
+        let ray_steps = steps_of(setup.record_setup.source, 8)
+            + traced.map_or(0, |beside| steps_of(beside.setup.record_setup.source, 3).div_ceil(samples.into()));
         // Packed pixels have two staging buffers.
         let bytes = setup.record_setup.bytes_per_pixel()
             + beside.as_ref().map_or(0, BesideSetup::bytes_per_pixel)

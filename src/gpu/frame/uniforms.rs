@@ -3,6 +3,7 @@
 //! by field. The only place where f64 becomes f32 on its way to the GPU.
 
 use super::matter::{MatterUniform, uniforms_of};
+use crate::emit::Emitters;
 use crate::emit::bands::{Bands, MOST_BANDS};
 use crate::emit::half::Evenness;
 use crate::emit::thin_disk::SoftEdges;
@@ -149,13 +150,12 @@ impl FrameUniform {
     }
 
     /// `settings`: those of f32 pixels; `crossings`: most that a traced record holds. Errors: as `Scene::lens`.
-    pub fn new(scene: &Scene, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
+    pub fn new(scene: &Scene, emitters: &Emitters, lens: &Lens, settings: &Settings, crossings: u32) -> Result<Self> {
         let frame = &lens.observer.frame;
         let a = scene.hole.spin;
         let disk = scene.disk.unwrap_or_default();
         let sky = scene.chart_to_sky();
         let isco = scene.disk_isco();
-        let emitters = scene.emitters();
         let turbulence = emitters.disk.and_then(|disk| disk.turbulence);
         let [hottest, least] = emitters.disk.and_then(|disk| disk.least_profile).unwrap_or_default();
         let [least_light, tolerance] = evenness(scene);

@@ -134,7 +134,8 @@ fn made(kind: Kind, number: u32) -> View {
     let full_width = if scene.camera.projection == Projection::Cube { 6 * height } else { 160 };
     let region = Region { full_width, full_height: height, x: 0, y: 0 };
     let lens = scene.lens(&region).unwrap_or_else(|error| panic!("scene {number}: {error}"));
-    let mut uniform = FrameUniform::new(&scene, &lens, &for_f32(scene.pixel_settings()), 4).expect("a uniform");
+    let mut uniform =
+        FrameUniform::new(&scene, &scene.emitters(), &lens, &for_f32(scene.pixel_settings()), 4).expect("a uniform");
     let size = sky::map().levels()[0].size;
     uniform.map_sizes = [size[0], size[1], size[0], size[1]];
     View { scene, lens, uniform }
