@@ -16,6 +16,9 @@
 #requires fn next_crossing() -> Crossing
 #requires fn medium_before(k: u32) -> vec4<f32>
 #requires fn with_sky(record: Record) -> Record
+#requires fn wanted_output(k: u32) -> vec4<u32>
+#requires fn output_count() -> u32
+#requires fn output_crossings() -> u32
 #requires fn put_numbers(k: u32, at: u32, place: vec2<u32>, bits: vec4<u32>)
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -33,7 +36,7 @@ fn light_table(i: u32) -> vec4<f32> {
 // Puts the numbers of output `k`, of the tile's pixel `id`, as bits: f32 constants may be neither NaN nor infinite.
 fn put_output(k: u32, id: vec2<u32>, bits: vec4<u32>) {
     let to = outputs.places[k];
-    put_numbers(k, to.x + id.y * to.y + id.x * outputs.wanted[k].z, to.zw + id, bits);
+    put_numbers(k, to.x + id.y * to.y + id.x * wanted_output(k).z, to.zw + id, bits);
 }
 
 fn to_scene(v: vec3<f32>) -> vec3<f32> {
@@ -116,7 +119,7 @@ fn take_record(id: vec2<u32>, record: Record) {
     var given = 0u;
     var first: Crossing;
     // max_crossings bounds what next_crossing gives, and outputs.crossings is no more.
-    for (var k = 0u; k < not_inlined(outputs.crossings); k += 1u) {
+    for (var k = 0u; k < min(output_crossings(), not_inlined(outputs.crossings)); k += 1u) {
         var crossing = next_crossing();
         if crossing.u <= 0.0 {
             break;
@@ -129,8 +132,8 @@ fn take_record(id: vec2<u32>, record: Record) {
         if k == 0u {
             first = crossing;
         }
-        for (var i = 0u; i < outputs.count; i += 1u) {
-            let wanted = outputs.wanted[i];
+        for (var i = 0u; i < output_count(); i += 1u) {
+            let wanted = wanted_output(i);
             let of_crossing = wanted.x == OUTPUT_POSITION || wanted.x == OUTPUT_DISK;
             // Lanes that have left the loop may go on writing (Mesa 22.3): what they write must be no other's.
             if crossing.u > 0.0 && seen && of_crossing && wanted.y == k {
@@ -143,8 +146,8 @@ fn take_record(id: vec2<u32>, record: Record) {
         open *= medium_before(given).w;
     }
     let look = look_direction(place.x, place.y);
-    for (var i = 0u; i < outputs.count; i += 1u) {
-        let wanted = outputs.wanted[i];
+    for (var i = 0u; i < output_count(); i += 1u) {
+        let wanted = wanted_output(i);
         let of_crossing = wanted.x == OUTPUT_POSITION || wanted.x == OUTPUT_DISK;
         if !(of_crossing && seen && wanted.y < given) {
             put_output(i, id, ray_output(wanted.x, seen, whole, first, open, look));

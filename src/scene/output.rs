@@ -30,14 +30,14 @@ pub enum Output {
 }
 
 /// Numbers from a ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RayOutput {
     pub kind: RayOutputKind,
     /// The crossing, among those that the ray has within the disk's radii; for POSITION and DISK.
     pub index: u32,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum RayOutputKind {
     Depth = 0,

@@ -99,7 +99,7 @@ impl GpuTracer {
         for (kind, (output, target)) in kinds.iter_mut().zip(outputs) {
             let (place, found) = Place::of(*output, target)?;
             places.push(place);
-            *kind = Some(found);
+            *kind = Some((*output, found));
         }
         check_bound(&self.device, &places, setup.record_setup.source)?;
         let (own, looked_up) = (&setup.record_setup, |setup: &Setup| setup.record_setup.source != RecordSource::Traced);

@@ -4,6 +4,7 @@
 
 use super::variant::{FilmVariant, OutputPlace, OutputPlaces, PixelTarget, RecordSource, StoredFormat};
 pub use crate::gpu::device::texture::{SCREEN, TextureKind};
+use crate::scene::RayOutput;
 
 /// The kind of a binding.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -138,7 +139,7 @@ impl RecordSource {
 /// Group 2 of shade/outputs.wgsl.
 pub fn output_slots(places: OutputPlaces) -> Vec<Slot> {
     let image = |format| Slot::TextureWrite(TextureKind { format, dimension: wgpu::TextureViewDimension::D2 });
-    let of = |place: &OutputPlace| match place {
+    let of = |(_, place): &(RayOutput, OutputPlace)| match place {
         OutputPlace::Number | OutputPlace::Numbers | OutputPlace::AlignedNumbers => Slot::Write,
         OutputPlace::NumberImage => image(wgpu::TextureFormat::R32Float),
         OutputPlace::NumbersImage => image(wgpu::TextureFormat::Rgba32Float),

@@ -3,7 +3,7 @@
 
 use crate::image::PixelFormat;
 use crate::physics::integrator::Method;
-use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, ToneMap, View};
+use crate::scene::{ColourMap, Film, MOST_OUTPUTS, Projection, RayOutput, ToneMap, View};
 
 /// Threads of a workgroup of the kernels that go over pixels.
 pub const GROUP: [u32; 2] = [8, 16];
@@ -255,8 +255,9 @@ pub enum OutputPlace {
     NumbersImage,
 }
 
-/// The places of a frame's outputs in their order; none: all go into one buffer, packed, for the host.
-pub type OutputPlaces = [Option<OutputPlace>; MOST_OUTPUTS];
+/// A frame's outputs in their order with their places, for which a kernel of their own is made; none: all go into one
+/// buffer, packed, for the host, and the kernel learns from its uniform which they are.
+pub type OutputPlaces = [Option<(RayOutput, OutputPlace)>; MOST_OUTPUTS];
 
 /// How refine/refine.wgsl finds its samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
