@@ -45,6 +45,24 @@ template <class C, void (*destroy)(C *)> struct Destroy {
 };
 template <class C, void (*destroy)(C *)> using Handle = std::unique_ptr<C, Destroy<C, destroy>>;
 
+/// A new object of the handle that `create` fills in; `make` makes it.
+template <class C, class Create, class Make>
+auto made(Create &&create, Make &&make) -> Result<decltype(make(static_cast<C *>(nullptr)))> {
+    const Call inside;
+    C *handle = nullptr;
+    const BhrStatus status = create(&handle);
+    if (status < 0) {
+        Error error = Error::last(status);
+        inside.rethrow();
+        return error;
+    }
+    auto object = make(handle);
+    inside.rethrow();
+    return object;
+}
+
+struct Access; // of interop.hpp
+
 /// The time in nanoseconds, for bhr_job_wait: rounded up; at the longest without limit.
 template <class Rep, class Period>
 std::uint64_t timeout_of(const std::chrono::duration<Rep, Period> &timeout) noexcept {
@@ -131,6 +149,7 @@ class Job {
 
   private:
     friend class Context;
+    friend detail::Access;
     Job(BhrJob *handle, std::shared_ptr<ProgressFunction> progress) noexcept
         : progress_(std::move(progress)), handle_(handle) {}
 
@@ -170,24 +189,9 @@ class Context {
   public:
     /// bhr_context_create. `log` takes the place of the options' log_fn and log_user, where it is not empty.
     static Result<Context> create(const ContextOptions &options = {}, LogFunction log = {}) {
-        const detail::Call inside;
-        detail::Functor<LogFunction> kept;
-        BhrContextOptions raw = options.c();
-        if (log) {
-            kept.reset(new LogFunction(std::move(log)));
-            raw.log_fn = detail::on_log;
-            raw.log_user = kept.get();
-        }
-        BhrContext *handle = nullptr;
-        const BhrStatus status = bhr_context_create(BHR_ABI_VERSION, &raw, &handle);
-        if (status < 0) {
-            Error error = Error::last(status);
-            inside.rethrow();
-            return error;
-        }
-        Context context(handle, std::move(kept));
-        inside.rethrow();
-        return context;
+        return made(options, std::move(log), [](const BhrContextOptions &raw, BhrContext **handle) {
+            return bhr_context_create(BHR_ABI_VERSION, &raw, handle);
+        });
     }
 
     Context(Context &&) noexcept = default;
@@ -384,18 +388,8 @@ class Context {
 
     /// bhr_render_image_async.
     Result<Job> render_async(const Image &target) {
-        const detail::Call inside;
         const BhrImage image = target.c();
-        BhrJob *handle = nullptr;
-        const BhrStatus status = bhr_render_image_async(get(), &image, &handle);
-        if (status < 0) {
-            Error error = Error::last(status);
-            inside.rethrow();
-            return error;
-        }
-        Job job(handle, progress_);
-        inside.rethrow();
-        return job;
+        return new_job([&](BhrJob **handle) { return bhr_render_image_async(get(), &image, handle); });
     }
 
     /// bhr_set_occluder; without a value: none.
@@ -411,19 +405,11 @@ class Context {
     }
     /// bhr_render_outputs with a job.
     Result<Job> render_outputs_async(span<const Output> outputs) {
-        const detail::Call inside;
         const std::vector<BhrOutput> copies = copied<BhrOutput>(outputs);
-        BhrJob *handle = nullptr;
-        const BhrStatus status =
-            bhr_render_outputs(get(), copies.data(), sizeof(BhrOutput), std::uint32_t(copies.size()), &handle);
-        if (status < 0) {
-            Error error = Error::last(status);
-            inside.rethrow();
-            return error;
-        }
-        Job job(handle, progress_);
-        inside.rethrow();
-        return job;
+        return new_job([&](BhrJob **handle) {
+            const std::uint32_t count = std::uint32_t(copies.size());
+            return bhr_render_outputs(get(), copies.data(), sizeof(BhrOutput), count, handle);
+        });
     }
     /// bhr_save_outputs.
     Result<void> save_outputs(span<const Output> outputs, const std::string &path) const {
@@ -437,19 +423,11 @@ class Context {
     /// bhr_surface_create.
     Result<Surface> create_surface(const Window &window, std::uint32_t width, std::uint32_t height,
                                    PresentMode mode = PresentMode::vsync) {
-        const detail::Call inside;
         const BhrWindow raw = window.c();
-        BhrSurface *handle = nullptr;
-        const BhrStatus status =
-            bhr_surface_create(get(), &raw, width, height, static_cast<BhrPresentMode>(mode), &handle);
-        if (status < 0) {
-            Error error = Error::last(status);
-            inside.rethrow();
-            return error;
-        }
-        Surface surface(handle);
-        inside.rethrow();
-        return surface;
+        const auto create = [&](BhrSurface **handle) {
+            return bhr_surface_create(get(), &raw, width, height, static_cast<BhrPresentMode>(mode), handle);
+        };
+        return detail::made<BhrSurface>(create, [](BhrSurface *handle) { return Surface(handle); });
     }
 
     /// bhr_render_surface.
@@ -544,7 +522,26 @@ class Context {
     }
 
   private:
+    friend detail::Access;
     Context(BhrContext *handle, detail::Functor<LogFunction> log) noexcept : log_(std::move(log)), handle_(handle) {}
+
+    /// A context that `create` makes with these options and this log.
+    template <class Create>
+    static Result<Context> made(const ContextOptions &options, LogFunction log, Create &&create) {
+        detail::Functor<LogFunction> kept;
+        BhrContextOptions raw = options.c();
+        if (log) {
+            kept.reset(new LogFunction(std::move(log)));
+            raw.log_fn = detail::on_log;
+            raw.log_user = kept.get();
+        }
+        return detail::made<BhrContext>([&](BhrContext **handle) { return create(raw, handle); },
+                                        [&](BhrContext *handle) { return Context(handle, std::move(kept)); });
+    }
+    /// A job that `create` begins.
+    template <class Create> Result<Job> new_job(Create &&create) {
+        return detail::made<BhrJob>(create, [&](BhrJob *handle) { return Job(handle, progress_); });
+    }
 
     static BhrRay *c_rays(Ray *rays) noexcept { return reinterpret_cast<BhrRay *>(rays); }
     static const BhrRay *c_rays(const Ray *rays) noexcept { return reinterpret_cast<const BhrRay *>(rays); }

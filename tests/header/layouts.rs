@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The layouts of include/bhr.json hold in C11, in C++17, where include/bhr.hpp has structs of its own, and in Rust;
-//! and bhr.hpp leaves out nothing that the header has.
+//! and bhr.hpp and bhr/interop.hpp leave out nothing that the headers have.
 
-use crate::c_header::{HEADER, compiler, constants, functions, root, run, scratch};
+use crate::c_header::{HEADER, INTEROP, compiler, constants, functions, root, run, scratch};
 use crate::json::{committed, entries, text};
 use bhr::capi;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::mem::{align_of, offset_of, size_of};
+use std::path::Path;
 
 /// Structs of bhr.h that bhr.hpp has no type of its own for.
 const C_ONLY: [&str; 1] = ["BhrCrossing"];
@@ -60,20 +61,33 @@ fn layouts_hold_in_cpp17() {
     hold(true, "plain.cpp", "-std=c++17", &program);
 }
 
+/// The words of a C++ header. A comment is no use of one.
+fn words_of(path: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let code = text.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
+    code.split(|c: char| !c.is_alphanumeric() && c != '_').map(str::to_owned).collect()
+}
+
 #[test]
 fn bhr_hpp_names_every_function_and_constant() {
     /// Values that C++ has no use for: they are in other functions, or BHR_MAX_CROSSINGS is the size of an array.
     const OTHERWISE: [&str; 3] = ["BHR_VERSION_MAJOR", "BHR_VERSION_MINOR", "BHR_VERSION_PATCH"];
-    let mut named = BTreeSet::new();
-    for part in std::fs::read_dir(root().join("include/bhr")).unwrap() {
-        let text = std::fs::read_to_string(part.unwrap().path()).unwrap();
-        // A comment is no use.
-        let code = text.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
-        named.extend(code.split(|c: char| !c.is_alphanumeric() && c != '_').map(str::to_owned));
-    }
+    let parts = std::fs::read_dir(root().join("include/bhr")).unwrap().map(|part| part.unwrap().path());
+    let named = parts.filter(|part| !part.ends_with("interop.hpp")).flat_map(|part| words_of(&part));
+    let named: BTreeSet<_> = named.collect();
     let wanted = functions(HEADER).into_iter().chain(constants(HEADER));
     let missing: Vec<_> = wanted.filter(|name| !named.contains(name) && !OTHERWISE.contains(&name.as_str())).collect();
     assert!(missing.is_empty(), "include/bhr/ has no {missing:?}");
+}
+
+#[test]
+fn interop_hpp_names_every_function_and_constant() {
+    let named: BTreeSet<_> = words_of(&root().join("include/bhr/interop.hpp")).into_iter().collect();
+    let constants = constants(INTEROP).into_iter().filter(|name| name != "BHR_INTEROP_H");
+    let wanted: Vec<_> = functions(INTEROP).into_iter().chain(constants).collect();
+    assert!(wanted.len() > 30, "{wanted:?}");
+    let missing: Vec<_> = wanted.iter().filter(|name| !named.contains(*name)).collect();
+    assert!(missing.is_empty(), "include/bhr/interop.hpp has no {missing:?}");
 }
 
 /// Size, alignment and the fields' places of structs of the library, by the struct's name.
