@@ -98,7 +98,7 @@ class SharedHandle {
     /// OPAQUE_FD: the descriptor, still this object's; else -1.
     int fd() const noexcept { return handle_.fd; }
     const BhrHandle &get() const noexcept { return handle_; }
-    /// What it holds is the caller's from here on; the object is empty then.
+    /// Gives the handle to the caller, who owns it from here on; the object is empty then.
     BhrHandle release() noexcept { return std::exchange(handle_, BhrHandle{0, -1, nullptr}); }
 
   private:
@@ -148,7 +148,7 @@ inline void on_release(void *user) noexcept {
     }
 }
 
-/// What a context on the host's device calls: it lives until bhr has called `release`.
+/// The functors that a context on the host's device calls. They live until bhr has called `release`.
 struct DeviceCallbacks {
     QueueLock queue;
     ReleaseFunction release;
@@ -256,7 +256,7 @@ struct Sync {
     span<const SemaphoreValue> signals;
 
     BhrSync c() const noexcept {
-        // What does not fit is more than the library takes, which says so.
+        // A count that does not fit is more than the library takes, which says so.
         const auto count = [](std::size_t n) { return static_cast<std::uint32_t>(n < UINT32_MAX ? n : UINT32_MAX); };
         return {sizeof(BhrSync), count(waits.size()), count(signals.size()), 0, waits.data(), signals.data()};
     }

@@ -196,7 +196,8 @@ static void adopted(const Pixels &pixels) {
     vk_open_instance(&host, nullptr, VK_API_VERSION_1_3, 0);
     const auto get = reinterpret_cast<BhrGetInstanceProcAddr>(vkGetInstanceProcAddr);
     EXPECT(bhr::vulkan_requirements(get).value().api_version >= VK_API_VERSION_1_2);
-    EXPECT(bhr::vulkan_requirements(nullptr, host.instance, host.physical).status() == bhr::StatusCode::invalid_argument);
+    const auto nothing = bhr::vulkan_requirements(nullptr, host.instance, host.physical);
+    EXPECT(nothing.status() == bhr::StatusCode::invalid_argument);
     const bhr::VulkanRequirements needs = bhr::vulkan_requirements(get, host.instance, host.physical).value();
     vk_open_required(&host, &needs);
     {
