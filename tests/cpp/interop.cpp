@@ -97,7 +97,7 @@ static void frames(bhr::Context &context) {
     const std::vector<bhr::SemaphoreValue> many(9, done.at(4));
     EXPECT(bhr::render_target(context, target, {many, {}}).status() == bhr::StatusCode::invalid_argument);
 
-    /* What was moved from is refused; what it was moved to goes on. */
+    /* An object that was moved from is refused; the one that it was moved to goes on. */
     bhr::Target moved = std::move(target);
     EXPECT(bhr::render_target(context, target).status() == bhr::StatusCode::invalid_argument);
     EXPECT(target.info().status() == bhr::StatusCode::invalid_argument && moved.get() != nullptr);
@@ -187,7 +187,7 @@ static void adopted(const Pixels &pixels) {
     bhr::ContextOptions options;
     options.backend = bhr::Backend::vulkan;
 
-    /* What is refused releases nothing, and keeps nothing. */
+    /* A device that is refused is not released, and no functor is kept. */
     EXPECT(bhr::create_on_vulkan({}, options, queue, release).status() == bhr::StatusCode::invalid_argument);
     EXPECT(bhr::create_on_vulkan({}, options, {queue.lock, {}}).status() == bhr::StatusCode::invalid_argument);
     EXPECT(counts.released == 0 && device_released.use_count() == 2);
