@@ -6,7 +6,7 @@ use super::context::BhrContext;
 use super::interop_semaphore::BhrSemaphore;
 use super::interop_target::BhrTarget;
 use super::job::{self, BhrJob};
-use super::output::{BhrOutput, read_targeted};
+use super::output::{BhrOutput, read_shared};
 use super::pointer::{Out, check_reserved, is_null};
 use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
@@ -177,16 +177,24 @@ pub unsafe extern "C" fn bhr_render_target_async(
     unsafe { render_target("bhr_render_target_async", context, target, sync, out_job, Submits::InBackground) }
 }
 
-/// Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target, in one frame and
-/// with one set of semaphores; image is NULL in all of them. As bhr_render_target in everything else, which is the
+/// Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target or its
+/// BhrOutput.image, in one frame and with one set of semaphores. As bhr_render_target in everything else, which is the
 /// case of one LIGHT; the bytes are those of bhr_render_outputs. LIGHT, at most one, goes into any target that
 /// bhr_render_target takes, the others into R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage.
-/// All targets are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
-/// (bhr_set_view) and render them as LIGHT. Errors: those of bhr_render_target, of any of the targets, and of
-/// bhr_render_outputs; INVALID_ARGUMENT for an output without a target, or with an image, a target that is there
-/// twice, a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills
-/// (without STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since
-/// 0.2.0.
+/// All places are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
+/// (bhr_set_view) and render them as LIGHT.
+///
+/// An output with an image goes into the host's memory: a host that shows the picture on its GPU has the depth for its
+/// CPU from the same frame, and a frame of images alone waits and signals all the same. The signals tell of targets
+/// only; an image is complete when bhr_job_wait says OK, so that out_job is not NULL where there is one. Images are
+/// then written until the job is done or destroyed, and the call itself still waits for no semaphore. bhr_job_destroy
+/// does not wait for the frame here either, which goes on without its images: they are the host's again at once. Until
+/// the frame has run, the device holds as many bytes as they have, beside one tile's.
+///
+/// Errors: those of bhr_render_target, of any of the targets, and of bhr_render_outputs; INVALID_ARGUMENT for an
+/// output without a target and an image, or with both, an image without out_job, a target that is there twice, a
+/// second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills (without
+/// STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_outputs_shared(
     context: *mut BhrContext,
@@ -199,8 +207,8 @@ pub unsafe extern "C" fn bhr_render_outputs_shared(
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         render("bhr_render_outputs_shared", context, sync, out_job, |renderer, region, sync| {
-            let outputs = read_targeted(outputs, output_size, count)?;
-            renderer.render_shared_outputs(&outputs, region, sync, Submits::Now)
+            let outputs = read_shared(outputs, output_size, count, !out_job.is_null())?;
+            renderer.render_shared_outputs(outputs, region, sync, Submits::Now)
         })
     }
 }
@@ -219,8 +227,8 @@ pub unsafe extern "C" fn bhr_render_outputs_shared_async(
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         render("bhr_render_outputs_shared_async", context, sync, out_job, |renderer, region, sync| {
-            let outputs = read_targeted(outputs, output_size, count)?;
-            renderer.render_shared_outputs(&outputs, region, sync, Submits::InBackground)
+            let outputs = read_shared(outputs, output_size, count, !out_job.is_null())?;
+            renderer.render_shared_outputs(outputs, region, sync, Submits::InBackground)
         })
     }
 }
