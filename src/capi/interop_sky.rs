@@ -2,16 +2,19 @@
 //! The host's surroundings as the sky's map, from a target.
 
 use super::call::on_context;
+use super::camera::{BHR_PROJECTION_CUBE, BHR_PROJECTION_EQUIRECT, BhrProjection};
 use super::context::BhrContext;
 use super::interop_target::BhrTarget;
+use super::pointer::unknown;
 use super::status::BhrStatus;
+use crate::error::Result;
+use crate::renderer::Renderer;
 
 /// bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported or
 /// wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has
 /// it, that frames with BHR_SKY_MAP read anew each time, without a way through host memory. bhr makes its coarser
 /// levels on the GPU, and pictures are those with the same map from host memory to within rounding, one step of 255.
-/// NULL: none; each of the two functions replaces what the other has set. A cube is no such target; its faces go into
-/// an equirect by a pass of the host's.
+/// NULL: none; each of the functions replaces what another has set. A cube goes to bhr_set_sky_target_as.
 ///
 /// When a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
 /// bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
@@ -25,14 +28,51 @@ use super::status::BhrStatus;
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_target(context: *mut BhrContext, target: *mut BhrTarget) -> BhrStatus {
     // SAFETY: NULL or valid, by the header's conventions.
+    unsafe { on_context("bhr_set_sky_target", context, |state| set(&mut state.renderer, target, false)) }
+}
+
+/// bhr_set_sky_target of a picture in another layout, of which there are two: EQUIRECT is bhr_set_sky_target, and CUBE
+/// six square faces side by side, 6 times as wide as high, as a picture with BHR_PROJECTION_CUBE of a camera that looks
+/// along +x of the sky axes (right ascension 0, declination 0) with +z (the north pole) up. From the left the middles of
+/// the faces are -y, +y, +z, -z, +x and -x; up is +z, on the third face -x, on the fourth +x; each is seen from inside,
+/// not mirrored. So the light of another scene about the same place comes from its own CUBE picture (RGBA16F or
+/// RGBA32F, without bloom), while BhrSky's orientation turns the sky axes to those of that camera.
+///
+/// Frames make of it, when they begin, an equirectangular map four faces wide and two high, by the mean of four places
+/// in each of its texels, between texels of the cube, across the borders of faces, too: none is seen. The cube's detail
+/// is kept about the middles of faces, and where its texels are finer on the sky, towards the corners, lost down to
+/// that of the middles. With 256 MiB a
+/// face has 2364 texels a side of RGBA16F, 1672 of RGBA32F. Otherwise, and in all errors, as
+/// bhr_set_sky_target; besides INVALID_ARGUMENT for another layout, and for a cube that is not 6 times as wide as high.
+/// target NULL: none, whatever the layout. Since 0.2.0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn bhr_set_sky_target_as(
+    context: *mut BhrContext,
+    target: *mut BhrTarget,
+    layout: BhrProjection,
+) -> BhrStatus {
+    // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
-        on_context("bhr_set_sky_target", context, |state| match target.as_ref() {
-            Some(target) => state.renderer.set_sky_target(&target.target),
-            None => {
-                let scene = &mut state.renderer.scene;
-                (scene.sky_map, scene.sky_picture) = (None, None);
-                Ok(())
-            }
+        on_context("bhr_set_sky_target_as", context, |state| {
+            let cube = match layout {
+                BHR_PROJECTION_EQUIRECT => false,
+                BHR_PROJECTION_CUBE => true,
+                _ => return unknown(layout, "layout", "BHR_PROJECTION_EQUIRECT (2) or BHR_PROJECTION_CUBE (3)"),
+            };
+            set(&mut state.renderer, target, cube)
         })
+    }
+}
+
+/// # Safety
+/// `target` is NULL or alive.
+unsafe fn set(renderer: &mut Renderer, target: *const BhrTarget, cube: bool) -> Result<()> {
+    // SAFETY: this function's contract.
+    match unsafe { target.as_ref() } {
+        Some(target) => renderer.set_sky_target(&target.target, cube),
+        None => {
+            (renderer.scene.sky_map, renderer.scene.sky_picture) = (None, None);
+            Ok(())
+        }
     }
 }

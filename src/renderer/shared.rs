@@ -189,19 +189,20 @@ impl Renderer {
         Ok(())
     }
 
-    /// Sets a target whose pixels are the sky's map, read by each frame that shows it when the frame begins. Errors:
+    /// Sets a target whose pixels are the sky's map, or the faces of a cube as `Projection::Cube` has them of a camera
+    /// that looks along +x of the sky axes, +z being up; read by each frame that shows it when the frame begins. Errors:
     /// INVALID_ARGUMENT for a target of another renderer, format or shape; UNSUPPORTED for one that cannot be copied,
     /// or is too large for the device; SURFACE_LOST; the map then stays as it was.
-    pub fn set_sky_target(&mut self, target: &Arc<Target>) -> Result<()> {
+    pub fn set_sky_target(&mut self, target: &Arc<Target>, cube: bool) -> Result<()> {
         self.check_device()?;
         let device = self.gpu()?;
         let on_device = target.on(device)?;
         on_device.check_is_read()?;
-        gpu::check_sky(device, target.shape())?;
+        gpu::check_sky(device, target.shape(), cube)?;
         let TargetShape { size, format, .. } = *target.shape();
         // Weak, so that a target ends when its host ends it.
         let place = OnDevice(Arc::new(Arc::downgrade(&on_device)));
-        self.scene.sky_picture = Some(SkyPicture { size, format, place });
+        self.scene.sky_picture = Some(SkyPicture { size, cube, format, place });
         self.scene.sky_map = None;
         Ok(())
     }

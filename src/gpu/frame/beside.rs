@@ -40,7 +40,10 @@ enum Place {
     Rows(wgpu::Buffer, FrameRows),
     Image(wgpu::TextureView),
     /// A tile's, in a buffer of all those for the host; each begins where the one before ends on the largest tile.
-    Packed { number: usize, words: u64 },
+    Packed {
+        number: usize,
+        words: u64,
+    },
 }
 
 /// A tile's numbers of an output for the host, packed.

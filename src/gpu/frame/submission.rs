@@ -236,7 +236,17 @@ impl FrameBuffers {
         copied.request(device)?;
         let head = size.min(PIXELS);
         let numbers = numbers.into_iter().map(|(_, _, numbers)| numbers).collect();
-        Ok(Some(Submission { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes, numbers }))
+        Ok(Some(Submission {
+            submission,
+            copied,
+            tick_bytes,
+            head,
+            passes,
+            counts,
+            tile: developed,
+            row_bytes,
+            numbers,
+        }))
     }
 }
 
