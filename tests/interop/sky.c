@@ -196,6 +196,7 @@ static void cube(void) {
     CHECK_OK(bhr_set_sky_target_as(context, NULL, BHR_PROJECTION_CUBE));
     bhr_target_destroy(target);
     vk_drop(&host, &picture);
+    watch_begin(&watch, context);
     options.width = 6 * SIDE + 1;
     CHECK_OK(bhr_target_create(context, &options, &target));
     CHECK_REFUSED(&watch, BAD, "6 times", bhr_set_sky_target_as(context, target, BHR_PROJECTION_CUBE));
