@@ -1761,8 +1761,8 @@ void bhr_job_cancel(BhrJob *job);
 
 /**
  * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
- * host's again. Frames for targets (bhr_render_target) go on, but write no image any more. NULL is a no-op. No other thread may use the job any
- * more. From inside a callback it does nothing: bhr_error_message then says so.
+ * host's again. Frames for targets (bhr_render_target) go on, but write no image any more. NULL is a no-op. No
+ * other thread may use the job any more. From inside a callback it does nothing: bhr_error_message then says so.
  */
 void bhr_job_destroy(BhrJob *job);
 

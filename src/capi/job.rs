@@ -175,8 +175,8 @@ fn cancel(function: &str, job: &BhrJob) {
 }
 
 /// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
-/// host's again. Frames for targets (bhr_render_target) go on, but write no image any more. NULL is a no-op. No other thread may use the job any
-/// more. From inside a callback it does nothing: bhr_error_message then says so.
+/// host's again. Frames for targets (bhr_render_target) go on, but write no image any more. NULL is a no-op. No
+/// other thread may use the job any more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     const NAME: &str = "bhr_job_destroy";

@@ -41,7 +41,7 @@ pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
 
 /// The textures and buffers of a map of one size.
 pub struct SkyTarget {
-    /// Of the target.
+    /// The target's columns and rows.
     size: [u32; 2],
     cube: bool,
     format: PixelFormat,
