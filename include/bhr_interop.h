@@ -386,19 +386,14 @@ BHR_NODISCARD BhrStatus bhr_render_target_async(BhrContext *context,
  * case of one LIGHT; the bytes are those of bhr_render_outputs. LIGHT, at most one, goes into any target that
  * bhr_render_target takes, the others into R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage.
  * All places are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
- * (bhr_set_view) and render them as LIGHT.
- *
- * An output with an image goes into the host's memory: a host that shows the picture on its GPU has the depth for its
- * CPU from the same frame, and a frame of images alone waits and signals all the same. The signals tell of targets
- * only; an image is complete when bhr_job_wait says OK, so that out_job is not NULL where there is one. Images are
- * then written until the job is done or destroyed, and the call itself still waits for no semaphore. bhr_job_destroy
- * does not wait for the frame here either, which goes on without its images: they are the host's again at once. Until
- * the frame has run, the device holds as many bytes as they have, beside one tile's.
- *
- * Errors: those of bhr_render_target, of any of the targets, and of bhr_render_outputs; INVALID_ARGUMENT for an
- * output without a target and an image, or with both, an image without out_job, a target that is there twice, a
- * second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills (without
- * STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since 0.2.0.
+ * (bhr_set_view) and render them as LIGHT. An output with an image goes into the host's memory, and is complete when
+ * bhr_job_wait says OK: signals tell of targets only, so out_job is not NULL then. The call waits for no semaphore.
+ * Images are written until the job is done or destroyed; bhr_job_destroy does not wait for the frame, which goes on
+ * without them. Until it has run, the device holds their bytes once more. Errors: those of bhr_render_target, of any
+ * of the targets, and of bhr_render_outputs; INVALID_ARGUMENT for an output without a target and an image, or with
+ * both, an image without out_job, a target that is there twice, a second LIGHT, and other views; UNSUPPORTED for an
+ * output other than LIGHT in an image that a copy fills (without STORAGE usage, or with BHR_TARGET_COPY), and for more
+ * targets than a kernel of the device binds. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_render_outputs_shared(BhrContext *context,
                                                   const BhrOutput *outputs,
@@ -449,38 +444,28 @@ BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *
 
 /**
  * bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported or
- * wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has
- * it, that frames with BHR_SKY_MAP read anew each time, without a way through host memory. bhr makes its coarser
- * levels on the GPU, and pictures are those with the same map from host memory to within rounding, one step of 255.
- * NULL: none; each of the functions replaces what another has set. A cube goes to bhr_set_sky_target_as.
- *
- * When a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
- * bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
- * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. The map is shown in
- * windows, too, and its pixels are taken as bhr_set_sky_map takes numbers. Memory on the device: 19 bytes a texel of
- * RGBA16F, 27 of RGBA32F. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another
- * format or shape, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage, one that is
- * larger than the device's textures (a map takes one and a half times its rows), or one that its kernels do not reach
- * (4096 x 2048 of RGBA32F they do anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. (Backends that
- * share nothing have no targets.) Since 0.2.0.
+ * wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has it,
+ * that frames with BHR_SKY_MAP read anew each time. bhr makes coarser levels on the GPU, and pictures are those with
+ * the same map from host memory to within rounding, one step of 255. NULL: none; each of the functions replaces what
+ * another has set. When a frame reads the target, in which layout and of which queue family, and how long it must
+ * stay, is as with bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well
+ * when the target is destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well.
+ * Windows show it, too. Memory on the device: 19 bytes a texel of RGBA16F, 27 of RGBA32F. Any thread, not inside
+ * callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format or shape, or a target of another context;
+ * UNSUPPORTED for an image without TRANSFER_SRC usage, one that is larger than the device's textures (a map takes one
+ * and a half times its rows), or one that its kernels do not reach (4096 x 2048 of RGBA32F they do anywhere);
+ * SURFACE_LOST; DEVICE_LOST; the map then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *target);
 
 /**
- * bhr_set_sky_target of a picture in another layout, of which there are two: EQUIRECT is bhr_set_sky_target, and CUBE
- * six square faces side by side, 6 times as wide as high, as a picture with BHR_PROJECTION_CUBE of a camera that looks
- * along +x of the sky axes (right ascension 0, declination 0) with +z (the north pole) up. From the left the middles of
- * the faces are -y, +y, +z, -z, +x and -x; up is +z, on the third face -x, on the fourth +x; each is seen from inside,
- * not mirrored. So the light of another scene about the same place comes from its own CUBE picture (RGBA16F or
- * RGBA32F, without bloom), while BhrSky's orientation turns the sky axes to those of that camera.
- *
- * Frames make of it, when they begin, an equirectangular map four faces wide and two high, by the mean of four places
- * in each of its texels, between texels of the cube, across the borders of faces, too: none is seen. The cube's detail
- * is kept about the middles of faces, and where its texels are finer on the sky, towards the corners, lost down to
- * that of the middles. With 256 MiB a
- * face has 2364 texels a side of RGBA16F, 1672 of RGBA32F. Otherwise, and in all errors, as
- * bhr_set_sky_target; besides INVALID_ARGUMENT for another layout, and for a cube that is not 6 times as wide as high.
- * target NULL: none, whatever the layout. Since 0.2.0.
+ * bhr_set_sky_target of a picture in another layout: EQUIRECT is bhr_set_sky_target, CUBE six faces side by side, 6
+ * times as wide as high, as a picture with BHR_PROJECTION_CUBE of a camera that looks along +x of the sky axes (right
+ * ascension 0) with +z (the north pole) up: the faces' middles are -y, +y, +z, -z, +x, -x; up is +z, on the third face
+ * -x, on the fourth +x. Frames make an equirectangular map of it, four faces wide and two high, with four places in
+ * each texel, between texels of the cube and across its edges; detail finer than at the faces' middles is lost. At
+ * most 2364 texels a side of RGBA16F, 1672 of RGBA32F. Errors: those of bhr_set_sky_target; INVALID_ARGUMENT for
+ * another layout or shape. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target_as(BhrContext *context, BhrTarget *target, BhrProjection layout);
 

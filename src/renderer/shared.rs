@@ -190,7 +190,8 @@ impl Renderer {
     }
 
     /// Sets a target whose pixels are the sky's map, or the faces of a cube as `Projection::Cube` has them of a camera
-    /// that looks along +x of the sky axes, +z being up; read by each frame that shows it when the frame begins. Errors:
+    /// that looks along +x of the sky axes, +z being up; read by each frame that shows it when the frame begins.
+    /// Errors:
     /// INVALID_ARGUMENT for a target of another renderer, format or shape; UNSUPPORTED for one that cannot be copied,
     /// or is too large for the device; SURFACE_LOST; the map then stays as it was.
     pub fn set_sky_target(&mut self, target: &Arc<Target>, cube: bool) -> Result<()> {
@@ -228,8 +229,9 @@ impl Renderer {
     }
 
     /// Renders outputs of the scene as it is now into targets and images, as [`Self::render_target`] does a picture;
-    /// the images are complete when the job is. Errors: as there, of each target; INVALID_ARGUMENT for places of several
-    /// sizes, a target that is there twice, formats that do not go with the outputs, two pictures, and views that take
+    /// the images are complete when the job is. Errors: as there, of each target; INVALID_ARGUMENT for places of
+    /// several sizes, a target that is there twice, formats that do not go with the outputs, two pictures, and views
+    /// that take
     /// frames of their own; UNSUPPORTED for targets that kernels do not reach.
     pub fn render_shared_outputs(
         &mut self,

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* outputs.c -- outputs beside the picture in targets on the GPU, and in the host's memory with them: their bytes are
  * those of bhr_render_outputs, in buffers, buffers with strides and images, alone and all together, however the frame's
- * rays are found; with semaphores and as jobs; and what is refused, which changes nothing. Arguments: vulkan [validate]. */
+ * rays are found; with semaphores and as jobs; and what is refused, which changes nothing.
+ * Arguments: vulkan [validate]. */
 #include "../c/check.h"
 #include "vk.h"
 
