@@ -435,8 +435,7 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
  * of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
  * Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
  * another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
- * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. (Backends that share nothing have no targets.) Since
- * 0.2.0.
+ * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *target, uint32_t flags);
 
@@ -445,16 +444,16 @@ BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *
 /**
  * bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported or
  * wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has it,
- * that frames with BHR_SKY_MAP read anew each time. bhr makes coarser levels on the GPU, and pictures are those with
- * the same map from host memory to within rounding, one step of 255. NULL: none; each of the functions replaces what
- * another has set. When a frame reads the target, in which layout and of which queue family, and how long it must
- * stay, is as with bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well
- * when the target is destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well.
- * Windows show it, too. Memory on the device: 19 bytes a texel of RGBA16F, 27 of RGBA32F. Any thread, not inside
- * callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format or shape, or a target of another context;
- * UNSUPPORTED for an image without TRANSFER_SRC usage, one that is larger than the device's textures (a map takes one
- * and a half times its rows), or one that its kernels do not reach (4096 x 2048 of RGBA32F they do anywhere);
- * SURFACE_LOST; DEVICE_LOST; the map then stays as it was. Since 0.2.0.
+ * that frames with BHR_SKY_MAP read anew each time. bhr makes coarser levels on the GPU: pictures are those with the
+ * map from host memory, within one step of 255. NULL: none; each of the functions replaces what another has set. When
+ * a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
+ * bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
+ * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. Windows show it, too.
+ * Memory on the device: 19 bytes a texel of RGBA16F, 27 of RGBA32F. Any thread, not inside callbacks. Errors:
+ * INVALID_ARGUMENT for a NULL context, another format or shape, or a target of another context; UNSUPPORTED for an
+ * image without TRANSFER_SRC usage, one that is larger than the device's textures (a map takes one and a half times
+ * its rows), or one that its kernels do not reach (4096 x 2048 of RGBA32F they do anywhere); SURFACE_LOST;
+ * DEVICE_LOST; the map then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *target);
 

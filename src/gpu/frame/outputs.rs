@@ -212,7 +212,7 @@ impl OutputBuffers {
 
     /// Makes room for so many bytes of a tile's numbers.
     pub(super) fn make_room(&mut self, device: &Device, bytes: u64) -> Result<()> {
-        if !self.packed.as_ref().is_some_and(|packed| packed.size() >= bytes) {
+        if self.packed.as_ref().is_none_or(|packed| packed.size() < bytes) {
             // The old one goes first: both together need not fit.
             self.packed = None;
             let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
