@@ -1761,8 +1761,8 @@ void bhr_job_cancel(BhrJob *job);
 
 /**
  * Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
- * host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any
- * more. From inside a callback it does nothing: bhr_error_message then says so.
+ * host's again. Frames for targets (bhr_render_target) go on, but write no image any more. NULL is a no-op. No
+ * other thread may use the job any more. From inside a callback it does nothing: bhr_error_message then says so.
  */
 void bhr_job_destroy(BhrJob *job);
 
@@ -1838,7 +1838,10 @@ typedef struct BhrOutput {
      * only.
      */
     const BhrImage *image;
-    /** A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h; else NULL. */
+    /**
+     * A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h, which takes both kinds
+     * of places in one list; else NULL.
+     */
     void *target;
 } BhrOutput;
 

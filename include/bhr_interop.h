@@ -381,16 +381,18 @@ BHR_NODISCARD BhrStatus bhr_render_target_async(BhrContext *context,
                                                 BhrJob **out_job);
 
 /**
- * Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target, in one frame and
- * with one set of semaphores; image is NULL in all of them. As bhr_render_target in everything else, which is the
- * case of one LIGHT; the bytes are those of bhr_render_outputs. LIGHT, at most one, goes into any target that
- * bhr_render_target takes, the others into R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage.
- * All targets are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
- * (bhr_set_view) and render them as LIGHT. Errors: those of bhr_render_target, of any of the targets, and of
- * bhr_render_outputs; INVALID_ARGUMENT for an output without a target, or with an image, a target that is there
- * twice, a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills
- * (without STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since
- * 0.2.0.
+ * Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target or its
+ * BhrOutput.image, in one frame and with one set of semaphores. Otherwise as bhr_render_target; the bytes are those of
+ * bhr_render_outputs. LIGHT, at most one, goes into any target that bhr_render_target takes, the others into R32F or
+ * RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage. All places are of one size. Views but REDSHIFT,
+ * ORDER and DEFLECTION take frames of their own: set them (bhr_set_view) and render them as LIGHT. An output with an
+ * image goes into the host's memory, and is complete when bhr_job_wait says OK: signals tell of targets only, so
+ * out_job is not NULL then. The call waits for no semaphore. Images are written until the job is done or destroyed;
+ * bhr_job_destroy does not wait for the frame, which goes on without them. Until it has run, the device holds their
+ * bytes once more. Errors: those of bhr_render_target, of any of the targets, and of bhr_render_outputs;
+ * INVALID_ARGUMENT for an output without a place, or with two, an image without out_job, a target that is there twice,
+ * a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills (without
+ * STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_render_outputs_shared(BhrContext *context,
                                                   const BhrOutput *outputs,
@@ -432,8 +434,7 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
  * of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
  * Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
  * another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
- * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. (Backends that share nothing have no targets.) Since
- * 0.2.0.
+ * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *target, uint32_t flags);
 
@@ -441,23 +442,30 @@ BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *
 
 /**
  * bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported or
- * wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has
- * it, that frames with BHR_SKY_MAP read anew each time, without a way through host memory. bhr makes its coarser
- * levels on the GPU, and pictures are those with the same map from host memory to within rounding, one step of 255.
- * NULL: none; each of the two functions replaces what the other has set. A cube is no such target; its faces go into
- * an equirect by a pass of the host's.
- *
- * When a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
+ * wrapped, as wide as high at least, of 256 MiB at most (8192 x 4096 of RGBA16F), laid out as bhr_set_sky_map has it,
+ * that frames with BHR_SKY_MAP read anew each time. bhr makes coarser levels on the GPU: pictures are those with the
+ * map from host memory, within one step of 255. NULL: none; each of the functions replaces what another has set. When
+ * a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
  * bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
- * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. The map is shown in
- * windows, too, and its pixels are taken as bhr_set_sky_map takes numbers. Memory on the device: 19 bytes a texel of
- * RGBA16F, 27 of RGBA32F. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another
- * format or shape, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage, one that is
- * larger than the device's textures (a map takes one and a half times its rows), or one that its kernels do not reach
- * (4096 x 2048 of RGBA32F they do anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. (Backends that
- * share nothing have no targets.) Since 0.2.0.
+ * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. Windows show it, too.
+ * Memory on the device: 19 bytes a texel of RGBA16F, 27 of RGBA32F. Any thread, not inside callbacks. Errors:
+ * INVALID_ARGUMENT for a NULL context, another format or shape, or a target of another context; UNSUPPORTED for an
+ * image without TRANSFER_SRC usage, one that is larger than the device's textures (a map takes one and a half times
+ * its rows), or one that its kernels do not reach (4096 x 2048 of RGBA32F they do anywhere); SURFACE_LOST;
+ * DEVICE_LOST; the map then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *target);
+
+/**
+ * bhr_set_sky_target of a picture in another layout: EQUIRECT is bhr_set_sky_target, CUBE six faces side by side, 6
+ * times as wide as high, as a picture with BHR_PROJECTION_CUBE of a camera that looks along +x of the sky axes (right
+ * ascension 0) with +z (the north pole) up: the faces' middles are -y, +y, +z, -z, +x, -x; up is +z, on the third face
+ * -x, on the fourth +x. Frames make an equirectangular map of it, four faces wide and two high, with four places in
+ * each texel, between texels of the cube and across its edges; detail finer than at the faces' middles is lost. At
+ * most 2364 texels a side of RGBA16F, 1672 of RGBA32F. Errors: those of bhr_set_sky_target; INVALID_ARGUMENT for
+ * another layout or shape. Since 0.2.0.
+ */
+BHR_NODISCARD BhrStatus bhr_set_sky_target_as(BhrContext *context, BhrTarget *target, BhrProjection layout);
 
 /* ---- the host's Vulkan device ---- */
 

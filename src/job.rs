@@ -12,7 +12,7 @@ use crate::error::{Error, ErrorKind, PARTLY_WRITTEN, Result};
 use crate::gpu::{FrameSync, GpuTarget};
 use crate::image::ImageMut;
 use crate::scene::{RayOutput, Scene};
-use crate::tracer::{FrameRequest, FrameStats, Progress, StatsBoard};
+use crate::tracer::{FrameRequest, FrameStats, Progress, StatsBoard, Tile};
 use crate::tracers::SharedTracer;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
@@ -38,6 +38,8 @@ struct Shared {
     /// Signalled at every step and at the end.
     changed: Condvar,
     cancelled: AtomicBool,
+    /// The host's memory that a frame for targets writes as well; none once the job has ended, or the host has it back.
+    images: Mutex<Vec<ImageMut<'static>>>,
     /// The bits of the part that is done, an f64 in 0 .. 1.
     fraction: AtomicU64,
 }
@@ -57,6 +59,11 @@ impl Job {
         {
             job_request.finish(Err(cancelled));
         }
+    }
+
+    /// Gives the images of a frame for targets back to the host, which goes on without them. Does not wait for the GPU.
+    pub fn leave_images(&self) {
+        self.shared.leave_images();
     }
 
     /// The outcome of the job; `None` while it runs.
@@ -110,6 +117,20 @@ impl Shared {
         }
     }
 
+    /// Waits while one of them is written. Whether one has been.
+    fn leave_images(&self) -> bool {
+        let images = std::mem::take(&mut *lock(&self.images));
+        images.iter().any(ImageMut::is_touched)
+    }
+
+    /// Writes rows of a tile, unless the host has the images back. Errors: as [`ImageMut::write_tile`].
+    fn write_image(&self, number: usize, tile: Tile, pixels: &[u8], row_bytes: usize) -> Result<()> {
+        match lock(&self.images).get_mut(number) {
+            Some(image) => image.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes),
+            None => Ok(()),
+        }
+    }
+
     fn report(&self, fraction: f64) {
         // The lock is held, or a waiter could miss this between looking and sleeping.
         let _outcome = lock(&self.outcome);
@@ -124,17 +145,26 @@ pub enum JobTarget {
     Memory(FrameRequest, ImageMut<'static>),
     /// The outputs of a frame, in the host's memory.
     Outputs(OutputFrame<'static>),
-    /// Targets on the GPU.
+    /// Targets on the GPU, and images in the host's memory that are made with them.
     Shared(SharedFrame),
 }
 
-/// A frame whose pixels stay on the GPU.
+/// The place of a picture, or of an output, of a frame that goes to targets.
+pub enum SharedPlace {
+    Target(Arc<GpuTarget>),
+    /// The host's memory: the number of the frame's image.
+    Image(usize),
+}
+
+/// A frame whose pixels stay on the GPU, but for those of its images.
 pub struct SharedFrame {
     pub request: FrameRequest,
     /// The picture's; `None`: the frame has none.
-    pub light: Option<Arc<GpuTarget>>,
+    pub light: Option<SharedPlace>,
     /// Numbers of rays, beside the picture.
-    pub outputs: Vec<(RayOutput, Arc<GpuTarget>)>,
+    pub outputs: Vec<(RayOutput, SharedPlace)>,
+    /// The host's memory, in the order of its numbers; the job's once it is requested.
+    pub images: Vec<ImageMut<'static>>,
     /// The semaphores, whose signals are given whatever becomes of the frame.
     pub sync: FrameSync,
 }
@@ -142,7 +172,21 @@ pub struct SharedFrame {
 impl SharedFrame {
     /// All targets.
     fn targets(&self) -> Vec<Arc<GpuTarget>> {
-        self.light.iter().chain(self.outputs.iter().map(|(_, target)| target)).cloned().collect()
+        let places = self.light.iter().chain(self.outputs.iter().map(|(_, place)| place));
+        let target = |place: &SharedPlace| match place {
+            SharedPlace::Target(target) => Some(target.clone()),
+            SharedPlace::Image(_) => None,
+        };
+        places.filter_map(target).collect()
+    }
+
+    /// The number of the image of an output that comes to the host; `None`: of the picture.
+    fn image_of(&self, output: Option<usize>) -> Option<usize> {
+        match (output, &self.light) {
+            (Some(number), _) => Some(number),
+            (None, Some(SharedPlace::Image(number))) => Some(*number),
+            (None, _) => None,
+        }
     }
 }
 
@@ -169,14 +213,18 @@ pub struct JobRequest {
 }
 
 impl JobRequest {
-    pub fn new(scene: Scene, target: JobTarget, tracer: SharedTracer, stats: StatsBoard) -> Self {
-        Self { scene, target, tracer, stats, shared: Arc::default(), requested: Instant::now() }
+    pub fn new(scene: Scene, mut target: JobTarget, tracer: SharedTracer, stats: StatsBoard) -> Self {
+        let images = match &mut target {
+            JobTarget::Shared(frame) => std::mem::take(&mut frame.images),
+            JobTarget::Memory(..) | JobTarget::Outputs(_) => Vec::new(),
+        };
+        let shared = Arc::new(Shared { images: Mutex::new(images), ..Shared::default() });
+        Self { scene, target, tracer, stats, shared, requested: Instant::now() }
     }
 
     /// The job's end. The target is its owner's again.
     fn finish(mut self, outcome: Result<FrameStats>) {
-        self.let_go();
-        let touched = self.target.is_touched();
+        let touched = self.let_go() || self.target.is_touched();
         let outcome = outcome.map(|stats| self.stats.publish(stats, self.requested.elapsed())).map_err(|mut error| {
             if touched {
                 error.message += PARTLY_WRITTEN;
@@ -187,14 +235,16 @@ impl JobRequest {
         self.end(outcome);
     }
 
-    /// Lets go of what the host shares: whoever has seen the job's end may destroy it.
-    fn let_go(&mut self) {
+    /// Lets go of what the host shares: whoever has seen the job's end may destroy it. Whether an image that went with
+    /// targets was written.
+    fn let_go(&mut self) -> bool {
         self.scene.occluder = None;
         if let JobTarget::Shared(frame) = &mut self.target {
             frame.light = None;
             frame.outputs.clear();
             frame.sync = FrameSync::default();
         }
+        self.shared.leave_images()
     }
 
     fn end(&self, outcome: Result<FrameStats>) {

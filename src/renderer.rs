@@ -28,7 +28,7 @@ use std::time::Instant;
 
 mod shared;
 
-pub use shared::{HostSync, Submits};
+pub use shared::{HostSync, SharedOutput, Submits};
 
 pub use crate::tracer::{AdapterInfo, Backend, FrameRequest, FrameStats, PASSES, Progress, StatsBoard, Tile, TileSink};
 pub use crate::tracers::adapters;

@@ -265,6 +265,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
         "for (var k = 0u; k < select(not_inlined(frame.max_crossings), 1u, OPAQUE); k += 1u)",
         CROSSINGS,
     ),
+    ("sky/pyramid", "resampled_light", "for (var i = 0u; i < 4u; i += 1u)", Because("it takes four places")),
     ("sky/pyramid", "column_light", "for (var j = first.y; j < last.y; j += 1u)", TEXELS),
     ("sky/pyramid", "column_light", "for (var i = first.x; i < last.x; i += 1u)", TEXELS),
     ("sky/pyramid", "make_level", "for (var k = first; k <= last; k += 1)", TEXELS),

@@ -342,7 +342,7 @@ class Target {
     detail::Handle<BhrTarget, bhr_target_destroy> handle_;
 };
 
-/// An output that goes into a target, for render_outputs_shared.
+/// An output that goes into a target, for render_outputs_shared, which takes those into images as well, with a job.
 inline Output output_into(OutputKind kind, const Target &target, std::uint32_t number = 0) noexcept {
     Output output;
     output.kind = kind;
@@ -432,6 +432,13 @@ inline Result<void> set_occluder_target(Context &context, const Target *target, 
 inline Result<void> set_sky_target(Context &context, const Target *target) {
     return detail::call([&] {
         return bhr_set_sky_target(context.get(), target != nullptr ? target->get() : nullptr);
+    });
+}
+/// bhr_set_sky_target_as, for a picture laid out as Projection::equirect or Projection::cube.
+inline Result<void> set_sky_target_as(Context &context, const Target *target, Projection layout) {
+    return detail::call([&] {
+        return bhr_set_sky_target_as(context.get(), target != nullptr ? target->get() : nullptr,
+                                     static_cast<BhrProjection>(layout));
     });
 }
 

@@ -5,6 +5,7 @@
 
 #import constants
 #import shared/math
+#import sky/cube
 
 struct SkyLevel {
     size: vec2<u32>,
@@ -14,7 +15,8 @@ struct SkyLevel {
     row: u32,
     // SKY_SOURCE_*.
     source: u32,
-    padding: u32,
+    // 1: the source is a cube's six faces side by side.
+    cube: u32,
 }
 
 @group(0) @binding(0) var<uniform> level: SkyLevel;
@@ -73,8 +75,26 @@ fn source_light(x: u32, y: u32) -> vec3<f32> {
     return limited_light(vec3<f32>(half_light(low), half_light(low >> 16u), half_light(source_words[at + 1u])));
 }
 
+// A cube's light in texel (x, y) of the map, whose middle column is forward, with longitudes to the right: the mean of
+// four places, since at a cube's corners its texels are less than half as wide as the map's.
+fn resampled_light(x: u32, y: u32) -> vec3<f32> {
+    var sum = vec3<f32>(0.0);
+    for (var i = 0u; i < 4u; i += 1u) {
+        let quarter = vec2<f32>(vec2<u32>(i & 1u, i >> 1u)) * 0.5 + 0.25;
+        let at = (vec2<f32>(vec2<u32>(x, y)) + quarter) / vec2<f32>(level.size);
+        let longitude = 2.0 * PI * (at.x - 0.5);
+        let latitude = PI * (0.5 - at.y);
+        let p = vec3<f32>(cos(latitude) * sin(longitude), sin(latitude), cos(latitude) * cos(longitude));
+        sum += cube_light(p, level.source_size.y);
+    }
+    return 0.25 * sum;
+}
+
 // The source's light under column `x` of row `y`.
 fn column_light(x: u32, y: u32) -> vec3<f32> {
+    if level.cube != 0u {
+        return resampled_light(x, y);
+    }
     let step = PI / f32(level.source_size.y);
     let begins = vec2<u32>(x, y) * level.source_size;
     let ends = begins + level.source_size;

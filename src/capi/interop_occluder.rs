@@ -27,8 +27,7 @@ use crate::error::Error;
 /// of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
 /// Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
 /// another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
-/// SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. (Backends that share nothing have no targets.) Since
-/// 0.2.0.
+/// SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_occluder_target(
     context: *mut BhrContext,

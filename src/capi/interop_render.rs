@@ -6,7 +6,7 @@ use super::context::BhrContext;
 use super::interop_semaphore::BhrSemaphore;
 use super::interop_target::BhrTarget;
 use super::job::{self, BhrJob};
-use super::output::{BhrOutput, read_targeted};
+use super::output::{BhrOutput, read_shared};
 use super::pointer::{Out, check_reserved, is_null};
 use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
@@ -177,16 +177,18 @@ pub unsafe extern "C" fn bhr_render_target_async(
     unsafe { render_target("bhr_render_target_async", context, target, sync, out_job, Submits::InBackground) }
 }
 
-/// Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target, in one frame and
-/// with one set of semaphores; image is NULL in all of them. As bhr_render_target in everything else, which is the
-/// case of one LIGHT; the bytes are those of bhr_render_outputs. LIGHT, at most one, goes into any target that
-/// bhr_render_target takes, the others into R32F or RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage.
-/// All targets are of one size. Views but REDSHIFT, ORDER and DEFLECTION take frames of their own: set them
-/// (bhr_set_view) and render them as LIGHT. Errors: those of bhr_render_target, of any of the targets, and of
-/// bhr_render_outputs; INVALID_ARGUMENT for an output without a target, or with an image, a target that is there
-/// twice, a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills
-/// (without STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since
-/// 0.2.0.
+/// Renders outputs of the scene as it is now (BhrOutput of bhr.h), each into its BhrOutput.target or its
+/// BhrOutput.image, in one frame and with one set of semaphores. Otherwise as bhr_render_target; the bytes are those of
+/// bhr_render_outputs. LIGHT, at most one, goes into any target that bhr_render_target takes, the others into R32F or
+/// RGBA32F by their kind: a BUFFER, or an IMAGE with STORAGE usage. All places are of one size. Views but REDSHIFT,
+/// ORDER and DEFLECTION take frames of their own: set them (bhr_set_view) and render them as LIGHT. An output with an
+/// image goes into the host's memory, and is complete when bhr_job_wait says OK: signals tell of targets only, so
+/// out_job is not NULL then. The call waits for no semaphore. Images are written until the job is done or destroyed;
+/// bhr_job_destroy does not wait for the frame, which goes on without them. Until it has run, the device holds their
+/// bytes once more. Errors: those of bhr_render_target, of any of the targets, and of bhr_render_outputs;
+/// INVALID_ARGUMENT for an output without a place, or with two, an image without out_job, a target that is there twice,
+/// a second LIGHT, and other views; UNSUPPORTED for an output other than LIGHT in an image that a copy fills (without
+/// STORAGE usage, or with BHR_TARGET_COPY), and for more targets than a kernel of the device binds. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_render_outputs_shared(
     context: *mut BhrContext,
@@ -199,8 +201,8 @@ pub unsafe extern "C" fn bhr_render_outputs_shared(
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         render("bhr_render_outputs_shared", context, sync, out_job, |renderer, region, sync| {
-            let outputs = read_targeted(outputs, output_size, count)?;
-            renderer.render_shared_outputs(&outputs, region, sync, Submits::Now)
+            let outputs = read_shared(outputs, output_size, count, !out_job.is_null())?;
+            renderer.render_shared_outputs(outputs, region, sync, Submits::Now)
         })
     }
 }
@@ -219,8 +221,8 @@ pub unsafe extern "C" fn bhr_render_outputs_shared_async(
     // SAFETY: NULL or valid, by the header's conventions.
     unsafe {
         render("bhr_render_outputs_shared_async", context, sync, out_job, |renderer, region, sync| {
-            let outputs = read_targeted(outputs, output_size, count)?;
-            renderer.render_shared_outputs(&outputs, region, sync, Submits::InBackground)
+            let outputs = read_shared(outputs, output_size, count, !out_job.is_null())?;
+            renderer.render_shared_outputs(outputs, region, sync, Submits::InBackground)
         })
     }
 }

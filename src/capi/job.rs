@@ -33,7 +33,7 @@ pub struct BhrJob {
     message: LastMessage,
     /// The context's.
     broken: Arc<AtomicBool>,
-    /// Whether pixels of the host's are written, so that the job's end waits for it.
+    /// Whether its frame is for the host's memory only, so that the job's end cancels it and waits for it.
     writes_memory: bool,
 }
 
@@ -175,8 +175,8 @@ fn cancel(function: &str, job: &BhrJob) {
 }
 
 /// Cancels a job, waits until it has stopped (a fraction of a frame at most) and frees it; target->pixels is the
-/// host's again. Frames for targets (bhr_render_target) go on. NULL is a no-op. No other thread may use the job any
-/// more. From inside a callback it does nothing: bhr_error_message then says so.
+/// host's again. Frames for targets (bhr_render_target) go on, but write no image any more. NULL is a no-op. No
+/// other thread may use the job any more. From inside a callback it does nothing: bhr_error_message then says so.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     const NAME: &str = "bhr_job_destroy";
@@ -191,6 +191,7 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
     if !job.writes_memory {
+        job.job.leave_images();
         return;
     }
     cancel(NAME, &job);

@@ -14,13 +14,12 @@ use super::status::BhrStatus;
 use super::versioned::{self, POINTER, Versioned};
 use super::view::view;
 use crate::error::{Error, ErrorKind, Result};
-use crate::interop::Target;
 use crate::job::OutputTarget;
+use crate::renderer::SharedOutput;
 use crate::scene::{MOST_OUTPUTS, Output, RayOutput, RayOutputKind, View};
 use arrayvec::ArrayVec;
 use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
-use std::sync::Arc;
 
 /// Outputs of one call at most. Since 0.2.0.
 pub const BHR_MAX_OUTPUTS: u32 = 8u32;
@@ -74,7 +73,8 @@ pub struct BhrOutput {
     /// The image, in the format of its kind; NULL with target. Of its flags BHR_IMAGE_TRANSPARENT matters for LIGHT
     /// only.
     pub image: *const BhrImage,
-    /// A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h; else NULL.
+    /// A BhrTarget on the GPU instead of image, for bhr_render_outputs_shared of bhr_interop.h, which takes both kinds
+    /// of places in one list; else NULL.
     pub target: *mut c_void,
 }
 
@@ -151,29 +151,44 @@ unsafe fn read_given(outputs: *const BhrOutput, size: usize, count: u32) -> Resu
     Ok(given)
 }
 
-/// Outputs that go into targets. Errors: INVALID_ARGUMENT as [`read`], for an image, and without a target.
+/// Outputs that go into targets and images. `is_job`: the host is told when the frame has ended. Errors:
+/// INVALID_ARGUMENT as [`read`], with neither a target nor an image, or with both, and for an image without a job.
 ///
 /// # Safety
-/// As [`read`], with targets in the place of images.
-pub(super) unsafe fn read_targeted<'a>(
+/// As [`read`], with targets in the place of some images; these are the host's until the frame has ended.
+pub(super) unsafe fn read_shared<'a>(
     outputs: *const BhrOutput,
     size: usize,
     count: u32,
-) -> Result<Vec<(Output, &'a Arc<Target>)>> {
+    is_job: bool,
+) -> Result<Vec<(Output, SharedOutput<'a>)>> {
     // SAFETY: this function's contract.
     let given = unsafe { read_given(outputs, size, count) }?;
-    let targets = given.iter().enumerate().map(|(index, given)| {
-        if !given.image.is_null() {
-            return Err(Error::argument(format!(
-                "outputs[{index}] image is not NULL; bhr_render_outputs writes into images, and a call into one kind"
-            )));
-        }
+    let places = given.iter().enumerate().map(|(index, given)| {
         // SAFETY: as above.
         let target = unsafe { given.target.cast::<BhrTarget>().as_ref() };
-        let target = target.ok_or_else(|| is_null(&format!("outputs[{index}] target")))?;
-        Ok((given.output, &target.target))
+        let place = match (target, given.image.is_null()) {
+            (Some(target), true) => SharedOutput::Target(&target.target),
+            (Some(_), false) => {
+                return Err(Error::argument(format!(
+                    "outputs[{index}] has an image and a target; it goes into one of them"
+                )));
+            }
+            (None, true) => return Err(is_null(&format!("outputs[{index}] target, without an image,"))),
+            (None, false) if !is_job => {
+                return Err(Error::argument(format!(
+                    "outputs[{index}] has an image, which is complete when the job is, and out_job is NULL"
+                )));
+            }
+            (None, false) => {
+                // SAFETY: as above.
+                let image = unsafe { image::read(given.image, &format!("outputs[{index}] image")) }?;
+                SharedOutput::Image(image.pixels, image.transparent)
+            }
+        };
+        Ok((given.output, place))
     });
-    targets.collect()
+    places.collect()
 }
 
 /// Errors: INVALID_ARGUMENT for a number outside its range, NULL, or what is wrong with an output or its image.
@@ -187,7 +202,8 @@ unsafe fn read<'a>(outputs: *const BhrOutput, size: usize, count: u32) -> Result
     let targets = given.iter().enumerate().map(|(index, given)| {
         if !given.target.is_null() {
             return Err(Error::argument(format!(
-                "outputs[{index}] target is not NULL; bhr_render_outputs_shared writes into targets"
+                "outputs[{index}] target is not NULL; bhr_render_outputs_shared writes into targets, and images with \
+                 them"
             )));
         }
         let name = format!("outputs[{index}] image");

@@ -33,6 +33,7 @@ pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};
 pub use frame::begun::{BegunFrame, ExtraCommands, Handed};
+pub use frame::beside::OutputTo;
 pub use frame::setup::FrameTarget;
 pub use frame::sky_target::check_sky;
 pub use frame::submission::Submission;

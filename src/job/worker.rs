@@ -4,10 +4,10 @@
 //! submission. Frames end in the order in which they were requested. Only the first thread holds a tracer; the second
 //! needs nothing that anybody holds for longer than a few instructions, so that it always gets on.
 
-use super::{Job, JobRequest, JobTarget, Shared, SharedFrame, lock};
+use super::{Job, JobRequest, JobTarget, Shared, SharedFrame, SharedPlace, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{BegunFrame, Device, FrameTarget, GpuTracer, Handed, Submission};
+use crate::gpu::{BegunFrame, Device, FrameTarget, GpuTracer, Handed, OutputTo, Submission};
 use crate::interop;
 use crate::thread_scope::{self, ThreadScope};
 use crate::tracer::{FrameStats, Tile};
@@ -195,7 +195,8 @@ impl Worker {
         self.queue.send(RunningFrame::event(job_request, &frame, &device));
         let submitted =
             FrameSubmitter { guard: Some(guard), frame, device, background: false }.submit(&self.queue, &shared);
-        submitted.map(|()| job)
+        // The host has no job that would tell it when its images are its own again.
+        submitted.inspect_err(|_| job.leave_images()).map(|()| job)
     }
 }
 
@@ -365,8 +366,16 @@ fn begin(tracer: &mut GpuTracer, job_request: &JobRequest) -> Result<(BegunFrame
     let frame = match &job_request.target {
         JobTarget::Memory(request, _) => tracer.begin(&job_request.scene, request, FrameTarget::Host)?,
         JobTarget::Shared(shared) => {
-            let light = shared.light.as_ref().map_or(Ok(FrameTarget::Nowhere), |light| FrameTarget::shared(light))?;
-            let outputs = shared.outputs.iter().map(|(output, target)| (*output, &**target)).collect::<Vec<_>>();
+            let light = match &shared.light {
+                None => FrameTarget::Nowhere,
+                Some(SharedPlace::Target(target)) => FrameTarget::shared(target)?,
+                Some(SharedPlace::Image(_)) => FrameTarget::Host,
+            };
+            let outputs = shared.outputs.iter().map(|(output, place)| match place {
+                SharedPlace::Target(target) => (*output, OutputTo::Target(target)),
+                SharedPlace::Image(number) => (*output, OutputTo::Host(*number)),
+            });
+            let outputs = outputs.collect::<Vec<_>>();
             let mut frame = tracer.begin_with(&job_request.scene, &shared.request, light, &outputs)?;
             frame.hand_over(shared.targets(), shared.sync.clone());
             frame
@@ -520,17 +529,21 @@ impl RunningFrame {
     }
 
     fn take_pixels(&mut self, step: Submission) -> Result<()> {
+        let shared = self.job_request.shared.clone();
         let target = &mut self.job_request.target;
         // On the GPU what is submitted is made.
         if let JobTarget::Memory(..) = target {
-            self.job_request.shared.check_cancelled()?;
+            shared.check_cancelled()?;
         }
-        let mut sink = |tile: Tile, pixels: &[u8], row_bytes: usize| match target {
+        let mut sink = |output: Option<usize>, tile: Tile, pixels: &[u8], row_bytes: usize| match target {
             JobTarget::Memory(_, image) => image.write_tile(tile.x, tile.y, tile.width, tile.height, pixels, row_bytes),
-            JobTarget::Shared(..) => Err(Error::internal("pixels of a target on the GPU came to the host")),
+            JobTarget::Shared(frame) => match frame.image_of(output) {
+                Some(number) => shared.write_image(number, tile, pixels, row_bytes),
+                None => Err(Error::internal("pixels of a target on the GPU came to the host")),
+            },
             JobTarget::Outputs(_) => Err(Error::internal("a step of a frame without an image")),
         };
-        step.finish(&self.device, &mut self.stats, &mut sink)?;
+        step.finish_parts(&self.device, &mut self.stats, &mut sink)?;
         self.done += 1;
         self.job_request.shared.report(self.done as f64 / self.count as f64);
         Ok(())

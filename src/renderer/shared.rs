@@ -9,9 +9,9 @@ use crate::gpu::{
     self, AdapterIds, Device, GpuTarget, HostVulkan, ReleaseGuard, SemaphoreKind, SemaphoreOrigin, Sharing,
     TargetOrigin, TargetShape, shares_nothing,
 };
-use crate::image::PixelFormat;
+use crate::image::{ImageMut, PixelFormat};
 use crate::interop::{Semaphore, Target, Use, ask_signals, frame_sync};
-use crate::job::{Job, JobRequest, JobTarget, SharedFrame, Worker};
+use crate::job::{Job, JobRequest, JobTarget, SharedFrame, SharedPlace, Worker};
 use crate::scene::{Distances, MOST_OUTPUTS, Occluder, OnDevice, Output, Region, Scene, SkyPicture, View};
 use crate::tracer::FrameRequest;
 use crate::tracers::{RunsOn, Tracer};
@@ -36,6 +36,43 @@ pub struct HostSync<'a> {
 pub enum Submits {
     Now,
     InBackground,
+}
+
+/// The place of an output of a frame that goes to targets.
+pub enum SharedOutput<'a> {
+    Target(&'a Arc<Target>),
+    /// And whether a picture is transparent.
+    Image(ImageMut<'static>, bool),
+}
+
+impl SharedOutput<'_> {
+    fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Target(target) => target.shape().size,
+            Self::Image(image, _) => [image.width(), image.height()],
+        }
+    }
+
+    fn format(&self) -> PixelFormat {
+        match self {
+            Self::Target(target) => target.shape().format,
+            Self::Image(image, _) => image.format(),
+        }
+    }
+
+    fn is_transparent(&self) -> bool {
+        match self {
+            Self::Target(target) => target.transparent,
+            Self::Image(_, transparent) => *transparent,
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Target(_) => "target",
+            Self::Image(..) => "image",
+        }
+    }
 }
 
 impl Renderer {
@@ -111,10 +148,10 @@ impl Renderer {
         let shape = *target.shape();
         let on_device = target.on(&device)?;
         self.check_is_not_read(target, &on_device)?;
-        let light = Some(on_device);
+        let light = Some(SharedPlace::Target(on_device));
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
         let request = self.request(shape.format, shape.size, target.transparent, region)?;
-        self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), sync }, submits)
+        self.submit_shared(SharedFrame { request, light, outputs: Vec::new(), images: Vec::new(), sync }, submits)
     }
 
     /// The scene with the occluder. Errors: as `Scene::behind`.
@@ -152,19 +189,21 @@ impl Renderer {
         Ok(())
     }
 
-    /// Sets a target whose pixels are the sky's map, read by each frame that shows it when the frame begins. Errors:
+    /// Sets a target whose pixels are the sky's map, or the faces of a cube as `Projection::Cube` has them of a camera
+    /// that looks along +x of the sky axes, +z being up; read by each frame that shows it when the frame begins.
+    /// Errors:
     /// INVALID_ARGUMENT for a target of another renderer, format or shape; UNSUPPORTED for one that cannot be copied,
     /// or is too large for the device; SURFACE_LOST; the map then stays as it was.
-    pub fn set_sky_target(&mut self, target: &Arc<Target>) -> Result<()> {
+    pub fn set_sky_target(&mut self, target: &Arc<Target>, cube: bool) -> Result<()> {
         self.check_device()?;
         let device = self.gpu()?;
         let on_device = target.on(device)?;
         on_device.check_is_read()?;
-        gpu::check_sky(device, target.shape())?;
+        gpu::check_sky(device, target.shape(), cube)?;
         let TargetShape { size, format, .. } = *target.shape();
         // Weak, so that a target ends when its host ends it.
         let place = OnDevice(Arc::new(Arc::downgrade(&on_device)));
-        self.scene.sky_picture = Some(SkyPicture { size, format, place });
+        self.scene.sky_picture = Some(SkyPicture { size, cube, format, place });
         self.scene.sky_map = None;
         Ok(())
     }
@@ -189,53 +228,67 @@ impl Renderer {
         Err(Error::argument(format!("target is the {read}'s, which frames read; it cannot be written as well")))
     }
 
-    /// Renders outputs of the scene as it is now into targets, as [`Self::render_target`] does a picture. Errors: as
-    /// there, of each target; INVALID_ARGUMENT for targets of several sizes, one that is there twice, formats that do
-    /// not go with the outputs, two pictures, and views that take frames of their own; UNSUPPORTED for targets that
-    /// kernels do not reach.
+    /// Renders outputs of the scene as it is now into targets and images, as [`Self::render_target`] does a picture;
+    /// the images are complete when the job is. Errors: as there, of each target; INVALID_ARGUMENT for places of
+    /// several sizes, a target that is there twice, formats that do not go with the outputs, two pictures, and views
+    /// that take
+    /// frames of their own; UNSUPPORTED for targets that kernels do not reach.
     pub fn render_shared_outputs(
         &mut self,
-        outputs: &[(Output, &Arc<Target>)],
+        outputs: Vec<(Output, SharedOutput<'_>)>,
         region: Option<Region>,
         sync: &HostSync<'_>,
         submits: Submits,
     ) -> Result<Job> {
         self.check_device()?;
         let device = self.gpu()?.clone();
-        let Some(size) = outputs.first().map(|(_, target)| target.shape().size) else {
+        let Some(size) = outputs.first().map(|(_, to)| to.size()) else {
             return Err(Error::argument(format!("output count is 0; it must lie in [1, {MOST_OUTPUTS}]")));
         };
         let (mut light, mut of_rays, mut request) = (None, Vec::with_capacity(outputs.len()), None);
-        for (index, (output, target)) in outputs.iter().enumerate() {
-            let on = target
-                .on(&device)
-                .map_err(|error| Error::new(error.kind, format!("outputs[{index}] {}", error.message)))?;
-            let ([width, height], [w, h]) = (size, target.shape().size);
+        let (mut targets, mut images) = (Vec::<&Arc<Target>>::new(), Vec::new());
+        for (index, (output, to)) in outputs.into_iter().enumerate() {
+            let ([width, height], [w, h]) = (size, to.size());
+            let name = to.name();
             if [w, h] != size {
                 return Err(Error::argument(format!(
-                    "outputs[{index}] target is {w} x {h}; outputs[0] has {width} x {height}, and all must be of one \
+                    "outputs[{index}] {name} is {w} x {h}; outputs[0] has {width} x {height}, and all must be of one \
                      size"
                 )));
             }
-            if outputs.iter().take(index).any(|(_, other)| Arc::ptr_eq(other, target)) {
-                return Err(Error::argument(format!("outputs[{index}] target is that of another output")));
-            }
-            self.check_is_not_read(target, &on)?;
-            let given = target.shape().format;
+            let (given, transparent) = (to.format(), to.is_transparent());
             if let Some(wanted) = output.format().filter(|wanted| *wanted != given) {
                 return Err(Error::argument(format!(
-                    "outputs[{index}] target format is {given}; its kind takes {wanted}"
+                    "outputs[{index}] {name} format is {given}; its kind takes {wanted}"
                 )));
             }
+            let place = match to {
+                SharedOutput::Target(target) => {
+                    let on = target
+                        .on(&device)
+                        .map_err(|error| Error::new(error.kind, format!("outputs[{index}] {}", error.message)))?;
+                    if targets.iter().any(|other| Arc::ptr_eq(other, target)) {
+                        return Err(Error::argument(format!("outputs[{index}] target is that of another output")));
+                    }
+                    self.check_is_not_read(target, &on)?;
+                    targets.push(target);
+                    SharedPlace::Target(on)
+                }
+                SharedOutput::Image(mut image, _) => {
+                    self.help_to_write(&mut image);
+                    images.push(image);
+                    SharedPlace::Image(images.len() - 1)
+                }
+            };
             match output {
                 Output::Light if light.is_some() => {
                     return Err(Error::argument(format!(
-                        "outputs[{index}] is a second LIGHT; targets of one frame take one"
+                        "outputs[{index}] is a second LIGHT; a frame with targets takes one"
                     )));
                 }
                 Output::Light => {
-                    request = Some(self.request(given, size, target.transparent, region)?);
-                    light = Some(on);
+                    request = Some(self.request(given, size, transparent, region)?);
+                    light = Some(place);
                 }
                 Output::View(view) => {
                     return Err(Error::argument(format!(
@@ -244,7 +297,7 @@ impl Renderer {
                         view.name()
                     )));
                 }
-                Output::Ray(output) => of_rays.push((*output, on)),
+                Output::Ray(output) => of_rays.push((output, place)),
             }
         }
         let sync = frame_sync(&device, sync.waits, sync.signals, submits == Submits::Now)?;
@@ -257,7 +310,7 @@ impl Renderer {
                 FrameRequest { width, height, region, format: PixelFormat::Rgba32F, transparent: false }
             }
         };
-        self.submit_shared(SharedFrame { request, light, outputs: of_rays, sync }, submits)
+        self.submit_shared(SharedFrame { request, light, outputs: of_rays, images, sync }, submits)
     }
 
     fn submit_shared(&mut self, frame: SharedFrame, submits: Submits) -> Result<Job> {

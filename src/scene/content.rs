@@ -100,12 +100,22 @@ pub struct Scene {
     pub given_stars: Option<Arc<StarIndex>>,
 }
 
-/// An equirectangular picture of the sky on the tracer's device.
+/// A picture of the sky on the tracer's device: equirectangular, or the six faces of a cube side by side, as
+/// `Projection::Cube` has them, of a camera that looks along +x of the sky axes, +z being up.
 #[derive(Clone, Debug)]
 pub struct SkyPicture {
     pub size: [u32; 2],
+    pub cube: bool,
     pub format: PixelFormat,
     pub place: OnDevice,
+}
+
+impl SkyPicture {
+    /// Columns and rows of the equirectangular map that is made from it: a cube's has as many on the equator as its
+    /// four faces there.
+    pub fn map_size(size: [u32; 2], cube: bool) -> [u32; 2] {
+        if cube { [4, 2].map(|times: u32| times.saturating_mul(size[1])) } else { size }
+    }
 }
 
 impl Default for Scene {

@@ -167,6 +167,12 @@ static void read_targets(bhr::Context &context) {
     EXPECT(bhr::set_occluder_target(context, &occluder, bhr::ImageFlags::lensed));
     EXPECT(bhr::set_sky_target(context, &sky));
     EXPECT(context.render(width, height));
+    bhr::Target cube =
+        bhr::Target::create(context, {bhr::TargetKind::buffer, bhr::Format::rgba16f, 6 * 16, 16}).value();
+    EXPECT(bhr::set_sky_target_as(context, &cube, bhr::Projection::cube));
+    EXPECT(!bhr::set_sky_target_as(context, &sky, bhr::Projection::cube));
+    EXPECT(!bhr::set_sky_target_as(context, &sky, bhr::Projection::fisheye));
+    EXPECT(context.render(width, height));
     EXPECT(bhr::set_occluder_target(context, &sky).status() == bhr::StatusCode::invalid_argument);
     EXPECT(bhr::set_sky_target(context, nullptr) && bhr::set_occluder_target(context, nullptr));
     EXPECT(context.render(width, height));

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* outputs.c -- outputs beside the picture in targets on the GPU: their bytes are those of bhr_render_outputs, in
- * buffers, buffers with strides and images, alone and all together, however the frame's rays are found; with semaphores
- * and as jobs; and what is refused, which changes nothing. Arguments: vulkan [validate]. */
+/* outputs.c -- outputs beside the picture in targets on the GPU, and in the host's memory with them: their bytes are
+ * those of bhr_render_outputs, in buffers, buffers with strides and images, alone and all together, however the frame's
+ * rays are found; with semaphores and as jobs; and what is refused, which changes nothing.
+ * Arguments: vulkan [validate]. */
 #include "../c/check.h"
 #include "vk.h"
 
@@ -19,6 +20,9 @@ static BhrContext   *context;
 static Vk            host;
 static unsigned char expected[BHR_MAX_OUTPUTS][MOST];
 static unsigned char seen[4 * MOST];
+static unsigned char memory[BHR_MAX_OUTPUTS][MOST + 16];
+/* The outputs (bits) that go into the host's memory, not into targets. */
+static uint32_t in_memory;
 
 static const struct {
     BhrOutputKind kind;
@@ -65,6 +69,20 @@ static BhrOutput output_of(size_t at, BhrTarget *target) {
     return output;
 }
 
+/* The same into the host's memory. */
+static BhrOutput imaged(size_t at, BhrImage *image, void *pixels, uint32_t flags) {
+    BhrOutput output = output_of(at, NULL);
+    CHECK_OK(bhr_image_init(image, sizeof *image));
+    image->format = kinds[at].format;
+    image->width = WIDTH;
+    image->height = HEIGHT;
+    image->pixels = pixels;
+    image->byte_size = MOST;
+    image->flags = kinds[at].kind == BHR_OUTPUT_LIGHT ? flags : 0;
+    output.image = image;
+    return output;
+}
+
 /* The outputs of `chosen` (bits) in the host's memory. */
 static void expect(uint32_t chosen, uint32_t flags) {
     BhrImage  images[BHR_MAX_OUTPUTS];
@@ -73,28 +91,21 @@ static void expect(uint32_t chosen, uint32_t flags) {
     for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
         if (!(chosen >> at & 1))
             continue;
-        BhrImage *image = &images[count];
-        CHECK_OK(bhr_image_init(image, sizeof *image));
-        image->format = kinds[at].format;
-        image->width = WIDTH;
-        image->height = HEIGHT;
-        image->pixels = expected[at];
-        image->byte_size = MOST;
-        image->flags = kinds[at].kind == BHR_OUTPUT_LIGHT ? flags : 0;
-        outputs[count] = output_of(at, NULL);
-        outputs[count++].image = image;
+        outputs[count] = imaged(at, &images[count], expected[at], flags);
+        count++;
     }
     CHECK_OK(bhr_render_outputs(context, outputs, sizeof *outputs, count, NULL));
 }
 
 typedef enum Way { BUFFERS, STRIDES, IMAGES, MIXED } Way;
 
-/* Renders `chosen` into targets, and compares. */
+/* Renders `chosen` into targets, and what is in_memory of it into images, and compares. */
 static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const char *what) {
     BhrTarget   *targets[BHR_MAX_OUTPUTS] = {0};
     VkPicture    pictures[BHR_MAX_OUTPUTS];
     BhrOutput    outputs[BHR_MAX_OUTPUTS];
     uint64_t     strides[BHR_MAX_OUTPUTS];
+    BhrImage     images[BHR_MAX_OUTPUTS];
     BhrSemaphore *done;
     BhrJob       *job = NULL;
     uint32_t     count = 0;
@@ -103,6 +114,12 @@ static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const c
     for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
         if (!(chosen >> at & 1))
             continue;
+        if (in_memory >> at & 1) {
+            memset(memory[at], 0x77, sizeof memory[at]);
+            outputs[count] = imaged(at, &images[count], memory[at], flags);
+            count++;
+            continue;
+        }
         int      image = way == IMAGES || (way == MIXED && at % 2);
         uint64_t row = (uint64_t)WIDTH * kinds[at].bytes, stride = way == STRIDES ? row + 4 * (at + 1) : row;
         strides[at] = stride;
@@ -117,7 +134,7 @@ static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const c
                    : bhr_render_outputs_shared(context, outputs, sizeof *outputs, count, &sync, &job));
     CHECK_OK(bhr_semaphore_wait(done, 1, UINT64_MAX));
     for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
-        if (!(chosen >> at & 1))
+        if (!((chosen & ~in_memory) >> at & 1))
             continue;
         uint64_t row = (uint64_t)WIDTH * kinds[at].bytes, stride = strides[at];
         uint32_t wrong = 0;
@@ -139,9 +156,21 @@ static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const c
         CHECK_OK(bhr_job_stats(job, &stats));
         CHECK(stats.rays >= WIDTH * HEIGHT, "%llu rays", (unsigned long long)stats.rays);
     }
+    for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++) {
+        if (!((chosen & in_memory) >> at & 1))
+            continue;
+        size_t bytes = (size_t)WIDTH * HEIGHT * kinds[at].bytes;
+        int    same = memcmp(memory[at], expected[at], bytes) == 0;
+        double apart = same ? 0 : vk_apart(kinds[at].format, memory[at], expected[at], bytes);
+        /* The picture is made by the kernel of bhr_render_image. */
+        double most = at == 1 ? 0 : vk_most_apart(context, BHR_TARGET_IMAGE, kinds[at].format);
+        CHECK(same || (at != 1 && apart <= most), "%s, way %d: output %zu in memory differs, up to %g", what, (int)way,
+              at, apart);
+        CHECK(memory[at][bytes] == 0x77, "%s: output %zu is written beyond its end", what, at);
+    }
     bhr_job_destroy(job);
     for (size_t at = 0; at < BHR_MAX_OUTPUTS; at++)
-        if (chosen >> at & 1) {
+        if ((chosen & ~in_memory) >> at & 1) {
             bhr_target_destroy(targets[at]);
             vk_drop(&host, &pictures[at]);
         }
@@ -209,6 +238,32 @@ static void scenes(void) {
     compare(ALL, BUFFERS, 0, 0, "a volume");
     CHECK_OK(bhr_set_volumes(context, NULL, sizeof volume, 0));
     CHECK_OK(bhr_set_view(context, BHR_VIEW_LIGHT));
+}
+
+/* Some outputs in the host's memory, others in targets, from one frame; and all in the host's memory. */
+static void mixed(void) {
+    static const uint32_t masks[] = {LIGHT_ONLY, RAYS_ONLY, DEPTH_ONLY, 0x55, 0x3c, ALL};
+    for (size_t i = 0; i < COUNT_OF(masks); i++) {
+        char what[80];
+        int  large = i % 2;
+        snprintf(what, sizeof what, "in memory 0x%x", masks[i]);
+        in_memory = masks[i];
+        CHECK_OK(bhr_set_spin(context, i % 3 ? 0.9 : 0));
+        set_frame(large);
+        compare(ALL, MIXED, BHR_IMAGE_TRANSPARENT, large, what);
+        compare(THREE, IMAGES, 0, !large, what);
+        compare(RAYS_ONLY, STRIDES, 0, large, what);
+    }
+    CHECK_OK(bhr_set_spin(context, 0));
+    set_frame(0);
+    in_memory = 0x35;
+    set_quality(3, 0.4);
+    compare(ALL, MIXED, 0, 1, "in memory, 3 samples and glare");
+    set_quality(5, 0);
+    in_memory = LIGHT_ONLY;
+    compare(THREE, BUFFERS, 0, 0, "in memory, 5 samples");
+    set_quality(1, 0);
+    in_memory = 0;
 }
 
 /* The host's things are in the picture, and in no other output. */
@@ -414,8 +469,20 @@ static void refused(BhrBackend backend) {
     CHECK_OK(bhr_image_init(&image, sizeof image));
     one = output_of(0, depth);
     one.image = &image;
-    REFUSED(BAD, "image is not NULL", SHARED(&one, 1));
-    one.image = NULL;
+    REFUSED(BAD, "an image and a target", SHARED(&one, 1));
+    one = imaged(0, &image, seen, 0);
+    CHECK_REFUSED(&watch, BAD, "out_job is NULL",
+                  bhr_render_outputs_shared(context, &one, sizeof one, 1, NULL, NULL));
+    CHECK_REFUSED(&watch, BAD, "out_job is NULL",
+                  bhr_render_outputs_shared_async(context, &one, sizeof one, 1, NULL, NULL));
+    REFUSED(BAD, "image pixels is NULL", (image.pixels = NULL, SHARED(&one, 1)));
+    REFUSED(BAD, "image format is R32F; its kind takes RGBA32F", (one = imaged(0, &image, seen, 0),
+                                                                  one.kind = BHR_OUTPUT_SKY, SHARED(&one, 1)));
+    REFUSED(BAD, "outputs[1] image is 107 x 44", (list[0] = output_of(2, sky), list[1] = imaged(0, &image, seen, 0),
+                                                  image.height--, SHARED(list, 2)));
+    REFUSED(BAD, "second LIGHT", (list[0] = output_of(1, light), list[1] = imaged(1, &image, seen, 0),
+                                  SHARED(list, 2)));
+    one = output_of(0, depth);
     REFUSED(BAD, "bhr_render_outputs_shared", bhr_render_outputs(context, &one, sizeof one, 1, &job));
     REFUSED(BAD, "bhr_render_outputs_shared", bhr_save_outputs(context, &one, sizeof one, 1, "none.exr"));
     BhrTargetOptions options;
@@ -460,6 +527,7 @@ int main(int argc, char **argv) {
     vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
     vk_open_device(&host);
     set_quality(1, 0);
+    mixed();
     scenes();
     occluded();
     for (int hosts_memory = 0; hosts_memory < 2; hosts_memory++) {

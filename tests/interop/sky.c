@@ -126,6 +126,83 @@ static void compare(BhrFormat format, BhrTargetKind kind, uint64_t gap) {
     vk_drop(&host, &picture);
 }
 
+/* Smooth light of a direction in sky axes, other in each channel. */
+static void light_of(const double v[3], float texel[4]) {
+    texel[0] = (float)(0.4 + 0.3 * sin(3 * v[0] + v[1]) * cos(2 * v[2]));
+    texel[1] = (float)(0.4 + 0.3 * sin(4 * v[1] - v[2]));
+    texel[2] = (float)(0.4 + 0.3 * cos(5 * v[2] + 2 * v[0]));
+    texel[3] = 1.0f;
+}
+
+/* A cube of known light shows what an equirectangular map of the same light does. */
+static void cube(void) {
+    enum { SIDE = 96 };
+    static float     faces[SIDE * SIDE * 6 * 4], plain[SIDE * SIDE * 8 * 4];
+    BhrTargetOptions options = options_of(BHR_FORMAT_RGBA32F, BHR_TARGET_IMAGE, 0);
+    BhrTargetInfo    info = {.struct_size = sizeof info};
+    BhrHandle        handle;
+    BhrTarget       *target;
+    BhrImage         image;
+    Watch            watch;
+    /* Middle, right and up of each face. */
+    static const int axes[6][3][3] = {
+        {{0, -1, 0}, {-1, 0, 0}, {0, 0, 1}}, {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},  {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
+        {{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}}, {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+    };
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < 6 * SIDE; x++) {
+            const int(*axis)[3] = axes[x / SIDE];
+            double right = 2 * (x % SIDE + 0.5) / SIDE - 1, up = 1 - 2 * (y + 0.5) / SIDE, v[3];
+            double length = sqrt(1 + right * right + up * up);
+            for (int i = 0; i < 3; i++)
+                v[i] = (axis[0][i] + right * axis[1][i] + up * axis[2][i]) / length;
+            light_of(v, faces + 4 * (y * 6 * SIDE + x));
+        }
+    for (int y = 0; y < 2 * SIDE; y++)
+        for (int x = 0; x < 4 * SIDE; x++) {
+            double ra = 6.283185307179586 * (0.5 - (x + 0.5) / (4 * SIDE));
+            double dec = 3.141592653589793 * (0.5 - (y + 0.5) / (2 * SIDE));
+            double v[3] = {cos(dec) * cos(ra), cos(dec) * sin(ra), sin(dec)};
+            light_of(v, plain + 4 * (y * 4 * SIDE + x));
+        }
+    options.width = 6 * SIDE;
+    options.height = SIDE;
+    CHECK_OK(bhr_target_create(context, &options, &target));
+    CHECK_OK(bhr_target_info(target, &info));
+    CHECK_OK(bhr_target_export(target, &handle));
+    VkPicture picture = vk_import(&host, &info, handle.fd, sizeof faces);
+    CHECK_OK(bhr_image_init(&image, sizeof image));
+    image.format = BHR_FORMAT_RGBA32F;
+    image.width = 4 * SIDE;
+    image.height = 2 * SIDE;
+    image.pixels = plain;
+    image.byte_size = sizeof plain;
+    CHECK_OK(bhr_set_sky_map(context, &image));
+    render(from_memory);
+    vk_write(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 16, SIDE * 96, sizeof faces, (unsigned char *)faces);
+    CHECK_OK(bhr_set_sky_target_as(context, target, BHR_PROJECTION_CUBE));
+    render(from_gpu);
+    double apart = vk_apart(BHR_FORMAT_RGBA8_SRGB, from_gpu, from_memory, sizeof from_gpu);
+    CHECK(apart <= 1, "a cube is %g steps from the same light in a map", apart);
+    /* Seen as an equirect it is another sky. */
+    vk_write(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 16, SIDE * 96, sizeof faces, (unsigned char *)faces);
+    CHECK_OK(bhr_set_sky_target_as(context, target, BHR_PROJECTION_EQUIRECT));
+    render(from_gpu);
+    CHECK(vk_apart(BHR_FORMAT_RGBA8_SRGB, from_gpu, from_memory, sizeof from_gpu) > 20, "the layout makes no change");
+    watch_begin(&watch, context);
+    CHECK_FAILS(BAD, "context", bhr_set_sky_target_as(NULL, target, BHR_PROJECTION_CUBE));
+    CHECK_REFUSED(&watch, BAD, "layout", bhr_set_sky_target_as(context, target, BHR_PROJECTION_FISHEYE));
+    CHECK_REFUSED(&watch, BAD, "layout", bhr_set_sky_target_as(context, target, -1));
+    CHECK_OK(bhr_set_sky_target_as(context, NULL, BHR_PROJECTION_CUBE));
+    bhr_target_destroy(target);
+    vk_drop(&host, &picture);
+    watch_begin(&watch, context);
+    options.width = 6 * SIDE + 1;
+    CHECK_OK(bhr_target_create(context, &options, &target));
+    CHECK_REFUSED(&watch, BAD, "6 times", bhr_set_sky_target_as(context, target, BHR_PROJECTION_CUBE));
+    bhr_target_destroy(target);
+}
+
 static void refused(BhrBackend backend) {
     static const struct {
         BhrFormat   format;
@@ -183,6 +260,7 @@ int main(int argc, char **argv) {
     CHECK_OK(bhr_set_camera(context, &camera));
     compare(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0);
     compare(BHR_FORMAT_RGBA32F, BHR_TARGET_BUFFER, 0);
+    cube();
     refused(backend);
     bhr_context_destroy(context);
     vk_close(&host);

@@ -45,10 +45,51 @@ fn levels_made_on_the_gpu_are_those_of_the_cpu() {
         let expected = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
         renderer.scene = scene.clone();
         let without = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
-        renderer.set_sky_target(&target).unwrap();
+        renderer.set_sky_target(&target, false).unwrap();
         let found = picture(&mut renderer, PixelFormat::Rgba8Srgb, SIZE, None, false);
         let apart = |a: &[u8], b: &[u8]| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap();
         assert!(apart(&found, &expected) <= 1, "{map_size:?} {sampler}: {} steps apart", apart(&found, &expected));
         assert!(apart(&found, &without) > 50, "{map_size:?} {sampler}: the map is not seen");
+    }
+}
+
+/// A picture of the surroundings as a cube is the same sky as one all round by the same camera; but for edges, which
+/// the two pictures hold in other texels.
+#[test]
+fn a_cube_is_the_sky_that_a_camera_sees() {
+    for sampler in [false, true] {
+        let mut renderer = gpu();
+        renderer.scene = map_scene();
+        renderer.scene.camera.projection = Projection::Cube;
+        let (format, side) = (PixelFormat::Rgba32F, 128);
+        let size = [6 * side, side];
+        let shape =
+            TargetShape { image: false, format, size, row_stride: 16 * u64::from(6 * side), layout: 0, handle: 0 };
+        let target = renderer.create_target(shape, false, TargetOrigin::New).unwrap();
+        let sync = HostSync { waits: &[], signals: &[] };
+        let job = renderer.render_target(&target, None, &sync, Submits::Now).unwrap();
+        job.wait(None, &mut |_| true).unwrap().unwrap();
+        renderer.scene.camera.projection = Projection::Equirect;
+        let pixels = picture(&mut renderer, format, [4 * side, 2 * side], None, false);
+        let image = ImageRef::new(Layout::packed(format, 4 * side, 2 * side), &pixels).unwrap();
+
+        let mut scene = Scene::plain();
+        scene.sky.flags = Sky::MAP;
+        scene.quality.map_sampler = Some(sampler);
+        scene.disk = None;
+        scene.camera.projection = Projection::Equirect;
+        renderer.scene = scene.clone();
+        renderer.scene.sky_map = Some(Arc::new(SkyMap::new(&image).unwrap()));
+        let shown = [400, 200];
+        let expected = picture(&mut renderer, PixelFormat::Rgba8Srgb, shown, None, false);
+        renderer.scene = scene;
+        renderer.set_sky_target(&target, true).unwrap();
+        let found = picture(&mut renderer, PixelFormat::Rgba8Srgb, shown, None, false);
+        let apart = || expected.iter().zip(&found).map(|(a, b)| a.abs_diff(*b));
+        let bright = expected.iter().enumerate().filter(|(i, value)| i % 4 != 3 && **value > 60).count();
+        let mean = apart().map(f64::from).sum::<f64>() / expected.len() as f64;
+        let far = apart().filter(|steps| *steps > 16).count() as f64 / expected.len() as f64;
+        assert!(bright > 2000, "{sampler}: only {bright} channels are bright");
+        assert!(mean < 0.5 && far < 0.01, "{sampler}: {mean} steps apart in the mean, {far} of them far");
     }
 }

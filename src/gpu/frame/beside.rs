@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! Outputs that go into targets on the GPU, in the submissions of the frame that they belong to: each tile's, after its
-//! picture. Where the picture's records and tables serve outputs as well, they read those; else rays are traced for
-//! them, or tables made. Knows no host memory.
+//! Outputs beside a picture, in the submissions of the frame that they belong to: each tile's, after its picture. They
+//! go into targets on the GPU, or are packed tile by tile, from where each submission copies them for the host. Where
+//! the picture's records and tables serve outputs as well, they read those; else rays are traced for them, or tables
+//! made. Knows no host memory.
 
 use super::buffers::FrameBuffers;
 use super::outputs::{OutputBuffers, OutputsUniform};
@@ -20,13 +21,40 @@ use crate::gpu::lens::records::{RecordStages, RecordStore, Shared};
 use crate::scene::{RayOutput, Scene};
 use crate::tracer::{FrameRequest, Tile};
 
-/// An output and the target that it goes into.
-pub type TargetedOutput<'a> = (RayOutput, &'a GpuTarget);
+/// The place that an output goes to.
+#[derive(Clone, Copy)]
+pub enum OutputTo<'a> {
+    Target(&'a GpuTarget),
+    /// To the host, which knows it by this number.
+    Host(usize),
+}
+
+/// An output and where it goes.
+pub type PlacedOutput<'a> = (RayOutput, OutputTo<'a>);
+
+/// Every device binds buffers from a multiple of this on.
+const PACKED_ALIGNMENT: u64 = 256;
 
 /// The place of an output's numbers.
 enum Place {
     Rows(wgpu::Buffer, FrameRows),
     Image(wgpu::TextureView),
+    /// A tile's, in a buffer of all those for the host; each begins where the one before ends on the largest tile.
+    Packed {
+        number: usize,
+        words: u64,
+    },
+}
+
+/// A tile's numbers of an output for the host, packed.
+#[derive(Clone, Copy)]
+pub struct PackedOutput {
+    /// The number by which the host knows it.
+    pub number: usize,
+    /// Bytes before it in the buffer.
+    pub offset: u64,
+    /// Bytes of a pixel.
+    pub pixel_bytes: u64,
 }
 
 /// How the outputs of a frame are made, before its buffers are there.
@@ -51,14 +79,23 @@ pub(in crate::gpu) struct Beside {
     layout: wgpu::BindGroupLayout,
     uniform: OutputsUniform,
     places: Vec<Place>,
+    /// Pixels of the largest tile.
+    most_pixels: u64,
     /// A tile was made.
     pub begun: bool,
 }
 
 impl Place {
     /// The place, and how kernels write there. Errors: UNSUPPORTED for an image that they cannot write.
-    fn of(output: RayOutput, target: &GpuTarget) -> Result<(Self, OutputPlace)> {
+    fn of(output: RayOutput, to: OutputTo<'_>) -> Result<(Self, OutputPlace)> {
         let single = output.words() == 1;
+        let target = match to {
+            OutputTo::Target(target) => target,
+            OutputTo::Host(number) => {
+                let kind = if single { OutputPlace::Number } else { OutputPlace::AlignedNumbers };
+                return Ok((Self::Packed { number, words: output.words() as u64 }, kind));
+            }
+        };
         Ok(match &target.resource {
             TargetResource::Buffer(buffer) => {
                 let rows = FrameRows::of(target, buffer);
@@ -90,14 +127,14 @@ impl GpuTracer {
         &self,
         scene: &Scene,
         request: &FrameRequest,
-        outputs: &[TargetedOutput<'_>],
+        outputs: &[PlacedOutput<'_>],
         picture: Option<&Setup>,
     ) -> Result<BesideSetup> {
         let setup = self.set_up(scene, request, PixelTarget::Packed)?;
         let mut kinds = OutputPlaces::default();
         let mut places = Vec::with_capacity(outputs.len());
-        for (kind, (output, target)) in kinds.iter_mut().zip(outputs) {
-            let (place, found) = Place::of(*output, target)?;
+        for (kind, (output, to)) in kinds.iter_mut().zip(outputs) {
+            let (place, found) = Place::of(*output, *to)?;
             places.push(place);
             *kind = Some((*output, found));
         }
@@ -128,7 +165,8 @@ fn check_bound(device: &Device, places: &[Place], source: RecordSource) -> Resul
     for (name, count, most) in found {
         if count > most {
             return Err(Error::unsupported(format!(
-                "{count} outputs go into {name} targets; kernels of this device write {most} at most"
+                "{count} outputs go into {name} targets, or as those into the host's memory; kernels of this device \
+                 write {most} at most"
             )));
         }
     }
@@ -142,7 +180,14 @@ impl BesideSetup {
 
     /// Bytes of a tile's pixel on the device beside the picture's.
     pub fn bytes_per_pixel(&self) -> u64 {
-        if self.reads_again { 0 } else { self.setup.record_setup.bytes_per_pixel() }
+        let records = if self.reads_again { 0 } else { self.setup.record_setup.bytes_per_pixel() };
+        // Packed numbers have two staging buffers.
+        records + 3 * self.packed_bytes()
+    }
+
+    /// Bytes of a pixel's numbers for the host.
+    fn packed_bytes(&self) -> u64 {
+        self.places.iter().map(|place| if let Place::Packed { words, .. } = place { 4 * words } else { 0 }).sum()
     }
 
     /// Whether rays are traced, or looked up with a share of them traced, beside those of the picture.
@@ -154,7 +199,7 @@ impl BesideSetup {
     pub fn most_rows(&self, device: &Device) -> Result<u32> {
         let rows = self.places.iter().filter_map(|place| match place {
             Place::Rows(_, rows) => Some(rows.most_rows(device)),
-            Place::Image(_) => None,
+            Place::Image(_) | Place::Packed { .. } => None,
         });
         rows.collect::<Result<Vec<u32>>>().map(|rows| rows.into_iter().min().unwrap_or(u32::MAX))
     }
@@ -169,6 +214,11 @@ impl BesideSetup {
         software: bool,
     ) -> Result<()> {
         own.uniform(device)?;
+        let most_pixels = tile.map(u64::from).iter().product::<u64>();
+        let count = self.places.len() as u64;
+        if self.packed_bytes() > 0 {
+            own.make_room(device, self.packed_bytes() * most_pixels + count * PACKED_ALIGNMENT)?;
+        }
         if self.reads_again {
             return Ok(());
         }
@@ -184,7 +234,7 @@ impl BesideSetup {
         tables: &Tables,
         buffers: &mut FrameBuffers,
         own: &mut OutputBuffers,
-        software: bool,
+        (tile, software): ([u32; 2], bool),
     ) -> Result<Beside> {
         let missing = || Error::internal("outputs without buffers");
         let record_setup = &self.setup.record_setup;
@@ -209,7 +259,8 @@ impl BesideSetup {
         let consumer = RecordConsumer::new(kernels, record_setup, software, take)?;
         let layout = kernels.get(key(record_setup.source))?.target()?.clone();
         let Self { own_tables, uniform, places, .. } = self;
-        Ok(Beside { source: record_setup.source, records, own_tables, consumer, layout, uniform, places, begun: false })
+        let (source, most_pixels) = (record_setup.source, tile.map(u64::from).iter().product());
+        Ok(Beside { source, records, own_tables, consumer, layout, uniform, places, most_pixels, begun: false })
     }
 }
 
@@ -217,10 +268,20 @@ impl Beside {
     /// The group of a tile's targets; where in them the tile lies is written for the next submission.
     pub fn group(&self, device: &Device, own: &mut OutputBuffers, tile: Tile) -> Result<wgpu::BindGroup> {
         let mut uniform = self.uniform;
-        let held = own.uniform(device)?;
+        own.uniform(device)?;
+        let missing = || Error::internal("outputs without buffers");
+        let held = own.uniform.as_mut().ok_or_else(missing)?;
+        let mut packed = self.packed();
         let mut bound = vec![held.buffer.as_entire_binding()];
         for (to, place) in uniform.places.iter_mut().zip(&self.places) {
             bound.push(match place {
+                Place::Packed { words, .. } => {
+                    *to = [0, *words as u32 * tile.width, 0, 0];
+                    let buffer = own.packed.as_ref().ok_or_else(missing)?;
+                    let offset = packed.next().ok_or_else(missing)?.offset;
+                    let size = std::num::NonZeroU64::new(4 * words * self.most_pixels);
+                    wgpu::BindingResource::Buffer(wgpu::BufferBinding { buffer, offset, size })
+                }
                 Place::Rows(buffer, rows) => {
                     let at = rows.place(device, tile);
                     *to = [at.first, at.row, 0, 0];
@@ -237,6 +298,20 @@ impl Beside {
         drop(bound);
         held.write(device, bytemuck::bytes_of(&uniform))?;
         Ok(group)
+    }
+
+    /// The tile's numbers for the host, in the buffer that [`OutputBuffers::packed`] is.
+    pub fn packed(&self) -> impl Iterator<Item = PackedOutput> {
+        let most_pixels = self.most_pixels;
+        let packed = self.places.iter().filter_map(|place| match place {
+            Place::Packed { number, words } => Some((*number, 4 * words)),
+            Place::Rows(..) | Place::Image(_) => None,
+        });
+        packed.scan(0_u64, move |end, (number, pixel_bytes)| {
+            let offset = end.next_multiple_of(PACKED_ALIGNMENT);
+            *end = offset + pixel_bytes * most_pixels;
+            Some(PackedOutput { number, offset, pixel_bytes })
+        })
     }
 
     /// Before the tile's outputs, after its picture. What will hold the steps of their rays; `None`: they take none.

@@ -11,6 +11,7 @@ use super::tiles::TilePlan;
 use super::tracer::GpuTracer;
 use super::uniforms::pass_of;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer::{self, GpuTimer};
 use crate::gpu::device::wgpu_device::Device;
@@ -94,6 +95,8 @@ impl OutputsUniform {
 pub struct OutputBuffers {
     pub(super) frame: FrameBuffers,
     pub(super) uniform: Option<CachedUniform>,
+    /// A tile's numbers for the host, of outputs beside a picture ([`super::beside`]).
+    pub(super) packed: Option<Buffer>,
 }
 
 /// A tile that has been submitted.
@@ -205,6 +208,17 @@ impl OutputBuffers {
     fn prepare(&mut self, device: &Device, size: Size, setup: &Setup, software: bool) -> Result<()> {
         self.frame.prepare(device, size, setup, software)?;
         self.uniform(device).map(drop)
+    }
+
+    /// Makes room for so many bytes of a tile's numbers.
+    pub(super) fn make_room(&mut self, device: &Device, bytes: u64) -> Result<()> {
+        if self.packed.as_ref().is_none_or(|packed| packed.size() < bytes) {
+            // The old one goes first: both together need not fit.
+            self.packed = None;
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+            self.packed = Some(device.buffer("numbers of outputs", bytes, usage)?);
+        }
+        Ok(())
     }
 
     /// The uniform of the outputs.

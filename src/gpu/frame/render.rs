@@ -5,7 +5,7 @@
 //! to the sink.
 
 use super::begun::{BegunFrame, Delivery, ExtraCommands};
-use super::beside::{BesideSetup, TargetedOutput};
+use super::beside::{BesideSetup, PlacedOutput};
 use super::bloom::LIGHT_BYTES;
 use super::buffers::Size;
 use super::refine::EdgeList;
@@ -117,7 +117,7 @@ impl GpuTracer {
         scene: &Scene,
         request: &FrameRequest,
         target: FrameTarget<'_>,
-        outputs: &[TargetedOutput<'_>],
+        outputs: &[PlacedOutput<'_>],
     ) -> Result<BegunFrame> {
         let begun = self.try_begin(scene, request, target, outputs);
         if begun.is_err() {
@@ -131,7 +131,7 @@ impl GpuTracer {
         scene: &Scene,
         request: &FrameRequest,
         target: FrameTarget<'_>,
-        outputs: &[TargetedOutput<'_>],
+        outputs: &[PlacedOutput<'_>],
     ) -> Result<BegunFrame> {
         let pictured = !matches!(target, FrameTarget::Nowhere);
         let of_outputs = (!outputs.is_empty()).then(|| {
@@ -199,7 +199,7 @@ impl GpuTracer {
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let beside = beside.map(|beside| {
             let (buffers, own) = (&mut self.buffers, &mut self.output_buffers);
-            beside.stages(&self.device, &self.kernels, tables, buffers, own, software)
+            beside.stages(&self.device, &self.kernels, tables, buffers, own, (size.tile, software))
         });
         let beside = beside.transpose()?;
         let source = setup.record_setup.source;

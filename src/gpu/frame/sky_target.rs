@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! A sky map that lies in a target of the host's: read for each frame, and its pyramid made by kernels
-//! (sky/pyramid.wgsl), level by level, in the place of the one that src/sky/map.rs makes. Knows no frames.
+//! A sky map, or cube, that lies in a target of the host's: read for each frame, and its pyramid made by kernels
+//! (sky/pyramid.wgsl), level by level, in the place of the one that src/sky/map.rs makes; from a cube the finest level
+//! is made by looking its light up. Knows no frames.
 
 use super::buffers::CachedUniform;
 use super::sky_maps::{MapTexture, level_place, texture_height};
@@ -30,17 +31,19 @@ struct SkyLevelUniform {
     source_row: u32,
     row: u32,
     source: u32,
-    padding: u32,
+    cube: u32,
 }
 
 #[cfg(test)]
 pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
-    crate::gpu::kernel::layout::layout!(SkyLevelUniform as "SkyLevel": size, source_size, source_row, row, source,
-        padding)
+    crate::gpu::kernel::layout::layout!(SkyLevelUniform as "SkyLevel": size, source_size, source_row, row, source, cube)
 }
 
 /// The textures and buffers of a map of one size.
 pub struct SkyTarget {
+    /// The target's columns and rows.
+    size: [u32; 2],
+    cube: bool,
     format: PixelFormat,
     for_sampler: bool,
     /// Level by level, the finest first.
@@ -71,12 +74,18 @@ fn row_words(width: u32) -> u32 {
 
 /// Errors: INVALID_ARGUMENT for a map of a shape that it cannot have; UNSUPPORTED for one that the device's textures
 /// or kernels do not hold.
-pub fn check_sky(device: &Device, shape: &TargetShape) -> Result<()> {
+pub fn check_sky(device: &Device, shape: &TargetShape, cube: bool) -> Result<()> {
     let [width, height] = shape.size;
     if !matches!(shape.format, PixelFormat::Rgba16F | PixelFormat::Rgba32F) {
         let format = shape.format;
         return Err(Error::argument(format!("target format is {format}; a sky map's is RGBA16F or RGBA32F")));
     }
+    if cube && u64::from(width) != 6 * u64::from(height) {
+        return Err(Error::argument(format!(
+            "target is {width} x {height}; the six faces of a cube side by side are 6 times as wide as high"
+        )));
+    }
+    let map = SkyPicture::map_size(shape.size, cube);
     let [most_width, most_height] = MAX_MAP_SIZE;
     if height > width || width > most_width || height > most_height {
         return Err(Error::argument(format!(
@@ -86,10 +95,11 @@ pub fn check_sky(device: &Device, shape: &TargetShape) -> Result<()> {
     }
     let limits = device.limits();
     let side = limits.max_texture_dimension_2d;
-    if width > side || texture_height(shape.size) > side {
+    if map[0] > side || texture_height(map) > side {
         return Err(Error::unsupported(format!(
-            "target is {width} x {height}; a sky map takes a texture of {} rows, and this device's limit is {side}",
-            texture_height(shape.size)
+            "target is {width} x {height}; a sky map takes a texture of {} x {}, and this device's limit is {side}",
+            map[0],
+            texture_height(map)
         )));
     }
     let (bytes, most) = (staged_stride(shape) * u64::from(height), limits.max_storage_buffer_binding_size);
@@ -109,8 +119,9 @@ fn staged_stride(shape: &TargetShape) -> u64 {
 impl SkyTarget {
     /// Errors: as [`Device::scoped`].
     pub fn new(device: &Device, picture: &SkyPicture, for_sampler: bool) -> Result<Self> {
-        let (size, format) = (picture.size, picture.format);
-        let shape = TargetShape { image: false, format, size, row_stride: 0, layout: 0, handle: 0 };
+        let SkyPicture { size: given_size, cube, format, .. } = *picture;
+        let size = SkyPicture::map_size(given_size, cube);
+        let shape = TargetShape { image: false, format, size: given_size, row_stride: 0, layout: 0, handle: 0 };
         let shape = TargetShape { row_stride: staged_stride(&shape), ..shape };
         let mut sizes = vec![size];
         while let Some(last) = sizes.last().filter(|size| **size != [1, 1]) {
@@ -128,18 +139,21 @@ impl SkyTarget {
         let stride = uniform_stride::<SkyLevelUniform>(device) as usize;
         let mut bytes = vec![0; stride * sizes.len()];
         let kind = if format == PixelFormat::Rgba16F { SKY_SOURCE_HALF } else { SKY_SOURCE_FLOAT };
-        let given = (size, (shape.row_stride / 4) as u32, kind);
+        let given = (given_size, (shape.row_stride / 4) as u32, kind);
         let levels = sizes.iter().map(|size| (*size, row_words(size[0]), SKY_SOURCE_LEVEL));
         let sources = std::iter::once(given).chain(levels);
         for ((slot, size), (source_size, source_row, source)) in bytes.chunks_exact_mut(stride).zip(&sizes).zip(sources)
         {
             let row = row_words(size[0]);
-            let uniform = SkyLevelUniform { size: *size, source_size, source_row, row, source, padding: 0 };
+            let cube = u32::from(cube && source != SKY_SOURCE_LEVEL);
+            let uniform = SkyLevelUniform { size: *size, source_size, source_row, row, source, cube };
             slot[..size_of::<SkyLevelUniform>()].copy_from_slice(bytemuck::bytes_of(&uniform));
         }
         let mut uniforms = CachedUniform::new(device, "levels of a sky map", bytes.len() as u64)?;
         uniforms.write(device, &bytes)?;
         Ok(Self {
+            size: given_size,
+            cube,
             format,
             for_sampler,
             words: [words(size)?, words(second)?],
@@ -152,7 +166,8 @@ impl SkyTarget {
 
     /// Whether it holds such pictures.
     pub fn serves(&self, picture: &SkyPicture, for_sampler: bool) -> bool {
-        self.map.finest == picture.size && self.format == picture.format && self.for_sampler == for_sampler
+        let same = self.size == picture.size && self.cube == picture.cube && self.format == picture.format;
+        same && self.for_sampler == for_sampler
     }
 
     /// Errors: SURFACE_LOST for a target that is gone.

@@ -15,6 +15,7 @@ use crate::gpu::device::wgpu_device::Device;
 use crate::gpu::kernel::kernels::{check_groups, pixel_groups};
 use crate::gpu::kernel::variant::PixelTarget;
 use crate::gpu::lens::records::STEP_SUM;
+use crate::scene::output::MOST_OUTPUTS;
 use crate::scene::refine::CURVE_SAMPLES;
 use crate::tracer::{FrameStats, Tile, TileSink};
 use arrayvec::ArrayVec;
@@ -45,7 +46,19 @@ pub struct Submission {
     counts: [bool; 2],
     tile: Option<Tile>,
     row_bytes: usize,
+    numbers: ArrayVec<TileNumbers, MOST_OUTPUTS>,
 }
+
+/// A tile's numbers of an output, in the submission's staging buffer.
+struct TileNumbers {
+    number: usize,
+    tile: Tile,
+    begin: u64,
+    row_bytes: usize,
+}
+
+/// Takes what a submission has made for the host: rows of the picture, or of the output with a number.
+pub type PartSink<'a> = dyn FnMut(Option<usize>, Tile, &[u8], usize) -> Result<()> + 'a;
 
 /// Where a submission's staging buffer has what: ticks and pixels where queries and bindings may begin on every device;
 /// the steps of the picture and those of outputs.
@@ -104,7 +117,16 @@ impl FrameBuffers {
         let developed = step.develops.filter(|_| matches!(frame.delivery, Delivery::Host));
         let row_bytes = developed.map_or(0, |tile| tile.width as usize * pixel_size);
         let pixel_bytes = developed.map_or(0, |tile| row_bytes as u64 * u64::from(tile.height));
-        let size = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS_END };
+        let pixels_end = if pixel_bytes > 0 { PIXELS + pixel_bytes } else { STEPS_END };
+        let mut size = pixels_end;
+        let mut numbers = ArrayVec::<_, MOST_OUTPUTS>::new();
+        for packed in outputs.iter().flat_map(|(beside, _)| beside.packed()) {
+            let (tile, begin) = (step.shades, size.next_multiple_of(PIXELS));
+            let row_bytes = u64::from(tile.width) * packed.pixel_bytes;
+            size = begin + row_bytes * u64::from(tile.height);
+            let to = TileNumbers { number: packed.number, tile, begin, row_bytes: row_bytes as usize };
+            numbers.push((packed.offset, size - begin, to));
+        }
         let staging = match frame.target {
             PixelTarget::Rows if pixel_bytes > 0 => self.mapped.0.staging(device, size)?,
             _ => self.readback.staging(device, size)?,
@@ -182,6 +204,11 @@ impl FrameBuffers {
             }
         }
         let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
+        if let Some(packed) = &own.packed {
+            for (offset, bytes, to_numbers) in &numbers {
+                encoder.copy_buffer_to_buffer(packed, *offset, to, to_numbers.begin, *bytes);
+            }
+        }
         if let (Some(sized), PixelTarget::Packed, true) = (&self.sized, frame.target, pixel_bytes > 0) {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
@@ -208,7 +235,18 @@ impl FrameBuffers {
         }
         copied.request(device)?;
         let head = size.min(PIXELS);
-        Ok(Some(Submission { submission, copied, tick_bytes, head, passes, counts, tile: developed, row_bytes }))
+        let numbers = numbers.into_iter().map(|(_, _, numbers)| numbers).collect();
+        Ok(Some(Submission {
+            submission,
+            copied,
+            tick_bytes,
+            head,
+            passes,
+            counts,
+            tile: developed,
+            row_bytes,
+            numbers,
+        }))
     }
 }
 
@@ -226,6 +264,14 @@ impl Submission {
     /// Waits for it, takes what it made and adds its numbers to `stats`. Errors: those of the sink; as
     /// [`Device::wait`].
     pub fn finish(self, device: &Device, stats: &mut FrameStats, sink: &mut TileSink<'_>) -> Result<()> {
+        self.finish_parts(device, stats, &mut |number, tile, pixels, row_bytes| match number {
+            None => sink(tile, pixels, row_bytes),
+            Some(_) => Err(Error::internal("an output beside a picture came to the host")),
+        })
+    }
+
+    /// [`Self::finish`] of a frame with outputs for the host.
+    pub fn finish_parts(self, device: &Device, stats: &mut FrameStats, sink: &mut PartSink<'_>) -> Result<()> {
         let arrived = self.copied.wait(device, &self.submission)?;
         let started = Instant::now();
         let mut head = [0; PIXELS as usize];
@@ -245,7 +291,14 @@ impl Submission {
         for band in self.tile.iter().flat_map(|tile| bands(*tile, self.row_bytes)) {
             let bytes = self.row_bytes as u64 * u64::from(band.tile.height);
             let begin = PIXELS + self.row_bytes as u64 * u64::from(band.first_row);
-            arrived.part(begin..begin + bytes, |pixels| sink(band.tile, pixels, self.row_bytes))?;
+            arrived.part(begin..begin + bytes, |pixels| sink(None, band.tile, pixels, self.row_bytes))?;
+        }
+        for TileNumbers { number, tile, begin, row_bytes } in self.numbers {
+            for band in bands(tile, row_bytes) {
+                let begin = begin + row_bytes as u64 * u64::from(band.first_row);
+                let end = begin + row_bytes as u64 * u64::from(band.tile.height);
+                arrived.part(begin..end, |bytes| sink(Some(number), band.tile, bytes, row_bytes))?;
+            }
         }
         stats.readback_ns += started.elapsed().as_nanos() as u64;
         Ok(())
