@@ -251,12 +251,7 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("refine/refine", "strips_of", "for (var i = 1u; i < SEARCH_STEPS + 3u; i += 1u)", CONSTANT),
     ("refine/refine", "strips_of", "for (var i = 0u; i < 2u; i += 1u)", CONSTANT),
     ("refine/refine", "refine_sample", "for (var k = 0u; k < not_inlined(frame.max_crossings); k += 1u)", CROSSINGS),
-    (
-        "shade/outputs",
-        "take_record",
-        "for (var k = 0u; k < min(output_crossings(), not_inlined(outputs.crossings)); k += 1u)",
-        CROSSINGS,
-    ),
+    ("shade/outputs", "take_record", "for (var k = 0u; k < output_crossings(); k += 1u)", CROSSINGS),
     ("shade/outputs", "take_record", "for (var i = 0u; i < output_count(); i += 1u)", OUTPUTS),
     ("shade/outputs", "take_record", "for (var i = 0u; i < output_count(); i += 1u)", OUTPUTS),
     (

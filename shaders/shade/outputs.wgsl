@@ -10,7 +10,6 @@
 #import shared/fate
 #import shared/frame
 #import shared/math
-#import shared/not_inlined
 #import shade/wanted
 #import shared/pass
 #requires fn next_crossing() -> Crossing
@@ -119,7 +118,7 @@ fn take_record(id: vec2<u32>, record: Record) {
     var given = 0u;
     var first: Crossing;
     // max_crossings bounds what next_crossing gives, and outputs.crossings is no more.
-    for (var k = 0u; k < min(output_crossings(), not_inlined(outputs.crossings)); k += 1u) {
+    for (var k = 0u; k < output_crossings(); k += 1u) {
         var crossing = next_crossing();
         if crossing.u <= 0.0 {
             break;

@@ -3,6 +3,7 @@
 // the GPU src/gpu/kernel/wgsl.rs writes the same functions, for those that are wanted.
 
 #import shade/wanted
+#import shared/not_inlined
 
 @group(2) @binding(1) var<storage, read_write> output_words: array<u32>;
 
@@ -17,7 +18,7 @@ fn output_count() -> u32 {
 
 // How many crossings of a ray are asked for, unless the scene shows fewer.
 fn output_crossings() -> u32 {
-    return outputs.crossings;
+    return not_inlined(outputs.crossings);
 }
 
 fn put_numbers(k: u32, at: u32, place: vec2<u32>, bits: vec4<u32>) {

@@ -95,7 +95,7 @@ fn wanted_outputs(places: OutputPlaces) -> String {
     let count = format!("fn output_count() -> u32 {{\n    return {}u;\n}}\n", wanted.clone().count());
     // Without a constant 0 or 1 the loop over crossings stays one.
     let most = wanted.map(|output| output.crossings()).max().unwrap_or(0);
-    let crossings = if most <= 1 { format!("{most}u") } else { "outputs.crossings".to_owned() };
+    let crossings = if most <= 1 { format!("{most}u") } else { "not_inlined(outputs.crossings)".to_owned() };
     let crossings = format!("fn output_crossings() -> u32 {{\n    return {crossings};\n}}\n");
     [head, &cases.collect::<String>(), end, &count, &crossings].concat()
 }
