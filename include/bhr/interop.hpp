@@ -42,7 +42,7 @@ using InteropInfo = BhrInteropInfo;
 using TargetInfo = BhrTargetInfo;
 using SemaphoreValue = BhrSemaphoreValue;
 using VulkanRequirements = BhrVulkanRequirements;
-/// Cleared by `VulkanDevice device = {};`. What is passed beside it takes the place of its callbacks.
+/// Cleared by `VulkanDevice device = {};`. Functors that are passed beside it take the place of its callbacks.
 using VulkanDevice = BhrVulkanDevice;
 
 /// BhrTargetOptions, with the defaults of bhr_target_options_init.
@@ -118,8 +118,9 @@ class SharedHandle {
 /// leaves the call that it runs in, if that is one of this header's on the same thread, and is dropped otherwise.
 using ReleaseFunction = std::function<void()>;
 
-/// Take and give back the lock of the host's queue (BhrVulkanDevice.lock); on any thread. They must not throw: what
-/// they throw is treated as what a ReleaseFunction throws, and the queue is used all the same.
+/// Take and give back the lock of the host's queue (BhrVulkanDevice.lock); on any thread. They should not throw: what
+/// they throw goes where that of a ReleaseFunction does, the queue is used all the same, and a lock that threw is not
+/// given back.
 struct QueueLock {
     std::function<void()> lock;
     std::function<void()> unlock;
@@ -152,20 +153,33 @@ inline void on_release(void *user) noexcept {
 struct DeviceCallbacks {
     QueueLock queue;
     ReleaseFunction release;
+    // The host's own, called where there is no functor.
+    BhrReleaseFn raw_release;
+    void *raw_release_user;
 };
 
+/// Whether the last lock of this thread's threw. Locks are never nested.
+inline bool &lock_threw() noexcept {
+    static thread_local bool threw = false;
+    return threw;
+}
+
 inline void on_lock(void *user) noexcept {
-    shielded([&] { static_cast<DeviceCallbacks *>(user)->queue.lock(); });
+    lock_threw() = !shielded([&] { static_cast<DeviceCallbacks *>(user)->queue.lock(); });
 }
 
 inline void on_unlock(void *user) noexcept {
-    shielded([&] { static_cast<DeviceCallbacks *>(user)->queue.unlock(); });
+    if (!lock_threw()) {
+        shielded([&] { static_cast<DeviceCallbacks *>(user)->queue.unlock(); });
+    }
 }
 
 inline void on_device_release(void *user) noexcept {
     const std::unique_ptr<DeviceCallbacks> callbacks(static_cast<DeviceCallbacks *>(user));
     if (callbacks->release) {
         shielded([&] { callbacks->release(); });
+    } else if (callbacks->raw_release != nullptr) {
+        callbacks->raw_release(callbacks->raw_release_user);
     }
 }
 
@@ -453,8 +467,8 @@ inline Result<VulkanRequirements> vulkan_requirements(BhrGetInstanceProcAddr get
     });
 }
 
-/// bhr_context_create_vulkan. `queue`: both functions, or neither where the queue is bhr's alone; it lives until
-/// `release` is called, which does not happen where this fails.
+/// bhr_context_create_vulkan. `queue`: both functions, or neither, and then those of `device` count, if it has any.
+/// The same goes for `release`, which is not called where this fails; `queue` lives until then.
 inline Result<Context> create_on_vulkan(const VulkanDevice &device, const ContextOptions &options = {},
                                         QueueLock queue = {}, ReleaseFunction release = {}, LogFunction log = {}) {
     BhrVulkanDevice raw = device;
@@ -464,11 +478,14 @@ inline Result<Context> create_on_vulkan(const VulkanDevice &device, const Contex
         return Error(StatusCode::invalid_argument, "bhr::create_on_vulkan: queue has one function; it takes both");
     }
     std::unique_ptr<detail::DeviceCallbacks> kept(
-        new detail::DeviceCallbacks{std::move(queue), std::move(release)});
-    raw.lock = locks ? detail::on_lock : nullptr;
-    raw.unlock = locks ? detail::on_unlock : nullptr;
-    raw.lock_user = raw.release_user = kept.get();
+        new detail::DeviceCallbacks{std::move(queue), std::move(release), raw.release, raw.release_user});
+    if (locks) {
+        raw.lock = detail::on_lock;
+        raw.unlock = detail::on_unlock;
+        raw.lock_user = kept.get();
+    }
     raw.release = detail::on_device_release;
+    raw.release_user = kept.get();
     return detail::Access::context(options, std::move(log), [&](const BhrContextOptions &of, BhrContext **handle) {
         const BhrStatus status = bhr_context_create_vulkan(BHR_ABI_VERSION, &of, &raw, handle);
         if (status >= 0) {

@@ -147,6 +147,14 @@ static void handles(bhr::Context &context) {
         const BhrHandle raw = other.release();
         EXPECT(is_open(raw.fd) && other.fd() == -1);
         const bhr::SharedHandle last(raw);
+        /* Where semaphores are shared (lavapipe shares none) one goes out and comes back. */
+        if ((info.semaphores[BHR_SEMAPHORE_TIMELINE] & BHR_HANDLE_OPAQUE_FD) != 0) {
+            const auto timeline = bhr::SemaphoreKind::timeline;
+            bhr::Semaphore out = bhr::Semaphore::create(context, timeline, bhr::HandleType::opaque_fd).value();
+            bhr::SharedHandle shared = out.export_().value();
+            bhr::Semaphore in = bhr::Semaphore::import_(context, timeline, std::move(shared)).value();
+            EXPECT(shared.fd() == -1 && out.signal(7) && in.wait_for(7, std::chrono::seconds(5)).value());
+        }
         const bhr::Result<bhr::Semaphore> wrong =
             bhr::Semaphore::import_(context, bhr::SemaphoreKind::timeline, bhr::SharedHandle::opaque_fd(-1));
         EXPECT(wrong.status() == bhr::StatusCode::invalid_argument || wrong.status() == bhr::StatusCode::unsupported);
@@ -242,6 +250,50 @@ static void adopted(const Pixels &pixels) {
         EXPECT(counts.released == 0);
     }
     EXPECT(counts.released == 1);
+
+    /* The callbacks in the struct count where there are no functors. */
+    static std::mutex c_queue;
+    static std::atomic<int> turns, released;
+    {
+        bhr::VulkanDevice device = vk_for_bhr(&host);
+        device.lock = [](void *) { c_queue.lock(); turns++; };
+        device.unlock = [](void *) { c_queue.unlock(); };
+        device.release = [](void *user) { ++*static_cast<std::atomic<int> *>(user); };
+        device.release_user = &released;
+        bhr::Context context = bhr::create_on_vulkan(device, options).value();
+        EXPECT(context.render(width, height) && turns > 0 && released == 0);
+    }
+    EXPECT(released == 1);
+#ifndef BHR_NO_EXCEPTIONS
+    /* An exception of a functor leaves the call that it ran in; a lock that threw is not given back. */
+    std::atomic<int> locks{0}, unlocks{0};
+    std::atomic<bool> throws{false};
+    {
+        const bhr::QueueLock wild = {[&] {
+                                        if (throws)
+                                            throw 5;
+                                        counts.queue.lock();
+                                        locks++;
+                                    },
+                                    [&] {
+                                        unlocks++;
+                                        counts.queue.unlock();
+                                    }};
+        bhr::Context context = bhr::create_on_vulkan(vk_for_bhr(&host), options, wild).value();
+        bhr::Target target =
+            bhr::Target::create(context, {bhr::TargetKind::buffer, bhr::Format::rgba8_srgb, width, height}).value();
+        int caught = 0;
+        throws = true;
+        try {
+            static_cast<void>(bhr::render_target(context, target));
+        } catch (int thrown) {
+            caught = thrown;
+        }
+        throws = false;
+        EXPECT(caught == 5 && context.render(width, height));
+    }
+    EXPECT(locks > 0 && locks == unlocks);
+#endif
     vk_close(&host);
 }
 
