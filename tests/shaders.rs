@@ -263,7 +263,14 @@ const LOOPS: &[(&str, &str, &str, Because)] = &[
     ("sky/pyramid", "resampled_light", "for (var i = 0u; i < 4u; i += 1u)", Because("it takes four places")),
     ("sky/pyramid", "column_light", "for (var j = first.y; j < last.y; j += 1u)", TEXELS),
     ("sky/pyramid", "column_light", "for (var i = first.x; i < last.x; i += 1u)", TEXELS),
-    ("sky/pyramid", "make_level", "for (var k = first; k <= last; k += 1)", TEXELS),
+    ("sky/pyramid", "make_level", "for (var at = begin; at <= end; at += i32(LEVEL_COLUMNS))", TEXELS),
+    (
+        "sky/pyramid",
+        "make_level",
+        "for (var half = LEVEL_COLUMNS / 2u; half > 0u; half /= 2u)",
+        Because("it halves the columns of a workgroup, 7 times"),
+    ),
+    ("sky/pyramid", "make_level", "for (var k = from_column; k <= to_column; k += 1)", TEXELS),
     (
         "sky/map",
         "map_light",

@@ -5,6 +5,7 @@
 
 #import constants
 #import shared/math
+#import shared/not_inlined
 #import sky/cube
 
 struct SkyLevel {
@@ -62,10 +63,11 @@ fn half_light(bits: u32) -> f32 {
 // A texel of the source.
 fn source_light(x: u32, y: u32) -> vec3<f32> {
     let row = y * level.source_row;
-    if level.source == SKY_SOURCE_LEVEL {
+    let source = not_inlined(level.source);
+    if source == SKY_SOURCE_LEVEL {
         return unpack_light(source_words[row + x]);
     }
-    if level.source == SKY_SOURCE_FLOAT {
+    if source == SKY_SOURCE_FLOAT {
         let at = row + 4u * x;
         let bits = vec3<u32>(source_words[at], source_words[at + 1u], source_words[at + 2u]);
         return limited_light(bitcast<vec3<f32>>(bits));
@@ -92,7 +94,7 @@ fn resampled_light(x: u32, y: u32) -> vec3<f32> {
 
 // The source's light under column `x` of row `y`.
 fn column_light(x: u32, y: u32) -> vec3<f32> {
-    if level.cube != 0u {
+    if not_inlined(level.cube) != 0u {
         return resampled_light(x, y);
     }
     let step = PI / f32(level.source_size.y);
@@ -123,28 +125,65 @@ fn column_light(x: u32, y: u32) -> vec3<f32> {
     return sum * (f32(level.size.x) / (f32(level.source_size.x) * total));
 }
 
-@compute @workgroup_size(8, 16)
-fn make_level(@builtin(global_invocation_id) id: vec3<u32>) {
+// The columns of a row that a workgroup has at hand; it makes as many texels.
+var<workgroup> columns_at_hand: array<vec3<f32>, LEVEL_COLUMNS>;
+
+// A row near a pole takes the mean over many columns, at the pole itself over all. So that threads do not each make all
+// of them, those of a workgroup make some columns each, and then all take their share of these.
+@compute @workgroup_size(LEVEL_COLUMNS)
+fn make_level(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
+    unknown_zero = group.z;
     let size = level.size;
-    if id.x >= size.x || id.y >= size.y {
-        return;
-    }
-    let colatitude = PI * (f32(id.y) + 0.5) / f32(size.y);
-    let pole = id.y == 0u || id.y + 1u == size.y;
+    let y = group.y;
+    let colatitude = PI * (f32(y) + 0.5) / f32(size.y);
+    let pole = y == 0u || y + 1u == size.y;
     let wide = f32(size.x) / (2.0 * f32(size.y) * sin(colatitude));
     let texels = select(min(wide, f32(size.x)), f32(size.x), pole);
     let whole = texels >= f32(size.x);
-    // A window about the texel: its first column, less this one's, and its last.
-    let first = select(i32(floor(0.5 - 0.5 * texels)), 0, whole || texels <= 1.0);
-    let last = select(i32(floor(0.5 + 0.5 * texels)), select(0, i32(size.x) - 1, whole), whole || texels <= 1.0);
+    let columns = i32(size.x);
+    // The window of a texel: its first column, less the texel's, and its last.
+    let first = select(i32(floor(0.5 - 0.5 * texels)), 0, texels <= 1.0);
+    let last = select(i32(floor(0.5 + 0.5 * texels)), 0, texels <= 1.0);
+    let corner = i32(group.x * LEVEL_COLUMNS);
+    let most = i32(LEVEL_COLUMNS) - 1;
+    let x = corner + i32(thread);
+    // The columns of all the workgroup's windows.
+    let begin = select(corner + first, 0, whole);
+    let end = select(min(corner + most, columns - 1) + last, columns - 1, whole);
     var sum = vec3<f32>(0.0);
     var total = 0.0;
-    for (var k = first; k <= last; k += 1) {
-        let covered = min(0.5 + 0.5 * texels, f32(k) + 1.0) - max(0.5 - 0.5 * texels, f32(k));
-        let weight = select(covered, 1.0, whole || texels <= 1.0);
-        let x = (i32(id.x) + k + 2 * i32(size.x)) % i32(size.x);
-        sum += weight * column_light(u32(x), id.y);
-        total += weight;
+    for (var at = begin; at <= end; at += i32(LEVEL_COLUMNS)) {
+        let own = at + i32(thread);
+        columns_at_hand[thread] = vec3<f32>(0.0);
+        if own <= end {
+            columns_at_hand[thread] = column_light(u32((own + 2 * columns) % columns), y);
+        }
+        // Columns that lie wholly in every window of the workgroup are summed once, by twos.
+        if whole || (at > corner + most + first && at + most < corner + last) {
+            for (var half = LEVEL_COLUMNS / 2u; half > 0u; half /= 2u) {
+                workgroupBarrier();
+                if thread < half {
+                    columns_at_hand[thread] += columns_at_hand[thread + half];
+                }
+            }
+            workgroupBarrier();
+            sum += columns_at_hand[0];
+            total += f32(min(end - at, most) + 1);
+            workgroupBarrier();
+            continue;
+        }
+        workgroupBarrier();
+        let from_column = max(at, x + first);
+        let to_column = min(min(at + most, end), x + last);
+        for (var k = from_column; k <= to_column; k += 1) {
+            let covered = min(0.5 + 0.5 * texels, f32(k - x) + 1.0) - max(0.5 - 0.5 * texels, f32(k - x));
+            let weight = select(covered, 1.0, texels <= 1.0);
+            sum += weight * columns_at_hand[k - at];
+            total += weight;
+        }
+        workgroupBarrier();
     }
-    level_words[id.y * level.row + id.x] = pack_light(sum / total);
+    if x < columns {
+        level_words[y * level.row + u32(x)] = pack_light(sum / total);
+    }
 }

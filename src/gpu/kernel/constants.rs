@@ -307,6 +307,7 @@ fn all() -> Vec<(&'static str, String)> {
         ROWS_WIDTH: u32 = ROWS_GROUP[0];
         ROWS_PIXELS: u32 = ROWS_GROUP[0] * ROWS_GROUP[1];
         COUNT_RUN: u32 = sizes::COUNT_RUN;
+        LEVEL_COLUMNS: u32 = sizes::LEVEL_COLUMNS;
         EXPORT_CROSSINGS: u32 = sizes::EXPORT_CROSSINGS;
         EXPORT_SIZE: u32 = sizes::EXPORT_VECTORS;
     }

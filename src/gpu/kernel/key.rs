@@ -2,6 +2,7 @@
 //! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings. Knows
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
+use super::sizes::LEVEL_COLUMNS;
 use super::slots::{
     LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, output_slots, pixel_slots,
     refine_slots, shade_slots, sum_slots,
@@ -190,6 +191,7 @@ impl KernelKey {
     pub fn workgroup(self) -> [u32; 2] {
         match self {
             Self::ShadeOnly(_, _, film) | Self::Develop(film, _) => film.group(),
+            Self::SkyLevel => [LEVEL_COLUMNS, 1],
             _ => GROUP,
         }
     }

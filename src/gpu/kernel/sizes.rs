@@ -20,6 +20,8 @@ pub const KERR_COLUMNS: u32 = CRITICAL_NODES as u32;
 pub const KERR_PER_OCTAVE: usize = 16;
 /// Pixels of a row that a thread of traced/count.wgsl sums.
 pub const COUNT_RUN: u32 = 8;
+/// Columns of a row that a workgroup of sky/pyramid.wgsl makes.
+pub const LEVEL_COLUMNS: u32 = 128;
 /// Entries of a row of the tables that shading reads: a width that every device takes.
 pub const TABLE_WIDTH: usize = 2048;
 /// Crossings of a ray record that records/export.wgsl writes, and vectors of four numbers of a record.
