@@ -98,8 +98,9 @@ impl From<Projected> for BhrProjectedPoint {
 /// Every point outside the horizon has an image of each order, also behind the hole. With spin some have more, by the
 /// caustics that a spinning hole has; where the image has ended in another as the spin grew, it is the one of the same
 /// orientation that took its place. Of 24,000 random points outside r+ + 1 M, seen from outside r+ + 2 M at spins up
-/// to 0.999, all were found. The ray of an image that is found passes the point within 1e-6 of its distance. Whether
-/// matter is before the point is for the host to ask (bhr_trace_rays).
+/// to 0.999, all were found. The ray of an image that is found passes the point within 1e-6 of its distance, and as
+/// bhr_trace_rays of a context on a GPU follows it, within 1e-4. Whether matter is before the point is for the host to
+/// ask (bhr_trace_rays).
 ///
 /// It is computed in double precision on the CPU, on this thread, whatever the backend: in about 40 microseconds, at
 /// order 1 with spin 0.2 ms, at orders 2 and 3 with spin in about 5 ms. Errors: INVALID_ARGUMENT for

@@ -109,6 +109,28 @@ impl Constants {
         u * (self.a2e2 - self.k + u * (3.0 * self.b - u * (2.0 * self.a * self.a * self.carter)))
     }
 
+    /// How near a ray comes to staying for ever at the radius of a photon orbit, where u'^2 = R(u) is least:
+    ///
+    /// ```text
+    /// R = E^2 - (K - a^2 E^2) u^2 + 2 B u^3 - a^2 Q u^4,     margin = 3 |R| / (kappa^2 u^2),     kappa^2 = R'' / 2
+    /// ```
+    ///
+    /// there. Rays part from that radius as exp(kappa tau), so that whatever is wrong at the ray's begin is some
+    /// 1 / margin times as large when it leaves. Without spin it is |27 / b^2 - 1|. Infinity: the ray does not go there.
+    pub fn critical_margin(&self, start: &State) -> f64 {
+        let (c, a2q) = (self.k - self.a2e2, self.a * self.a * self.carter);
+        let root = (9.0 * self.b * self.b - 8.0 * a2q * c).sqrt();
+        let u = 2.0 * c / (3.0 * self.b + root);
+        let kappa2 = u * (6.0 * self.b - 6.0 * a2q * u) - c;
+        // Moving away from it.
+        let leaves = (start.u - u) * start.du > 0.0;
+        if leaves || !(u > 0.0 && u * self.r_plus < 1.0 && kappa2 > 0.0) {
+            return f64::INFINITY;
+        }
+        let least = self.energy * self.energy + u * u * (u * (2.0 * self.b - a2q * u) - c);
+        3.0 * least.abs() / (kappa2 * u * u)
+    }
+
     /// N''.
     #[inline(always)]
     pub fn n_acceleration(&self, n: DVec3) -> DVec3 {
@@ -215,4 +237,31 @@ pub fn wrap_angle(angle: f64) -> f64 {
     let turned = angle - TAU * ((angle - PI) / TAU).ceil();
     // Rounding can leave the bracket by one step.
     if turned <= -PI { PI } else { turned.min(PI) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rays on photon orbits have none: those of Schwarzschild, and the equatorial ones of Kerr (Bardeen, Press &
+    /// Teukolsky 1972), at every spin.
+    #[test]
+    fn critical_rays_have_no_margin() {
+        let start = |u: f64, du: f64| State { u, du, n: DVec3::X, dn: DVec3::Y, drag: 0.0, delay: 0.0 };
+        for b in [3.0, 5.0, 27.0_f64.sqrt(), 5.3, 9.0] {
+            let light = Constants::new(0.0, 1.0, 0.6 * b, 0.64 * b * b, 1.0, 0.01);
+            let margin = light.critical_margin(&start(0.01, 1.0));
+            assert!((margin - (27.0 / (b * b) - 1.0).abs()).abs() < 1e-12, "{b}: {margin}");
+            assert_eq!(light.critical_margin(&start(0.01, -1.0)), f64::INFINITY);
+            assert_eq!(light.critical_margin(&start(0.4, 0.1)), f64::INFINITY);
+        }
+        for a in [-0.998, -0.5, 0.3, 0.9, 0.999_f64] {
+            let r = 2.0 * (1.0 + (2.0 / 3.0 * (-a).acos()).cos());
+            let l = -(r * r * r - 3.0 * r * r + a * a * (r + 1.0)) / (a * (r - 1.0));
+            let margin = |l: f64| Constants::new(a, 1.0, l, 0.0, 1.0, 0.01).critical_margin(&start(0.01, 1.0));
+            assert!(margin(l) < 1e-9 && margin(1.02 * l) > 1e-3 && margin(0.98 * l) > 1e-3, "{a} {}", margin(l));
+        }
+        let radial = Constants::new(0.0, 1.0, 0.0, 0.0, 1.0, 0.01);
+        assert_eq!(radial.critical_margin(&start(0.01, 1.0)), f64::INFINITY);
+    }
 }

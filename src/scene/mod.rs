@@ -25,6 +25,7 @@ pub mod rays;
 pub mod record;
 pub mod refine;
 pub mod sky;
+mod spread;
 pub mod trace;
 
 pub use crate::emit::disk::{Disk, DiskReference, EmissionLaw};

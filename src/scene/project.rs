@@ -3,14 +3,13 @@
 //! found in f64, those of many points on several threads.
 
 use super::query::PixelRays;
+use super::spread::Spread;
 use super::{Ray, Region, Scene};
-use crate::allocate::{THREAD_ROOM, check_room};
 use crate::error::{Error, Number, Result};
 use crate::physics::images::{Image, NoImage, image};
 use crate::physics::observer::Observer;
 use crate::physics::orbit::horizon_outer;
 use glam::{DVec2, DVec3};
-use parking_lot::Mutex;
 
 pub use crate::physics::images::HIGHEST_ORDER;
 
@@ -53,9 +52,7 @@ pub struct Projector<'a> {
     order: u32,
 }
 
-/// Points that a thread takes at a time, and the fewest that another thread is worth.
-const POINTS_AT_A_TIME: usize = 64;
-const POINTS_A_THREAD: usize = 256;
+const SPREAD: Spread = Spread { at_a_time: 64, a_thread: 256, name: "bhr-points" };
 
 impl Scene {
     /// For images that light makes after `order` half turns about the hole, in a `width` x `height` image of the
@@ -96,29 +93,7 @@ impl Projector<'_> {
 
     /// The images of many points, on as many threads as the machine has cores. One that `point` refuses is nowhere.
     pub fn points(&self, points: &[DVec3], found: &mut [Projected]) {
-        // Threads of their own: in a pool, one that waits could come to wait for itself.
-        let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
-        let threads = cores.min(points.len() / POINTS_A_THREAD);
-        let parts = Mutex::new(points.chunks(POINTS_AT_A_TIME).zip(found.chunks_mut(POINTS_AT_A_TIME)));
-        let work = || {
-            loop {
-                let Some((points, found)) = parts.lock().next() else { return };
-                for (point, found) in points.iter().zip(found) {
-                    *found = self.point(*point).unwrap_or(Projected::Nowhere);
-                }
-            }
-        };
-        std::thread::scope(|scope| {
-            for i in 1..threads {
-                let thread = std::thread::Builder::new().name(format!("bhr-points-{i}"));
-                // Without memory for a thread, or without a thread, there are fewer: this one is enough.
-                let room = check_room(THREAD_ROOM, "a thread that looks for points");
-                if room.is_err() || thread.spawn_scoped(scope, work).is_err() {
-                    break;
-                }
-            }
-            work();
-        });
+        SPREAD.over(points, found, |point, found| *found = self.point(*point).unwrap_or(Projected::Nowhere));
     }
 
     /// An image in the host's terms.

@@ -23,6 +23,7 @@ mod occluder;
 mod outputs;
 mod pictures;
 mod pixels;
+mod points;
 #[path = "../random/mod.rs"]
 mod random;
 mod rings;
