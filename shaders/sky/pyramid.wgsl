@@ -7,21 +7,10 @@
 #import shared/math
 #import shared/not_inlined
 #import sky/cube
+#import sky/level
+#requires fn source_row(y: u32) -> u32
+#requires fn source_word(y: u32, at: u32) -> u32
 
-struct SkyLevel {
-    size: vec2<u32>,
-    source_size: vec2<u32>,
-    // Words from row to row, of what is read and of what is written.
-    source_row: u32,
-    row: u32,
-    // SKY_SOURCE_*.
-    source: u32,
-    // 1: the source is a cube's six faces side by side.
-    cube: u32,
-}
-
-@group(0) @binding(0) var<uniform> level: SkyLevel;
-@group(0) @binding(1) var<storage, read> source_words: array<u32>;
 @group(0) @binding(2) var<storage, read_write> level_words: array<u32>;
 
 // 511 / 512 2^16.
@@ -62,19 +51,19 @@ fn half_light(bits: u32) -> f32 {
 
 // A texel of the source.
 fn source_light(x: u32, y: u32) -> vec3<f32> {
-    let row = y * level.source_row;
+    let row = source_row(y);
     let source = not_inlined(level.source);
     if source == SKY_SOURCE_LEVEL {
-        return unpack_light(source_words[row + x]);
+        return unpack_light(source_word(y, row + x));
     }
     if source == SKY_SOURCE_FLOAT {
         let at = row + 4u * x;
-        let bits = vec3<u32>(source_words[at], source_words[at + 1u], source_words[at + 2u]);
+        let bits = vec3<u32>(source_word(y, at), source_word(y, at + 1u), source_word(y, at + 2u));
         return limited_light(bitcast<vec3<f32>>(bits));
     }
     let at = row + 2u * x;
-    let low = source_words[at];
-    return limited_light(vec3<f32>(half_light(low), half_light(low >> 16u), half_light(source_words[at + 1u])));
+    let low = source_word(y, at);
+    return limited_light(vec3<f32>(half_light(low), half_light(low >> 16u), half_light(source_word(y, at + 1u))));
 }
 
 // A cube's light in texel (x, y) of the map, whose middle column is forward, with longitudes to the right: the mean of
@@ -86,7 +75,9 @@ fn resampled_light(x: u32, y: u32) -> vec3<f32> {
         let at = (vec2<f32>(vec2<u32>(x, y)) + quarter) / vec2<f32>(level.size);
         let longitude = 2.0 * PI * (at.x - 0.5);
         let latitude = PI * (0.5 - at.y);
-        let p = vec3<f32>(cos(latitude) * sin(longitude), sin(latitude), cos(latitude) * cos(longitude));
+        let east = sincos(longitude);
+        let north = sincos(latitude);
+        let p = vec3<f32>(north.y * east.x, north.x, north.y * east.y);
         sum += cube_light(p, level.source_size.y);
     }
     return 0.25 * sum;
@@ -134,7 +125,7 @@ var<workgroup> columns_at_hand: array<vec3<f32>, LEVEL_COLUMNS>;
 fn make_level(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation_index) thread: u32) {
     unknown_zero = group.z;
     let size = level.size;
-    let y = group.y;
+    let y = group.y + level.first_row;
     let colatitude = PI * (f32(y) + 0.5) / f32(size.y);
     let pole = y == 0u || y + 1u == size.y;
     let wide = f32(size.x) / (2.0 * f32(size.y) * sin(colatitude));
@@ -184,6 +175,6 @@ fn make_level(@builtin(workgroup_id) group: vec3<u32>, @builtin(local_invocation
         workgroupBarrier();
     }
     if x < columns {
-        level_words[y * level.row + u32(x)] = pack_light(sum / total);
+        level_words[y * level.row - level.begin + u32(x)] = pack_light(sum / total);
     }
 }

@@ -2,7 +2,7 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::{bloom, clouds, matter, outputs, rays, sky_target, uniforms};
+use super::frame::{bloom, clouds, matter, occluder, outputs, rays, sky_target, uniforms};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
 use super::lens::{kerr, schwarzschild};
@@ -24,6 +24,7 @@ fn shared() -> Vec<Layout> {
         pass,
         outputs::layout(),
         sky_target::layout(),
+        occluder::layout(),
         matter,
         cloud,
         clouds,

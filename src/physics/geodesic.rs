@@ -112,11 +112,12 @@ impl Constants {
     /// How near a ray comes to staying for ever at the radius of a photon orbit, where u'^2 = R(u) is least:
     ///
     /// ```text
-    /// R = E^2 - (K - a^2 E^2) u^2 + 2 B u^3 - a^2 Q u^4,     margin = 3 |R| / (kappa^2 u^2),     kappa^2 = R'' / 2
+    /// R = E^2 - (K - a^2 E^2) u^2 + 2 B u^3 - a^2 Q u^4,   margin = 3 |R| / (kappa^2 u^2),   kappa^2 = R'' / 2
     /// ```
     ///
     /// there. Rays part from that radius as exp(kappa tau), so that whatever is wrong at the ray's begin is some
-    /// 1 / margin times as large when it leaves. Without spin it is |27 / b^2 - 1|. Infinity: the ray does not go there.
+    /// 1 / margin times as large when it leaves. Without spin it is |27 / b^2 - 1|. Infinity: the ray does not go
+    /// there.
     pub fn critical_margin(&self, start: &State) -> f64 {
         let (c, a2q) = (self.k - self.a2e2, self.a * self.a * self.carter);
         let root = (9.0 * self.b * self.b - 8.0 * a2q * c).sqrt();

@@ -180,7 +180,7 @@ impl Mapping {
 
 /// A point that a 90 degree camera sees, of the camera that looks along a face's middle: right left up down front
 /// back. Its right = forward x up as everywhere; up is up, on the up face backward, on the down face forward.
-fn turned_to_face(face: u8, p: DVec3) -> DVec3 {
+pub(crate) fn turned_to_face(face: u8, p: DVec3) -> DVec3 {
     match face {
         0 => DVec3::new(p.z, p.y, -p.x),
         1 => DVec3::new(-p.z, p.y, p.x),

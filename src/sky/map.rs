@@ -280,14 +280,14 @@ fn blur_width([width, height]: [u32; 2], y: u32) -> f64 {
 const MAX_LIGHT: f32 = 65408.0;
 
 /// The light that can be stored: NaN and negative light become 0, infinite light the largest.
-fn limited(v: f32) -> f32 {
+pub fn limited(v: f32) -> f32 {
     // The condition is positive so that it is false for NaN.
     if v > 0.0 { v.min(MAX_LIGHT) } else { 0.0 }
 }
 
 /// RGB9E5 (EXT_texture_shared_exponent, section 3.8.x.1): three mantissas of 9 bits, red lowest, and one exponent of 5:
 /// mantissa 2^(exponent - 24). Rounded to the nearest.
-fn pack(rgb: [f32; 3]) -> u32 {
+pub fn pack(rgb: [f32; 3]) -> u32 {
     let rgb = rgb.map(limited);
     let top = rgb[0].max(rgb[1]).max(rgb[2]);
     // floor(log2(top)) + 16, at least 0; multiplied by 2^(24 - exponent) the mantissas come out.

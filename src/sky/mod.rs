@@ -20,5 +20,7 @@ pub use field::StarField;
 pub use grid::under_grid;
 pub use index::StarIndex;
 pub use map::{Level, MAX_MAP_SIZE, SkyMap};
+#[cfg(test)]
+pub use map::{limited, pack, unpack};
 pub use shift::shifted_map_light;
 pub use stars::least_patch;

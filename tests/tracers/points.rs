@@ -79,7 +79,7 @@ fn rays_through_the_pixels_of_points_pass_them() {
                 let at = |share: f64| misses[((misses.len() - 1) as f64 * share) as usize];
                 let (most, worst) = (misses.len(), at(1.0));
                 println!(
-                    "{name}, order {order}, spins {spins:?}: {most} rays, median {:.1e}, 99 % {:.1e}, worst {worst:.1e}",
+                    "{name}, order {order}, {spins:?}: {most} rays, median {:.1e}, 99 % {:.1e}, worst {worst:.1e}",
                     at(0.5),
                     at(0.99)
                 );

@@ -13,10 +13,10 @@ use std::sync::Arc;
 #[cfg(not(target_vendor = "apple"))]
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
-/// A target that a frame reads: its rows are copied into a buffer of bhr's, whose rows may be further apart.
+/// A target that a frame reads: a buffer as it is, an image by way of a buffer of bhr's.
 pub struct TargetRead {
     pub target: Arc<GpuTarget>,
-    pub staged: Arc<GpuTarget>,
+    pub staged: Option<Arc<GpuTarget>>,
 }
 
 /// The part of a frame's handover that goes with one submission.
@@ -67,9 +67,13 @@ impl Device {
                 encoders.push(taking);
             }
             encoders.extend(encoder);
-            if !handover.gives.is_empty() {
+            let read_buffers = handover.reads.iter().filter(|read| !read.target.shape.image);
+            if !handover.gives.is_empty() || read_buffers.clone().next().is_some() {
                 let mut giving = self.encoder("giving targets")?;
-                let mut give = || handover.gives.iter().for_each(|target| barrier::give(parts, &mut giving, target));
+                let mut give = || {
+                    read_buffers.clone().for_each(|read| barrier::has_read(parts, &mut giving, &read.target));
+                    handover.gives.iter().for_each(|target| barrier::give(parts, &mut giving, target));
+                };
                 self.scoped("giving targets", |_| give())?;
                 encoders.push(giving);
             }

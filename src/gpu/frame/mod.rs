@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Frames and rays on the GPU, from a scene to pixels.
 
+mod bands;
 pub(in crate::gpu) mod begun;
 pub(in crate::gpu) mod beside;
 pub(in crate::gpu) mod bloom;

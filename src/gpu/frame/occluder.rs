@@ -2,33 +2,91 @@
 //! The distances of the host's things as a texture: made anew when the host gives others, and filled for each frame
 //! from a target that the host shares. Knows no frames.
 
+use super::bands::{Band, Reach, Rows, bands};
+use super::buffers::CachedUniform;
+use crate::allocate::with_room;
 use crate::error::{Error, Result};
+use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::external::{TargetOrigin, TargetShape};
 use crate::gpu::device::handover::TargetRead;
 use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::kernel::kernels::{Kernels, Stage};
+use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::slots::OCCLUDER;
 use crate::image::PixelFormat;
 use crate::scene::{Distances, Scene};
+use bytemuck::{Pod, Zeroable};
+use std::num::NonZeroU64;
+use std::ops::Range;
 use std::sync::{Arc, Weak};
 
-/// The copies of a target's distances into the texture.
+/// `OccluderRows` of emit/occluder_rows.wgsl.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+struct OccluderRowsUniform {
+    size: [u32; 2],
+    row: u32,
+    begin: u32,
+    first_row: u32,
+    unused: u32,
+}
+
+#[cfg(test)]
+pub(in crate::gpu) fn layout() -> crate::gpu::kernel::layout::Layout {
+    crate::gpu::kernel::layout::layout!(OccluderRowsUniform as "OccluderRows": size, row, begin, first_row, unused)
+}
+
+/// How a target's distances come into the texture.
 pub struct Fetch {
-    /// Into a buffer, by commands below wgpu.
     pub read: TargetRead,
+    way: Way,
     texture: wgpu::Texture,
 }
 
+enum Way {
+    /// By a copy from a buffer with so many bytes from row to row.
+    Copy(wgpu::Buffer, u32),
+    /// By a kernel, band by band: so many rows, and bytes from uniform to uniform.
+    Kernel(Vec<(Stage, u32)>, u32),
+}
+
 impl Fetch {
-    /// The copy from the buffer.
+    /// Fills the texture.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
-        let TargetResource::Buffer(buffer) = &self.read.staged.resource else { return };
-        let bytes_per_row = u32::try_from(self.read.staged.shape.row_stride).ok();
-        let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row, rows_per_image: None };
-        let from = wgpu::TexelCopyBufferInfo { buffer, layout };
-        encoder.copy_buffer_to_texture(from, self.texture.as_image_copy(), self.texture.size());
+        match &self.way {
+            Way::Copy(buffer, row) => {
+                let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(*row), rows_per_image: None };
+                let from = wgpu::TexelCopyBufferInfo { buffer, layout };
+                encoder.copy_buffer_to_texture(from, self.texture.as_image_copy(), self.texture.size());
+            }
+            Way::Kernel(bands, stride) => {
+                let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+                for ((stage, rows), slot) in bands.iter().zip(0..) {
+                    stage.dispatch(&mut pass, slot * stride, [self.texture.width(), *rows]);
+                }
+            }
+        }
     }
+}
+
+/// Bytes from row to row of a target's buffer, as a copy into a texture takes them; `None`: no copy takes such rows.
+fn copied_row(shape: &TargetShape) -> Option<u32> {
+    let row = u32::try_from(shape.row_stride).ok();
+    row.filter(|row| row.is_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT))
+}
+
+/// The target that holds a scene's distances.
+fn target_of(scene: &Scene) -> Option<Result<Arc<GpuTarget>>> {
+    let Distances::OnDevice(given) = &scene.occluder.as_ref()?.distances else { return None };
+    Some(given.0.clone().downcast::<GpuTarget>().map_err(|_| Error::internal("an occluder that is no target")))
+}
+
+/// Whether frames of the scene take their distances by a kernel.
+pub fn takes_rows(scene: &Scene) -> bool {
+    let rows = |target: &GpuTarget| !target.shape.image && copied_row(&target.shape).is_none();
+    target_of(scene).is_some_and(|target| target.is_ok_and(|target| rows(&target)))
 }
 
 pub struct OccluderTexture {
@@ -36,13 +94,20 @@ pub struct OccluderTexture {
     texture: Texture,
     /// The distances that it holds.
     held: Option<Weak<Vec<f32>>>,
-    /// Between a target of the host's and the texture.
+    /// Between an image of the host's and the texture.
     staged: Option<Arc<GpuTarget>>,
+    /// The texture is one that kernels can write, with their uniforms.
+    taken: Option<CachedUniform>,
 }
 
 impl OccluderTexture {
     pub fn new(device: &Device) -> Result<Self> {
-        Ok(Self { texture: device.table("no occluder", OCCLUDER.format, [1, 1])?, held: None, staged: None })
+        Ok(Self {
+            texture: device.table("no occluder", OCCLUDER.format, [1, 1])?,
+            held: None,
+            staged: None,
+            taken: None,
+        })
     }
 
     /// Brings the texture up to the scene's occluder. Errors: UNSUPPORTED for one with a longer side than the device's
@@ -61,8 +126,13 @@ impl OccluderTexture {
             let message = format!("the occluder is {width} x {height}; textures of this device have {limit} at most");
             return Err(Error::unsupported(message));
         }
-        if self.texture.size() != size {
-            self.texture = device.table("occluder", OCCLUDER.format, size)?;
+        let taken = takes_rows(scene);
+        if self.texture.size() != size || taken != self.taken.is_some() {
+            self.taken = None;
+            self.texture = match taken {
+                true => device.texture("occluder", OCCLUDER.format, OCCLUDER.dimension, size, 1)?,
+                false => device.table("occluder", OCCLUDER.format, size)?,
+            };
         }
         self.held = None;
         match &occluder.distances {
@@ -71,13 +141,22 @@ impl OccluderTexture {
                 device.write_rows(&self.texture, 0, bytemuck::cast_slice(distances.as_slice()))?;
                 self.held = Some(Arc::downgrade(distances));
             }
-            Distances::OnDevice(_) => self.stage(device, size)?,
+            Distances::OnDevice(_) => self.stage(device, scene, size)?,
         }
         Ok(())
     }
 
-    /// Makes room for what a target holds, in rows that a copy into a texture takes.
-    fn stage(&mut self, device: &Device, size: [u32; 2]) -> Result<()> {
+    /// Makes room for what an image holds, in rows that a copy into a texture takes; or writes the uniforms of a
+    /// buffer's bands.
+    fn stage(&mut self, device: &Device, scene: &Scene, size: [u32; 2]) -> Result<()> {
+        let Some(target) = target_of(scene).transpose()? else { return Ok(()) };
+        if !target.shape.image {
+            self.staged = None;
+            if takes_rows(scene) {
+                self.write_bands(device, &target.shape)?;
+            }
+            return Ok(());
+        }
         if self.staged.as_ref().is_some_and(|staged| staged.shape.size == size) {
             return Ok(());
         }
@@ -88,18 +167,66 @@ impl OccluderTexture {
         Ok(())
     }
 
-    /// The copies that a frame of the scene begins with; `None`: the texture is as it must be. Errors: INTERNAL.
-    pub fn fetch(&self, scene: &Scene) -> Result<Option<Fetch>> {
-        let Some(Distances::OnDevice(given)) = scene.occluder.as_ref().map(|occluder| &occluder.distances) else {
-            return Ok(None);
+    fn write_bands(&mut self, device: &Device, shape: &TargetShape) -> Result<()> {
+        let [width, _] = shape.size;
+        let stride = uniform_stride::<OccluderRowsUniform>(device) as usize;
+        let bands = bands_of(device, shape)?;
+        let mut bytes = with_room(stride * bands.len(), "the rows of an occluder")?;
+        for Band { rows, from, .. } in &bands {
+            let size = [width, rows.end - rows.start];
+            let row = (shape.row_stride / 4) as u32;
+            let uniform = OccluderRowsUniform { size, row, begin: from.begin(), first_row: rows.start, unused: 0 };
+            let end = bytes.len() + stride;
+            bytes.extend_from_slice(bytemuck::bytes_of(&uniform));
+            bytes.resize(end, 0);
+        }
+        let size = bytes.len() as u64;
+        let uniforms = match &mut self.taken {
+            Some(uniforms) if uniforms.buffer().size() >= size => uniforms,
+            taken => taken.insert(CachedUniform::new(device, "the rows of an occluder", size)?),
         };
-        let target = given.0.clone().downcast::<GpuTarget>();
-        let target = target.map_err(|_| Error::internal("an occluder that is no target"))?;
-        let staged = self.staged.clone().ok_or_else(|| Error::internal("an occluder without its buffer"))?;
-        Ok(Some(Fetch { read: TargetRead { target, staged }, texture: self.texture.clone_raw() }))
+        uniforms.write(device, &bytes)
+    }
+
+    /// The work that a frame of the scene begins with; `None`: the texture is as it must be. Errors: as
+    /// [`Device::scoped`].
+    pub fn fetch(&self, device: &Device, kernels: &Kernels, scene: &Scene) -> Result<Option<Fetch>> {
+        let Some(target) = target_of(scene).transpose()? else { return Ok(None) };
+        let missing = || Error::internal("an occluder without its buffer");
+        let staged = self.staged.clone().filter(|_| target.shape.image);
+        let from = staged.as_ref().unwrap_or(&target);
+        let TargetResource::Buffer(buffer) = &from.resource else { return Err(missing()) };
+        let way = match copied_row(&from.shape) {
+            Some(row) => Way::Copy(buffer.clone(), row),
+            None => {
+                let kernel = kernels.get(KernelKey::OccluderRows)?;
+                let uniforms = self.taken.as_ref().ok_or_else(missing)?.buffer();
+                let size = NonZeroU64::new(size_of::<OccluderRowsUniform>() as u64);
+                let stages = bands_of(device, &from.shape)?.into_iter().map(|band| {
+                    let rows = wgpu::BufferBinding { buffer: uniforms, offset: 0, size };
+                    let rows = wgpu::BindingResource::Buffer(rows);
+                    let stage = kernel.stage(device, &[&[rows, band.from.binding(buffer), self.resource()]])?;
+                    Ok((stage, band.rows.end - band.rows.start))
+                });
+                let stride = uniform_stride::<OccluderRowsUniform>(device) as u32;
+                Way::Kernel(stages.collect::<Result<_>>()?, stride)
+            }
+        };
+        Ok(Some(Fetch { way, texture: self.texture.clone_raw(), read: TargetRead { target, staged } }))
     }
 
     pub fn resource(&self) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::TextureView(&self.texture.view)
     }
+}
+
+/// The rows of a target's buffer as kernels bind them. Errors: UNSUPPORTED for rows that no binding holds.
+fn bands_of(device: &Device, shape: &TargetShape) -> Result<Vec<Band>> {
+    let rows = Rows { count: shape.size[1], stride: shape.row_stride, bytes: shape.bytes() };
+    bands(&rows, &rows, Range::clone, &Reach::of(device)).ok_or_else(|| {
+        let (stride, largest) = (shape.row_stride, Reach::of(device).largest);
+        Error::unsupported(format!(
+            "the occluder's row_stride is {stride}; a kernel here reads {largest} bytes at once"
+        ))
+    })
 }

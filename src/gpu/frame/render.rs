@@ -8,8 +8,10 @@ use super::begun::{BegunFrame, Delivery, ExtraCommands};
 use super::beside::{BesideSetup, PlacedOutput};
 use super::bloom::LIGHT_BYTES;
 use super::buffers::Size;
+use super::occluder::takes_rows;
 use super::refine::EdgeList;
 use super::setup::{FrameTarget, Setup};
+use super::sky_target::level_kernels;
 use super::steps::Steps;
 use super::submission::Submission;
 use super::tables::Tables;
@@ -152,7 +154,8 @@ impl GpuTracer {
             .map(|scene| self.set_up_beside(scene, request, outputs, Some(&setup).filter(|_| pictured)));
         let beside = beside.transpose()?;
         let mut needed = if pictured { setup.kernels() } else { Vec::new() };
-        needed.extend(scene.shown_picture().map(|_| KernelKey::SkyLevel));
+        needed.extend(scene.shown_picture().into_iter().flat_map(|picture| level_kernels(&self.device, picture)));
+        needed.extend(takes_rows(scene).then_some(KernelKey::OccluderRows));
         let of_beside = beside.as_ref().map(BesideSetup::kernels).unwrap_or_default();
         let batch = self.kernels.begin(&[&needed[..], &of_beside].concat());
         let samples = setup.samples;
@@ -180,7 +183,6 @@ impl GpuTracer {
 
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         setup.uniform.map_sizes = tables.map_sizes();
-        let fetch = tables.occluder().fetch(scene)?;
         // Rows for the host go where it maps them.
         let staged = kind == PixelTarget::Rows && matches!(delivery, Delivery::Host);
         let packed = if staged { 0 } else { pixel_bytes };
@@ -195,6 +197,7 @@ impl GpuTracer {
         }
         // Meanwhile the sky and the buffers were made.
         self.kernels.finish(batch)?;
+        let fetch = tables.occluder().fetch(&self.device, &self.kernels, scene)?;
         let sky = tables.sky_maps().fetch(&self.device, &self.kernels, scene)?;
         let stages = self.buffers.stages(&self.device, &self.kernels, tables, &setup, target, software)?;
         let beside = beside.map(|beside| {

@@ -2,10 +2,10 @@
 //! Every kernel of the tracer by what decides how it is compiled: its entry point, WGSL, constants and bindings. Knows
 //! neither devices nor pipelines; two equal keys are the same kernel.
 
-use super::sizes::LEVEL_COLUMNS;
+use super::sizes::{LEVEL_COLUMNS, SKY_PARTS};
 use super::slots::{
-    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, RADIANCE, Slot, TABLES, TRACED, edge_slots, output_slots, pixel_slots,
-    refine_slots, shade_slots, sum_slots,
+    LENS_COLUMNS, LENS_FLAGS, LENS_ROWS, LIGHT, OCCLUDER, RADIANCE, Slot, TABLES, TRACED, edge_slots, output_slots,
+    pixel_slots, refine_slots, shade_slots, sum_slots,
 };
 use super::variant::{
     FROM_UNIFORM, FilmVariant, GROUP, MatterVariant, OutputPlaces, RecordSource, RefineVariant, ShadeVariant,
@@ -35,8 +35,10 @@ pub enum KernelKey {
     GatherBase,
     Upsample,
     Beam,
-    /// A level of the pyramid of a sky map that lies in a target.
-    SkyLevel,
+    /// A level of the pyramid of a sky map that lies in a target; whether what it is made from is bound in parts.
+    SkyLevel(bool),
+    /// The distances of a target whose rows no copy takes.
+    OccluderRows,
     Export(RecordSource, bool, Option<Projection>),
     /// Whether something shines in the plane, and whether matter with depth lies between crossings.
     Outputs(RecordSource, bool, bool, Option<Projection>, OutputPlaces),
@@ -96,7 +98,8 @@ impl KernelKey {
             Self::Gather(..) | Self::GatherBase => "gather",
             Self::Upsample => "upsample",
             Self::Beam => "spread_beam",
-            Self::SkyLevel => "make_level",
+            Self::SkyLevel(_) => "make_level",
+            Self::OccluderRows => "take_distances",
             Self::SchwarzschildEnds => "find_ends",
             Self::SchwarzschildColumns { .. } => "fill_columns",
             Self::KerrNodes { .. } => "trace_nodes",
@@ -121,7 +124,8 @@ impl KernelKey {
             Self::GatherBase => wgsl::kernel("bloom/base"),
             Self::Upsample => wgsl::kernel("bloom/upsample"),
             Self::Beam => wgsl::kernel("bloom/beam"),
-            Self::SkyLevel => wgsl::kernel("sky/pyramid"),
+            Self::SkyLevel(in_parts) => wgsl::sky_level(in_parts),
+            Self::OccluderRows => wgsl::kernel("emit/occluder_rows"),
             Self::Export(source, ..) => wgsl::export(source),
             Self::Outputs(source, .., places) => wgsl::outputs(source, places),
             Self::SchwarzschildEnds => wgsl::kernel("lens/schwarzschild_ends"),
@@ -158,7 +162,11 @@ impl KernelKey {
                 vec![vec![Slot::UniformPart], light, film.slots()]
             }
             Self::Beam => vec![vec![Slot::UniformPart, Slot::Texture(LIGHT), Slot::TextureWrite(LIGHT)]],
-            Self::SkyLevel => vec![vec![Slot::UniformPart, Slot::Read, Slot::Write]],
+            Self::SkyLevel(in_parts) => {
+                let first = vec![Slot::UniformPart, Slot::Read, Slot::Write];
+                vec![[first, vec![Slot::Read; if in_parts { SKY_PARTS - 1 } else { 0 }]].concat()]
+            }
+            Self::OccluderRows => vec![vec![Slot::UniformPart, Slot::Read, Slot::TextureWrite(OCCLUDER)]],
             Self::Gather(..) | Self::GatherBase => {
                 vec![vec![Slot::UniformPart, Slot::Filtered(LIGHT), Slot::Sampler, Slot::TextureWrite(LIGHT)]]
             }
@@ -191,7 +199,7 @@ impl KernelKey {
     pub fn workgroup(self) -> [u32; 2] {
         match self {
             Self::ShadeOnly(_, _, film) | Self::Develop(film, _) => film.group(),
-            Self::SkyLevel => [LEVEL_COLUMNS, 1],
+            Self::SkyLevel(_) => [LEVEL_COLUMNS, 1],
             _ => GROUP,
         }
     }
@@ -221,7 +229,7 @@ impl KernelKey {
             Self::Develop(film, None) => film_constants(film),
             Self::Develop(film, Some(step)) => [film_constants(film), vec![("STEP", step.into())]].concat(),
             Self::Gather(step, grid) => vec![("STEP", step.into()), ("GRID", flag(grid))],
-            Self::GatherBase | Self::Upsample | Self::Beam | Self::SkyLevel => Vec::new(),
+            Self::GatherBase | Self::Upsample | Self::Beam | Self::SkyLevel(_) | Self::OccluderRows => Vec::new(),
             Self::Export(source, footprints, projection) => {
                 let export = vec![("FOOTPRINTS", flag(footprints)), projection_constant(projection)];
                 [source.constants(), export].concat()

@@ -22,6 +22,8 @@ pub const KERR_PER_OCTAVE: usize = 16;
 pub const COUNT_RUN: u32 = 8;
 /// Columns of a row that a workgroup of sky/pyramid.wgsl makes.
 pub const LEVEL_COLUMNS: u32 = 128;
+/// Parts in which sky/source_parts.wgsl binds a picture.
+pub const SKY_PARTS: usize = 6;
 /// Entries of a row of the tables that shading reads: a width that every device takes.
 pub const TABLE_WIDTH: usize = 2048;
 /// Crossings of a ray record that records/export.wgsl writes, and vectors of four numbers of a record.

@@ -74,6 +74,10 @@ pub fn export(source: RecordSource) -> Result<String> {
     join(&[source.driver(None).1, source.fragment(), "records/export"])
 }
 
+pub fn sky_level(in_parts: bool) -> Result<String> {
+    join(&["sky/pyramid", if in_parts { "sky/source_parts" } else { "sky/source_whole" }])
+}
+
 pub fn outputs(source: RecordSource, places: OutputPlaces) -> Result<String> {
     let roots = [source.driver(None).1, source.fragment(), "shade/outputs"];
     if places == OutputPlaces::default() {
@@ -196,7 +200,9 @@ pub fn shader_sources() -> Result<Vec<(&'static str, String)>> {
         ("bloom, gather pixels", kernel("bloom/base")),
         ("bloom, upsample", kernel("bloom/upsample")),
         ("bloom, beam", kernel("bloom/beam")),
-        ("sky map, level", kernel("sky/pyramid")),
+        ("sky map, level", sky_level(false)),
+        ("sky map, level from parts", sky_level(true)),
+        ("the host's distances", kernel("emit/occluder_rows")),
         ("shade only for bloom", shade_only(kerr(false), FilmVariant::of_light())),
         ("refine, traced", refine(RecordSource::Traced, Some(film(PixelTarget::Packed)))),
         (

@@ -56,11 +56,6 @@ const PYRAMID: Why = Tested(
     "levels_made_on_the_gpu_are_those_of_the_cpu",
     "pictures of maps whose levels are made on the GPU against those of src/sky/map.rs",
 );
-const CUBE: Why = Tested(
-    "tests/tracers/sky_target.rs",
-    "a_cube_is_the_sky_that_a_camera_sees",
-    "cubes of light that is known in every direction against maps of the same light",
-);
 const OUTPUTS: Why = Tested(
     "tests/tracers/outputs.rs",
     "outputs_are_what_rays_meet",
@@ -153,9 +148,10 @@ pub const EXCUSED: &[(&str, &str, Why)] = &[
     ("shade/only", "take_light", HOOK),
     ("shade/outputs", "light_table put_output to_scene without_crossing take_record", OUTPUTS),
     ("shade/outputs", "depth_of crossing_output ray_output", OUTPUTS),
-    ("sky/cube", "face_direction face_of face_place cube_texel cube_light", CUBE),
-    ("sky/pyramid", "resampled_light", CUBE),
-    ("sky/pyramid", "limited_light unpack_light pack_light half_light source_light column_light make_level", PYRAMID),
+    ("sky/pyramid", "column_light make_level", PYRAMID),
+    ("sky/source_whole", "source_row source_word", Plumbing("it finds a word")),
+    ("sky/source_parts", "source_row source_word", Plumbing("it finds a word")),
+    ("emit/occluder_rows", "take_distances", Plumbing("it copies")),
     ("shade/packed_outputs", "put_numbers wanted_output output_count output_crossings", HOOK),
     // As src/gpu/kernel/wgsl.rs writes it.
     ("shade/outputs", "put_numbers wanted_output output_count output_crossings", HOOK),

@@ -9,6 +9,7 @@
 
 mod camera;
 mod clouds;
+mod cube;
 mod excused;
 mod film;
 mod geodesic;
@@ -114,6 +115,7 @@ const TABLES: &[fn() -> Group] = &[
     half::group,
     clouds::group,
     sky::group,
+    cube::group,
     shade::group,
     refine::group,
     records::group,

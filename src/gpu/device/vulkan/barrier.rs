@@ -107,52 +107,42 @@ pub(in crate::gpu) fn give(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
     });
 }
 
-/// Copies the pixels of a target, which the host has left in its layout, into a buffer of bhr's, and gives the target
-/// back as it was.
+/// Before a frame reads a target: makes a buffer bhr's. The pixels of an image, which the host has left in its layout,
+/// are copied into a buffer of bhr's, and the image is given back as it was.
 pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, read: &TargetRead) {
     let TargetRead { target, staged } = read;
-    let pixel_bytes = target.shape.format.bytes_per_pixel() as u64;
-    let [width, height] = target.shape.size;
     let (any, copies) = (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER);
     let (ignored, own) = (vk::QUEUE_FAMILY_IGNORED, parts.family);
     let [theirs, ours] = if target.leaves { [vk::QUEUE_FAMILY_EXTERNAL, own] } else { [ignored; 2] };
-    let buffer = vk::Buffer::from_raw(staged.raw);
-    // The frame before may still copy from the buffer, and the frame to come does.
-    let filled = vk::BufferMemoryBarrier::default()
-        .buffer(buffer)
-        .size(vk::WHOLE_SIZE)
-        .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-        .dst_access_mask(vk::AccessFlags::MEMORY_READ)
-        .src_queue_family_index(ignored)
-        .dst_queue_family_index(ignored);
     let device = &parts.device;
     let none = vk::DependencyFlags::empty();
-    record(encoder, |commands| match &target.resource {
-        TargetResource::Buffer(_) => {
-            let raw = vk::Buffer::from_raw(target.raw);
-            let barrier = vk::BufferMemoryBarrier::default().buffer(raw).size(vk::WHOLE_SIZE);
-            let acquired = barrier
+    record(encoder, |commands| match (&target.resource, staged) {
+        (TargetResource::Buffer(_), _) => {
+            let acquired = vk::BufferMemoryBarrier::default()
+                .buffer(vk::Buffer::from_raw(target.raw))
+                .size(vk::WHOLE_SIZE)
                 .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
-                .dst_access_mask(vk::AccessFlags::TRANSFER_READ)
+                .dst_access_mask(vk::AccessFlags::MEMORY_READ)
                 .src_queue_family_index(theirs)
                 .dst_queue_family_index(ours);
-            let released = barrier.src_queue_family_index(ours).dst_queue_family_index(theirs);
-            let (row, [from, to]) = (u64::from(width) * pixel_bytes, [target, staged].map(|one| one.shape.row_stride));
-            // Drivers take microseconds for each region (NVIDIA 580 on an H200: 3.4): rows that lie alike go at once.
-            let (regions, size) = match from == to {
-                true => (1, from * (u64::from(height) - 1) + row),
-                false => (u64::from(height), row),
-            };
-            let rows = (0..regions).map(|y| vk::BufferCopy { src_offset: y * from, dst_offset: y * to, size });
-            let rows = rows.collect::<Vec<_>>();
-            // SAFETY: both buffers live as long as their targets, and hold the rows; the commands are being recorded.
+            // SAFETY: the buffer lives as long as its target; the commands are being recorded.
             unsafe {
-                device.cmd_pipeline_barrier(commands, any, copies, none, &[], &[acquired], &[]);
-                device.cmd_copy_buffer(commands, raw, buffer, &rows);
-                device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[released, filled], &[]);
+                device.cmd_pipeline_barrier(commands, any, any, none, &[], &[acquired], &[]);
             }
         }
-        TargetResource::Written(..) | TargetResource::Copied(_) => {
+        (_, None) => {}
+        (TargetResource::Written(..) | TargetResource::Copied(_), Some(staged)) => {
+            let pixel_bytes = target.shape.format.bytes_per_pixel() as u64;
+            let [width, height] = target.shape.size;
+            let buffer = vk::Buffer::from_raw(staged.raw);
+            // The frame before may still read the buffer, and the frame to come does.
+            let filled = vk::BufferMemoryBarrier::default()
+                .buffer(buffer)
+                .size(vk::WHOLE_SIZE)
+                .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+                .dst_access_mask(vk::AccessFlags::MEMORY_READ)
+                .src_queue_family_index(ignored)
+                .dst_queue_family_index(ignored);
             let raw = vk::Image::from_raw(target.raw);
             let left = vk::ImageLayout::from_raw(target.shape.layout);
             let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
@@ -171,12 +161,30 @@ pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
                 .buffer_row_length((staged.shape.row_stride / pixel_bytes) as u32)
                 .image_subresource(layers)
                 .image_extent(vk::Extent3D { width, height, depth: 1 });
-            // SAFETY: as above, of the image.
+            // SAFETY: as above, of the image; the buffer holds its rows.
             unsafe {
                 device.cmd_pipeline_barrier(commands, any, copies, none, &[], &[], &[acquired]);
                 device.cmd_copy_image_to_buffer(commands, raw, source, buffer, &[copy]);
                 device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[filled], &[released]);
             }
+        }
+    });
+}
+
+/// After a frame has read a buffer: gives it back.
+pub(in crate::gpu) fn has_read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, target: &GpuTarget) {
+    let any = vk::PipelineStageFlags::ALL_COMMANDS;
+    let families =
+        if target.leaves { [parts.family, vk::QUEUE_FAMILY_EXTERNAL] } else { [vk::QUEUE_FAMILY_IGNORED; 2] };
+    record(encoder, |commands| {
+        let released = vk::BufferMemoryBarrier::default()
+            .buffer(vk::Buffer::from_raw(target.raw))
+            .size(vk::WHOLE_SIZE)
+            .src_queue_family_index(families[0])
+            .dst_queue_family_index(families[1]);
+        // SAFETY: the buffer lives as long as its target; the commands are being recorded.
+        unsafe {
+            parts.device.cmd_pipeline_barrier(commands, any, any, Default::default(), &[], &[released], &[]);
         }
     });
 }
