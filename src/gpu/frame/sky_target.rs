@@ -93,7 +93,7 @@ fn row_words(width: u32) -> u32 {
 /// The rows of a level.
 fn level_rows([width, height]: [u32; 2]) -> Rows {
     let stride = 4 * u64::from(row_words(width));
-    Rows { count: height, stride, bytes: stride * u64::from(height) }
+    Rows { count: height, stride, bytes: stride * u64::from(height - 1) + 4 * u64::from(width) }
 }
 
 /// A buffer that the device's limits for buffers, which are those of bindings here, do not bound.
