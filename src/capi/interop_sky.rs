@@ -34,8 +34,7 @@ pub unsafe extern "C" fn bhr_set_sky_target(context: *mut BhrContext, target: *m
 /// -x, on the fourth +x. Frames make an equirectangular map of it, four faces wide and two high, with four places in
 /// each texel, between texels of the cube and across its edges; detail finer than at the faces' middles is lost. At
 /// most 2730 texels a side. Errors: those of bhr_set_sky_target; INVALID_ARGUMENT for another layout or shape;
-/// UNSUPPORTED for more bytes than six bindings of the device's kernels hold (a cube of 2730 texels a side in packed
-/// rows they do where a kernel may bind seven buffers). Since 0.2.0.
+/// UNSUPPORTED for rows that six bindings of a kernel do not hold (packed ones they do). Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_target_as(
     context: *mut BhrContext,

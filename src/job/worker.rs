@@ -261,8 +261,15 @@ impl JobQueue {
             return drop(event);
         }
         state.steps += usize::from(matches!(event, Event::Step(_)));
+        // A frame that has begun gives nothing to do before its first step, or its failure, which follows.
+        let wakes = !matches!(event, Event::Begun(_));
         state.events.push_back(event);
-        self.to_finish.notify_one();
+        // To wake a thread takes this one as long as to record a good part of a frame; one that is woken while the
+        // lock is held would fall asleep again.
+        drop(state);
+        if wakes {
+            self.to_finish.notify_one();
+        }
     }
 
     /// `None`: the end.

@@ -5,8 +5,8 @@
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::sharing::GpuTarget;
 use super::turns::InUse;
-use super::wgpu_device::{Device, hangs_after};
-use crate::error::Result;
+use super::wgpu_device::{Device, Uploads, hangs_after};
+use crate::error::{Error, Result};
 use std::sync::Arc;
 
 /// Waiting goes in pieces of this, between which the device may be lost.
@@ -32,6 +32,29 @@ pub struct Handover<'a> {
     pub(in crate::gpu) signals: &'a [SemaphoreUse],
 }
 
+/// Commands of a submission, which may begin with uploads.
+pub struct Recording<'a> {
+    /// `None`: they are being submitted.
+    encoder: Option<wgpu::CommandEncoder>,
+    /// The uploads that are lost unless they are submitted.
+    carries: Option<&'a Uploads>,
+}
+
+impl Recording<'_> {
+    /// Errors: INTERNAL.
+    pub fn encoder(&mut self) -> Result<&mut wgpu::CommandEncoder> {
+        self.encoder.as_mut().ok_or_else(|| Error::internal("commands that are recorded after their submission"))
+    }
+}
+
+impl Drop for Recording<'_> {
+    fn drop(&mut self) {
+        if let Some(uploads) = self.carries {
+            uploads.lose();
+        }
+    }
+}
+
 impl Device {
     /// Starts what was written since the last submission, and then what `encoders` have recorded, once all of `waits`
     /// have been signalled; then signals `signals`. Errors: as [`Self::scoped`]; nothing was submitted then.
@@ -44,8 +67,30 @@ impl Device {
         self.submit_all(encoders.into(), waits, signals, Vec::new())
     }
 
+    /// Begins recording with what was written since the last submission, so that both are one piece of work. Errors:
+    /// as [`Self::encoder`].
+    pub(in crate::gpu) fn recording(&self, label: &str) -> Result<Recording<'_>> {
+        Ok(match self.uploads.take() {
+            Some(encoder) => Recording { encoder: Some(encoder), carries: Some(&self.uploads) },
+            None => Recording { encoder: Some(self.encoder(label)?), carries: None },
+        })
+    }
+
     /// [`Self::submit_handed`] with the commands that take a target over and give it back.
     pub(in crate::gpu) fn submit_handover(
+        &self,
+        mut recording: Option<Recording<'_>>,
+        handover: &Handover<'_>,
+    ) -> Result<wgpu::SubmissionIndex> {
+        let encoder = recording.as_mut().and_then(|recording| recording.encoder.take());
+        let submitted = self.submit_with_barriers(encoder, handover);
+        if submitted.is_ok() {
+            recording.iter_mut().for_each(|recording| recording.carries = None);
+        }
+        submitted
+    }
+
+    fn submit_with_barriers(
         &self,
         encoder: Option<wgpu::CommandEncoder>,
         handover: &Handover<'_>,

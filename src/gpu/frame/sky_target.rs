@@ -74,11 +74,18 @@ pub struct SkyTarget {
     pub(super) map: MapTexture,
 }
 
+/// The dispatches that make a level.
+struct LevelStages {
+    size: [u32; 2],
+    /// With the rows that each makes.
+    stages: Vec<(Stage, u32)>,
+}
+
 /// The work that a frame begins with.
 pub struct SkyFetch {
     pub read: TargetRead,
-    /// Level by level: its size, and the rows that each dispatch makes.
-    levels: Vec<([u32; 2], Vec<(Stage, u32)>)>,
+    /// The finest first.
+    levels: Vec<LevelStages>,
     stride: u32,
     for_sampler: bool,
     words: [wgpu::Buffer; 2],
@@ -307,7 +314,7 @@ impl SkyTarget {
         let mut levels = Vec::with_capacity(self.plan.sizes.len());
         for (number, (size, bands)) in self.plan.sizes.iter().zip(&self.plan.bands).enumerate() {
             let stages = bands.iter().map(|band| Ok((stage(number, band)?, band.rows.end - band.rows.start)));
-            levels.push((*size, stages.collect::<Result<Vec<_>>>()?));
+            levels.push(LevelStages { size: *size, stages: stages.collect::<Result<_>>()? });
         }
         Ok(SkyFetch {
             levels,
@@ -341,9 +348,9 @@ fn target_of(picture: &SkyPicture) -> Result<Arc<GpuTarget>> {
 impl SkyFetch {
     /// Makes the levels, one from the other.
     pub fn encode(&self, encoder: &mut wgpu::CommandEncoder) {
-        let finest = self.levels.first().map_or([1, 1], |(size, _)| *size);
+        let finest = self.levels.first().map_or([1, 1], |level| level.size);
         let mut slot = 0;
-        for ((size, stages), number) in self.levels.iter().zip(0_u32..) {
+        for (LevelStages { size, stages }, number) in self.levels.iter().zip(0_u32..) {
             for (stage, rows) in stages {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
                 stage.dispatch(&mut pass, slot * self.stride, [size[0], *rows]);

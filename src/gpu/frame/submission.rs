@@ -132,23 +132,24 @@ impl FrameBuffers {
             _ => self.readback.staging(device, size)?,
         };
         let to = staging.buffer()?;
-        let mut encoder = device.encoder("frame")?;
         let fixed = self.fixed.as_mut().ok_or_else(|| Error::internal("a frame without buffers"))?;
         fixed.passes.write(device, &places)?;
         if let Some(bloom) = &frame.bloom {
             self.bloom.write(device, bloom, step.light_origin, step.gathers.unwrap_or(NO_CELLS))?;
         }
+        let mut recording = device.recording("frame")?;
+        let encoder = recording.encoder()?;
         let mut reads = ArrayVec::<_, 2>::new();
         if let Some(fetch) = frame.fetch.as_ref().filter(|_| begins) {
-            fetch.encode(&mut encoder);
+            fetch.encode(encoder);
             reads.push(&fetch.read);
         }
         if let Some(sky) = frame.sky.as_ref().filter(|_| begins) {
-            sky.encode(&mut encoder);
+            sky.encode(encoder);
             reads.push(&sky.read);
         }
-        let steps = self.record_store.reset(frame.source, &fixed.step_sum, &mut encoder);
-        self.edges.reset(&mut encoder);
+        let steps = self.record_store.reset(frame.source, &fixed.step_sum, encoder);
+        self.edges.reset(encoder);
         let writes = stages.glare.is_some() || step.develops.is_some();
         let output = stages.output.as_ref().filter(|_| writes);
         let output = output.map(|output| output.group(device, to, step.develops.unwrap_or(step.shades))).transpose()?;
@@ -188,7 +189,7 @@ impl FrameBuffers {
             encoder.copy_buffer_to_buffer(steps, 0, to, STEPS[0], STEP_SUM);
         }
         if let Some((beside, group)) = &outputs {
-            let steps = beside.reset(&self.record_store, own, &fixed.step_sum, &mut encoder);
+            let steps = beside.reset(&self.record_store, own, &fixed.step_sum, encoder);
             passes.push(PassKind::Shading);
             let timestamp_writes = self.timer.as_mut().and_then(GpuTimer::next_pass);
             beside.encode(
@@ -203,7 +204,7 @@ impl FrameBuffers {
                 encoder.copy_buffer_to_buffer(steps, 0, to, STEPS[1], STEP_SUM);
             }
         }
-        let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(&mut encoder, to, TICKS));
+        let tick_bytes = self.timer.as_mut().map_or(0, |timer| timer.resolve(encoder, to, TICKS));
         if let Some(packed) = &own.packed {
             for (offset, bytes, to_numbers) in &numbers {
                 encoder.copy_buffer_to_buffer(packed, *offset, to, to_numbers.begin, *bytes);
@@ -213,18 +214,18 @@ impl FrameBuffers {
             encoder.copy_buffer_to_buffer(&sized.packed, 0, to, PIXELS, pixel_bytes);
         }
         if let (Some(sized), Delivery::Copied(texture), Some(tile)) = (&self.sized, &frame.delivery, step.develops) {
-            copy_tile(&mut encoder, &sized.packed, frame.delivery.pitch(tile, pixel_size), texture, tile);
+            copy_tile(encoder, &sized.packed, frame.delivery.pitch(tile, pixel_size), texture, tile);
         }
         let mut copied = staging.filled(size);
         let last = frame.submitted + 1 == frame.count();
         if last {
-            then(&mut encoder)?;
+            then(encoder)?;
         }
         // The waits are for what is read, too.
         let writes = step.develops.is_some() || outputs.is_some() || !reads.is_empty();
         let handover = frame.handed.as_ref().map_or_else(Handover::default, |handed| handed.handover(writes, last));
         let handover = Handover { reads: &reads, ..handover };
-        let submission = device.submit_handover(Some(encoder), &handover)?;
+        let submission = device.submit_handover(Some(recording), &handover)?;
         if let Some(handed) = &mut frame.handed {
             handed.submitted(writes, last);
         }

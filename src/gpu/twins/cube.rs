@@ -94,14 +94,22 @@ fn put(light: [f32; 3], o: &mut Outputs) {
     light.into_iter().for_each(|v| o.put(v.into()));
 }
 
+fn any_direction(i: &mut Inputs) {
+    i.direction();
+}
+
 /// Any bits at all, NaN and infinity among them.
 fn any_bits(i: &mut Inputs) {
-    (0..4).for_each(|_| drop(i.bits()));
+    for _ in 0..4 {
+        i.bits();
+    }
 }
 
 /// Light of every size that is stored, and beyond it.
 fn any_light(i: &mut Inputs) {
-    (0..3).for_each(|_| drop(i.signed(1e-7, 1e6)));
+    for _ in 0..3 {
+        i.signed(1e-7, 1e6);
+    }
 }
 
 pub fn group() -> Group {
@@ -126,7 +134,7 @@ pub fn group() -> Group {
             cube,
             "face_of face_place",
             "let face = face_of(in3(0u)); out_word(face); out2(face_place(face, in3(0u)));",
-            |i| drop(i.direction()),
+            any_direction,
             |i, o| {
                 let (face, at) = seen(i.v3(0));
                 o.word(face);
@@ -151,7 +159,7 @@ pub fn group() -> Group {
             cube,
             "cube_light",
             "enter_cube(); out3(cube_light(in3(0u), 16u));",
-            |i| drop(i.direction()),
+            any_direction,
             |i, o| o.all(between(i.v3(0)).to_array(), 1.0),
             // Places are counted in texels, 16 a side.
             16.0 * ROUNDING,
