@@ -70,10 +70,12 @@ impl Device {
     /// Begins recording with what was written since the last submission, so that both are one piece of work. Errors:
     /// as [`Self::encoder`].
     pub(in crate::gpu) fn recording(&self, label: &str) -> Result<Recording<'_>> {
-        Ok(match self.uploads.take() {
-            Some(encoder) => Recording { encoder: Some(encoder), carries: Some(&self.uploads) },
-            None => Recording { encoder: Some(self.encoder(label)?), carries: None },
-        })
+        let Some(encoder) = self.uploads.take() else {
+            return Ok(Recording { encoder: Some(self.encoder(label)?), carries: None });
+        };
+        let recording = Recording { encoder: Some(encoder), carries: Some(&self.uploads) };
+        self.check()?;
+        self.faults.check(label).map(|()| recording)
     }
 
     /// [`Self::submit_handed`] with the commands that take a target over and give it back.
