@@ -113,7 +113,7 @@ class Info:
 
 
 def info(context: Context) -> Info:
-    """What the context's device can share."""
+    """The ways in which the context's device can share."""
     struct = context._read("BhrInteropInfo", lib.bhr_interop_info)
     bits = {name: HandleType(getattr(struct, name)) for name in ("export_images", "export_buffers")}
     bits.update({name: HandleType(getattr(struct, name)) for name in ("import_images", "import_buffers")})
