@@ -318,6 +318,12 @@ static void shade(const Vertex *thing, double out[3]) {
     out[2] = grain * thing->colour[2] * (0.45 * warm + 1.3 * rim);
 }
 
+/* The share of a ball of light exp(-k r^2) that a line of sight crosses before a thing, which lies `before` its middle
+ * (negative) or behind it. A ball that ended at its middle would leave the near end of a nozzle's side dark. */
+static double lit_share(double k, double before) {
+    return 0.5 * (1.0 + erf(sqrt(k) * before));
+}
+
 /* The engines' light along a line of sight, from where they seem to be: what lies behind the disk comes through as far
  * as alpha leaves it. */
 static void add_glows(const World *world, size_t i, double alpha, double out[3]) {
@@ -327,9 +333,12 @@ static void add_glows(const World *world, size_t i, double alpha, double out[3])
         memcpy(place, world->glows[k].apparent, sizeof place);
         add(place, -1.0, ray->position);
         const double t = dot(place, ray->direction), off2 = (dot(place, place) - t * t) / (GLOW_SIZE * GLOW_SIZE);
-        if (t > 0.0 && t < world->things[i].distance) {
+        if (t > 0.0) {
+            const double before = (world->things[i].distance - t) / GLOW_SIZE;
             const double through = t < world->depth[i] ? 1.0 : 1.0 - alpha;
-            const double power = (2.4 * exp(-6.0 * off2) + 0.7 * exp(-0.9 * off2)) * through;
+            const double core = 2.4 * exp(-6.0 * off2) * lit_share(6.0, before);
+            const double halo = 0.7 * exp(-0.9 * off2) * lit_share(0.9, before);
+            const double power = (core + halo) * through;
             out[0] += 0.25 * power;
             out[1] += 0.65 * power;
             out[2] += 1.30 * power;

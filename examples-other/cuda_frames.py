@@ -7,6 +7,7 @@ wanted.
 
     python3 cuda_frames.py [--library libbhr.so] [--device 0] [--size 1920x1080] [--frames 8]
     python3 cuda_frames.py --check          compares CUDA's bytes with those of bhr_render_image; needs no torch
+    python3 cuda_frames.py --check torch    the same with the bytes of a tensor
     python3 cuda_frames.py --sizes          prints how the structs below lie in memory; needs neither CUDA nor bhr
 """
 
@@ -273,33 +274,58 @@ def new_stream(cuda):
     return stream.value
 
 
-def check(bhr, cuda, width, height, count):
-    """Whether CUDA sees the bytes of bhr_render_image, in every format, in each of some frames of a moving hole."""
-    stream, equal = new_stream(cuda), True
+def torch_with_cuda():
+    try:
+        import torch
+    except ImportError as error:
+        raise Failure("torch is missing (%s); --check alone needs none" % error) from None
+    if not torch.cuda.is_available():
+        raise Failure("torch %s sees no GPU; --check alone needs no torch" % torch.__version__)
+    return torch
+
+
+def different_in_cuda(frames, stream, expected):
+    """How many bytes of the frame are others in CUDA's memory."""
+    seen = frames.bytes(stream)
+    return sum(a != b for a, b in zip(seen, expected)) if seen != expected else 0
+
+
+def different_in_tensor(torch, frames, expected):
+    """The same of a tensor over the same memory."""
+    tensor = torch.as_tensor(frames, device="cuda")
+    if tensor.data_ptr() != frames.pointer.value:
+        raise Failure("torch.as_tensor has made a copy")
+    wanted = torch.frombuffer(bytearray(expected), dtype=torch.uint8)
+    return int((tensor.cpu().contiguous().view(torch.uint8).flatten() != wanted).sum())
+
+
+def check(bhr, cuda, torch, width, height, count):
+    """Whether CUDA, or torch unless it is None, sees the bytes of bhr_render_image, in every format, in each of some
+    frames of a moving hole."""
+    if torch:
+        torch.cuda.set_device(cuda.device)
+    stream = torch.cuda.current_stream().cuda_stream if torch else new_stream(cuda)
+    whose, equal = "a tensor of torch %s" % torch.__version__ if torch else "CUDA's memory", True
     for name, (number, pixel_bytes, _) in FORMATS.items():
         frames, wrong = Frames(bhr, cuda, width, height, name), 0
         for frame in range(count):
             bhr.call("bhr_set_time", bhr.context, ctypes.c_double(10.0 * frame))
-            frames.render(stream)
-            seen = frames.bytes(stream)
-            frames.done(stream)
             expected = bhr.image(width, height, number, pixel_bytes)
             if len(set(expected)) < 2:
                 raise Failure("the picture is empty, and nothing was compared")
-            wrong += sum(a != b for a, b in zip(seen, expected)) if seen != expected else 0
+            frames.render(stream)
+            wrong += different_in_tensor(torch, frames, expected) if torch else different_in_cuda(
+                frames, stream, expected)
+            frames.done(stream)
         frames.close()
         equal = equal and wrong == 0
-        print("%-8s %d x %d, %d frames: %s" % (name, width, height, count,
-                                                "equal, byte for byte" if wrong == 0 else "%d bytes differ" % wrong))
+        said = "equal, byte for byte" if wrong == 0 else "%d bytes differ" % wrong
+        print("%-8s %d x %d, %d frames in %s: %s" % (name, width, height, count, whose, said))
     return equal
 
 
-def show(bhr, cuda, width, height, count):
+def show(bhr, cuda, torch, width, height, count):
     """Each frame as a tensor: its mean radiance."""
-    try:
-        import torch
-    except ImportError:
-        raise Failure("torch is missing; --check needs none") from None
     torch.cuda.set_device(cuda.device)
     frames = Frames(bhr, cuda, width, height)
     tensor = torch.as_tensor(frames, device="cuda")
@@ -314,6 +340,7 @@ def show(bhr, cuda, width, height, count):
         print("frame %d: %.5f %.5f %.5f, %.2f ms" % (frame, red, green, blue, 1e3 * (time.perf_counter() - began)))
     del tensor
     frames.close()
+    return True
 
 
 def size(text):
@@ -327,7 +354,8 @@ def main():
     parser.add_argument("--device", type=int, default=0, help="CUDA's number of the GPU")
     parser.add_argument("--size", type=size, default=(1920, 1080), metavar="WIDTHxHEIGHT")
     parser.add_argument("--frames", type=int, default=8)
-    parser.add_argument("--check", action="store_true", help="compare CUDA's bytes with those of bhr_render_image")
+    parser.add_argument("--check", nargs="?", const="cuda", choices=("cuda", "torch"),
+                        help="compare CUDA's bytes, or those of a tensor, with those of bhr_render_image")
     parser.add_argument("--sizes", action="store_true", help="print how the structs lie in memory")
     arguments = parser.parse_args()
     if arguments.sizes:
@@ -336,12 +364,13 @@ def main():
             print("%s %d: %s" % (struct.__name__, ctypes.sizeof(struct), ", ".join(places)))
         return 0
     try:
+        torch = torch_with_cuda() if arguments.check != "cuda" else None
         cuda = Cuda(arguments.device)
         bhr = Bhr(arguments.library, cuda.uuid)
         work = check if arguments.check else show
-        equal = work(bhr, cuda, *arguments.size, arguments.frames)
+        done = work(bhr, cuda, torch, *arguments.size, arguments.frames)
         bhr.close()
-        return 1 if equal is False else 0
+        return 0 if done else 1
     except Failure as failure:
         print("cuda_frames: %s" % failure, file=sys.stderr)
         return 1

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""Puts into the wheel what pyproject.toml cannot name: the built library and the declarations of include/bhr.h.
+"""Puts into the wheel what pyproject.toml cannot name: the built library and the declarations of bhr.h and of
+bhr_interop.h.
 
 The environment variable BHR_LIBRARY names a built library; without it, cargo builds the release library. hatchling was
 chosen over maturin because it takes a library that is already there, built by whatever cross-compiler, and because
@@ -24,7 +25,7 @@ LIBRARY_NAMES = {"darwin": "libbhr.dylib", "win32": "bhr.dll"}
 
 
 def declarations(header: str) -> str:
-    """The declarations of bhr.h in the C that cffi understands: without comments and preprocessor."""
+    """The declarations of headers in the C that cffi understands: without comments and preprocessor."""
     text = re.sub(r"/\*.*?\*/|//[^\n]*", " ", header, flags=re.DOTALL).replace("\\\n", " ")
     text = re.sub(r"^#ifdef __cplusplus$.*?^#endif$", "", text, flags=re.DOTALL | re.MULTILINE)
     constants, attributes = [], []
@@ -32,7 +33,7 @@ def declarations(header: str) -> str:
         number = re.fullmatch(r"(?:(\d+)u?|\(0 - (\d+)\))", value.strip())
         if number:
             constants.append(f"#define {name} {number[1] or '-' + number[2]}")
-        elif name.startswith("BHR_") and name != "BHR_H":
+        elif name.startswith("BHR_") and not name.endswith("_H"):
             # A macro that stands before or behind functions, for the compiler's warnings.
             attributes.append(name.split("(")[0])
     text = re.sub(r"^[ \t]*#.*$", "", text, flags=re.MULTILINE)
@@ -61,13 +62,14 @@ class CustomBuildHook(BuildHookInterface):  # type: ignore[type-arg]
         if version == "editable":
             raise RuntimeError("an editable install would lack the library: install the wheel")
         root = Path(self.root).parent
-        if not (root / "include" / "bhr.h").is_file():
+        headers = [root / "include" / name for name in ("bhr.h", "bhr_interop.h")]
+        if not all(header.is_file() for header in headers):
             raise FileNotFoundError("the wheel is built within bhr's repository, because it holds the Rust library")
         self.scratch = tempfile.TemporaryDirectory(prefix="bhr-wheel-")
         module = Path(self.scratch.name) / "_ffi.py"
         ffi = cffi.FFI()
         ffi.set_source("bhr._ffi", None)
-        ffi.cdef(declarations((root / "include" / "bhr.h").read_text(encoding="utf-8")))
+        ffi.cdef(declarations("\n".join(header.read_text(encoding="utf-8") for header in headers)))
         ffi.emit_python_code(str(module))
         platform = re.sub(r"[^A-Za-z0-9]", "_", sysconfig.get_platform())
         build_data["pure_python"] = False

@@ -11,6 +11,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 HEADER = (ROOT / "include" / "bhr.h").read_text(encoding="utf-8")
+INTEROP_HEADER = (ROOT / "include" / "bhr_interop.h").read_text(encoding="utf-8")
 
 
 def all_tests():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The package says what bhr.h says: every constant with its value, every struct with its fields and defaults, every
-function."""
+"""The package says what bhr.h and bhr_interop.h say: every constant with its value, every struct with its fields and
+defaults, every function."""
 
 import dataclasses
 import enum
@@ -10,11 +10,13 @@ from pathlib import Path
 import bhr
 import numpy as np
 import pytest
+from bhr import interop
 from bhr._ffi import ffi
 from bhr._library import lib
-from conftest import HEADER
+from conftest import HEADER, INTEROP_HEADER
 
 CODE = re.sub(r"/\*.*?\*/", " ", HEADER, flags=re.DOTALL)
+INTEROP_CODE = re.sub(r"/\*.*?\*/", " ", INTEROP_HEADER, flags=re.DOTALL)
 
 #: The prefix of each enumeration's constants.
 ENUMS = {
@@ -88,8 +90,19 @@ STRUCTS = [
 ]
 
 
-def constants():
-    found = re.findall(r"^#define (BHR_\w+) +(?:(\d+)u?|\(0 - (\d+)\)) *$", CODE, re.MULTILINE)
+#: A VkDevice of the host's is for hosts in C.
+INTEROP_LEFT_OUT = {
+    "bhr_vulkan_requirements",
+    "bhr_context_create_vulkan",
+    "bhr_target_wrap_vulkan",
+    "bhr_target_vulkan",
+    "bhr_semaphore_wrap_vulkan",
+    "bhr_semaphore_vulkan",
+}
+
+
+def constants(code=CODE):
+    found = re.findall(r"^#define (BHR_\w+) +(?:(\d+)u?|\(0 - (\d+)\)) *$", code, re.MULTILINE)
     return {name: int(value) if value else -int(negative) for name, value, negative in found}
 
 
@@ -109,11 +122,26 @@ def test_every_constant_has_a_member():
     assert {name: value for name, value in header.items() if not ELSEWHERE.fullmatch(name)} == members
 
 
-@pytest.mark.parametrize("struct", STRUCTS, ids=lambda struct: struct.__name__)
+def test_every_constant_of_the_interop_has_a_member():
+    prefixes = {
+        "BHR_HANDLE_": interop.HandleType,
+        "BHR_TARGET_": interop.TargetKind,
+        "BHR_SEMAPHORE_": interop.SemaphoreKind,
+    }
+    members = {}
+    for prefix, kind in prefixes.items():
+        members.update({prefix + name: int(member) for name, member in kind.__members__.items()})
+    header = constants(INTEROP_CODE)
+    assert header.pop("BHR_TARGET_COPY") == 256  # of images on a VkDevice of the host's
+    assert header == members
+
+
+@pytest.mark.parametrize("struct", [*STRUCTS, interop.Info, interop.TargetInfo], ids=lambda struct: struct.__name__)
 def test_every_field_is_there(struct):
-    fields = {name for name, _ in ffi.typeof(struct.c_name).fields} - {"struct_size", "reserved", "reserved2"}
+    left_out = {"struct_size", "reserved", "reserved2", "luid_valid"}
+    fields = {name for name, _ in ffi.typeof(struct.c_name).fields} - left_out
     assert fields == {field.name for field in dataclasses.fields(struct)}
-    for name, kind in struct.c_enums.items():
+    for name, kind in getattr(struct, "c_enums", {}).items():
         assert name in fields and issubclass(kind, enum.Enum)
 
 
@@ -148,13 +176,16 @@ def test_dtypes_have_the_layout_of_c(dtype, name):
         assert (offset, kind.itemsize) == (c.offset, ffi.sizeof(c.type))
 
 
-def test_every_function_is_called():
-    functions = set(re.findall(r"\b(bhr_\w+)\(", CODE))
-    assert len(functions) > 60
+@pytest.mark.parametrize(
+    ("code", "least", "left_out"), [(CODE, 60, LEFT_OUT), (INTEROP_CODE, 20, INTEROP_LEFT_OUT)], ids=["bhr", "interop"]
+)
+def test_every_function_is_called(code, least, left_out):
+    functions = set(re.findall(r"\b(bhr_\w+)\(", code))
+    assert len(functions) > least
     package = Path(bhr.__file__).parent
     source = "".join(file.read_text() for file in package.glob("*.py") if file.name != "_ffi.py")
     called = {name for name in functions if re.search(rf"lib\.{name}\b", source)}
-    assert functions - called == LEFT_OUT & functions
+    assert functions - called == left_out & functions
     for name in functions:
         assert getattr(lib, name)
 
@@ -167,3 +198,4 @@ def test_version():
 
 def test_names_that_are_exported_are_there():
     assert {name for name in vars(bhr) if not name.startswith("_")} == set(bhr.__all__)
+    assert all(hasattr(interop, name) for name in interop.__all__)

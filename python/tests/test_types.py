@@ -16,6 +16,18 @@ import asyncio
 import numpy as np
 import numpy.typing as npt
 import bhr
+from bhr import interop
+
+def share(ctx: bhr.Context) -> tuple[int, int]:
+    can = interop.info(ctx)
+    buffer = bool(can.export_buffers & interop.HandleType.OPAQUE_FD)
+    with interop.Target(ctx, 4, 3, handle_type=interop.HandleType.OPAQUE_FD) as target, interop.Semaphore(ctx) as line:
+        job: interop.TargetJob = interop.render(ctx, target, signals=[(line, 1)], background=not buffer)
+        same: interop.Target = job.result()
+        both = interop.render_outputs(ctx, [(bhr.OutputKind.LIGHT, target), ((bhr.OutputKind.DISK, 1), same)])
+        print(len(both.result()), line.wait(1, timeout=2.0))
+        interop.set_sky(ctx, None, bhr.Projection.CUBE)
+        return target.export(), target.info.replace(offset=3).offset
 
 def show(ctx: bhr.Context, out: npt.NDArray[np.float32]) -> bhr.Frame:
     ctx.camera = ctx.camera.replace(fov_y=0.5)
@@ -52,6 +64,7 @@ ctx.camera.fov_y = 1.0
 bhr.Camera(motion=bhr.Projection.CUBE)
 ctx.render(32, 18).save(3)
 ctx.stats.rays.foo
+bhr.interop.render(ctx, bhr.Frame.empty(4, 3))
 """
 
 
@@ -69,7 +82,7 @@ def test_the_package_is_typed(tmp_path):
 def test_hosts_are_typed(tmp_path):
     (tmp_path / "host.py").write_text(HOST)
     readme = re.findall(r"```python\n(.*?)```", (ROOT / "python" / "README.md").read_text(), re.DOTALL)
-    assert len(readme) == 4
+    assert len(readme) == 5
     text = "import numpy as np\n" + "".join(readme)
     (tmp_path / "readme.py").write_text(text.replace("def frames():", "def frames() -> list[bhr.Frame]:"))
     status, said = mypy("host.py", "readme.py", folder=tmp_path)

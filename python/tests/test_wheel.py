@@ -44,7 +44,7 @@ def test_it_holds_what_it_needs_and_no_more():
 def test_the_programs_of_the_readme(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", WHEEL.metadata.get_payload(), re.DOTALL)
-    assert len(blocks) == 4 and "ctx.render(1280, 720)" in blocks[0]
+    assert len(blocks) == 5 and "ctx.render(1280, 720)" in blocks[0]
     exec(blocks[0].replace("1280, 720", "96, 54"), {})
     assert bhr.load("hole.png").width == 96
     with bhr.Context(bhr.Backend.CPU) as ctx:

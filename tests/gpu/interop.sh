@@ -15,14 +15,14 @@ bin=${BHR_INTEROP_PROGRAMS:-}
 if [ -z "$bin" ]; then
     bin=$(mktemp -d)
     trap 'rm -rf -- "$bin"' EXIT
-    for program in shared outputs sky host bad killed timing; do
+    for program in shared outputs images sky host bad killed timing; do
         cc -std=c99 -O2 -Wall -Wextra -D_GNU_SOURCE -pthread -I "$root/include" "$root/tests/interop/$program.c" \
-            "$root"/tests/{interop/vk,c/check}.c -o "$bin/$program" "$library" -lvulkan -lm
+            "$root"/tests/{interop/vk,interop/share,c/check}.c -o "$bin/$program" "$library" -lvulkan -lm
     done
 fi
 export LD_LIBRARY_PATH=${library%/*}${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
 failed=0
-for program in shared outputs sky host bad killed "timing $frames"; do
+for program in shared outputs images sky host bad killed "timing $frames"; do
     read -r name argument <<<"$program"
     echo "== $name"
     timeout 500 "$bin/$name" vulkan ${argument:+"$argument"} || failed=1

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* host.c -- contexts on the host's own VkDevice: what must be on, frames in the host's images with its timeline
- * semaphores both ways, one queue that another thread of the host uses all the time, images that are filled by a copy,
- * releases, and every order of ends. Arguments: vulkan [validate]. */
+/* host.c -- contexts on the host's own VkDevice: what must be on, frames in the host's images with its timelines and
+ * its binary semaphores both ways, one queue that another thread of the host uses all the time, images that are filled
+ * by a copy, releases, and every order of ends. Arguments: vulkan [validate]. */
 #include "../c/check.h"
 #include "vk.h"
 
@@ -163,6 +163,40 @@ static void frames_into(BhrContext *context, BhrContext *own, size_t at, uint64_
     vkDestroySemaphore(host.device, timeline, NULL);
 }
 
+/* The host's binary semaphores: one says that bhr has rendered, the other that the host has read. */
+static void binary_turns(BhrContext *context, BhrContext *own, size_t at) {
+    VkPicture     picture;
+    BhrTarget    *target = wrap(context, at, &picture);
+    VkSemaphore   made[2];
+    BhrSemaphore *wrapped[2];
+    for (int i = 0; i < 2; i++) {
+        made[i] = vk_semaphore(&host, VK_SEMAPHORE_TYPE_BINARY, NULL);
+        CHECK_OK(bhr_semaphore_wrap_vulkan(context, BHR_SEMAPHORE_BINARY, (uint64_t)made[i], &wrapped[i]));
+    }
+    for (unsigned frame = 0; frame < 6; frame++) {
+        BhrSemaphoreValue signal = {wrapped[0], 0}, wait = {wrapped[1], 0};
+        BhrSync           sync = {.struct_size = sizeof sync, .wait_count = frame > 0, .signal_count = 1};
+        VkTurn            turn = {made[0], made[1], 0, 0, lock, unlock};
+        sync.waits = &wait, sync.signals = &signal;
+        CHECK_OK(bhr_set_time(context, 3.0 * frame));
+        CHECK_OK(bhr_render_target(context, target, &sync, NULL));
+        vk_read(&host, &picture, VK_QUEUE_FAMILY_IGNORED, images[at].bytes, 0, &turn, seen);
+        expect(own, images[at].format, 3.0 * frame);
+        double apart = vk_apart(images[at].format, seen, expected, WIDTH * HEIGHT * images[at].bytes);
+        CHECK(apart <= vk_most_apart(own, BHR_TARGET_IMAGE, images[at].format),
+              "binary semaphores, image %zu, frame %u differs by up to %g", at, frame, apart);
+    }
+    bhr_target_destroy(target);
+    expect(context, images[at].format, 0);
+    expect(context, images[at].format, 0);
+    for (int i = 0; i < 2; i++) {
+        bhr_semaphore_destroy(wrapped[i]);
+        vkDestroySemaphore(host.device, made[i], NULL);
+    }
+    vk_drop(&host, &picture);
+    released = 0;
+}
+
 /* Target, semaphore, job and context end in every order, in flight. */
 static void orders(void) {
     static const char *const list[] = {"tsjc", "tscj", "tjsc", "tjcs", "tcsj", "tcjs", "stjc", "stcj", "sjtc", "sjct",
@@ -230,6 +264,8 @@ int main(int argc, char **argv) {
     CHECK_OK(bhr_set_quality(context, &quality));
     for (size_t at = 0; at < COUNT_OF(images); at++)
         frames_into(context, own, at, at ? 9 : FRAMES);
+    binary_turns(context, own, 1);
+    binary_turns(context, own, 3);
     bhr_context_destroy(context);
     CHECK(released == 1, "the device was released %d times", released);
     lock(NULL);

@@ -3,8 +3,7 @@
  * those of bhr_render_outputs, in buffers, buffers with strides and images, alone and all together, however the frame's
  * rays are found; with semaphores and as jobs; and what is refused, which changes nothing.
  * Arguments: vulkan [validate]. */
-#include "../c/check.h"
-#include "vk.h"
+#include "share.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,8 +15,6 @@
 #define MOST (WIDTH * HEIGHT * 16u)
 #define BAD BHR_ERROR_INVALID_ARGUMENT
 
-static BhrContext   *context;
-static Vk            host;
 static unsigned char expected[BHR_MAX_OUTPUTS][MOST];
 static unsigned char seen[4 * MOST];
 static unsigned char memory[BHR_MAX_OUTPUTS][MOST + 16];
@@ -38,26 +35,9 @@ static const struct {
 };
 
 static BhrTarget *target_of(BhrFormat format, BhrTargetKind kind, uint64_t stride, uint32_t flags) {
-    BhrTargetOptions options;
-    BhrTarget       *target = NULL;
-    CHECK_OK(bhr_target_options_init(&options, sizeof options));
-    options.kind = kind;
-    options.format = format;
-    options.width = WIDTH;
-    options.height = HEIGHT;
-    options.handle_type = BHR_HANDLE_OPAQUE_FD;
-    options.row_stride = stride;
+    BhrTargetOptions options = share_options(format, kind, WIDTH, HEIGHT, stride);
     options.flags = flags;
-    CHECK_OK(bhr_target_create(context, &options, &target));
-    return target;
-}
-
-static VkPicture imported(BhrTarget *target, uint64_t bytes) {
-    BhrTargetInfo info = {.struct_size = sizeof info};
-    BhrHandle     handle;
-    CHECK_OK(bhr_target_info(target, &info));
-    CHECK_OK(bhr_target_export(target, &handle));
-    return vk_import(&host, &info, handle.fd, bytes);
+    return share_make(&options);
 }
 
 static BhrOutput output_of(size_t at, BhrTarget *target) {
@@ -72,12 +52,7 @@ static BhrOutput output_of(size_t at, BhrTarget *target) {
 /* The same into the host's memory. */
 static BhrOutput imaged(size_t at, BhrImage *image, void *pixels, uint32_t flags) {
     BhrOutput output = output_of(at, NULL);
-    CHECK_OK(bhr_image_init(image, sizeof *image));
-    image->format = kinds[at].format;
-    image->width = WIDTH;
-    image->height = HEIGHT;
-    image->pixels = pixels;
-    image->byte_size = MOST;
+    *image = image_of(kinds[at].format, WIDTH, HEIGHT, pixels, MOST);
     image->flags = kinds[at].kind == BHR_OUTPUT_LIGHT ? flags : 0;
     output.image = image;
     return output;
@@ -125,7 +100,7 @@ static void compare(uint32_t chosen, Way way, uint32_t flags, int async, const c
         strides[at] = stride;
         targets[at] = target_of(kinds[at].format, image ? BHR_TARGET_IMAGE : BHR_TARGET_BUFFER,
                                 way == STRIDES ? stride : 0, kinds[at].kind == BHR_OUTPUT_LIGHT ? flags : 0);
-        pictures[at] = imported(targets[at], stride * (HEIGHT - 1) + row);
+        pictures[at] = share_import(targets[at], stride * (HEIGHT - 1) + row);
         outputs[count++] = output_of(at, targets[at]);
     }
     BhrSemaphoreValue signal = {done, 1};
@@ -183,17 +158,6 @@ static void set_frame(int large) {
     CHECK_OK(bhr_set_region(context, large ? &region : NULL));
 }
 
-static void set_quality(uint32_t samples, double bloom) {
-    BhrQuality quality = {.struct_size = sizeof quality};
-    BhrFilm    film = {.struct_size = sizeof film};
-    CHECK_OK(bhr_get_quality(context, &quality));
-    CHECK_OK(bhr_get_film(context, &film));
-    quality.samples_per_pixel = samples;
-    film.bloom = bloom;
-    CHECK_OK(bhr_set_quality(context, &quality));
-    CHECK_OK(bhr_set_film(context, &film));
-}
-
 static void set_disk(double opacity, double turbulence) {
     BhrDisk disk = {.struct_size = sizeof disk};
     int32_t present;
@@ -222,15 +186,15 @@ static void scenes(void) {
     set_disk(1, 0);
     for (int large = 0; large < 2; large++) {
         set_frame(large);
-        set_quality(5, 0);
+        share_set_quality(5, 0);
         compare(THREE, BUFFERS, 0, 0, "5 samples");
     }
     set_frame(0);
-    set_quality(1, 0.4);
+    share_set_quality(1, 0.4);
     compare(THREE, IMAGES, 0, 0, "glare");
-    set_quality(3, 0.4);
+    share_set_quality(3, 0.4);
     compare(ALL, MIXED, 0, 1, "3 samples and glare");
-    set_quality(1, 0);
+    share_set_quality(1, 0);
     compare(LIGHT_ONLY, IMAGES, 0, 0, "the picture alone");
     BhrVolume volume;
     CHECK_OK(bhr_volume_init(&volume, sizeof volume));
@@ -257,27 +221,21 @@ static void mixed(void) {
     CHECK_OK(bhr_set_spin(context, 0));
     set_frame(0);
     in_memory = 0x35;
-    set_quality(3, 0.4);
+    share_set_quality(3, 0.4);
     compare(ALL, MIXED, 0, 1, "in memory, 3 samples and glare");
-    set_quality(5, 0);
+    share_set_quality(5, 0);
     in_memory = LIGHT_ONLY;
     compare(THREE, BUFFERS, 0, 0, "in memory, 5 samples");
-    set_quality(1, 0);
+    share_set_quality(1, 0);
     in_memory = 0;
 }
 
 /* The host's things are in the picture, and in no other output. */
 static void occluded(void) {
     static float distances[WIDTH * HEIGHT];
-    BhrImage     image;
+    BhrImage     image = image_of(BHR_FORMAT_R32F, WIDTH, HEIGHT, distances, sizeof distances);
     for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
         distances[i] = i % WIDTH < WIDTH / 2 ? 24.0f : INFINITY;
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.format = BHR_FORMAT_R32F;
-    image.width = WIDTH;
-    image.height = HEIGHT;
-    image.pixels = distances;
-    image.byte_size = sizeof distances;
     CHECK_OK(bhr_set_occluder(context, &image));
     compare(THREE, BUFFERS, BHR_IMAGE_TRANSPARENT, 0, "an occluder");
     compare(RAYS_ONLY, IMAGES, 0, 0, "an occluder");
@@ -300,36 +258,19 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
     uint64_t       row = WIDTH * 4, step = stride ? stride : row;
     uint64_t       bytes = step * (HEIGHT - 1) + row;
     BhrTarget     *target = NULL, *light = target_of(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0, BHR_IMAGE_TRANSPARENT);
-    VkPicture      picture, seen_light = imported(light, 0);
-    BhrImage       image, given;
+    VkPicture      picture, seen_light = share_import(light, 0);
+    BhrImage       image = image_of(BHR_FORMAT_RGBA32F, WIDTH, HEIGHT, in_memory, sizeof in_memory);
+    BhrImage       given = image_of(BHR_FORMAT_R32F, WIDTH, HEIGHT, distances, sizeof distances);
     unsigned char *expected_light = expected[1];
+    image.flags = BHR_IMAGE_TRANSPARENT;
     if (hosts_memory) {
-        BhrTargetOptions options;
-        BhrHandle        handle = {BHR_HANDLE_OPAQUE_FD, -1, NULL};
-        CHECK_OK(bhr_target_options_init(&options, sizeof options));
-        options.kind = kind;
-        options.format = BHR_FORMAT_R32F;
-        options.width = WIDTH;
-        options.height = HEIGHT;
-        options.row_stride = stride;
-        picture = kind == BHR_TARGET_IMAGE ? vk_make_image(&host, VK_FORMAT_R32_SFLOAT, WIDTH, HEIGHT,
-                                                           VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                                           &handle.fd)
-                                           : vk_make_buffer(&host, bytes, &handle.fd);
-        CHECK_OK(bhr_target_import(context, &options, &picture.info, &handle, &target));
+        BhrTargetOptions options = share_options(BHR_FORMAT_R32F, kind, WIDTH, HEIGHT, stride);
+        picture = share_host_memory(&options, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, bytes,
+                                    &target);
     } else {
         target = target_of(BHR_FORMAT_R32F, kind, stride, 0);
-        picture = imported(target, bytes);
+        picture = share_import(target, bytes);
     }
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.width = WIDTH;
-    image.height = HEIGHT;
-    image.flags = BHR_IMAGE_TRANSPARENT;
-    given = image;
-    given.format = BHR_FORMAT_R32F;
-    given.flags = 0;
-    given.pixels = distances;
-    given.byte_size = sizeof distances;
     for (int frame = 0; frame < 4; frame++) {
         for (uint32_t y = 0; y < HEIGHT; y++)
             for (uint32_t x = 0; x < WIDTH; x++)
@@ -359,8 +300,7 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
         fill(&picture, distances, step);
         CHECK_OK(frame % 2 ? bhr_render_outputs_shared_async(context, &output, sizeof output, 1, NULL, &job)
                            : bhr_render_outputs_shared(context, &output, sizeof output, 1, NULL, &job));
-        CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
-        bhr_job_destroy(job);
+        share_finish(job);
         vk_read(&host, &seen_light, VK_QUEUE_FAMILY_EXTERNAL, 8, 0, NULL, seen);
         apart = vk_apart(BHR_FORMAT_RGBA16F, seen, expected_light, WIDTH * HEIGHT * 8);
         CHECK(apart <= vk_most_apart(context, BHR_TARGET_IMAGE, BHR_FORMAT_RGBA16F), "into a target: %g apart", apart);
@@ -507,8 +447,7 @@ static void refused(BhrBackend backend) {
     sync.reserved = 0, sync.signal_count = 1, sync.signals = &use;
     REFUSED(BAD, "BINARY", bhr_render_outputs_shared_async(context, &one, sizeof one, 1, &sync, &job));
     CHECK_OK(SHARED(&one, 1));
-    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
-    bhr_job_destroy(job);
+    share_finish(job);
     bhr_semaphore_destroy(binary);
     bhr_target_destroy(depth);
     bhr_target_destroy(sky);
@@ -516,17 +455,8 @@ static void refused(BhrBackend backend) {
 }
 
 int main(int argc, char **argv) {
-    BhrBackend        backend = check_begin(argc, argv);
-    int               validate = argc > 2 && strcmp(argv[2], "validate") == 0;
-    BhrContextOptions made = check_options(backend);
-    if (validate)
-        made.flags |= BHR_CONTEXT_VALIDATION, made.log_fn = vk_log;
-    context = check_context_with(&made);
-    BhrInteropInfo info = {.struct_size = sizeof info};
-    CHECK_OK(bhr_interop_info(context, &info));
-    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
-    vk_open_device(&host);
-    set_quality(1, 0);
+    BhrBackend backend = share_begin(argc, argv);
+    share_set_quality(1, 0);
     mixed();
     scenes();
     occluded();
@@ -538,8 +468,5 @@ int main(int argc, char **argv) {
     occluder_refused(backend);
     many();
     refused(backend);
-    bhr_context_destroy(context);
-    vk_close(&host);
-    CHECK(vk_complaints == 0, "the validation layers had %d complaints", vk_complaints);
-    return check_end();
+    return share_end();
 }

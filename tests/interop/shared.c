@@ -3,8 +3,7 @@
  * that device made. The bytes are those of bhr_render_image, in every format, with regions, strides, several samples,
  * glare and many frames. No semaphores between devices, which lavapipe does not have; those are tested where they are.
  * Arguments: vulkan [validate]. */
-#include "../c/check.h"
-#include "vk.h"
+#include "share.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,41 +16,14 @@
 #define MOST_BYTES (WIDTH * HEIGHT * 16u)
 
 static unsigned char expected[MOST_BYTES], seen[4 * MOST_BYTES];
-static BhrContext   *context;
-static Vk            host;
-
-static const struct {
-    BhrFormat   format;
-    uint32_t    bytes;
-    VkFormat    vk;
-    const char *name;
-} formats[] = {{BHR_FORMAT_RGBA8_SRGB, 4, VK_FORMAT_R8G8B8A8_UNORM, "RGBA8"},
-               {BHR_FORMAT_BGRA8_SRGB, 4, VK_FORMAT_B8G8R8A8_UNORM, "BGRA8"},
-               {BHR_FORMAT_RGBA16F, 8, VK_FORMAT_R16G16B16A16_SFLOAT, "RGBA16F"},
-               {BHR_FORMAT_RGBA32F, 16, VK_FORMAT_R32G32B32A32_SFLOAT, "RGBA32F"},
-               {BHR_FORMAT_R32F, 4, VK_FORMAT_R32_SFLOAT, "R32F"}};
 
 static BhrTargetOptions options_of(size_t at, BhrTargetKind kind, uint64_t stride) {
-    BhrTargetOptions options;
-    CHECK_OK(bhr_target_options_init(&options, sizeof options));
-    options.kind = kind;
-    options.format = formats[at].format;
-    options.width = WIDTH;
-    options.height = HEIGHT;
-    options.handle_type = BHR_HANDLE_OPAQUE_FD;
-    options.row_stride = stride;
-    return options;
+    return share_options(formats[at].format, kind, WIDTH, HEIGHT, stride);
 }
 
 /* The picture that bhr_render_image makes of the present scene. */
 static void expect(size_t at, uint32_t flags) {
-    BhrImage image;
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.format = formats[at].format;
-    image.width = WIDTH;
-    image.height = HEIGHT;
-    image.pixels = expected;
-    image.byte_size = sizeof expected;
+    BhrImage image = image_of(formats[at].format, WIDTH, HEIGHT, expected, sizeof expected);
     image.flags = flags;
     memset(expected, 0xee, sizeof expected);
     CHECK_OK(bhr_render_image(context, &image));
@@ -85,25 +57,16 @@ static void compare(BhrTargetKind kind, size_t at, uint64_t stride, int between,
     CHECK(touched == 0, "%s, %s: %u bytes between rows were written", formats[at].name, what, touched);
 }
 
-static VkPicture imported(BhrTarget *target, uint64_t bytes) {
-    BhrTargetInfo info = {.struct_size = sizeof info};
-    BhrHandle     handle;
-    CHECK_OK(bhr_target_info(target, &info));
-    CHECK_OK(bhr_target_export(target, &handle));
-    CHECK(handle.type == BHR_HANDLE_OPAQUE_FD && handle.fd >= 0, "type %u, fd %d", handle.type, handle.fd);
-    return vk_import(&host, &info, handle.fd, bytes);
-}
-
 /* bhr's memory, imported by the host. */
 static void exported(size_t at, BhrTargetKind kind, uint64_t stride, uint32_t flags, const char *what) {
     uint64_t         row = (uint64_t)WIDTH * formats[at].bytes, step = stride ? stride : row;
     uint64_t         bytes = step * (HEIGHT - 1) + row;
     BhrTargetOptions options = options_of(at, kind, stride);
-    BhrTarget       *target;
     options.flags = flags;
-    if (!CHECK_OK(bhr_target_create(context, &options, &target)))
+    BhrTarget *target = share_make(&options);
+    if (!target)
         return;
-    VkPicture picture = imported(target, bytes);
+    VkPicture picture = share_import(target, bytes);
     expect(at, flags);
     frame_into(target);
     vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
@@ -121,14 +84,11 @@ static void imported_by_bhr(size_t at, BhrTargetKind kind, uint64_t stride) {
     uint64_t         row = (uint64_t)WIDTH * formats[at].bytes, step = stride ? stride : row;
     uint64_t         bytes = step * (HEIGHT - 1) + row;
     BhrTargetOptions options = options_of(at, kind, stride);
-    BhrHandle        handle = {BHR_HANDLE_OPAQUE_FD, -1, NULL};
     BhrTarget       *target;
     VkImageUsageFlags usage =
         formats[at].format == BHR_FORMAT_BGRA8_SRGB ? VK_IMAGE_USAGE_TRANSFER_DST_BIT : VK_IMAGE_USAGE_STORAGE_BIT;
-    VkPicture picture = kind == BHR_TARGET_IMAGE
-                            ? vk_make_image(&host, formats[at].vk, WIDTH, HEIGHT, usage, &handle.fd)
-                            : vk_make_buffer(&host, bytes, &handle.fd);
-    if (CHECK_OK(bhr_target_import(context, &options, &picture.info, &handle, &target))) {
+    VkPicture picture = share_host_memory(&options, usage, bytes, &target);
+    if (target) {
         expect(at, 0);
         frame_into(target);
         vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, formats[at].bytes, bytes, NULL, seen);
@@ -163,12 +123,8 @@ static void host_pixels(size_t at) {
                     bhr_target_import(context, &options, &memory, &handle, &target));
     }
     /* Freed when no frame uses them. */
-    CHECK_OK(bhr_render_image(context, &(BhrImage){.struct_size = sizeof(BhrImage),
-                                                   .format = BHR_FORMAT_RGBA8_SRGB,
-                                                   .width = 8,
-                                                   .height = 8,
-                                                   .pixels = seen,
-                                                   .byte_size = sizeof seen}));
+    BhrImage small = image_of(BHR_FORMAT_RGBA8_SRGB, 8, 8, seen, sizeof seen);
+    CHECK_OK(bhr_render_image(context, &small));
     free(pixels);
 }
 
@@ -176,12 +132,12 @@ static void host_pixels(size_t at) {
 static void far_rows(void) {
     uint64_t         stride = UINT64_C(4) << 20, bytes = stride * (HEIGHT - 1) + WIDTH * 8;
     BhrTargetOptions options = options_of(2, BHR_TARGET_BUFFER, stride);
-    BhrTarget       *target;
+    BhrTarget       *target = share_make(&options);
     unsigned char   *all = malloc(bytes);
     uint32_t         wrong = 0;
-    if (!CHECK(all != NULL, "no memory") || !CHECK_OK(bhr_target_create(context, &options, &target)))
+    if (!CHECK(all != NULL, "no memory") || !target)
         return;
-    VkPicture picture = imported(target, bytes);
+    VkPicture picture = share_import(target, bytes);
     expect(2, 0);
     frame_into(target);
     vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, bytes, NULL, all);
@@ -193,17 +149,6 @@ static void far_rows(void) {
     free(all);
 }
 
-static void set_quality(uint32_t samples, double bloom) {
-    BhrQuality quality = {.struct_size = sizeof quality};
-    BhrFilm    film = {.struct_size = sizeof film};
-    CHECK_OK(bhr_get_quality(context, &quality));
-    CHECK_OK(bhr_get_film(context, &film));
-    quality.samples_per_pixel = samples;
-    film.bloom = bloom;
-    CHECK_OK(bhr_set_quality(context, &quality));
-    CHECK_OK(bhr_set_film(context, &film));
-}
-
 /* Frames of a scene that changes, into two targets by turns, several on their way at a time. */
 static void many_frames(uint32_t frames) {
     BhrTarget   *targets[2];
@@ -213,8 +158,8 @@ static void many_frames(uint32_t frames) {
     uint64_t     bytes = (uint64_t)WIDTH * HEIGHT * 8;
     CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
     for (int i = 0; i < 2; i++) {
-        CHECK_OK(bhr_target_create(context, &options, &targets[i]));
-        pictures[i] = imported(targets[i], bytes);
+        targets[i] = share_make(&options);
+        pictures[i] = share_import(targets[i], bytes);
     }
     for (uint32_t frame = 1; frame <= frames; frame++) {
         BhrSemaphoreValue signal = {done, frame};
@@ -251,7 +196,7 @@ static void descriptors(void) {
         options.kind = i % 2 ? BHR_TARGET_IMAGE : BHR_TARGET_BUFFER;
         CHECK_OK(bhr_target_create(context, &options, &target));
         CHECK_OK(bhr_target_info(target, &info));
-        VkPicture picture = imported(target, bytes);
+        VkPicture picture = share_import(target, bytes);
         CHECK_OK(bhr_target_export(target, &handle));
         CHECK_OK(bhr_target_import(context, &options, &info, &handle, &again));
         CHECK_OK(bhr_render_target(context, again, NULL, NULL)); /* in flight while all goes */
@@ -267,43 +212,34 @@ static void descriptors(void) {
 }
 
 int main(int argc, char **argv) {
-    BhrBackend backend = check_begin(argc, argv);
-    int        validate = argc > 2 && strcmp(argv[2], "validate") == 0;
-    BhrContextOptions made = check_options(backend);
-    if (validate)
-        made.flags |= BHR_CONTEXT_VALIDATION, made.log_fn = vk_log;
-    context = check_context_with(&made);
-    BhrInteropInfo info = {.struct_size = sizeof info};
-    CHECK_OK(bhr_interop_info(context, &info));
-    CHECK(info.export_buffers & info.import_buffers & BHR_HANDLE_OPAQUE_FD, "export %#x, import %#x",
-          info.export_buffers, info.import_buffers);
+    share_begin(argc, argv);
+    CHECK(can.export_buffers & can.import_buffers & BHR_HANDLE_OPAQUE_FD, "export %#x, import %#x", can.export_buffers,
+          can.import_buffers);
     int32_t index;
-    CHECK_OK(bhr_adapter_find(info.device_uuid, NULL, &index));
+    CHECK_OK(bhr_adapter_find(can.device_uuid, NULL, &index));
     CHECK(index >= 0, "index %d", index);
-    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
-    vk_open_device(&host);
-    set_quality(1, 0);
-    for (size_t at = 0; at < COUNT_OF(formats); at++) {
+    share_set_quality(1, 0);
+    for (size_t at = 0; at < FORMATS; at++) {
         CHECK_OK(bhr_set_view(context, formats[at].format == BHR_FORMAT_R32F ? BHR_VIEW_REDSHIFT : BHR_VIEW_LIGHT));
         exported(at, BHR_TARGET_BUFFER, 0, 0, "buffer");
         exported(at, BHR_TARGET_BUFFER, (uint64_t)WIDTH * formats[at].bytes + 52, 0, "buffer with a stride");
         exported(at, BHR_TARGET_IMAGE, 0, 0, "image");
         imported_by_bhr(at, BHR_TARGET_BUFFER, (uint64_t)WIDTH * formats[at].bytes + 4);
         imported_by_bhr(at, BHR_TARGET_IMAGE, 0);
-        if (info.import_buffers & BHR_HANDLE_HOST_POINTER)
+        if (can.import_buffers & BHR_HANDLE_HOST_POINTER)
             host_pixels(at);
     }
     CHECK_OK(bhr_set_view(context, BHR_VIEW_LIGHT));
     exported(0, BHR_TARGET_IMAGE, 0, BHR_IMAGE_TRANSPARENT, "transparent image");
     for (size_t at = 0; at < 4; at++) {
-        set_quality(5, 0);
+        share_set_quality(5, 0);
         exported(at, BHR_TARGET_BUFFER, 0, 0, "5 samples, buffer");
         exported(at, BHR_TARGET_IMAGE, 0, 0, "5 samples, image");
-        set_quality(1, at == 2 || at == 3 ? 0 : 0.3);
+        share_set_quality(1, at == 2 || at == 3 ? 0 : 0.3);
         exported(at, BHR_TARGET_BUFFER, 0, 0, "glare, buffer");
         exported(at, BHR_TARGET_IMAGE, 0, 0, "glare, image");
     }
-    set_quality(1, 0);
+    share_set_quality(1, 0);
     BhrRegion region = {.struct_size = sizeof region, .full_width = 400, .full_height = 300, .x = 170, .y = 130};
     CHECK_OK(bhr_set_region(context, &region));
     for (size_t at = 0; at < 4; at++) {
@@ -314,8 +250,5 @@ int main(int argc, char **argv) {
     far_rows();
     many_frames(100);
     descriptors();
-    bhr_context_destroy(context);
-    vk_close(&host);
-    CHECK(vk_complaints == 0, "the validation layers had %d complaints", vk_complaints);
-    return check_end();
+    return share_end();
 }

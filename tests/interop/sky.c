@@ -2,8 +2,7 @@
 /* sky.c -- the host's surroundings from a target on the GPU: pictures are those with the same map from host memory,
  * within one step of 255, whatever holds the map and however often it changes; and what is refused. Arguments: vulkan
  * [validate]. */
-#include "../c/check.h"
-#include "vk.h"
+#include "share.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -16,8 +15,6 @@
 #define MAP_HEIGHT 251u
 #define BAD BHR_ERROR_INVALID_ARGUMENT
 
-static BhrContext   *context;
-static Vk            host;
 static unsigned char from_memory[WIDTH * HEIGHT * 4], from_gpu[WIDTH * HEIGHT * 4];
 static float         map[MAP_WIDTH * MAP_HEIGHT * 4];
 static uint16_t      halves[MAP_WIDTH * MAP_HEIGHT * 4];
@@ -49,50 +46,23 @@ static void paint(uint32_t frame) {
 }
 
 static void render(unsigned char *pixels) {
-    BhrImage image;
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.width = WIDTH;
-    image.height = HEIGHT;
-    image.pixels = pixels;
-    image.byte_size = WIDTH * HEIGHT * 4;
+    BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels, WIDTH * HEIGHT * 4);
     memset(pixels, 0, WIDTH * HEIGHT * 4);
     CHECK_OK(bhr_render_image(context, &image));
-}
-
-static BhrTargetOptions options_of(BhrFormat format, BhrTargetKind kind, uint64_t stride) {
-    BhrTargetOptions options;
-    CHECK_OK(bhr_target_options_init(&options, sizeof options));
-    options.kind = kind;
-    options.format = format;
-    options.width = MAP_WIDTH;
-    options.height = MAP_HEIGHT;
-    options.handle_type = BHR_HANDLE_OPAQUE_FD;
-    options.row_stride = stride;
-    return options;
 }
 
 static void compare(BhrFormat format, BhrTargetKind kind, uint64_t gap) {
     uint32_t         bytes = format == BHR_FORMAT_RGBA16F ? 8 : 16;
     uint64_t         row = (uint64_t)MAP_WIDTH * bytes, stride = row + gap, all = stride * (MAP_HEIGHT - 1) + row;
-    BhrTargetOptions options = options_of(format, kind, gap ? stride : 0);
-    BhrTargetInfo    info = {.struct_size = sizeof info};
-    BhrHandle        handle;
-    BhrTarget       *target;
-    BhrImage         image;
-    if (!CHECK_OK(bhr_target_create(context, &options, &target)))
+    BhrTargetOptions options = share_options(format, kind, MAP_WIDTH, MAP_HEIGHT, gap ? stride : 0);
+    BhrTarget       *target = share_make(&options);
+    if (!target)
         return;
-    CHECK_OK(bhr_target_info(target, &info));
-    CHECK_OK(bhr_target_export(target, &handle));
-    VkPicture picture = vk_import(&host, &info, handle.fd, all);
+    VkPicture picture = share_import(target, all);
     for (uint32_t frame = 0; frame < 3; frame++) {
         const unsigned char *texels = format == BHR_FORMAT_RGBA16F ? (unsigned char *)halves : (unsigned char *)map;
         paint(frame);
-        CHECK_OK(bhr_image_init(&image, sizeof image));
-        image.format = format;
-        image.width = MAP_WIDTH;
-        image.height = MAP_HEIGHT;
-        image.pixels = (void *)(uintptr_t)texels;
-        image.byte_size = MAP_HEIGHT * row;
+        BhrImage image = image_of(format, MAP_WIDTH, MAP_HEIGHT, (void *)(uintptr_t)texels, MAP_HEIGHT * row);
         CHECK_OK(bhr_set_sky_map(context, &image));
         render(from_memory);
         for (uint32_t y = 0; y < MAP_HEIGHT; y++)
@@ -116,8 +86,7 @@ static void compare(BhrFormat format, BhrTargetKind kind, uint64_t gap) {
     CHECK_OK(bhr_target_create(context, &other, &light));
     CHECK_OK(bhr_render_target(context, light, NULL, NULL)); /* in flight while the sky goes */
     bhr_target_destroy(target);
-    BhrImage small = {.struct_size = sizeof small, .format = BHR_FORMAT_RGBA8_SRGB, .width = 8, .height = 8};
-    small.pixels = from_gpu, small.byte_size = sizeof from_gpu;
+    BhrImage small = image_of(BHR_FORMAT_RGBA8_SRGB, 8, 8, from_gpu, sizeof from_gpu);
     CHECK_FAILS(BHR_ERROR_SURFACE_LOST, "sky", bhr_render_image(context, &small));
     CHECK_OK(bhr_set_sky_target(context, NULL));
     render(from_gpu);
@@ -138,11 +107,8 @@ static void light_of(const double v[3], float texel[4]) {
 static void cube(void) {
     enum { SIDE = 96 };
     static float     faces[SIDE * SIDE * 6 * 4], plain[SIDE * SIDE * 8 * 4];
-    BhrTargetOptions options = options_of(BHR_FORMAT_RGBA32F, BHR_TARGET_IMAGE, 0);
-    BhrTargetInfo    info = {.struct_size = sizeof info};
-    BhrHandle        handle;
-    BhrTarget       *target;
-    BhrImage         image;
+    BhrTargetOptions options = share_options(BHR_FORMAT_RGBA32F, BHR_TARGET_IMAGE, 6 * SIDE, SIDE, 0);
+    BhrImage         image = image_of(BHR_FORMAT_RGBA32F, 4 * SIDE, 2 * SIDE, plain, sizeof plain);
     Watch            watch;
     /* Middle, right and up of each face. */
     static const int axes[6][3][3] = {
@@ -165,18 +131,8 @@ static void cube(void) {
             double v[3] = {cos(dec) * cos(ra), cos(dec) * sin(ra), sin(dec)};
             light_of(v, plain + 4 * (y * 4 * SIDE + x));
         }
-    options.width = 6 * SIDE;
-    options.height = SIDE;
-    CHECK_OK(bhr_target_create(context, &options, &target));
-    CHECK_OK(bhr_target_info(target, &info));
-    CHECK_OK(bhr_target_export(target, &handle));
-    VkPicture picture = vk_import(&host, &info, handle.fd, sizeof faces);
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.format = BHR_FORMAT_RGBA32F;
-    image.width = 4 * SIDE;
-    image.height = 2 * SIDE;
-    image.pixels = plain;
-    image.byte_size = sizeof plain;
+    BhrTarget *target = share_make(&options);
+    VkPicture  picture = share_import(target, sizeof faces);
     CHECK_OK(bhr_set_sky_map(context, &image));
     render(from_memory);
     vk_write(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 16, SIDE * 96, sizeof faces, (unsigned char *)faces);
@@ -198,7 +154,7 @@ static void cube(void) {
     vk_drop(&host, &picture);
     watch_begin(&watch, context);
     options.width = 6 * SIDE + 1;
-    CHECK_OK(bhr_target_create(context, &options, &target));
+    target = share_make(&options);
     CHECK_REFUSED(&watch, BAD, "6 times", bhr_set_sky_target_as(context, target, BHR_PROJECTION_CUBE));
     bhr_target_destroy(target);
 }
@@ -218,39 +174,28 @@ static void refused(BhrBackend backend) {
     watch_begin(&watch, context);
     CHECK_FAILS(BAD, "context", bhr_set_sky_target(NULL, NULL));
     for (size_t i = 0; i < COUNT_OF(list); i++) {
-        BhrTargetOptions options = options_of(list[i].format, BHR_TARGET_BUFFER, 0);
-        BhrTarget       *target;
-        options.width = list[i].width;
-        options.height = list[i].height;
-        if (!CHECK_OK(bhr_target_create(context, &options, &target)))
+        BhrTargetOptions options =
+            share_options(list[i].format, BHR_TARGET_BUFFER, list[i].width, list[i].height, 0);
+        BhrTarget *target = share_make(&options);
+        if (!target)
             continue;
         CHECK_REFUSED(&watch, list[i].status, list[i].words, bhr_set_sky_target(context, target));
         bhr_target_destroy(target);
     }
-    BhrTargetOptions options = options_of(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, 0);
-    BhrTarget       *target;
-    CHECK_OK(bhr_target_create(context, &options, &target));
+    BhrTargetOptions options = share_options(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, MAP_WIDTH, MAP_HEIGHT, 0);
+    BhrTarget       *target = share_make(&options);
     CHECK_FAILS(BAD, "another context", bhr_set_sky_target(other, target));
     bhr_target_destroy(target);
     bhr_context_destroy(other);
 }
 
 int main(int argc, char **argv) {
-    BhrBackend        backend = check_begin(argc, argv);
-    int               validate = argc > 2 && strcmp(argv[2], "validate") == 0;
-    BhrContextOptions made = check_options(backend);
-    if (validate)
-        made.flags |= BHR_CONTEXT_VALIDATION, made.log_fn = vk_log;
-    context = check_context_with(&made);
-    BhrInteropInfo info = {.struct_size = sizeof info};
-    BhrSky         sky;
-    BhrCamera      camera = {.struct_size = sizeof camera};
-    CHECK_OK(bhr_interop_info(context, &info));
+    BhrBackend backend = share_begin(argc, argv);
+    BhrSky     sky;
+    BhrCamera  camera = {.struct_size = sizeof camera};
     CHECK_OK(bhr_sky_init(&sky, sizeof sky));
     sky.flags = BHR_SKY_MAP;
     CHECK_OK(bhr_set_sky(context, &sky));
-    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, validate);
-    vk_open_device(&host);
     compare(BHR_FORMAT_RGBA32F, BHR_TARGET_IMAGE, 0);
     compare(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, 40);
     /* From near by, where pixels see much of the sky. */
@@ -262,8 +207,5 @@ int main(int argc, char **argv) {
     compare(BHR_FORMAT_RGBA32F, BHR_TARGET_BUFFER, 0);
     cube();
     refused(backend);
-    bhr_context_destroy(context);
-    vk_close(&host);
-    CHECK(vk_complaints == 0, "the validation layers had %d complaints", vk_complaints);
-    return check_end();
+    return share_end();
 }

@@ -46,15 +46,9 @@ static long resident(void) {
 }
 
 static VkSemaphore imported(Vk *host, BhrSemaphore *semaphore) {
-    BhrHandle   handle;
-    VkSemaphore made = vk_timeline(host);
+    BhrHandle handle;
     CHECK_OK(bhr_semaphore_export(semaphore, &handle));
-    VkImportSemaphoreFdInfoKHR import = {.sType = VK_STRUCTURE_TYPE_IMPORT_SEMAPHORE_FD_INFO_KHR,
-                                         .semaphore = made,
-                                         .handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
-                                         .fd = handle.fd};
-    VK(host->import_semaphore_fd(host->device, &import));
-    return made;
+    return vk_import_semaphore(host, VK_SEMAPHORE_TYPE_TIMELINE, handle.fd);
 }
 
 static void timed(BhrContext *context, double spin) {

@@ -102,6 +102,7 @@ static void make_device(Vk *vk, const void *features) {
     vk->get_memory_fd = (PFN_vkGetMemoryFdKHR)vkGetDeviceProcAddr(vk->device, "vkGetMemoryFdKHR");
     vk->import_semaphore_fd =
         (PFN_vkImportSemaphoreFdKHR)vkGetDeviceProcAddr(vk->device, "vkImportSemaphoreFdKHR");
+    vk->get_semaphore_fd = (PFN_vkGetSemaphoreFdKHR)vkGetDeviceProcAddr(vk->device, "vkGetSemaphoreFdKHR");
 }
 
 static int has_extension(const Vk *vk, const char *name) {
@@ -431,12 +432,33 @@ void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_byte
     vk_drop(vk, &staging);
 }
 
-VkSemaphore vk_timeline(Vk *vk) {
-    VkSemaphoreTypeCreateInfo kind = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
-                                      .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
-    VkSemaphoreCreateInfo     create = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &kind};
-    VkSemaphore               made;
+VkSemaphore vk_semaphore(Vk *vk, VkSemaphoreType kind, int *fd) {
+    VkExportSemaphoreCreateInfo outside = {.sType = VK_STRUCTURE_TYPE_EXPORT_SEMAPHORE_CREATE_INFO,
+                                           .handleTypes = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT};
+    VkSemaphoreTypeCreateInfo   type = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
+                                        .pNext = fd ? &outside : NULL,
+                                        .semaphoreType = kind};
+    VkSemaphoreCreateInfo       create = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
+    VkSemaphore                 made;
     VK(vkCreateSemaphore(vk->device, &create, NULL, &made));
+    if (fd) {
+        VkSemaphoreGetFdInfoKHR get = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_GET_FD_INFO_KHR,
+                                       .semaphore = made,
+                                       .handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT};
+        VK(vk->get_semaphore_fd(vk->device, &get, fd));
+    }
+    return made;
+}
+
+VkSemaphore vk_timeline(Vk *vk) { return vk_semaphore(vk, VK_SEMAPHORE_TYPE_TIMELINE, NULL); }
+
+VkSemaphore vk_import_semaphore(Vk *vk, VkSemaphoreType kind, int fd) {
+    VkSemaphore                made = vk_semaphore(vk, kind, NULL);
+    VkImportSemaphoreFdInfoKHR import = {.sType = VK_STRUCTURE_TYPE_IMPORT_SEMAPHORE_FD_INFO_KHR,
+                                         .semaphore = made,
+                                         .handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
+                                         .fd = fd};
+    VK(vk->import_semaphore_fd(vk->device, &import));
     return made;
 }
 

@@ -26,6 +26,7 @@ typedef struct Vk {
     int                      has_semaphore_fd;
     PFN_vkGetMemoryFdKHR     get_memory_fd;
     PFN_vkImportSemaphoreFdKHR import_semaphore_fd;
+    PFN_vkGetSemaphoreFdKHR get_semaphore_fd;
 } Vk;
 
 #define VK(call) vk_check((call), #call, __FILE__, __LINE__)
@@ -81,7 +82,11 @@ void vk_read(Vk *vk, const VkPicture *picture, uint32_t from, uint32_t pixel_byt
 void vk_write(Vk *vk, const VkPicture *picture, uint32_t to, uint32_t pixel_bytes, uint64_t stride, uint64_t bytes,
               const void *rows);
 
+/* A semaphore of the host's, exported into *fd unless that is NULL. */
+VkSemaphore vk_semaphore(Vk *vk, VkSemaphoreType kind, int *fd);
 VkSemaphore vk_timeline(Vk *vk);
+/* One of bhr's; takes the descriptor over. Only where the Vk has_semaphore_fd. */
+VkSemaphore vk_import_semaphore(Vk *vk, VkSemaphoreType kind, int fd);
 /* How far pixels of one of BHR_FORMAT_* are apart: so many codes of 8 bits, units in the last place of half floats, or
  * millionths of floats (of 0.001, where they are smaller). */
 double vk_apart(BhrFormat format, const void *some, const void *others, size_t bytes);

@@ -13,6 +13,7 @@ and of hot spots in units of M. Angles are in radians, temperatures in kelvin. T
 along +z.
 """
 
+from . import interop
 from ._constants import (
     AdapterFlags,
     Backend,
@@ -120,6 +121,7 @@ __all__ = [
     "VolumeResolution",
     "VolumeShape",
     "adapters",
+    "interop",
     "load",
     "rays",
 ]

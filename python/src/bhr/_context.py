@@ -78,6 +78,8 @@ class Context:
         self._waiter = Waiter()
         self._view, self._time = View.LIGHT, 0.0
         self._region: Region | None = None
+        #: What frames read from targets (interop.py), which must not end while it is set.
+        self._targets: dict[str, Any] = {}
         _contexts.add(self)
 
     # ---- life ----
@@ -264,6 +266,7 @@ class Context:
         right ascension 0 in the middle, and it grows to the left."""
         frame = Frame(picture) if isinstance(picture, np.ndarray) else picture
         self._set(lib.bhr_set_sky_map, ffi.NULL if frame is None else frame.image())
+        self._targets.pop("sky", None)
 
     @property
     def film(self) -> Film:
@@ -353,6 +356,7 @@ class Context:
         frame = distances if isinstance(distances, Frame) or distances is None else Frame(distances)
         flags = lib.BHR_IMAGE_LENSED if lensed else 0
         self._set(lib.bhr_set_occluder, ffi.NULL if frame is None else frame.image(flags=flags))
+        self._targets.pop("occluder", None)
 
     # ---- frames ----
 

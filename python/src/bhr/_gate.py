@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT OR Apache-2.0
-"""The way to a context of the library: it is open until the context is closed, which waits until nobody is inside any
-more, because the library's context must not end under a call."""
+"""The way to a context of the library, and to what belongs to one: it is open until that is closed, which waits until
+nobody is inside any more, because no object of the library may end under a call."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ _LEVELS = {
     lib.BHR_LOG_TRACE: logging.DEBUG - 5,
 }
 
-#: Contexts, with what their log needs, that Python gave up within a callback, where the library ends none.
-_orphans: list[tuple[Any, Any]] = []
+#: The ends of objects, with what those need, that Python gave up within a callback, where the library ends none.
+_orphans: list[tuple[Any, Any, Any]] = []
 
 
 def log_level(logger: logging.Logger) -> int:
@@ -37,28 +37,26 @@ def on_log(user: Any, level: int, message: Any) -> None:
         logger.log(_LEVELS.get(level, logging.ERROR), "%s", ffi.string(message).decode("utf-8", "replace"))
 
 
-class Gate:
-    """Owns a context of the library. `with gate as pointer:` stands around every call on it."""
+class Door:
+    """Owns an object of the library. `with door as pointer:` stands around every call on it."""
 
-    def __init__(self, options: Any, logger: logging.Logger) -> None:
+    def __init__(self, what: str, end: Any) -> None:
+        """`what` it is, for messages, and the function that ends it; `_pointer` and `_kept`, which must live as long as
+        the object does, are for derived classes to set."""
         self._pointer = ffi.NULL
+        self._kept: Any = None
+        self._what, self._end = what, end
         end_orphans()
         #: The threads inside.
         self._inside: list[int] = []
         self._closed = False
         self._changed = threading.Condition(threading.Lock())
-        self._logger = ffi.new_handle(logger)
-        options.log_fn, options.log_user = on_log, self._logger
-        pointer = ffi.new("BhrContext **")
-        check(lib.bhr_context_create(lib.BHR_ABI_VERSION, options, pointer))
-        self._pointer = pointer[0]
-        check(lib.bhr_set_progress(self._pointer, on_progress, ffi.NULL))
 
     def __enter__(self) -> Any:
         refuse_fork()
         with self._changed:
             if self._closed:
-                raise error(Status.INVALID_STATE, "the context is closed")
+                raise error(Status.INVALID_STATE, f"the {self._what} is closed")
             self._inside.append(threading.get_ident())
         return self._pointer
 
@@ -83,23 +81,45 @@ class Gate:
             self._changed.wait_for(lambda: all(thread == this for thread in self._inside))
 
     def destroy(self) -> None:
-        """Ends the context, after refuse and empty, unless another thread has."""
+        """Ends the object, after refuse and empty, unless another thread has."""
         with self._changed:
             pointer, self._pointer = self._pointer, ffi.NULL
-        lib.bhr_context_destroy(pointer)
+        self._end(pointer)
+
+    def close(self) -> None:
+        """Ends the object when nobody is inside any more. Again is no error."""
+        if inside_callback():
+            raise error(Status.INVALID_STATE, f"a {self._what} cannot be closed from inside a callback")
+        if not forked():
+            self.refuse()
+            self.wait_until_empty()
+            self.destroy()
 
     def __del__(self) -> None:
-        # Nobody is inside, and no job is there: they all have the gate.
+        # Nobody is inside, and no job is there: they all have the door.
         if self._pointer == ffi.NULL or forked():
             return
         if inside_callback():
-            _orphans.append((self._pointer, self._logger))
+            _orphans.append((self._end, self._pointer, self._kept))
         else:
             self.destroy()
 
 
+class Gate(Door):
+    """Owns a context."""
+
+    def __init__(self, options: Any, logger: logging.Logger) -> None:
+        super().__init__("context", lib.bhr_context_destroy)
+        self._kept = ffi.new_handle(logger)
+        options.log_fn, options.log_user = on_log, self._kept
+        pointer = ffi.new("BhrContext **")
+        check(lib.bhr_context_create(lib.BHR_ABI_VERSION, options, pointer))
+        self._pointer = pointer[0]
+        check(lib.bhr_set_progress(self._pointer, on_progress, ffi.NULL))
+
+
 def end_orphans() -> None:
-    """Ends the contexts that were given up within a callback."""
+    """Ends the objects that were given up within a callback."""
     while _orphans and not inside_callback():
-        pointer, _logger = _orphans.pop()
-        lib.bhr_context_destroy(pointer)
+        end, pointer, _kept = _orphans.pop()
+        end(pointer)

@@ -10,7 +10,7 @@ import threading
 from collections import deque
 from collections.abc import Generator
 from concurrent.futures import Future
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ._constants import Status
 from ._ffi import ffi
@@ -24,11 +24,13 @@ if TYPE_CHECKING:
 _FOREVER = 2**64 - 1
 
 
-class Job(Future[Frame]):
-    """A frame that is rendered in the background: a concurrent.futures.Future, which a coroutine can await as well.
+_Made = TypeVar("_Made")
 
-    Until it is done, nobody else may use the array that it renders into. Callbacks of add_done_callback run on the
-    thread that waits for the context's jobs, and hold the next ones up.
+
+class AnyJob(Future[_Made]):
+    """Work in the background: a concurrent.futures.Future of what is made, which a coroutine can await as well.
+
+    Callbacks of add_done_callback run on the thread that waits for the context's jobs, and hold the next ones up.
     """
 
     #: The part that is done, 0 .. 1. It is brought up to date when this job is the oldest of its context.
@@ -36,13 +38,13 @@ class Job(Future[Frame]):
     #: Numbers about the frame, once it is there.
     stats: FrameStats | None
 
-    def __init__(self, context: Context, pointer: Any, frame: Frame, progress: Progress | None) -> None:
+    def __init__(self, context: Context, pointer: Any, made: _Made, progress: Progress | None) -> None:
         super().__init__()
         self.fraction = 0.0
         self.stats = None
         self._pointer = pointer
         self._pointer_lock = threading.Lock()
-        self._frame = frame
+        self._made = made
         self._progress = progress
         # A context whose jobs are not done must not end.
         self._context: Context | None = context
@@ -59,7 +61,7 @@ class Job(Future[Frame]):
     def running(self) -> bool:
         return not self.done()
 
-    def __await__(self) -> Generator[Any, None, Frame]:
+    def __await__(self) -> Generator[Any, None, _Made]:
         return asyncio.wrap_future(self).__await__()
 
     def _tell(self, fraction: float) -> bool | None:
@@ -83,7 +85,7 @@ class Job(Future[Frame]):
             raised, call.exception = call.exception, None
             self.set_exception(raised)
         elif status == Status.OK:
-            self.set_result(self._frame)
+            self.set_result(self._made)
         elif status == Status.CANCELLED:
             super().cancel()
             self.set_running_or_notify_cancel()
@@ -98,15 +100,23 @@ class Job(Future[Frame]):
         self._context = None
 
 
+class Job(AnyJob[Frame]):
+    """A frame that is rendered in the background: a concurrent.futures.Future, which a coroutine can await as well.
+
+    Until it is done, nobody else may use the array that it renders into. Callbacks of add_done_callback run on the
+    thread that waits for the context's jobs, and hold the next ones up.
+    """
+
+
 class Waiter:
     """Waits for the jobs of a context, one after the other."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._jobs: deque[Job] = deque()
+        self._jobs: deque[AnyJob[Any]] = deque()
         self._thread: threading.Thread | None = None
 
-    def add(self, job: Job) -> None:
+    def add(self, job: AnyJob[Any]) -> None:
         with self._lock:
             self._jobs.append(job)
             if self._thread is None:

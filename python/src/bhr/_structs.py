@@ -364,7 +364,9 @@ class ProjectedPoint(_Struct):
     def from_c(cls: type[_Self], struct: Any) -> _Self:
         names = [name for name in _names(cls) if name not in ("ray", "apparent")]
         ray = np.frombuffer(ffi.buffer(ffi.addressof(struct.ray)), RAY)[0].copy()
-        return cls(ray=ray, apparent=tuple(struct.apparent), **{name: getattr(struct, name) for name in names})
+        values: dict[str, Any] = {name: getattr(struct, name) for name in names}
+        values.update(ray=ray, apparent=tuple(struct.apparent))
+        return cls(**values)
 
 
 @dataclasses.dataclass(frozen=True)
