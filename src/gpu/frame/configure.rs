@@ -109,9 +109,10 @@ impl GpuTracer {
             Lensing::Kerr => RecordSource::Kerr { delay, pattern, moving, deferred: false },
         };
         let hidden = settings.opaque_u.is_some() && emitters.hides_all();
-        let crossings = if hidden { 1 } else { settings.max_crossings as u32 };
-        let inside = observer.r <= 2.0;
         let plane_u = emitters.plane_u();
+        // Where nothing shines in the plane no crossing is kept.
+        let crossings = if hidden || plane_u.is_none() { 1 } else { settings.max_crossings as u32 };
+        let inside = observer.r <= 2.0;
         RecordSetup {
             source,
             variant: TraceVariant {

@@ -7,7 +7,7 @@ use super::buffers::{CachedUniform, FrameBuffers, Size};
 use super::setup::Setup;
 use super::stages::RecordConsumer;
 use super::tables::Tables;
-use super::tiles::TilePlan;
+use super::tiles::{Budget, TilePlan};
 use super::tracer::GpuTracer;
 use super::uniforms::pass_of;
 use crate::error::{Error, ErrorKind, Result};
@@ -162,7 +162,8 @@ impl GpuTracer {
         // The numbers have two staging buffers.
         let bytes = setup.record_setup.bytes_per_pixel() + 3 * pixel_bytes;
         let side = self.device.limits().max_texture_dimension_2d.min(MAX_TILE_SIDE);
-        let plan = TilePlan::new(request, bytes, side, ray_steps, 1);
+        let budget = Budget::of(self.adapter.info.discrete);
+        let plan = TilePlan::new(budget, request, bytes, side, ray_steps, 1);
         let tables = Tables::prepare(&mut self.tables, &self.device, scene, setup.variants.shade.map_sampler)?;
         let software = self.adapter.info.software;
         let size = Size { tile: plan.largest(), pixel_bytes, several_samples: false };

@@ -15,7 +15,7 @@ use super::sky_target::level_kernels;
 use super::steps::Steps;
 use super::submission::Submission;
 use super::tables::Tables;
-use super::tiles::{MEMORY, TilePlan};
+use super::tiles::{Budget, TilePlan};
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::kernel::key::KernelKey;
@@ -239,22 +239,23 @@ impl GpuTracer {
         (bytes, ray_steps): (u64, u64),
         most_rows: u32,
     ) -> Steps {
+        let budget = Budget::of(self.adapter.info.discrete);
         let longest = self.device.limits().max_texture_dimension_2d;
         let side = longest.min(MAX_TILE_SIDE).min(most_rows.saturating_add(2));
         let (samples, size) = (setup.samples, [request.width, request.height]);
         // Software takes a good part of a second for a sample: a frame that is cancelled ends after the next one.
         let batch = if self.adapter.info.software { 1 } else { samples };
         let Some(bloom) = &setup.bloom else {
-            return Steps::plain(TilePlan::new(request, bytes, side, ray_steps, batch), samples);
+            return Steps::plain(TilePlan::new(budget, request, bytes, side, ray_steps, batch), samples);
         };
         let light = LIGHT_BYTES * size.map(u64::from).iter().product::<u64>();
-        let fits = size.iter().all(|side| *side <= longest) && light <= MEMORY;
+        let fits = size.iter().all(|side| *side <= longest) && light <= budget.memory;
         if fits && scene.quality.keep_light.unwrap_or(true) {
-            return Steps::kept(TilePlan::new(request, bytes, side, ray_steps, batch), samples, bloom);
+            return Steps::kept(TilePlan::new(budget, request, bytes, side, ray_steps, batch), samples, bloom);
         }
         Steps::twice(request, samples, bloom, |request, pixels| {
             let side = (u64::from(side) / pixels.isqrt()) as u32;
-            TilePlan::new(request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, batch)
+            TilePlan::new(budget, request, (bytes + LIGHT_BYTES) * pixels, side, ray_steps * pixels, batch)
         })
     }
 

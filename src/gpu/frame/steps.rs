@@ -172,6 +172,7 @@ fn under(cells: Tile, factor: u32, frame: [u32; 2]) -> Tile {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tiles::Budget;
     use super::*;
     use crate::image::PixelFormat;
 
@@ -189,7 +190,9 @@ mod tests {
     fn everything_is_done_once_and_in_order() {
         for frame in [[64, 48], [1000, 700], [5001, 333], [16384, 2000]] {
             let bloom = Bloom::of(1.0, 0.0, frame).expect("grids");
-            let plan_of = |request: &FrameRequest, each: u64| TilePlan::new(request, 400 * each, 2048, 300 * each, 20);
+            let plan_of = |request: &FrameRequest, each: u64| {
+                TilePlan::new(Budget::SMALL, request, 400 * each, 2048, 300 * each, 20)
+            };
             let plan = || plan_of(&request(frame), 1);
             let strategies = [
                 Steps::plain(plan(), 20),

@@ -3,11 +3,29 @@
 
 use crate::tracer::{FrameRequest, Tile};
 
-/// Ray-steps of one submission: 40 ms on a GPU of 0.4 TFLOPS, far below the seconds after which a driver's watchdog
-/// fires.
-const STEPS_PER_SUBMISSION: u64 = 96 << 20;
-/// Bytes that the records and the radiance of a tile may take; and, in frames with bloom, the light that is kept.
-pub const MEMORY: u64 = 192 << 20;
+/// The bounds of a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Budget {
+    /// Ray-steps of one submission, far below the seconds after which a driver's watchdog fires.
+    steps: u64,
+    /// Bytes that the records and the radiance of a tile may take; and, in frames with bloom, the light that is kept.
+    pub memory: u64,
+}
+
+impl Budget {
+    /// For a GPU that shares its memory with the host, or a software driver: 40 ms at 0.4 TFLOPS.
+    pub const SMALL: Self = Self { steps: 96 << 20, memory: 192 << 20 };
+    /// For a GPU with memory of its own, of 2 TFLOPS or more: 64 ms at most. Some rays, along the edge of the shadow,
+    /// take many times as long as others, and a tile ends with its last one: a frame of turbulent matter at 3840 x 2160
+    /// took 1.4 times as long in the 32 tiles of the small budget as in the 4 of this one.
+    pub const LARGE: Self = Self { steps: 768 << 20, memory: 512 << 20 };
+
+    /// `discrete`: whether the GPU has memory of its own.
+    pub fn of(discrete: bool) -> Self {
+        if discrete { Self::LARGE } else { Self::SMALL }
+    }
+}
+
 /// Samples of one submission at most.
 pub const MAX_BATCH: u32 = 16;
 
@@ -22,11 +40,18 @@ pub struct TilePlan {
 impl TilePlan {
     /// `bytes_per_pixel` that a tile takes on the device, `max_side` of a texture there; `steps` a ray is expected to
     /// take; `batch` is the most samples that one submission may have.
-    pub fn new(request: &FrameRequest, bytes_per_pixel: u64, max_side: u32, steps: u64, batch: u32) -> Self {
+    pub fn new(
+        budget: Budget,
+        request: &FrameRequest,
+        bytes_per_pixel: u64,
+        max_side: u32,
+        steps: u64,
+        batch: u32,
+    ) -> Self {
         let steps = steps.max(1);
         let max_side = max_side.saturating_sub(2).max(1);
-        let by_memory = MEMORY / bytes_per_pixel.max(1);
-        let by_time = STEPS_PER_SUBMISSION / steps;
+        let by_memory = budget.memory / bytes_per_pixel.max(1);
+        let by_time = budget.steps / steps;
         let pixels = by_memory.min(by_time).max(1024);
         // The traced rectangle is one pixel wider on each side; wide tiles waste least on short frames, squarer ones
         // on small tiles.
@@ -38,7 +63,7 @@ impl TilePlan {
         let share = |full: u32, part: u32| full.div_ceil(full.div_ceil(part).max(1)).max(1);
         let tile = [share(request.width, width), share(request.height, height)];
         let traced = u64::from(tile[0] + 2) * u64::from(tile[1] + 2);
-        let batch = (STEPS_PER_SUBMISSION / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(batch.max(1)))) as u32;
+        let batch = (budget.steps / (traced * steps)).clamp(1, u64::from(MAX_BATCH.min(batch.max(1)))) as u32;
         Self { frame: [request.width, request.height], tile, batch }
     }
 
@@ -82,10 +107,13 @@ mod tests {
     fn tiles_cover_every_pixel_once_within_the_limits() {
         for (width, height, steps) in [(1, 1, 30), (1280, 720, 30), (16384, 16384, 30), (5000, 3, 30), (300, 70, 6000)]
         {
-            let plan = TilePlan::new(&request(width, height), 100, 2048, steps, 1);
-            let [w, h] = plan.largest().map(u64::from);
-            assert!((w + 2) * (h + 2) * 100 <= MEMORY, "{width} x {height}: {plan:?}");
-            assert!(w * h * steps <= STEPS_PER_SUBMISSION && w.max(h) + 2 <= 2048, "{plan:?}");
+            for budget in [Budget::SMALL, Budget::LARGE] {
+                let plan = TilePlan::new(budget, &request(width, height), 100, 2048, steps, 1);
+                let [w, h] = plan.largest().map(u64::from);
+                assert!((w + 2) * (h + 2) * 100 <= budget.memory, "{width} x {height}: {plan:?}");
+                assert!(w * h * steps <= budget.steps && w.max(h) + 2 <= 2048, "{plan:?}");
+            }
+            let plan = TilePlan::new(Budget::SMALL, &request(width, height), 100, 2048, steps, 1);
             let tiles = (0..plan.count()).map(|i| plan.tile(i)).collect::<Vec<_>>();
             let pixels = tiles.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>();
             assert_eq!(pixels, u64::from(width) * u64::from(height));
@@ -97,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_frame_of_720_rows_is_one_submission_even_on_the_smallest_devices() {
-        let plan = TilePlan::new(&request(1280, 720), 112, 2048, 30, 1);
+        let plan = TilePlan::new(Budget::SMALL, &request(1280, 720), 112, 2048, 30, 1);
         assert_eq!((plan.count(), plan.batch), (1, 1));
     }
 }
