@@ -239,7 +239,7 @@ impl GpuTracer {
         (bytes, ray_steps): (u64, u64),
         most_rows: u32,
     ) -> Steps {
-        let budget = Budget::of(self.adapter.info.discrete);
+        let budget = Budget::of(self.adapter.info.discrete, self.device.limits().max_storage_buffer_binding_size);
         let longest = self.device.limits().max_texture_dimension_2d;
         let side = longest.min(MAX_TILE_SIDE).min(most_rows.saturating_add(2));
         let (samples, size) = (setup.samples, [request.width, request.height]);

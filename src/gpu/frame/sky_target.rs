@@ -149,9 +149,11 @@ pub fn check_sky(device: &Device, shape: &TargetShape, cube: bool) -> Result<()>
     Plan::new(map, &source_rows(shape), cube, &Reach::of(device), most_parts(device)).map(drop)
 }
 
-/// The parts in which a device's kernels bind a picture at most.
+/// The parts in which a device's kernels bind a picture at most. The kernel for several declares all of them, and the
+/// level that it writes.
 fn most_parts(device: &Device) -> usize {
-    SKY_PARTS.min(device.limits().max_storage_buffers_per_shader_stage.saturating_sub(1) as usize)
+    let bound = device.limits().max_storage_buffers_per_shader_stage as usize;
+    if bound > SKY_PARTS { SKY_PARTS } else { 1 }
 }
 
 /// The rows that kernels read: those of a buffer itself, or those that an image is copied into.

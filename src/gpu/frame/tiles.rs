@@ -20,9 +20,11 @@ impl Budget {
     /// took 1.4 times as long in the 32 tiles of the small budget as in the 4 of this one.
     pub const LARGE: Self = Self { steps: 768 << 20, memory: 512 << 20 };
 
-    /// `discrete`: whether the GPU has memory of its own.
-    pub fn of(discrete: bool) -> Self {
-        if discrete { Self::LARGE } else { Self::SMALL }
+    /// `discrete`: whether the GPU has memory of its own; `binding`: the most bytes of a buffer that its kernels reach,
+    /// of which plans count packed pixels three times.
+    pub fn of(discrete: bool, binding: u64) -> Self {
+        let budget = if discrete { Self::LARGE } else { Self::SMALL };
+        Self { memory: budget.memory.min(3 * binding), ..budget }
     }
 }
 
