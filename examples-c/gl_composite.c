@@ -22,7 +22,10 @@ typedef struct World {
     float eye[4], right[4], up[4], ahead[4], moon[4];
 } World;
 
-#define BEGIN "#version 450\nlayout(local_size_x = 8, local_size_y = 8) in;\n"
+/* Groups of 8 x 8 reach over the borders of pictures whose sides are no multiples of that. */
+#define BEGIN                                                                                                          \
+    "#version 450\nlayout(local_size_x = 8, local_size_y = 8) in;\n"                                                   \
+    "bool outside(ivec2 pixel, ivec2 size) { return any(greaterThanEqual(pixel, size)); }\n"
 static const char WORLD[] =
     "layout(location = 0) uniform vec4 world[5];\n"
     "vec3 look(ivec2 pixel, ivec2 size) {\n"
@@ -34,6 +37,8 @@ static const char DISTANCES[] =
     "layout(binding = 0, r32f) uniform writeonly image2D distances;\n"
     "void main() {\n"
     "    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);\n"
+    "    if (outside(pixel, imageSize(distances)))\n"
+    "        return;\n"
     "    vec3 d = look(pixel, imageSize(distances)), m = world[4].xyz - world[0].xyz;\n"
     "    float along = dot(m, d), inside = along * along - dot(m, m) + world[4].w * world[4].w;\n"
     "    float nothing = uintBitsToFloat(0x7f800000u);\n"
@@ -55,6 +60,8 @@ static const char MAP[] =
     "layout(binding = 0, rgba16f) uniform writeonly image2D map;\n"
     "void main() {\n"
     "    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);\n"
+    "    if (outside(texel, imageSize(map)))\n"
+    "        return;\n"
     "    vec2 at = (vec2(texel) + 0.5) / vec2(imageSize(map));\n"
     "    float ra = 6.2831853 * (0.5 - at.x), dec = 3.1415927 * (0.5 - at.y);\n"
     "    imageStore(map, texel, vec4(own_sky(vec3(cos(dec) * vec2(cos(ra), sin(ra)), sin(dec))), 1.0));\n"
@@ -67,6 +74,8 @@ static const char COMPOSE[] =
     "layout(binding = 3, r32f) uniform readonly image2D distances;\n"
     "void main() {\n"
     "    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);\n"
+    "    if (outside(pixel, imageSize(canvas)))\n"
+    "        return;\n"
     "    vec4 frame = imageLoad(light, pixel), from = imageLoad(lens, pixel);\n"
     "    float far = imageLoad(distances, pixel).x, g2 = from.w * from.w;\n"
     "    vec3 behind = from.w > 0.0 ? g2 * g2 * own_sky(from.xyz) : vec3(0.0);\n"
@@ -84,6 +93,8 @@ static const char DEVELOP[] =
     "layout(binding = 1, rgba16f) uniform readonly image2D light;\n"
     "void main() {\n"
     "    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);\n"
+    "    if (outside(pixel, imageSize(canvas)))\n"
+    "        return;\n"
     "    vec3 sum = imageLoad(light, pixel).rgb;\n"
     "    imageStore(canvas, pixel, vec4(pow(1.0 - exp(-1.5 * sum), vec3(1.0 / 2.2)), 1.0));\n"
     "}\n";
@@ -105,12 +116,12 @@ static void run(GLuint program, const World *world, float time, const GLuint *te
                 GLuint count, GLuint width, GLuint height) {
     my_glUseProgram(program);
     if (world)
-        my_glUniform4fv(0, 5, world->eye);
+        my_glUniform4fv(0, sizeof *world / sizeof world->eye, (const float *)world);
     if (time >= 0)
         my_glUniform1f(5, time);
     for (GLuint i = 0; i < count; i++)
         my_glBindImageTexture(i, textures[i], 0, GL_FALSE, 0, i ? GL_READ_ONLY : GL_WRITE_ONLY, formats[i]);
-    my_glDispatchCompute(width / 8, height / 8, 1);
+    my_glDispatchCompute((width + 7) / 8, (height + 7) / 8, 1);
     my_glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
@@ -204,6 +215,8 @@ int main(int argc, char **argv) {
     }
 
     const GLuint read[] = {canvas, light.texture, lens.texture, drawn.texture};
+    /* bhr has the texture that GL draws into as well, until it signals. */
+    const GLuint back[] = {light.texture, drawn.texture, lens.texture};
     const GLenum formats[] = {GL_RGBA8, GL_RGBA16F, GL_RGBA32F, GL_R32F};
     for (int frame = 0; frame < frames; frame++) {
         const World  world = set_world(context, frame);
@@ -213,7 +226,7 @@ int main(int argc, char **argv) {
             height);
         give_turn(&turns, 1, &drawn.texture);
         render(context, outputs, bends ? 1 : 2, &turns);
-        take_turn(&turns, bends ? 1 : 3, &read[1]);
+        take_turn(&turns, bends ? 2 : 3, back);
         run(compose, bends ? NULL : &world, bends ? -1 : time, read, formats, bends ? 2 : 4, WIDTH, HEIGHT);
     }
     static unsigned char pixels[HEIGHT][WIDTH][4];

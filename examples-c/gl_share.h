@@ -42,7 +42,7 @@
     F(void, glGenSemaphoresEXT, (GLsizei, GLuint *))                                                                   \
     F(void, glImportSemaphoreFdEXT, (GLuint, GLenum, GLint))                                                           \
     F(void, glWaitSemaphoreEXT, (GLuint, GLuint, const GLuint *, GLuint, const GLuint *, const GLenum *))              \
-    F(void, glSignalSemaphoreEXT, (GLuint, GLuint, const GLuint *, GLuint, const GLuint *, const GLenum *)) \
+    F(void, glSignalSemaphoreEXT, (GLuint, GLuint, const GLuint *, GLuint, const GLuint *, const GLenum *))            \
     F(void, glGetTextureImage, (GLuint, GLint, GLenum, GLenum, GLsizei, void *))                                       \
     F(GLuint, glCreateShaderProgramv, (GLenum, GLsizei, const GLchar *const *))                                        \
     F(void, glGetProgramiv, (GLuint, GLenum, GLint *))                                                                 \
