@@ -135,7 +135,7 @@ typedef int32_t BhrTargetKind;
  */
 #define BHR_TARGET_COPY 256u
 
-/** A target. Fill in with bhr_target_options_init first. Since 0.2.0. */
+/** A target. Its first row is the picture's top one. Fill in with bhr_target_options_init first. Since 0.2.0. */
 typedef struct BhrTargetOptions {
     uint32_t struct_size; /**< sizeof(BhrTargetOptions). */
     BhrTargetKind kind;   /**< Default IMAGE. */
@@ -147,7 +147,7 @@ typedef struct BhrTargetOptions {
     BhrFormat format;
     uint32_t width;  /**< Pixels, 1 .. 2^20. */
     uint32_t height; /**< Pixels, 1 .. 2^20. */
-    uint32_t flags;  /**< BHR_IMAGE_TRANSPARENT, and BHR_TARGET_COPY for wrapped images. Default 0. */
+    uint32_t flags;  /**< BHR_IMAGE_TRANSPARENT, for LIGHT; BHR_TARGET_COPY, for wrapped images. Default 0. */
     /**
      * The one kind of handle that the target's memory is passed by; 0 (default): none, for hosts on the same
      * VkDevice (bhr_target_vulkan).
@@ -209,14 +209,13 @@ typedef struct BhrHandle {
 BHR_NODISCARD BhrStatus bhr_target_create(BhrContext *context, const BhrTargetOptions *options, BhrTarget **out_target);
 
 /**
- * Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's),
- * memory what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags
- * and vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the
- * target's size and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST.
- * OPAQUE_FD: the descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and
- * dedicated do not count. Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or
- * is no memory, and for memory that is too small, ill placed, or of a type that the target cannot have. Since
- * 0.2.0.
+ * Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's), memory
+ * what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags and
+ * vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the target's size
+ * and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST. OPAQUE_FD: the
+ * descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and dedicated do not count.
+ * Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or is no memory, and for
+ * memory that is too small, ill placed, or of a type that the target cannot have. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_target_import(BhrContext *context,
                                           const BhrTargetOptions *options,
@@ -239,8 +238,7 @@ BHR_NODISCARD BhrStatus bhr_target_export(BhrTarget *target, BhrHandle *out_hand
 
 /**
  * Gives the VkImage or the VkBuffer of a target, and 0 for the other, to a host on the same VkDevice. They live as
- * long as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since
- * 0.2.0.
+ * long as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_target_vulkan(const BhrTarget *target, uint64_t *out_image, uint64_t *out_buffer);
 
@@ -420,21 +418,21 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
  * NULL: none; each of the two functions replaces what the other has set. flags: 0, or BHR_IMAGE_LENSED for things at
  * their lensed places.
  *
- * There are no semaphores of its own, because values grow with each frame: a frame reads the target first of all,
- * after every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
- * (bhr_render_image and others for host memory) and bhr_prepare read what is there when they begin, so that the
- * host first waits until it has drawn. An image is then in the target's layout (BhrTargetOptions.layout), and is
- * left in it; what other devices have written into a target for OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL
- * before, images with that layout, and acquired again after, if what it holds is to be kept. A plain depth buffer
- * is no such distance: the host's shader divides by the cosine of the angle to the forward axis.
+ * A frame reads the target first of all, after every wait of its BhrSync, and has read it when its signals are given:
+ * it needs no semaphores of its own. Frames without a BhrSync (bhr_render_image and others for host memory) and
+ * bhr_prepare read what is there when they begin, so that the host first waits until it has drawn. An image is then in
+ * the target's layout (BhrTargetOptions.layout), and is left in it; what other devices have written into a target for
+ * OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL before, images with that layout, and acquired again after, if what
+ * it holds is to be kept. A plain depth buffer is no such distance: the host's shader divides its forward distance by
+ * the cosine of the angle to the forward axis.
  *
  * Numbers on the GPU cannot be checked: NaN hides nothing, and what is below 0 everything. The target must stay as
  * long as it is set: after bhr_target_destroy or bhr_context_recover frames are SURFACE_LOST, until another occluder
- * or NULL is set. It cannot be a frame's target as well. The sides are those of the frames' images, and at most those
- * of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
- * Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
- * another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
- * SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
+ * or NULL is set. It cannot be a frame's target as well. Its sides are those of the frames' images, which are
+ * INVALID_ARGUMENT else. A buffer may have any row_stride. Otherwise as bhr_set_occluder. Any thread, not inside
+ * callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format, other flags, or a target of another context;
+ * UNSUPPORTED for a side that is longer than the device's textures have (16384, or less), and for an image without
+ * TRANSFER_SRC usage; SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *target, uint32_t flags);
 
@@ -443,16 +441,16 @@ BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *
 /**
  * bhr_set_sky_map with a picture on the GPU: target is an equirectangular one of RGBA16F or RGBA32F, made, imported or
  * wrapped, as wide as high at least, of 16384 x 8192 texels at most, laid out as bhr_set_sky_map has it, that frames
- * with BHR_SKY_MAP read anew each time. bhr makes coarser levels on the GPU: pictures are those with the
- * map from host memory, within one step of 255. NULL: none; each of the functions replaces what another has set. When
- * a frame reads the target, in which layout and of which queue family, and how long it must stay, is as with
+ * with BHR_SKY_MAP read anew each time. bhr makes coarser levels on the GPU: pictures are those with the map from host
+ * memory, within one step of 255. NULL: none; each of the functions replaces what another has set. When a frame reads
+ * the target, in which layout and of which queue family, and how long it must stay, is as with
  * bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
  * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. Windows show it, too.
  * Memory on the device: 11 bytes a texel; for an image, which is copied before it is read, 8 more of RGBA16F, 16 of
- * RGBA32F. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format or shape, or
- * a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage, a map that is larger than the
- * device's textures (it takes one and a half times its rows), or a row_stride that its kernels do not reach (128 MiB
- * they do anywhere); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. Since 0.2.0.
+ * RGBA32F. A buffer may have any row_stride. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL
+ * context, another format or shape, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC
+ * usage, and for a map that is larger than the device's textures (it takes one and a half times its rows);
+ * SURFACE_LOST; DEVICE_LOST; the map then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *target);
 
@@ -463,7 +461,7 @@ BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *targe
  * -x, on the fourth +x. Frames make an equirectangular map of it, four faces wide and two high, with four places in
  * each texel, between texels of the cube and across its edges; detail finer than at the faces' middles is lost. At
  * most 2730 texels a side. Errors: those of bhr_set_sky_target; INVALID_ARGUMENT for another layout or shape;
- * UNSUPPORTED for rows that six bindings of a kernel do not hold (packed ones they do). Since 0.2.0.
+ * UNSUPPORTED for rows too far apart for a kernel's six bindings of 128 MiB at least (packed ones fit). Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target_as(BhrContext *context, BhrTarget *target, BhrProjection layout);
 
@@ -522,10 +520,11 @@ typedef struct BhrVulkanDevice {
     uint32_t instance_extension_count; /**< How many. */
     uint32_t device_extension_count;   /**< How many. */
     /**
-     * Called before and after all that bhr does to the queue (vkQueueSubmit, vkQueuePresentKHR, vkQueueWaitIdle),
-     * from any thread, never nested. The host takes the same lock around its own use of the queue, and around
+     * Called before and after all that bhr does to the queue (vkQueueSubmit, vkQueuePresentKHR, vkQueueWaitIdle), from
+     * any thread, never nested. The host takes the same lock around its own use of the queue, and around
      * vkDeviceWaitIdle; it must not hold it while it calls bhr. Never held while bhr waits for the GPU, but in
-     * bhr_context_destroy and after errors. NULL, both: the queue is bhr's alone.
+     * bhr_context_destroy and after errors. NULL, both: nobody else uses the queue while a bhr_ call of this context
+     * runs or a job of it is unfinished, because those submit frames from a thread of bhr's.
      */
     BhrQueueLockFn lock;
     BhrQueueLockFn unlock; /**< See lock. */

@@ -13,21 +13,21 @@ use crate::error::Error;
 /// NULL: none; each of the two functions replaces what the other has set. flags: 0, or BHR_IMAGE_LENSED for things at
 /// their lensed places.
 ///
-/// There are no semaphores of its own, because values grow with each frame: a frame reads the target first of all,
-/// after every wait of its own BhrSync, and has read it when its signals are given. Frames without a BhrSync
-/// (bhr_render_image and others for host memory) and bhr_prepare read what is there when they begin, so that the
-/// host first waits until it has drawn. An image is then in the target's layout (BhrTargetOptions.layout), and is
-/// left in it; what other devices have written into a target for OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL
-/// before, images with that layout, and acquired again after, if what it holds is to be kept. A plain depth buffer
-/// is no such distance: the host's shader divides by the cosine of the angle to the forward axis.
+/// A frame reads the target first of all, after every wait of its BhrSync, and has read it when its signals are given:
+/// it needs no semaphores of its own. Frames without a BhrSync (bhr_render_image and others for host memory) and
+/// bhr_prepare read what is there when they begin, so that the host first waits until it has drawn. An image is then in
+/// the target's layout (BhrTargetOptions.layout), and is left in it; what other devices have written into a target for
+/// OPAQUE_FD is released to VK_QUEUE_FAMILY_EXTERNAL before, images with that layout, and acquired again after, if what
+/// it holds is to be kept. A plain depth buffer is no such distance: the host's shader divides its forward distance by
+/// the cosine of the angle to the forward axis.
 ///
 /// Numbers on the GPU cannot be checked: NaN hides nothing, and what is below 0 everything. The target must stay as
 /// long as it is set: after bhr_target_destroy or bhr_context_recover frames are SURFACE_LOST, until another occluder
-/// or NULL is set. It cannot be a frame's target as well. The sides are those of the frames' images, and at most those
-/// of a GPU's textures here: 16384, or less if the adapter has less (else UNSUPPORTED, when they are rendered).
-/// Otherwise as bhr_set_occluder. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL context,
-/// another format, other flags, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC usage;
-/// SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
+/// or NULL is set. It cannot be a frame's target as well. Its sides are those of the frames' images, which are
+/// INVALID_ARGUMENT else. A buffer may have any row_stride. Otherwise as bhr_set_occluder. Any thread, not inside
+/// callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format, other flags, or a target of another context;
+/// UNSUPPORTED for a side that is longer than the device's textures have (16384, or less), and for an image without
+/// TRANSFER_SRC usage; SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_occluder_target(
     context: *mut BhrContext,

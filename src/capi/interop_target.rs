@@ -43,7 +43,7 @@ pub const BHR_TARGET_BUFFER: BhrTargetKind = 1;
 /// GPU, so that it needs TRANSFER_DST usage instead of STORAGE: any tiling, images of swapchains, BGRA8_SRGB.
 pub const BHR_TARGET_COPY: u32 = 0x100u32;
 
-/// A target. Fill in with bhr_target_options_init first. Since 0.2.0.
+/// A target. Its first row is the picture's top one. Fill in with bhr_target_options_init first. Since 0.2.0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct BhrTargetOptions {
@@ -59,7 +59,7 @@ pub struct BhrTargetOptions {
     pub width: u32,
     /// Pixels, 1 .. 2^20.
     pub height: u32,
-    /// BHR_IMAGE_TRANSPARENT, and BHR_TARGET_COPY for wrapped images. Default 0.
+    /// BHR_IMAGE_TRANSPARENT, for LIGHT; BHR_TARGET_COPY, for wrapped images. Default 0.
     pub flags: u32,
     /// The one kind of handle that the target's memory is passed by; 0 (default): none, for hosts on the same
     /// VkDevice (bhr_target_vulkan).
@@ -299,14 +299,13 @@ pub unsafe extern "C" fn bhr_target_create(
     unsafe { make("bhr_target_create", context, options, out_target, false, |_, _, _| Ok(TargetOrigin::New)) }
 }
 
-/// Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's),
-/// memory what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags
-/// and vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the
-/// target's size and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST.
-/// OPAQUE_FD: the descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and
-/// dedicated do not count. Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or
-/// is no memory, and for memory that is too small, ill placed, or of a type that the target cannot have. Since
-/// 0.2.0.
+/// Makes a target in memory of the host's. options describe the target (its handle_type is 0 or the handle's), memory
+/// what is behind handle: allocation_size, offset, memory_type, dedicated, and for images vk_usage, vk_flags and
+/// vk_tiling, with which the host created its VkImage: 2-D, one mip level, one layer, one sample, of the target's size
+/// and format. An image needs STORAGE usage where bhr can store to its format, else TRANSFER_DST. OPAQUE_FD: the
+/// descriptor is bhr's after OK, and the host's after an error. HOST_POINTER: memory_type and dedicated do not count.
+/// Errors: as bhr_target_create; INVALID_ARGUMENT also for a descriptor that is not open or is no memory, and for
+/// memory that is too small, ill placed, or of a type that the target cannot have. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_import(
     context: *mut BhrContext,
@@ -418,8 +417,7 @@ pub unsafe extern "C" fn bhr_target_export(target: *mut BhrTarget, out_handle: *
 }
 
 /// Gives the VkImage or the VkBuffer of a target, and 0 for the other, to a host on the same VkDevice. They live as
-/// long as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since
-/// 0.2.0.
+/// long as the target does. NULL: not wanted. Errors: INVALID_ARGUMENT for a NULL target; SURFACE_LOST. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_target_vulkan(
     target: *const BhrTarget,

@@ -93,10 +93,11 @@ pub struct BhrVulkanDevice {
     pub instance_extension_count: u32,
     /// How many.
     pub device_extension_count: u32,
-    /// Called before and after all that bhr does to the queue (vkQueueSubmit, vkQueuePresentKHR, vkQueueWaitIdle),
-    /// from any thread, never nested. The host takes the same lock around its own use of the queue, and around
+    /// Called before and after all that bhr does to the queue (vkQueueSubmit, vkQueuePresentKHR, vkQueueWaitIdle), from
+    /// any thread, never nested. The host takes the same lock around its own use of the queue, and around
     /// vkDeviceWaitIdle; it must not hold it while it calls bhr. Never held while bhr waits for the GPU, but in
-    /// bhr_context_destroy and after errors. NULL, both: the queue is bhr's alone.
+    /// bhr_context_destroy and after errors. NULL, both: nobody else uses the queue while a bhr_ call of this context
+    /// runs or a job of it is unfinished, because those submit frames from a thread of bhr's.
     pub lock: BhrQueueLockFn,
     /// See lock.
     pub unlock: BhrQueueLockFn,

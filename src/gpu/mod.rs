@@ -34,6 +34,7 @@ pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};
 pub use frame::begun::{BegunFrame, ExtraCommands, Handed};
 pub use frame::beside::OutputTo;
+pub use frame::occluder::check_occluder;
 pub use frame::setup::FrameTarget;
 pub use frame::sky_target::check_sky;
 pub use frame::submission::Submission;

@@ -176,15 +176,18 @@ impl Renderer {
     }
 
     /// Sets a target whose pixels are the distances of the host's things, read by each frame when it begins. Errors:
-    /// UNSUPPORTED, on tracers without targets and for an image that cannot be copied; INVALID_ARGUMENT for another
-    /// format than R32F, or a target of another renderer; SURFACE_LOST; the occluder then stays as it was.
+    /// UNSUPPORTED, on tracers without targets, for an image that cannot be copied and for sides that the device's
+    /// textures do not have; INVALID_ARGUMENT for another format than R32F, or a target of another renderer;
+    /// SURFACE_LOST; the occluder then stays as it was.
     pub fn set_occluder_target(&mut self, target: &Arc<Target>, lensed: bool) -> Result<()> {
         self.check_device()?;
         let format = target.shape().format;
         if format != PixelFormat::R32F {
             return Err(Error::argument(format!("target format is {format}; an occluder's is R32F")));
         }
-        target.on(self.gpu()?)?.check_is_read()?;
+        let device = self.gpu()?;
+        target.on(device)?.check_is_read()?;
+        gpu::check_occluder(device, target.shape())?;
         self.occluder = Some(HostsThings::Target(target.clone(), lensed));
         Ok(())
     }

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 #define WIDTH 107u
 #define HEIGHT 45u
@@ -322,6 +323,54 @@ static void occluder_on_gpu(BhrTargetKind kind, uint64_t stride, int hosts_memor
     vk_drop(&host, &seen_light);
 }
 
+/* Rows of which no binding of 128 MiB, as lavapipe has them, holds more than one. */
+static void occluder_far_rows(void) {
+    enum { ROWS = 3 };
+    static float     distances[ROWS][WIDTH], one[ROWS * WIDTH * 4], other[ROWS * WIDTH * 4];
+    size_t           stride = ((size_t)140 << 20) + 4, room = ROWS * stride / 65536 * 65536 + 65536;
+    BhrTargetOptions options = share_options(BHR_FORMAT_R32F, BHR_TARGET_BUFFER, WIDTH, ROWS, stride);
+    BhrTargetInfo    info = {.struct_size = sizeof info, .allocation_size = room};
+    BhrHandle        handle = {BHR_HANDLE_HOST_POINTER, -1, NULL};
+    BhrTarget       *target;
+    BhrImage         image = image_of(BHR_FORMAT_RGBA32F, WIDTH, ROWS, one, sizeof one);
+    BhrImage         given = image_of(BHR_FORMAT_R32F, WIDTH, ROWS, distances, sizeof distances);
+    char            *rows =
+        mmap(NULL, room, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (!CHECK(rows != MAP_FAILED, "no memory"))
+        return;
+    for (uint32_t y = 0; y < ROWS; y++) {
+        for (uint32_t x = 0; x < WIDTH; x++)
+            distances[y][x] = (x + 5 * y) % 23 < 9 ? 2.0f : INFINITY;
+        memcpy(rows + y * stride, distances[y], sizeof distances[y]);
+    }
+    image.flags = BHR_IMAGE_TRANSPARENT;
+    options.handle_type = BHR_HANDLE_HOST_POINTER;
+    handle.handle = rows;
+    CHECK_OK(bhr_set_occluder(context, &given));
+    CHECK_OK(bhr_render_image(context, &image));
+    if (CHECK_OK(bhr_target_import(context, &options, &info, &handle, &target))) {
+        image.pixels = other;
+        CHECK_OK(bhr_set_occluder_target(context, target, 0));
+        CHECK_OK(bhr_render_image(context, &image));
+        CHECK(memcmp(one, other, sizeof one) == 0, "rows of distances %zu bytes apart", stride);
+        CHECK_OK(bhr_set_occluder_target(context, NULL, 0));
+        bhr_target_destroy(target);
+        CHECK_OK(bhr_render_image(context, &image));
+        CHECK(memcmp(one, other, sizeof one) != 0, "the occluder makes no change");
+    }
+    munmap(rows, room);
+}
+
+/* A side that no texture has. */
+static void occluder_too_long(Watch *watch, uint32_t width, uint32_t height) {
+    BhrTargetOptions options = share_options(BHR_FORMAT_R32F, BHR_TARGET_BUFFER, width, height, 0);
+    BhrTarget       *target = share_make(&options);
+    char             words[40];
+    snprintf(words, sizeof words, "%u x %u; textures", width, height);
+    CHECK_REFUSED(watch, BHR_ERROR_UNSUPPORTED, words, bhr_set_occluder_target(context, target, 0));
+    bhr_target_destroy(target);
+}
+
 static void occluder_refused(BhrBackend backend) {
     BhrTarget  *colours = target_of(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0, 0);
     BhrTarget  *depth = target_of(BHR_FORMAT_R32F, BHR_TARGET_BUFFER, 0, 0);
@@ -333,6 +382,8 @@ static void occluder_refused(BhrBackend backend) {
     CHECK_REFUSED(&watch, BAD, "R32F", bhr_set_occluder_target(context, colours, 0));
     CHECK_FAILS(BAD, "another context", bhr_set_occluder_target(other, depth, 0));
     CHECK_REFUSED(&watch, BAD, "flags 0x1", bhr_set_occluder_target(context, depth, BHR_IMAGE_TRANSPARENT));
+    occluder_too_long(&watch, 16385, 1);
+    occluder_too_long(&watch, 1, 16385);
     CHECK_OK(bhr_set_occluder_target(context, depth, 0));
     CHECK_OK(bhr_image_init(&image, sizeof image));
     image.width = WIDTH, image.height = 4, image.pixels = seen, image.byte_size = sizeof seen;
@@ -465,6 +516,8 @@ int main(int argc, char **argv) {
         occluder_on_gpu(BHR_TARGET_BUFFER, 0, hosts_memory);
         occluder_on_gpu(BHR_TARGET_BUFFER, WIDTH * 4 + 36, hosts_memory);
     }
+    if (can.import_buffers & BHR_HANDLE_HOST_POINTER)
+        occluder_far_rows();
     occluder_refused(backend);
     many();
     refused(backend);

@@ -55,8 +55,12 @@ pub struct TargetShape {
 impl TargetShape {
     /// Bytes from the first pixel of a buffer to the last.
     pub fn bytes(&self) -> u64 {
-        let [width, height] = self.size.map(u64::from);
-        self.row_stride * (height - 1) + width * self.format.bytes_per_pixel() as u64
+        self.row_stride * u64::from(self.size[1].saturating_sub(1)) + self.row_bytes()
+    }
+
+    /// Bytes of a row itself.
+    pub fn row_bytes(&self) -> u64 {
+        u64::from(self.size[0]) * self.format.bytes_per_pixel() as u64
     }
 }
 

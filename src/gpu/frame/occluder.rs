@@ -120,12 +120,8 @@ impl OccluderTexture {
         {
             return Ok(());
         }
-        let (size, limit) = ([occluder.width, occluder.height], device.limits().max_texture_dimension_2d);
-        if size.iter().any(|side| *side > limit) {
-            let [width, height] = size;
-            let message = format!("the occluder is {width} x {height}; textures of this device have {limit} at most");
-            return Err(Error::unsupported(message));
-        }
+        let size = [occluder.width, occluder.height];
+        check_sides(device, size)?;
         let taken = takes_rows(scene);
         if self.texture.size() != size || taken != self.taken.is_some() {
             self.taken = None;
@@ -220,13 +216,31 @@ impl OccluderTexture {
     }
 }
 
+/// Errors: UNSUPPORTED for a target that no frame could read as an occluder.
+pub fn check_occluder(device: &Device, shape: &TargetShape) -> Result<()> {
+    check_sides(device, shape.size)?;
+    match shape.image || copied_row(shape).is_some() {
+        true => Ok(()),
+        false => bands_of(device, shape).map(drop),
+    }
+}
+
+/// Errors: UNSUPPORTED for sides that no texture has.
+fn check_sides(device: &Device, [width, height]: [u32; 2]) -> Result<()> {
+    let limit = device.limits().max_texture_dimension_2d;
+    if width > limit || height > limit {
+        let message =
+            format!("the occluder is {width} x {height}; textures of this device have {limit} at most a side");
+        return Err(Error::unsupported(message));
+    }
+    Ok(())
+}
+
 /// The rows of a target's buffer as kernels bind them. Errors: UNSUPPORTED for rows that no binding holds.
 fn bands_of(device: &Device, shape: &TargetShape) -> Result<Vec<Band>> {
-    let rows = Rows { count: shape.size[1], stride: shape.row_stride, bytes: shape.bytes() };
+    let rows = Rows { count: shape.size[1], stride: shape.row_stride, row: shape.row_bytes() };
     bands(&rows, &rows, Range::clone, &Reach::of(device)).ok_or_else(|| {
-        let (stride, largest) = (shape.row_stride, Reach::of(device).largest);
-        Error::unsupported(format!(
-            "the occluder's row_stride is {stride}; a kernel here reads {largest} bytes at once"
-        ))
+        let (row, largest) = (rows.row, Reach::of(device).largest);
+        Error::unsupported(format!("a row of the occluder has {row} bytes; a kernel here reads {largest} at once"))
     })
 }

@@ -100,7 +100,7 @@ fn row_words(width: u32) -> u32 {
 /// The rows of a level.
 fn level_rows([width, height]: [u32; 2]) -> Rows {
     let stride = 4 * u64::from(row_words(width));
-    Rows { count: height, stride, bytes: stride * u64::from(height - 1) + 4 * u64::from(width) }
+    Rows { count: height, stride, row: 4 * u64::from(width) }
 }
 
 /// A buffer that the device's limits for buffers, which are those of bindings here, do not bound.
@@ -159,13 +159,11 @@ fn most_parts(device: &Device) -> usize {
 /// The rows that kernels read: those of a buffer itself, or those that an image is copied into.
 fn source_rows(shape: &TargetShape) -> Rows {
     let stride = if shape.image { staged_stride(shape) } else { shape.row_stride };
-    let bytes = TargetShape { row_stride: stride, ..*shape }.bytes();
-    Rows { count: shape.size[1], stride, bytes: bytes.next_multiple_of(wgpu::COPY_BUFFER_ALIGNMENT) }
+    Rows { count: shape.size[1], stride, row: shape.row_bytes() }
 }
 
 fn staged_stride(shape: &TargetShape) -> u64 {
-    let row = u64::from(shape.size[0]) * shape.format.bytes_per_pixel() as u64;
-    row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT.into())
+    shape.row_bytes().next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT.into())
 }
 
 impl Plan {
