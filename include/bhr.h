@@ -1053,8 +1053,9 @@ BHR_NODISCARD BhrStatus bhr_get_hot_spots(const BhrContext *context,
 #define BHR_IMAGE_BOTTOM_UP 2u
 
 /**
- * BhrImage.flags: for bhr_set_occluder, the distances are of things drawn at their lensed places, as
- * bhr_project_points gives them. Since 0.2.0.
+ * BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: bent rays meet the things whose
+ * distances these are, because the host has drawn them where light shows them (BhrProjectedPoint.apparent). Without it
+ * the things lie on straight lines of sight. Since 0.2.0.
  */
 #define BHR_IMAGE_LENSED 4u
 
@@ -1068,7 +1069,7 @@ typedef int32_t BhrFormat;
 #define BHR_FORMAT_BGRA8_SRGB 2 /**< 4 bytes: blue, green, red with the sRGB curve, alpha. */
 #define BHR_FORMAT_RGBA16F 3    /**< 4 half floats: linear radiance, Rec. 709 primaries; alpha. */
 #define BHR_FORMAT_RGBA32F 4    /**< 4 floats: linear radiance, Rec. 709 primaries; alpha. */
-#define BHR_FORMAT_R32F 5       /**< 1 float: the value of a view other than BHR_VIEW_LIGHT. */
+#define BHR_FORMAT_R32F 5       /**< 1 float: the value of a view or an output, or the distance of an occluder. */
 
 /**
  * Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
@@ -1097,8 +1098,8 @@ typedef struct BhrImage {
      */
     uint64_t byte_size;
     /**
-     * BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only,
-     * BHR_IMAGE_LENSED for bhr_set_occluder only.
+     * BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT does something in images that are rendered only, and
+     * BHR_IMAGE_LENSED is for bhr_set_occluder only: elsewhere it is INVALID_ARGUMENT.
      */
     uint32_t flags;
     uint32_t reserved; /**< Reserved: 0. */

@@ -23,8 +23,9 @@ pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 /// 0.2.0.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
-/// BhrImage.flags: for bhr_set_occluder, the distances are of things drawn at their lensed places, as
-/// bhr_project_points gives them. Since 0.2.0.
+/// BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: bent rays meet the things whose
+/// distances these are, because the host has drawn them where light shows them (BhrProjectedPoint.apparent). Without it
+/// the things lie on straight lines of sight. Since 0.2.0.
 pub const BHR_IMAGE_LENSED: u32 = 4u32;
 
 /// A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring
@@ -38,7 +39,7 @@ pub const BHR_FORMAT_BGRA8_SRGB: BhrFormat = 2;
 pub const BHR_FORMAT_RGBA16F: BhrFormat = 3;
 /// 4 floats: linear radiance, Rec. 709 primaries; alpha.
 pub const BHR_FORMAT_RGBA32F: BhrFormat = 4;
-/// 1 float: the value of a view other than BHR_VIEW_LIGHT.
+/// 1 float: the value of a view or an output, or the distance of an occluder.
 pub const BHR_FORMAT_R32F: BhrFormat = 5;
 
 /// Pixels in memory. Bytes between rows are neither read nor written. Several images may share a block, side by
@@ -67,8 +68,8 @@ pub struct BhrImage {
     /// Size of the host's block in bytes. The block begins at pixels, or, where row_stride < 0, (height - 1)
     /// |row_stride| bytes before it. Needed: (height - 1) |row_stride| + width bytes-per-pixel; checked.
     pub byte_size: u64,
-    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT matters for rendering only,
-    /// BHR_IMAGE_LENSED for bhr_set_occluder only.
+    /// BHR_IMAGE_* bits. Default 0. BHR_IMAGE_TRANSPARENT does something in images that are rendered only, and
+    /// BHR_IMAGE_LENSED is for bhr_set_occluder only: elsewhere it is INVALID_ARGUMENT.
     pub flags: u32,
     /// Reserved: 0.
     pub reserved: u32,
