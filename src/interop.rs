@@ -46,8 +46,6 @@ impl<T> OnDevice<T> {
             }
         };
         if let Ok((thing, device)) = ended {
-            // The images that hosts wrap have to be gone when this returns, not when another frame is made.
-            device.bindings_forgotten();
             drop(thing);
             device.forget_reads();
             drop(device);

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define WIDTH 149u
 #define HEIGHT 53u
@@ -225,6 +226,37 @@ static void orders(void) {
     }
 }
 
+/* A target ends while a frame into it waits for its turn: it is released when that frame has run, and no frame or call
+ * comes after. */
+static void ends_before_its_frame(BhrContext *context, size_t at) {
+    VkPicture     picture;
+    BhrTarget    *target = wrap(context, at, &picture);
+    BhrSemaphore *semaphore;
+    BhrJob       *job;
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &semaphore));
+    /* Frames of the same setup have made what they need. */
+    CHECK_OK(bhr_render_target(context, target, NULL, &job));
+    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+    bhr_job_destroy(job);
+    for (uint64_t frame = 0; frame < 6; frame++) {
+        BhrSemaphoreValue wait = {semaphore, 1};
+        BhrSync           sync = {.struct_size = sizeof sync, .wait_count = 1, .waits = &wait};
+        CHECK_OK(bhr_render_target_async(context, target, &sync, frame < 5 ? NULL : &job));
+    }
+    bhr_target_destroy(target);
+    CHECK(released == 0, "released while frames wait");
+    CHECK_OK(bhr_semaphore_signal(semaphore, 1));
+    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+    bhr_job_destroy(job);
+    for (int i = 0; i < 200 && released == 0; i++)
+        nanosleep(&(struct timespec){0, 10000000}, NULL);
+    CHECK(released == 1, "image %zu: released %d times after its last frame", at, released);
+    released = 0;
+    bhr_semaphore_destroy(semaphore);
+    expect(context, images[at].format, 0);
+    vk_drop(&host, &picture);
+}
+
 int main(int argc, char **argv) {
     BhrBackend  backend = check_begin(argc, argv);
     int         validate = argc > 2 && strcmp(argv[2], "validate") == 0;
@@ -264,6 +296,8 @@ int main(int argc, char **argv) {
     CHECK_OK(bhr_set_quality(context, &quality));
     for (size_t at = 0; at < COUNT_OF(images); at++)
         frames_into(context, own, at, at ? 9 : FRAMES);
+    for (size_t at = 0; at < COUNT_OF(images); at++)
+        ends_before_its_frame(context, at);
     binary_turns(context, own, 1);
     binary_turns(context, own, 3);
     bhr_context_destroy(context);

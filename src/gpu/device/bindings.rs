@@ -11,7 +11,7 @@ const MOST: usize = 64;
 
 /// A device's bind groups. As groups keep alive what they bind, all are let go whenever a buffer or a texture is made,
 /// which steady frames do not do: what a new one takes the place of must be gone before, since both together need not
-/// fit.
+/// fit. And whenever a target goes: the frame that lets go of it last may have bound it after its host ended it.
 #[derive(Default)]
 pub(in crate::gpu) struct BindGroupCache(Mutex<Vec<CachedGroup>>);
 

@@ -3,6 +3,7 @@
 //! not at all. Knows no frames.
 
 use super::adapter::Adapter;
+use super::bindings::BindGroupCache;
 use super::external::{
     HostVulkan, MemoryInfo, ReleaseGuard, Requirements, SemaphoreKind, SemaphoreOrigin, Sharing, TargetOrigin,
     TargetShape, shares_nothing,
@@ -36,6 +37,8 @@ pub struct GpuTarget {
     /// Whether frames hand it over to another device.
     pub(in crate::gpu) leaves: bool,
     bytes: super::buffer::Counted,
+    /// The groups that may bind it.
+    bindings: Arc<BindGroupCache>,
     /// The host has ended it; a submission may still read it.
     ended: AtomicBool,
 }
@@ -49,8 +52,8 @@ impl GpuTarget {
         [raw, raw_memory]: [u64; 2],
         leaves: bool,
     ) -> Self {
-        let bytes = device.counted(memory.allocation_size);
-        Self { resource, shape, memory, raw, raw_memory, leaves, bytes, ended: AtomicBool::new(false) }
+        let (bytes, bindings) = (device.counted(memory.allocation_size), device.bindings.clone());
+        Self { resource, shape, memory, raw, raw_memory, leaves, bytes, bindings, ended: AtomicBool::new(false) }
     }
 
     /// No frame may read it from now on.
@@ -85,9 +88,9 @@ impl GpuTarget {
     }
 }
 
-impl Device {
-    /// Lets go of bind groups that were kept, and of what they bind.
-    pub fn bindings_forgotten(&self) {
+impl Drop for GpuTarget {
+    fn drop(&mut self) {
+        // Groups that are kept would keep its memory, and the host's image, until another resource is made.
         self.bindings.clear();
     }
 }

@@ -55,7 +55,7 @@ pub struct Device {
     health: Arc<Health>,
     bytes: Arc<AtomicU64>,
     pub(in crate::gpu) shaders: super::specialise::Shaders,
-    pub(in crate::gpu) bindings: super::bindings::BindGroupCache,
+    pub(in crate::gpu) bindings: Arc<super::bindings::BindGroupCache>,
     pub(in crate::gpu) uploads: Uploads,
     /// The failures that tests ask for.
     pub faults: super::faults::Faults,
