@@ -446,11 +446,11 @@ BHR_NODISCARD BhrStatus bhr_set_occluder_target(BhrContext *context, BhrTarget *
  * the target, in which layout and of which queue family, and how long it must stay, is as with
  * bhr_set_occluder_target, but that a frame which is queued, and not submitted yet, fails as well when the target is
  * destroyed, where one with an occluder's still reads it. It cannot be a frame's target as well. Windows show it, too.
- * Memory on the device: 11 bytes a texel; for an image, which is copied before it is read, 8 more of RGBA16F, 16 of
- * RGBA32F. A buffer may have any row_stride. Any thread, not inside callbacks. Errors: INVALID_ARGUMENT for a NULL
- * context, another format or shape, or a target of another context; UNSUPPORTED for an image without TRANSFER_SRC
- * usage, and for a map that is larger than the device's textures (it takes one and a half times its rows);
- * SURFACE_LOST; DEVICE_LOST; the map then stays as it was. Since 0.2.0.
+ * Memory on the device: 11 bytes a texel; for an image or host memory, which are copied before they are read, 8 more
+ * of RGBA16F, 16 of RGBA32F. A buffer may have any row_stride. Any thread, not inside callbacks. Errors:
+ * INVALID_ARGUMENT for a NULL context, another format or shape, or a target of another context; UNSUPPORTED for an
+ * image without TRANSFER_SRC usage, and for a map that is larger than the device's textures (it takes one and a half
+ * times its rows); SURFACE_LOST; DEVICE_LOST; the map then stays as it was. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *target);
 

@@ -95,6 +95,39 @@ static void compare(BhrFormat format, BhrTargetKind kind, uint64_t gap) {
     vk_drop(&host, &picture);
 }
 
+/* The host's own memory, which frames copy first: its rows one after another, or `gap` bytes apart. */
+static void from_pointer(BhrFormat format, uint64_t gap) {
+    size_t           room = 4 << 20, texel = format == BHR_FORMAT_RGBA16F ? 8 : 16, row = MAP_WIDTH * texel;
+    BhrTargetOptions options = share_options(format, BHR_TARGET_BUFFER, MAP_WIDTH, MAP_HEIGHT, gap ? row + gap : 0);
+    BhrTargetInfo    memory = {.struct_size = sizeof memory, .allocation_size = room};
+    BhrHandle        handle = {BHR_HANDLE_HOST_POINTER, -1, NULL};
+    BhrTarget       *target;
+    options.handle_type = BHR_HANDLE_HOST_POINTER;
+    if (!CHECK(posix_memalign(&handle.handle, 65536, room) == 0, "no memory"))
+        return;
+    if (CHECK_OK(bhr_target_import(context, &options, &memory, &handle, &target))) {
+        for (uint32_t frame = 0; frame < 3; frame++) {
+            char *texels = format == BHR_FORMAT_RGBA16F ? (char *)halves : (char *)map;
+            paint(frame);
+            memset(handle.handle, 0xff, room);
+            for (uint32_t y = 0; y < MAP_HEIGHT; y++)
+                memcpy((char *)handle.handle + y * (row + gap), texels + y * row, row);
+            CHECK_OK(bhr_set_sky_target(context, target));
+            render(from_gpu);
+            BhrImage image = image_of(format, MAP_WIDTH, MAP_HEIGHT, texels, MAP_HEIGHT * row);
+            CHECK_OK(bhr_set_sky_map(context, &image));
+            render(from_memory);
+            double apart = vk_apart(BHR_FORMAT_RGBA8_SRGB, from_gpu, from_memory, sizeof from_gpu);
+            CHECK(apart <= 1, "host memory, format %d, gap %u, frame %u: %g steps apart", format, (unsigned)gap, frame,
+                  apart);
+        }
+        bhr_target_destroy(target);
+    }
+    /* Freed when no frame uses it. */
+    render(from_memory);
+    free(handle.handle);
+}
+
 /* Smooth light of a direction in sky axes, other in each channel. */
 static void light_of(const double v[3], float texel[4]) {
     texel[0] = (float)(0.4 + 0.3 * sin(3 * v[0] + v[1]) * cos(2 * v[2]));
@@ -205,6 +238,11 @@ int main(int argc, char **argv) {
     CHECK_OK(bhr_set_camera(context, &camera));
     compare(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, 0);
     compare(BHR_FORMAT_RGBA32F, BHR_TARGET_BUFFER, 0);
+    if (can.import_buffers & BHR_HANDLE_HOST_POINTER) {
+        from_pointer(BHR_FORMAT_RGBA16F, 0);
+        from_pointer(BHR_FORMAT_RGBA16F, 40);
+        from_pointer(BHR_FORMAT_RGBA32F, 4);
+    }
     cube();
     refused(backend);
     return share_end();

@@ -13,9 +13,10 @@ use std::sync::Arc;
 #[cfg(not(target_vendor = "apple"))]
 const WAIT_SLICE: std::time::Duration = std::time::Duration::from_millis(20);
 
-/// A target that a frame reads: a buffer as it is, an image by way of a buffer of bhr's.
+/// A target that a frame reads: an image by way of a buffer of bhr's, a buffer in that way or as it is.
 pub struct TargetRead {
     pub target: Arc<GpuTarget>,
+    /// The buffer that it is copied into.
     pub staged: Option<Arc<GpuTarget>>,
 }
 
@@ -130,7 +131,8 @@ impl Device {
         self.submit_all(encoder.into_iter().collect(), handover.waits, handover.signals, Vec::new())
     }
 
-    /// `read`: targets that raw commands read, which wgpu does not know of, and which are kept until they have run.
+    /// `read`: targets that are read, which are kept until the commands have run: wgpu knows nothing of raw copies out
+    /// of them and of raw barriers.
     fn submit_all(
         &self,
         encoders: Vec<wgpu::CommandEncoder>,

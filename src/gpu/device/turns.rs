@@ -8,14 +8,15 @@ use super::sharing::GpuTarget;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The turns that threads take with a queue, and the semaphores that are in use.
+/// The turns that threads take with a queue, and the semaphores and targets that are in use.
 pub struct QueueTurns {
     turn: Mutex<()>,
     host: Option<Arc<QueueLock>>,
     in_use: Mutex<VecDeque<InUse>>,
 }
 
-/// The semaphores of a submission that may not have run, and targets that it reads without wgpu knowing.
+/// The semaphores of a submission that may not have run, and the targets that it reads: the commands that take those
+/// over, copy out of them and give them back are raw ones, of which wgpu knows nothing.
 pub struct InUse {
     pub submission: wgpu::SubmissionIndex,
     pub waits: Vec<SemaphoreUse>,
@@ -61,13 +62,13 @@ impl QueueTurns {
         self.in_use.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets go of all semaphores: nothing is under way.
+    /// Lets go of all semaphores and targets: nothing is under way.
     pub fn settle(&self) {
         let all = std::mem::take(&mut *self.in_use());
         drop(all);
     }
 
-    /// Keeps all semaphores for ever: the work that uses them never ends.
+    /// Keeps all semaphores and targets for ever: the work that uses them never ends.
     pub fn abandon(&self) {
         std::mem::forget(std::mem::take(&mut *self.in_use()));
     }

@@ -8,7 +8,7 @@ use super::buffers::CachedUniform;
 use super::sky_maps::{MapTexture, level_place, texture_height};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::buffer::uniform_stride;
-use crate::gpu::device::external::{TargetOrigin, TargetShape};
+use crate::gpu::device::external::{HOST_POINTER, TargetOrigin, TargetShape};
 use crate::gpu::device::handover::TargetRead;
 use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::wgpu_device::Device;
@@ -63,7 +63,7 @@ pub struct SkyTarget {
     size: [u32; 2],
     cube: bool,
     format: PixelFormat,
-    /// Bytes from row to row of the buffer that kernels read: the target's, or the one that an image is copied into.
+    /// Bytes from row to row of the buffer that kernels read: the target's, or the one that it is copied into.
     stride: u64,
     for_sampler: bool,
     plan: Plan,
@@ -156,14 +156,21 @@ fn most_parts(device: &Device) -> usize {
     if bound > SKY_PARTS { SKY_PARTS } else { 1 }
 }
 
-/// The rows that kernels read: those of a buffer itself, or those that an image is copied into.
-fn source_rows(shape: &TargetShape) -> Rows {
-    let stride = if shape.image { staged_stride(shape) } else { shape.row_stride };
-    Rows { count: shape.size[1], stride, row: shape.row_bytes() }
+/// Whether a target is copied into a buffer of bhr's: an image because kernels read rows, and the host's own memory
+/// because they read most texels several times, which are to cross the bus once.
+fn is_staged(shape: &TargetShape) -> bool {
+    shape.image || shape.handle == HOST_POINTER
 }
 
-fn staged_stride(shape: &TargetShape) -> u64 {
-    shape.row_bytes().next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT.into())
+/// The rows that kernels read: those of a buffer itself, or those that the target is copied into.
+fn source_rows(shape: &TargetShape) -> Rows {
+    let row = shape.row_bytes();
+    let stride = match (shape.image, is_staged(shape)) {
+        (true, _) => row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT.into()),
+        (false, true) => row,
+        (false, false) => shape.row_stride,
+    };
+    Rows { count: shape.size[1], stride, row }
 }
 
 impl Plan {
@@ -248,7 +255,8 @@ impl SkyTarget {
         }
         let mut uniforms = CachedUniform::new(device, "levels of a sky map", bytes.len() as u64)?;
         uniforms.write(device, &bytes)?;
-        let staged = target.shape.image.then(|| large_buffer(device, format, given_size, source.stride)).transpose()?;
+        let staged = is_staged(&target.shape).then(|| large_buffer(device, format, given_size, source.stride));
+        let staged = staged.transpose()?;
         Ok(Self {
             size: given_size,
             cube,
@@ -268,7 +276,7 @@ impl SkyTarget {
         let same = self.size == picture.size && self.cube == picture.cube && self.format == picture.format;
         // A target that is gone is for `fetch` to tell.
         let lies = target_of(picture).map_or(true, |target| {
-            source_rows(&target.shape).stride == self.stride && target.shape.image == self.staged.is_some()
+            source_rows(&target.shape).stride == self.stride && is_staged(&target.shape) == self.staged.is_some()
         });
         same && lies && self.for_sampler == for_sampler
     }

@@ -4,6 +4,7 @@
 //! what [`give`] does to a layout, [`take`] undoes before the next frame.
 
 use super::parts::VulkanParts;
+use crate::gpu::device::external::TargetShape;
 use crate::gpu::device::handover::TargetRead;
 use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use ash::vk;
@@ -107,8 +108,10 @@ pub(in crate::gpu) fn give(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
     });
 }
 
-/// Before a frame reads a target: makes a buffer bhr's. The pixels of an image, which the host has left in its layout,
-/// are copied into a buffer of bhr's, and the image is given back as it was.
+/// Before a frame reads a target: makes a buffer bhr's until [`has_read`]. The pixels of an image, which the host has
+/// left in its layout, are copied into a buffer of bhr's, and the image is given back as it was. A buffer's rows are
+/// copied where there is a buffer for them; else kernels and copies of wgpu's, which knows the target's buffer, read
+/// them.
 pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncoder, read: &TargetRead) {
     let TargetRead { target, staged } = read;
     let (any, copies) = (vk::PipelineStageFlags::ALL_COMMANDS, vk::PipelineStageFlags::TRANSFER);
@@ -116,18 +119,36 @@ pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
     let [theirs, ours] = if target.leaves { [vk::QUEUE_FAMILY_EXTERNAL, own] } else { [ignored; 2] };
     let device = &parts.device;
     let none = vk::DependencyFlags::empty();
+    // The frame to come reads what was copied. The frame before may still read the buffer: the barriers that make the
+    // target bhr's wait for it, as they wait for everything.
+    let filled = |staged: &GpuTarget| {
+        vk::BufferMemoryBarrier::default()
+            .buffer(vk::Buffer::from_raw(staged.raw))
+            .size(vk::WHOLE_SIZE)
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::MEMORY_READ)
+            .src_queue_family_index(ignored)
+            .dst_queue_family_index(ignored)
+    };
     record(encoder, |commands| match (&target.resource, staged) {
-        (TargetResource::Buffer(_), _) => {
+        (TargetResource::Buffer(_), staged) => {
+            let raw = vk::Buffer::from_raw(target.raw);
             let acquired = vk::BufferMemoryBarrier::default()
-                .buffer(vk::Buffer::from_raw(target.raw))
+                .buffer(raw)
                 .size(vk::WHOLE_SIZE)
                 .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
                 .dst_access_mask(vk::AccessFlags::MEMORY_READ)
                 .src_queue_family_index(theirs)
                 .dst_queue_family_index(ours);
-            // SAFETY: the buffer lives as long as its target; the commands are being recorded.
+            // SAFETY: the buffer lives as long as its target; the commands are being recorded; both buffers hold the
+            // rows.
             unsafe {
                 device.cmd_pipeline_barrier(commands, any, any, none, &[], &[acquired], &[]);
+                if let Some(staged) = staged {
+                    let buffer = vk::Buffer::from_raw(staged.raw);
+                    device.cmd_copy_buffer(commands, raw, buffer, &row_copies(&target.shape, &staged.shape));
+                    device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[filled(staged)], &[]);
+                }
             }
         }
         (_, None) => {}
@@ -135,14 +156,6 @@ pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
             let pixel_bytes = target.shape.format.bytes_per_pixel() as u64;
             let [width, height] = target.shape.size;
             let buffer = vk::Buffer::from_raw(staged.raw);
-            // The frame before may still read the buffer, and the frame to come does.
-            let filled = vk::BufferMemoryBarrier::default()
-                .buffer(buffer)
-                .size(vk::WHOLE_SIZE)
-                .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-                .dst_access_mask(vk::AccessFlags::MEMORY_READ)
-                .src_queue_family_index(ignored)
-                .dst_queue_family_index(ignored);
             let raw = vk::Image::from_raw(target.raw);
             let left = vk::ImageLayout::from_raw(target.shape.layout);
             let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
@@ -165,10 +178,23 @@ pub(in crate::gpu) fn read(parts: &VulkanParts, encoder: &mut wgpu::CommandEncod
             unsafe {
                 device.cmd_pipeline_barrier(commands, any, copies, none, &[], &[], &[acquired]);
                 device.cmd_copy_image_to_buffer(commands, raw, source, buffer, &[copy]);
-                device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[filled], &[released]);
+                device.cmd_pipeline_barrier(commands, copies, any, none, &[], &[filled(staged)], &[released]);
             }
         }
     });
+}
+
+/// The rows of one buffer into another, which may have others between; as one piece where both have the same.
+fn row_copies(from: &TargetShape, to: &TargetShape) -> Vec<vk::BufferCopy> {
+    if from.row_stride == to.row_stride {
+        return vec![vk::BufferCopy::default().size(from.bytes())];
+    }
+    let copy = |y: u64| vk::BufferCopy {
+        src_offset: y * from.row_stride,
+        dst_offset: y * to.row_stride,
+        size: from.row_bytes(),
+    };
+    (0..from.size[1].into()).map(copy).collect()
 }
 
 /// After a frame has read a buffer: gives it back.
