@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define WIDTH 149u
 #define HEIGHT 53u
@@ -249,7 +248,7 @@ static void ends_before_its_frame(BhrContext *context, size_t at) {
     CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
     bhr_job_destroy(job);
     for (int i = 0; i < 200 && released == 0; i++)
-        nanosleep(&(struct timespec){0, 10000000}, NULL);
+        pause_ms(10);
     CHECK(released == 1, "image %zu: released %d times after its last frame", at, released);
     released = 0;
     bhr_semaphore_destroy(semaphore);

@@ -4,8 +4,7 @@
  * dead one is freed by a signal of the host's. Where the exporter dies, the importer reads what was there last, and a
  * context of bhr's that imported the memory renders into it; nobody hangs. The other process is this program again.
  * Arguments: vulkan [importer | exporter]. */
-#include "../c/check.h"
-#include "vk.h"
+#include "share.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -14,7 +13,6 @@
 #include <string.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 #define WIDTH 160u
@@ -95,20 +93,6 @@ static void kill_it(pid_t child, const char *role) {
     CHECK(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL, "the %s had ended by itself, status %#x", role, status);
 }
 
-static void nap(long milliseconds) {
-    nanosleep(&(struct timespec){0, milliseconds * 1000000}, NULL);
-}
-
-static VkSemaphore imported_timeline(Vk *vk, int fd) {
-    VkSemaphore                 timeline = vk_timeline(vk);
-    VkImportSemaphoreFdInfoKHR  import = {.sType = VK_STRUCTURE_TYPE_IMPORT_SEMAPHORE_FD_INFO_KHR,
-                                          .semaphore = timeline,
-                                          .handleType = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT,
-                                          .fd = fd};
-    VK(vk->import_semaphore_fd(vk->device, &import));
-    return timeline;
-}
-
 /* The other process as importer: reads the target again and again, until it is killed. */
 static int importer(void) {
     Vk     vk;
@@ -119,23 +103,12 @@ static int importer(void) {
     vk_open_device(&vk);
     VkPicture picture = vk_import(&vk, &passed.info, fds[0], BYTES);
     if (passed.has_timeline)
-        imported_timeline(&vk, fds[1]);
+        vk_import_semaphore(&vk, VK_SEMAPHORE_TYPE_TIMELINE, fds[1]);
     for (;;) {
         vk_read(&vk, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
         if (write(SOCKET, "r", 1) != 1)
             return 1;
     }
-}
-
-static BhrTargetOptions options_of(BhrTargetKind kind) {
-    BhrTargetOptions options;
-    CHECK_OK(bhr_target_options_init(&options, sizeof options));
-    options.kind = kind;
-    options.format = BHR_FORMAT_RGBA16F;
-    options.width = WIDTH;
-    options.height = HEIGHT;
-    options.handle_type = BHR_HANDLE_OPAQUE_FD;
-    return options;
 }
 
 /* A target and a timeline, exported as far as the device does. */
@@ -146,24 +119,17 @@ typedef struct Shared {
     int           fds[2];
 } Shared;
 
-static Shared share(BhrContext *context, BhrTargetKind kind) {
+static Shared share(BhrTargetKind kind) {
     Shared           shared = {.passed = {.info = {.struct_size = sizeof(BhrTargetInfo)}}, .fds = {-1, -1}};
-    BhrInteropInfo   can = {.struct_size = sizeof can};
-    BhrTargetOptions options = options_of(kind);
+    BhrTargetOptions options = share_options(BHR_FORMAT_RGBA16F, kind, WIDTH, HEIGHT, 0);
     BhrHandle        handle;
-    CHECK_OK(bhr_interop_info(context, &can));
     memcpy(shared.passed.uuid, can.device_uuid, sizeof can.device_uuid);
-    CHECK_OK(bhr_target_create(context, &options, &shared.target));
+    shared.target = share_make(&options);
     CHECK_OK(bhr_target_info(shared.target, &shared.passed.info));
     CHECK_OK(bhr_target_export(shared.target, &handle));
     shared.fds[0] = handle.fd;
-    shared.passed.has_timeline = (can.semaphores[BHR_SEMAPHORE_TIMELINE] & BHR_HANDLE_OPAQUE_FD) != 0;
-    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE,
-                                  shared.passed.has_timeline ? BHR_HANDLE_OPAQUE_FD : 0, &shared.timeline));
-    if (shared.passed.has_timeline) {
-        CHECK_OK(bhr_semaphore_export(shared.timeline, &handle));
-        shared.fds[1] = handle.fd;
-    }
+    shared.timeline = share_timeline(&shared.fds[1]);
+    shared.passed.has_timeline = shared.fds[1] >= 0;
     return shared;
 }
 
@@ -176,8 +142,8 @@ static void pass(int socket, Shared *shared) {
 }
 
 /* The other process as exporter: renders again and again, until it is killed. */
-static int exporter(BhrContext *context) {
-    Shared shared = share(context, BHR_TARGET_BUFFER);
+static int exporter(void) {
+    Shared shared = share(BHR_TARGET_BUFFER);
     pass(SOCKET, &shared);
     for (int frame = 0;; frame++) {
         BhrJob *job;
@@ -190,35 +156,27 @@ static int exporter(BhrContext *context) {
     }
 }
 
-static uint64_t picture_of(BhrContext *context) {
+static uint64_t expect(void) {
     BhrFrameStats stats = {.struct_size = sizeof stats};
-    BhrImage      image;
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.format = BHR_FORMAT_RGBA16F;
-    image.width = WIDTH;
-    image.height = HEIGHT;
-    image.pixels = expected;
-    image.byte_size = sizeof expected;
+    BhrImage      image = image_of(BHR_FORMAT_RGBA16F, WIDTH, HEIGHT, expected, sizeof expected);
     CHECK_OK(bhr_render_image(context, &image));
     CHECK_OK(bhr_frame_stats(context, &stats));
     return stats.device_bytes;
 }
 
-static void compare(BhrContext *context, BhrTargetKind kind, const char *what) {
+static void compare(BhrTargetKind kind, const char *what) {
     double apart = memcmp(seen, expected, BYTES) ? vk_apart(BHR_FORMAT_RGBA16F, seen, expected, BYTES) : 0;
     CHECK(apart <= vk_most_apart(context, kind, BHR_FORMAT_RGBA16F), "%s: pixels differ by up to %g", what, apart);
 }
 
-static void render(BhrContext *context, BhrTarget *target) {
+static void render(BhrTarget *target) {
     BhrJob *job;
-    if (!CHECK_OK(bhr_render_target(context, target, NULL, &job)))
-        return;
-    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
-    bhr_job_destroy(job);
+    if (CHECK_OK(bhr_render_target(context, target, NULL, &job)))
+        share_finish(job);
 }
 
 /* A frame waits for a signal that the dead process does not give; the host gives it. */
-static void free_the_frame(BhrContext *context, Shared *shared) {
+static void free_the_frame(Shared *shared) {
     BhrSemaphoreValue wait = {shared->timeline, 2}, signal = {shared->timeline, 3};
     BhrSync           sync = {
         .struct_size = sizeof sync, .wait_count = 1, .signal_count = 1, .waits = &wait, .signals = &signal};
@@ -227,107 +185,97 @@ static void free_the_frame(BhrContext *context, Shared *shared) {
         return;
     CHECK(bhr_job_wait(job, 50000000, NULL) == BHR_NOT_READY, "the frame did not wait");
     CHECK_OK(bhr_semaphore_signal(shared->timeline, 2));
-    CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
     CHECK_OK(bhr_semaphore_wait(shared->timeline, 3, UINT64_MAX));
-    bhr_job_destroy(job);
+    share_finish(job);
 }
 
 /* The importer is killed while bhr renders, some ms later each time. */
-static uint64_t importer_dies(BhrContext *context, Vk *host, BhrTargetKind kind, int round) {
-    Shared    shared = share(context, kind);
-    BhrHandle own;
+static uint64_t importer_dies(BhrTargetKind kind, int round) {
+    Shared    shared = share(kind);
     int       socket;
     pid_t     child = other_process("importer", &socket);
     pass(socket, &shared);
-    CHECK_OK(bhr_target_export(shared.target, &own));
-    VkPicture picture = vk_import(host, &shared.passed.info, own.fd, BYTES);
-    render(context, shared.target);
+    VkPicture picture = share_import(shared.target, BYTES);
+    render(shared.target);
     CHECK(told(socket), "the importer ended");
     for (int frame = 0; frame < 3; frame++) {
         CHECK_OK(bhr_set_time(context, 7.0 * frame));
         CHECK_OK(bhr_render_target(context, shared.target, NULL, NULL));
     }
-    nap(3 * round);
+    pause_ms(3 * round);
     kill_it(child, "importer");
     for (int frame = 0; frame < 5; frame++) {
         CHECK_OK(bhr_set_time(context, 11.0 * frame));
-        render(context, shared.target);
-        picture_of(context);
-        vk_read(host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
-        compare(context, kind, "after the importer's death");
+        render(shared.target);
+        expect();
+        vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
+        compare(kind, "after the importer's death");
     }
-    free_the_frame(context, &shared);
-    vk_drop(host, &picture);
+    free_the_frame(&shared);
+    vk_drop(&host, &picture);
     close(socket);
     bhr_semaphore_destroy(shared.timeline);
     bhr_target_destroy(shared.target);
-    return picture_of(context);
+    return expect();
 }
 
 /* The exporter is killed while it renders. */
-static void exporter_dies(BhrContext *context, Vk *host, int round) {
+static void exporter_dies(int round) {
     int              socket, fds[2], frames = 0;
     pid_t            child = other_process("exporter", &socket);
     Passed           passed = take(socket, fds);
-    BhrTargetOptions options = options_of(BHR_TARGET_BUFFER);
+    BhrTargetOptions options = share_options(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, WIDTH, HEIGHT, 0);
     BhrHandle        handle = {BHR_HANDLE_OPAQUE_FD, dup(fds[0]), NULL};
     BhrTarget       *target = NULL;
-    VkPicture        picture = vk_import(host, &passed.info, fds[0], BYTES);
+    VkPicture        picture = vk_import(&host, &passed.info, fds[0], BYTES);
     CHECK_OK(bhr_target_import(context, &options, &passed.info, &handle, &target));
     while (frames < 3 && told(socket))
         frames++;
     CHECK(frames == 3, "the exporter ended after %d frames", frames);
-    vk_read(host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
-    nap(2 * round);
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
+    pause_ms(2 * round);
     kill_it(child, "exporter");
-    vk_read(host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
-    vk_read(host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, again);
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, again);
     uint32_t lit = 0;
     for (uint32_t i = 0; i < BYTES; i++)
         lit += seen[i] != 0;
     CHECK(memcmp(seen, again, BYTES) == 0, "the pixels of a dead exporter change");
     CHECK(lit > BYTES / 8, "%u bytes of %u are left of the last frame", lit, BYTES);
     if (passed.has_timeline) {
-        VkSemaphore         timeline = imported_timeline(host, fds[1]);
+        VkSemaphore         timeline = vk_import_semaphore(&host, VK_SEMAPHORE_TYPE_TIMELINE, fds[1]);
         uint64_t            never = 1;
         VkSemaphoreWaitInfo wait = {.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
                                     .semaphoreCount = 1,
                                     .pSemaphores = &timeline,
                                     .pValues = &never};
-        CHECK(vkWaitSemaphores(host->device, &wait, 100000000) != VK_SUCCESS, "a signal that nobody gave");
-        vkDestroySemaphore(host->device, timeline, NULL);
+        CHECK(vkWaitSemaphores(host.device, &wait, 100000000) != VK_SUCCESS, "a signal that nobody gave");
+        vkDestroySemaphore(host.device, timeline, NULL);
     }
     /* The memory is everybody's who has it. */
     CHECK_OK(bhr_set_time(context, 40.0 + round));
-    render(context, target);
-    picture_of(context);
-    vk_read(host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
-    compare(context, BHR_TARGET_BUFFER, "in a dead process's memory");
+    render(target);
+    expect();
+    vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
+    compare(BHR_TARGET_BUFFER, "in a dead process's memory");
     bhr_target_destroy(target);
-    vk_drop(host, &picture);
+    vk_drop(&host, &picture);
     close(socket);
 }
 
 int main(int argc, char **argv) {
     if (argc > 2 && strcmp(argv[2], "importer") == 0)
         return importer();
-    BhrBackend     backend = check_begin(argc, argv);
-    BhrContext    *context = check_context(backend);
-    BhrInteropInfo info = {.struct_size = sizeof info};
-    Vk             host;
+    share_begin(argc, argv);
     if (argc > 2)
-        return exporter(context);
+        return exporter();
     /* Whoever writes to a process that has ended hears of it from write. */
     signal(SIGPIPE, SIG_IGN);
-    CHECK_OK(bhr_interop_info(context, &info));
-    memset(&host, 0, sizeof host);
-    vk_open_instance(&host, info.device_uuid, VK_API_VERSION_1_3, 0);
-    vk_open_device(&host);
     int      descriptors = 0;
     uint64_t bytes = 0;
     for (int round = 0; round < 6; round++) {
-        uint64_t now = importer_dies(context, &host, round % 2 ? BHR_TARGET_BUFFER : BHR_TARGET_IMAGE, round);
-        exporter_dies(context, &host, round);
+        uint64_t now = importer_dies(round % 2 ? BHR_TARGET_BUFFER : BHR_TARGET_IMAGE, round);
+        exporter_dies(round);
         if (round == 1)
             descriptors = open_descriptors(), bytes = now;
         CHECK(round < 2 || open_descriptors() <= descriptors, "round %d: %d descriptors, before %d", round,
@@ -336,7 +284,5 @@ int main(int argc, char **argv) {
         CHECK(round < 2 || now < bytes + 4096, "round %d: %llu bytes of the device, before %llu", round,
               (unsigned long long)now, (unsigned long long)bytes);
     }
-    bhr_context_destroy(context);
-    vk_close(&host);
-    return check_end();
+    return share_end();
 }

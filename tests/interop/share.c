@@ -23,10 +23,14 @@ BhrBackend share_begin(int argc, char **argv) {
     if (validate)
         options.flags |= BHR_CONTEXT_VALIDATION, options.log_fn = vk_log;
     context = check_context_with(&options);
+    share_open(validate);
+    return backend;
+}
+
+void share_open(int validate) {
     CHECK_OK(bhr_interop_info(context, &can));
     vk_open_instance(&host, can.device_uuid, VK_API_VERSION_1_3, validate);
     vk_open_device(&host);
-    return backend;
 }
 
 int share_end(void) {
@@ -47,6 +51,17 @@ BhrTargetOptions share_options(BhrFormat format, BhrTargetKind kind, uint32_t wi
     options.handle_type = BHR_HANDLE_OPAQUE_FD;
     options.row_stride = row_stride;
     return options;
+}
+
+BhrSemaphore *share_timeline(int *fd) {
+    int           shared = (can.semaphores[BHR_SEMAPHORE_TIMELINE] & BHR_HANDLE_OPAQUE_FD) != 0;
+    BhrSemaphore *timeline = NULL;
+    BhrHandle     handle = {BHR_HANDLE_OPAQUE_FD, -1, NULL};
+    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, shared ? BHR_HANDLE_OPAQUE_FD : 0, &timeline));
+    if (shared)
+        CHECK_OK(bhr_semaphore_export(timeline, &handle));
+    *fd = handle.fd;
+    return timeline;
 }
 
 BhrTarget *share_make(const BhrTargetOptions *options) {

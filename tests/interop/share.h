@@ -24,6 +24,8 @@ extern const ShareFormat formats[FORMATS];
 
 /* Arguments: vulkan [validate]. Makes context and host. Returns the backend. */
 BhrBackend share_begin(int argc, char **argv);
+/* Makes host for a context that the program has made. */
+void share_open(int validate);
 /* Ends both; the layers had nothing to say. The exit status of main. */
 int share_end(void);
 
@@ -32,6 +34,8 @@ BhrTargetOptions share_options(BhrFormat format, BhrTargetKind kind, uint32_t wi
                                uint64_t row_stride);
 /* Its target in memory of bhr's; NULL after a failed check. */
 BhrTarget *share_make(const BhrTargetOptions *options);
+/* A timeline of bhr's, and its descriptor; -1 where the device shares none. */
+BhrSemaphore *share_timeline(int *fd);
 /* The memory of one of bhr's in the host's hands; `bytes` of a buffer. */
 VkPicture share_import(BhrTarget *target, uint64_t bytes);
 /* The other way round: memory of the host's, for `usage` of an image or `bytes` of a buffer, as a target of bhr's;

@@ -4,13 +4,11 @@
  * waits for bhr's timeline on the GPU and signals its own; LIGHT alone against LIGHT, DEPTH and SKY in one frame; then
  * many frames, with descriptors and memory counted. Arguments: vulkan [frames]; with 0 frames only the cost of outputs.
  */
-#include "../c/check.h"
-#include "vk.h"
+#include "share.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #define WIDTH 3840u
 #define HEIGHT 2160u
@@ -19,10 +17,9 @@
 #define TIMED 40
 #endif
 
+/* In us. */
 static double now(void) {
-    struct timespec time;
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return (double)time.tv_sec * 1e6 + (double)time.tv_nsec * 1e-3;
+    return seconds_now() * 1e6;
 }
 
 static int rising(const void *a, const void *b) {
@@ -45,49 +42,20 @@ static long resident(void) {
     return pages * 4;
 }
 
-static VkSemaphore imported(Vk *host, BhrSemaphore *semaphore) {
-    BhrHandle handle;
-    CHECK_OK(bhr_semaphore_export(semaphore, &handle));
-    return vk_import_semaphore(host, VK_SEMAPHORE_TYPE_TIMELINE, handle.fd);
-}
-
-static void timed(BhrContext *context, double spin) {
+static void timed(double spin) {
     static unsigned char *host_pixels, *seen;
-    BhrTargetOptions      options;
-    BhrTargetInfo         info = {.struct_size = sizeof info};
-    BhrInteropInfo        can = {.struct_size = sizeof can};
-    BhrTarget            *target;
-    BhrSemaphore         *done, *freed = NULL;
-    BhrHandle             handle;
-    Vk                    host;
-    BhrImage              image;
     double                call[TIMED], signal[TIMED], memory[TIMED];
+    int                   fds[2] = {-1, -1};
     host_pixels = host_pixels ? host_pixels : malloc(BYTES);
     seen = seen ? seen : malloc(BYTES);
     CHECK_OK(bhr_set_spin(context, spin));
-    CHECK_OK(bhr_image_init(&image, sizeof image));
-    image.format = BHR_FORMAT_RGBA16F;
-    image.width = WIDTH;
-    image.height = HEIGHT;
-    image.pixels = host_pixels;
-    image.byte_size = BYTES;
+    BhrImage image = image_of(BHR_FORMAT_RGBA16F, WIDTH, HEIGHT, host_pixels, BYTES);
     CHECK_OK(bhr_prepare(context, &image));
-    CHECK_OK(bhr_interop_info(context, &can));
-    CHECK_OK(bhr_target_options_init(&options, sizeof options));
-    options.kind = BHR_TARGET_BUFFER;
-    options.format = BHR_FORMAT_RGBA16F;
-    options.width = WIDTH;
-    options.height = HEIGHT;
-    options.handle_type = BHR_HANDLE_OPAQUE_FD;
-    CHECK_OK(bhr_target_create(context, &options, &target));
-    CHECK_OK(bhr_target_info(target, &info));
-    CHECK_OK(bhr_target_export(target, &handle));
-    int shared = (can.semaphores[BHR_SEMAPHORE_TIMELINE] & BHR_HANDLE_OPAQUE_FD) != 0;
-    CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, shared ? BHR_HANDLE_OPAQUE_FD : 0, &done));
-    vk_open_instance(&host, can.device_uuid, VK_API_VERSION_1_3, 0);
-    vk_open_device(&host);
-    VkPicture picture = vk_import(&host, &info, handle.fd, BYTES);
-    uint64_t  value = 0;
+    BhrTargetOptions options = share_options(BHR_FORMAT_RGBA16F, BHR_TARGET_BUFFER, WIDTH, HEIGHT, 0);
+    BhrTarget       *target = share_make(&options);
+    BhrSemaphore    *done = share_timeline(&fds[0]), *freed = NULL;
+    VkPicture        picture = share_import(target, BYTES);
+    uint64_t         value = 0;
     for (int i = -5; i < TIMED; i++) {
         BhrSemaphoreValue one = {done, ++value};
         BhrSync           sync = {.struct_size = sizeof sync, .signal_count = 1, .signals = &one};
@@ -108,10 +76,11 @@ static void timed(BhrContext *context, double spin) {
     CHECK(memcmp(seen, host_pixels, BYTES) == 0, "the bytes differ from those of bhr_render_image");
     printf("spin %.1f: the call %.0f us, until its signal %.0f us; bhr_render_image %.0f us\n", spin, median(call),
            median(signal), median(memory));
-    if (shared) {
+    if (fds[0] >= 0) {
         /* The other device waits for bhr on the GPU, and bhr for it. */
-        CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, BHR_HANDLE_OPAQUE_FD, &freed));
-        VkSemaphore host_done = imported(&host, done), host_freed = imported(&host, freed);
+        freed = share_timeline(&fds[1]);
+        VkSemaphore host_done = vk_import_semaphore(&host, VK_SEMAPHORE_TYPE_TIMELINE, fds[0]);
+        VkSemaphore host_freed = vk_import_semaphore(&host, VK_SEMAPHORE_TYPE_TIMELINE, fds[1]);
         for (uint64_t i = 1; i <= 10; i++) {
             BhrSemaphoreValue wait = {freed, i - 1}, one = {done, ++value};
             BhrSync sync = {.struct_size = sizeof sync, .wait_count = i > 1, .signal_count = 1, .waits = &wait};
@@ -129,11 +98,10 @@ static void timed(BhrContext *context, double spin) {
     bhr_semaphore_destroy(done);
     bhr_semaphore_destroy(freed);
     vk_drop(&host, &picture);
-    vk_close(&host);
 }
 
 /* Medians of frames of the first `count` outputs: on the GPU (0 without its clock), and until the signal; us. */
-static void time_outputs(BhrContext *context, const BhrOutput *outputs, uint32_t count, double medians[2]) {
+static void time_outputs(const BhrOutput *outputs, uint32_t count, double medians[2]) {
     BhrSemaphore *done;
     double        gpu[TIMED], signal[TIMED];
     CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
@@ -158,27 +126,23 @@ static void time_outputs(BhrContext *context, const BhrOutput *outputs, uint32_t
 }
 
 /* LIGHT in RGBA16F alone, and LIGHT, DEPTH and SKY: the latter is to take 1.4 times as long at most. */
-static void outputs_cost(BhrContext *context, double spin, BhrTargetKind kind) {
-    static const BhrFormat formats[] = {BHR_FORMAT_RGBA16F, BHR_FORMAT_R32F, BHR_FORMAT_RGBA32F};
+static void outputs_cost(double spin, BhrTargetKind kind) {
+    static const BhrFormat made[] = {BHR_FORMAT_RGBA16F, BHR_FORMAT_R32F, BHR_FORMAT_RGBA32F};
     static const BhrOutputKind kinds[] = {BHR_OUTPUT_LIGHT, BHR_OUTPUT_DEPTH, BHR_OUTPUT_SKY};
     BhrTarget                 *targets[3];
     BhrOutput                  outputs[3];
     double                     alone[2], three[2];
     CHECK_OK(bhr_set_spin(context, spin));
     for (int i = 0; i < 3; i++) {
-        BhrTargetOptions options;
-        CHECK_OK(bhr_target_options_init(&options, sizeof options));
-        options.kind = kind;
-        options.format = formats[i];
-        options.width = WIDTH;
-        options.height = HEIGHT;
-        CHECK_OK(bhr_target_create(context, &options, &targets[i]));
+        BhrTargetOptions options = share_options(made[i], kind, WIDTH, HEIGHT, 0);
+        options.handle_type = 0;
+        targets[i] = share_make(&options);
         CHECK_OK(bhr_output_init(&outputs[i], sizeof outputs[i]));
         outputs[i].kind = kinds[i];
         outputs[i].target = targets[i];
     }
-    time_outputs(context, outputs, 1, alone);
-    time_outputs(context, outputs, 3, three);
+    time_outputs(outputs, 1, alone);
+    time_outputs(outputs, 3, three);
     printf("spin %.1f, %s: LIGHT %.0f us until its signal, with DEPTH and SKY %.0f us: %.2f times as long", spin,
            kind == BHR_TARGET_IMAGE ? "images" : "buffers", alone[1], three[1], three[1] / alone[1]);
     if (alone[0] > 0)
@@ -188,18 +152,11 @@ static void outputs_cost(BhrContext *context, double spin, BhrTargetKind kind) {
         bhr_target_destroy(targets[i]);
 }
 
-static void many(BhrContext *context, uint64_t frames) {
-    BhrTargetOptions options;
-    BhrTarget       *targets[2];
+static void many(uint64_t frames) {
+    BhrTargetOptions options = share_options(BHR_FORMAT_RGBA16F, BHR_TARGET_IMAGE, WIDTH, HEIGHT, 0);
+    BhrTarget       *targets[2] = {share_make(&options), share_make(&options)};
     BhrSemaphore    *done;
     BhrFrameStats    first = {.struct_size = sizeof first}, last = {.struct_size = sizeof last};
-    CHECK_OK(bhr_target_options_init(&options, sizeof options));
-    options.format = BHR_FORMAT_RGBA16F;
-    options.width = WIDTH;
-    options.height = HEIGHT;
-    options.handle_type = BHR_HANDLE_OPAQUE_FD;
-    CHECK_OK(bhr_target_create(context, &options, &targets[0]));
-    CHECK_OK(bhr_target_create(context, &options, &targets[1]));
     CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
     int    descriptors = 0;
     long   kib = 0;
@@ -230,20 +187,20 @@ static void many(BhrContext *context, uint64_t frames) {
 int main(int argc, char **argv) {
     BhrBackend        backend = check_begin(argc, argv);
     BhrContextOptions options = check_options(backend);
-    BhrContext       *context = NULL;
+    /* The scene that hosts begin with, not the plain one of tests. */
     if (!CHECK_OK(bhr_context_create(BHR_ABI_VERSION, &options, &context)))
         return check_end();
+    share_open(0);
     uint64_t frames = argc > 2 ? strtoull(argv[2], NULL, 10) : 10000;
     if (frames) {
-        timed(context, 0);
-        timed(context, 0.9);
+        timed(0);
+        timed(0.9);
     }
     for (int spin = 0; spin < 2; spin++) {
-        outputs_cost(context, spin ? 0.9 : 0, BHR_TARGET_BUFFER);
-        outputs_cost(context, spin ? 0.9 : 0, BHR_TARGET_IMAGE);
+        outputs_cost(spin ? 0.9 : 0, BHR_TARGET_BUFFER);
+        outputs_cost(spin ? 0.9 : 0, BHR_TARGET_IMAGE);
     }
     if (frames)
-        many(context, frames);
-    bhr_context_destroy(context);
-    return check_end();
+        many(frames);
+    return share_end();
 }
