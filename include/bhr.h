@@ -394,6 +394,12 @@ size_t bhr_context_error_message(const BhrContext *context, char *buffer, size_t
  * still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
  * begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
  * then says so.
+ *
+ * A process may end without it, by exit() or by returning from main, whatever is under way. Where a GPU was used, a
+ * handler of bhr's (atexit) then waits until no call of a driver is under way, 10 s at most, because drivers unload
+ * parts of themselves next. From then on no thread calls a driver for bhr: calls on contexts, in destructors of static
+ * objects for example, return INVALID_STATE, and destroying what a driver has a part in does nothing. Calls that are
+ * under way on other threads do not return. (Not on Windows, where other threads have ended by then.)
  */
 void bhr_context_destroy(BhrContext *context);
 

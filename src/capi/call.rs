@@ -2,7 +2,7 @@
 //! Calls on a context: one at a time, with its log callback listening.
 
 use super::context::{BhrContext, State};
-use super::entry::{Success, finish, refuse_in_callback};
+use super::entry::{Success, finish, refuse_at_the_end, refuse_in_callback};
 use super::log;
 use super::message::LastMessage;
 use super::panic::guarded;
@@ -25,7 +25,8 @@ pub(super) unsafe fn on_context<T: Success>(
 ) -> BhrStatus {
     // SAFETY: NULL or alive, by this function's contract.
     let context = unsafe { context.as_ref() };
-    if let Err(error) = refuse_in_callback() {
+    // A thread that stands still because the process ends may have the context's lock.
+    if let Err(error) = refuse_in_callback().and_then(|()| refuse_at_the_end()) {
         return keep(finish::<()>(function, Err(error)), context.map(|context| &*context.message));
     }
     let Some(context) = context else {

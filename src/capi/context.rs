@@ -17,7 +17,7 @@ use super::version::BHR_ABI_VERSION;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{HostVulkan, ReleaseGuard};
+use crate::gpu::{self, HostVulkan, ReleaseGuard};
 use crate::renderer::{Renderer, RendererOptions};
 use crate::scene::Region;
 use crate::tracer::Backend;
@@ -319,6 +319,12 @@ pub unsafe extern "C" fn bhr_context_error_message(
 /// still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
 /// begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
 /// then says so.
+///
+/// A process may end without it, by exit() or by returning from main, whatever is under way. Where a GPU was used, a
+/// handler of bhr's (atexit) then waits until no call of a driver is under way, 10 s at most, because drivers unload
+/// parts of themselves next. From then on no thread calls a driver for bhr: calls on contexts, in destructors of static
+/// objects for example, return INVALID_STATE, and destroying what a driver has a part in does nothing. Calls that are
+/// under way on other threads do not return. (Not on Windows, where other threads have ended by then.)
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";
@@ -335,6 +341,14 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     // SAFETY: bhr_context_create made it with Box::into_raw, and the host destroys it once.
     let context = unsafe { Box::from_raw(context) };
     let scope = log::Scope::enter(context.sink());
+    if gpu::process_ends() {
+        // The lock may be that of a thread which stands still.
+        let is_cpu = |state: &State| state.renderer.adapter().backend == Backend::Cpu;
+        if !context.state.try_lock().is_some_and(|state| is_cpu(&state)) {
+            std::mem::forget(context);
+            return;
+        }
+    }
     // A running call holds the lock.
     drop(context.state.lock());
     let BhrContext { state, log, progress_gate, .. } = *context;

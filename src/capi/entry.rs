@@ -7,6 +7,7 @@ use super::message::keep_message;
 use super::panic::guarded;
 use super::status::{self, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
+use crate::gpu;
 
 /// The value of a body that succeeds.
 pub(super) trait Success {
@@ -33,9 +34,9 @@ pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> Bhr
     finish(function, guarded(body))
 }
 
-/// A call without a context that reaches drivers or shared state: refused inside callbacks.
+/// A call without a context that reaches drivers or shared state: refused inside callbacks, and once the process ends.
 pub(super) fn outside_callbacks<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
-    finish(function, refuse_in_callback().and_then(|()| guarded(body)))
+    finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded(body)))
 }
 
 /// Keeps the message and logs it. The status of `result`.
@@ -57,4 +58,29 @@ pub(super) fn refuse_in_callback() -> Result<()> {
         return Err(Error::state("called from inside a log or progress callback; return from it first"));
     }
     Ok(())
+}
+
+/// Errors: INVALID_STATE once the process ends, if a driver was loaded.
+pub(super) fn refuse_at_the_end() -> Result<()> {
+    if gpu::process_ends() {
+        return Err(Error::state("the process is ending, and with it the drivers that contexts use"));
+    }
+    Ok(())
+}
+
+/// Destroys what is a driver's; once the process ends it is left to the system, as the driver may be gone already.
+pub(super) fn give_back<T>(function: &str, owned: T, end: impl FnOnce(&T)) {
+    if gpu::process_ends() {
+        return std::mem::forget(owned);
+    }
+    let ended = guarded(|| {
+        end(&owned);
+        Ok(())
+    });
+    // Dropped under a guard of its own: a second panic while one unwinds would end the process.
+    let dropped = guarded(move || {
+        drop(owned);
+        Ok(())
+    });
+    finish(function, ended.and(dropped));
 }

@@ -4,12 +4,11 @@
 use super::call::{keep, on_context};
 use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{SuccessStatus, finish, outside_callbacks};
+use super::entry::{SuccessStatus, finish, give_back, outside_callbacks};
 use super::interop_info::{BHR_HANDLE_HOST_POINTER, BHR_HANDLE_OPAQUE_FD, BhrHandleType};
 use super::interop_target::{BhrHandle, NO_HANDLE, close, read_handle};
 use super::log::{self, Sink};
 use super::message::LastMessage;
-use super::panic::guarded;
 use super::pointer::{Out, is_null, unknown};
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
@@ -215,14 +214,5 @@ pub unsafe extern "C" fn bhr_semaphore_destroy(semaphore: *mut BhrSemaphore) {
     // SAFETY: this file made it with Box::into_raw, and the host destroys it once.
     let BhrSemaphore { semaphore, sink, .. } = *unsafe { Box::from_raw(semaphore) };
     let _scope = log::Scope::enter(sink);
-    let ended = guarded(|| {
-        semaphore.end("it was destroyed");
-        Ok(())
-    });
-    // Dropped under a guard of its own: a second panic while one unwinds would end the process.
-    let dropped = guarded(move || {
-        drop(semaphore);
-        Ok(())
-    });
-    finish(NAME, ended.and(dropped));
+    give_back(NAME, semaphore, |semaphore| semaphore.end("it was destroyed"));
 }

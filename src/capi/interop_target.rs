@@ -5,12 +5,11 @@
 use super::call::{keep, on_context};
 use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{anywhere, finish, outside_callbacks};
+use super::entry::{anywhere, finish, give_back, outside_callbacks};
 use super::image::{BHR_FORMAT_RGBA8_SRGB, BHR_IMAGE_TRANSPARENT, BhrFormat, format};
 use super::interop_info::{BHR_HANDLE_HOST_POINTER, BHR_HANDLE_OPAQUE_FD, BhrHandleType};
 use super::log::{self, Sink};
 use super::message::LastMessage;
-use super::panic::guarded;
 use super::pointer::{Out, check_flags, check_reserved, is_null, unknown};
 use super::status::BhrStatus;
 use super::versioned::{self, OutStruct, Versioned};
@@ -453,14 +452,5 @@ pub unsafe extern "C" fn bhr_target_destroy(target: *mut BhrTarget) {
     // SAFETY: this file made it with Box::into_raw, and the host destroys it once.
     let BhrTarget { target, sink, .. } = *unsafe { Box::from_raw(target) };
     let _scope = log::Scope::enter(sink);
-    let ended = guarded(|| {
-        target.end("it was destroyed");
-        Ok(())
-    });
-    // Dropped under a guard of its own: a second panic while one unwinds would end the process.
-    let dropped = guarded(move || {
-        drop(target);
-        Ok(())
-    });
-    finish(NAME, ended.and(dropped));
+    give_back(NAME, target, |target| target.end("it was destroyed"));
 }

@@ -3,7 +3,7 @@
 
 use super::call::{break_if_internal, keep, on_context};
 use super::callback::in_callback;
-use super::context::BhrContext;
+use super::context::{BhrContext, State};
 use super::entry::{self, SuccessStatus, finish, outside_callbacks};
 use super::gate::Gate;
 use super::image::{self, BhrImage};
@@ -14,7 +14,9 @@ use super::pointer::{Out, is_null};
 use super::render::{Callback, Report};
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
+use crate::gpu;
 use crate::job::Job;
+use crate::tracer::Backend;
 use std::ffi::c_char;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -35,6 +37,8 @@ pub struct BhrJob {
     broken: Arc<AtomicBool>,
     /// Whether its frame is for the host's memory only, so that the job's end cancels it and waits for it.
     writes_memory: bool,
+    /// Whether a driver renders it.
+    uses_driver: bool,
 }
 
 /// The job of a frame for a target on the GPU.
@@ -47,6 +51,7 @@ pub(super) fn of_target(job: Job, context: &BhrContext, progress: Option<Callbac
         message: LastMessage::new(),
         broken: context.broken.clone(),
         writes_memory: false,
+        uses_driver: true,
     }
 }
 
@@ -98,8 +103,9 @@ pub(super) unsafe fn on_job<T: entry::Success>(
 }
 
 /// A job that writes into the host's memory, for the host to destroy.
-pub(super) fn new_job(context: &BhrContext, job: Job, progress: Option<Callback>) -> *mut BhrJob {
-    Box::into_raw(Box::new(BhrJob { writes_memory: true, ..of_target(job, context, progress) }))
+pub(super) fn new_job(context: &BhrContext, job: Job, state: &State) -> *mut BhrJob {
+    let uses_driver = state.renderer.adapter().backend != Backend::Cpu;
+    Box::into_raw(Box::new(BhrJob { writes_memory: true, uses_driver, ..of_target(job, context, state.progress) }))
 }
 
 /// Begins a job, which renders an image in the background, and returns at once. The scene and the region are taken
@@ -124,7 +130,7 @@ pub unsafe extern "C" fn bhr_render_image_async(
             let job = state.renderer.render_in_background(target.pixels, target.transparent, state.region)?;
             // `on_context` has refused NULL.
             let context = context.as_ref().ok_or_else(|| is_null("context"))?;
-            out.set(new_job(context, job, state.progress));
+            out.set(new_job(context, job, state));
             Ok(())
         })
     }
@@ -167,6 +173,9 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
 /// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was
 /// lost.
 fn cancel(function: &str, job: &BhrJob) {
+    if job.uses_driver && gpu::process_ends() {
+        return;
+    }
     let cancelled = guarded(|| {
         job.job.cancel();
         Ok(())
@@ -190,6 +199,11 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     }
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
+    if job.uses_driver && gpu::process_ends() {
+        // Its thread stands still, and writes nothing any more.
+        std::mem::forget(job);
+        return;
+    }
     if !job.writes_memory {
         job.job.leave_images();
         return;

@@ -250,7 +250,7 @@ pub unsafe extern "C" fn bhr_render_outputs(
             if !out_job.is_null() {
                 let job = state.renderer.render_outputs_in_background(targets, state.region)?;
                 let context = context.as_ref().ok_or_else(|| is_null("context"))?;
-                out.set(new_job(context, job, state.progress));
+                out.set(new_job(context, job, state));
                 return Ok(());
             }
             let mut report = Report::new(state.progress);

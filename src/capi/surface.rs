@@ -4,10 +4,9 @@
 use super::call::{keep, on_context};
 use super::callback::in_callback;
 use super::context::BhrContext;
-use super::entry::{SuccessStatus, finish, outside_callbacks};
+use super::entry::{SuccessStatus, finish, give_back, outside_callbacks};
 use super::log::{self, Sink};
 use super::message::LastMessage;
-use super::panic::guarded;
 use super::pointer::{Out, is_null, unknown};
 use super::status::{BHR_FRAME_SKIPPED, BHR_OK, BhrStatus};
 use super::window::{self, BhrWindow};
@@ -169,14 +168,5 @@ pub unsafe extern "C" fn bhr_surface_destroy(surface: *mut BhrSurface) {
     // SAFETY: bhr_surface_create made it with Box::into_raw, and the host destroys it once.
     let BhrSurface { surface, sink, .. } = *unsafe { Box::from_raw(surface) };
     let _scope = log::Scope::enter(sink);
-    let ended = guarded(|| {
-        surface.end("it was destroyed");
-        Ok(())
-    });
-    // The surface is dropped under a guard of its own: a second panic while one unwinds would end the process.
-    let dropped = guarded(move || {
-        drop(surface);
-        Ok(())
-    });
-    finish(NAME, ended.and(dropped));
+    give_back(NAME, surface, |surface| surface.end("it was destroyed"));
 }

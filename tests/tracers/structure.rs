@@ -129,7 +129,7 @@ fn pixels_show_about_what_many_rays_find() {
     }
 }
 
-/// Films do not crawl: what changes from frame to frame other than evenly is less than twice what it is where each
+/// Films do not crawl: what changes from frame to frame other than evenly is at most 1.5 times what it is where each
 /// pixel has 16 rays. A view that turns, and time that passes.
 #[test]
 fn films_do_not_crawl() {
@@ -165,6 +165,6 @@ fn films_do_not_crawl() {
         };
         let (one, many) = (unsteady(1), unsteady(16));
         println!("{name}, {}: {one:.3} of 255, {many:.3} with 16 samples", if turns { "turning" } else { "in time" });
-        assert!(many > 0.05 && one < 2.0 * many, "{name}, turning {turns}: {one} {many}");
+        assert!(many > 0.05 && one <= 1.5 * many, "{name}, turning {turns}: {one} {many}");
     }
 }

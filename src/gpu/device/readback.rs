@@ -4,6 +4,7 @@
 
 use super::buffer::Buffer;
 use super::wgpu_device::Device;
+use super::{driver_lock, process_end};
 use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::ops::Range;
@@ -191,6 +192,8 @@ impl MappedReadback<'_> {
     /// Errors: those of `take`; `DeviceLost`; `Internal` for bytes that the piece has not.
     pub fn part<T>(&self, range: Range<u64>, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
         let buffer = self.copied.staging.buffer()?;
+        // Once the process ends, nobody reads the driver's memory, nor writes the host's.
+        let _inside = process_end::enter(driver_lock::is_held);
         let take = || {
             let part = self.view.get(range.start as usize..range.end as usize);
             take(part.ok_or_else(|| Error::internal("a part of a readback that it has not"))?)

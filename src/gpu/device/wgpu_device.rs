@@ -4,11 +4,11 @@
 //! scenes.
 
 use super::adapter::{Adapter, device_descriptor};
-use super::driver_lock;
 use super::gl_thread::{CONTEXT_GONE, DisplayAge, park};
 use super::turns::{HostTurn, QueueTurns};
 #[cfg(not(target_vendor = "apple"))]
 use super::vulkan::{self, parts::VulkanParts};
+use super::{driver_lock, process_end};
 use crate::deferred::hold;
 use crate::error::{Error, ErrorKind, Result, panic_text};
 use crate::tracer::Backend;
@@ -288,6 +288,7 @@ impl Device {
     fn in_error_scopes<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
         driver_lock::guard();
         let _holding = hold();
+        let _inside = process_end::enter(driver_lock::is_held);
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -412,6 +413,7 @@ impl Device {
         self.leave_what_is_gone();
         driver_lock::guard();
         let _holding = hold();
+        let _inside = process_end::enter(driver_lock::is_held);
         catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
             self.health.lose(panic_text(&*panic));
             lost(panic_text(&*panic))
@@ -428,10 +430,13 @@ impl Device {
     pub(in crate::gpu) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
         let first = || !self.compiled.load(Ordering::Acquire);
         // Those who waited for the first one make theirs side by side.
-        let driver = first().then(driver_lock::lock).filter(|_| first());
+        let mut driver = first().then(driver_lock::lock).filter(|_| first());
         let made = compile();
         self.compiled.store(true, Ordering::Release);
-        drop(driver);
+        if driver.take().is_some() {
+            // By now the driver has loaded what it makes pipelines with.
+            process_end::watch();
+        }
         made
     }
 
