@@ -163,13 +163,9 @@ static void render(BhrContext *context, const BhrOutput *outputs, uint32_t count
                               .waits = &wait,
                               .signals = &signal};
     BhrJob           *job = NULL;
-    if (turns->rendered) {
-        bhr(bhr_render_outputs_shared(context, outputs, sizeof *outputs, count, &sync, NULL), "a frame");
-    } else {
-        bhr(bhr_render_outputs_shared(context, outputs, sizeof *outputs, count, NULL, &job), "a frame");
-        bhr(bhr_job_wait(job, UINT64_MAX, NULL), "waiting for a frame");
-        bhr_job_destroy(job);
-    }
+    bhr(bhr_render_outputs_shared(context, outputs, sizeof *outputs, count, turns->rendered ? &sync : NULL, &job),
+        "a frame");
+    keep_pace(turns, job);
 }
 
 int main(int argc, char **argv) {

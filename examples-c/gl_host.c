@@ -44,13 +44,8 @@ int main(int argc, char **argv) {
                                   .signal_count = 1,
                                   .waits = &wait,
                                   .signals = &signal};
-        if (turns.rendered) {
-            bhr(bhr_render_target(context, picture.target, &sync, NULL), "a frame");
-        } else {
-            bhr(bhr_render_target(context, picture.target, NULL, &job), "a frame");
-            bhr(bhr_job_wait(job, UINT64_MAX, NULL), "waiting for a frame");
-            bhr_job_destroy(job);
-        }
+        bhr(bhr_render_target(context, picture.target, turns.rendered ? &sync : NULL, &job), "a frame");
+        keep_pace(&turns, job);
         take_turn(&turns, 1, &picture.texture);
         my_glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffers[0]);
         my_glBindFramebuffer(GL_DRAW_FRAMEBUFFER, framebuffers[1]);

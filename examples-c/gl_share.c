@@ -139,6 +139,23 @@ void take_turn(const Turns *turns, GLuint count, const GLuint *textures) {
         my_glWaitSemaphoreEXT(turns->gl_rendered, 0, NULL, count, textures, GENERAL);
 }
 
+static void finish(BhrJob *job) {
+    bhr(bhr_job_wait(job, UINT64_MAX, NULL), "waiting for a frame");
+    bhr_job_destroy(job);
+}
+
+void keep_pace(const Turns *turns, BhrJob *job) {
+    static BhrJob *before[2];
+    if (!turns->rendered) {
+        finish(job);
+        return;
+    }
+    if (before[0])
+        finish(before[0]);
+    before[0] = before[1];
+    before[1] = job;
+}
+
 void write_ppm(const char *path, const unsigned char *top_row, long stride) {
     FILE *file = fopen(path, "wb");
     if (my_glGetError() != GL_NO_ERROR)

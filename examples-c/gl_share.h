@@ -84,6 +84,10 @@ Turns make_turns(BhrContext *context);
 void give_turn(const Turns *turns, GLuint count, const GLuint *textures);
 void take_turn(const Turns *turns, GLuint count, const GLuint *textures);
 
+/* A frame of bhr's has been submitted: waits for it where there are no semaphores; else for the frame two before it, as
+ * a program without a display could get ahead of the GPU by more frames than a context takes, 64. Destroys the jobs. */
+void keep_pace(const Turns *turns, BhrJob *job);
+
 /* Rows of WIDTH pixels of 4 bytes, `stride` bytes from one to the next below. */
 void write_ppm(const char *path, const unsigned char *top_row, long stride);
 

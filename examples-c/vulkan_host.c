@@ -348,10 +348,10 @@ int main(int argc, char **argv) {
     int      frame = 0;
     while (window ? !glfwWindowShouldClose(window) && (frames == 0 || frame < frames) : frame < frames) {
         uint32_t index = 0;
+        /* The commands and the semaphore of the last frame are free again. */
+        bhr(bhr_semaphore_wait(shared, value, UINT64_MAX), "waiting for the last frame");
         if (window) {
             glfwPollEvents();
-            /* The commands and the semaphore of the last frame are free again. */
-            bhr(bhr_semaphore_wait(shared, value, UINT64_MAX), "waiting for the last frame");
             if (!next_image(&index))
                 continue;
             record_drawing(index);
