@@ -24,161 +24,155 @@
 #define AT_WORK 4
 #define JOBS 3
 
-static BhrBackend backend;
-static BhrContext *context;
-static BhrJob *jobs[JOBS];
+static BhrBackend    backend;
+static BhrContext   *context;
+static BhrJob       *jobs[JOBS];
 static unsigned char pixels[JOBS][WIDTH * HEIGHT * 4];
 
 static double now(void) {
-  struct timespec time;
-  clock_gettime(CLOCK_MONOTONIC, &time);
-  return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
 }
 
 /* Threads of bhr's that run, and do not wait: those that compile kernels, as
  * others have more to do than call drivers. */
 static int at_work(void) {
-  int count = 0;
-  DIR *tasks = opendir("/proc/self/task");
-  struct dirent *task;
-  while (tasks && (task = readdir(tasks)) != NULL) {
-    char path[300], name[64] = "", state = 0;
-    FILE *file;
-    snprintf(path, sizeof path, "/proc/self/task/%s/stat", task->d_name);
-    file = fopen(path, "r");
-    if (file && fscanf(file, "%*d (%63[^)]) %c", name, &state) == 2 &&
-        strcmp(name, "bhr-kernels") == 0)
-      count += state == 'R';
-    if (file)
-      fclose(file);
-  }
-  if (tasks)
-    closedir(tasks);
-  return count;
+    int            count = 0;
+    DIR           *tasks = opendir("/proc/self/task");
+    struct dirent *task;
+    while (tasks && (task = readdir(tasks)) != NULL) {
+        char  path[300], name[64] = "", state = 0;
+        FILE *file;
+        snprintf(path, sizeof path, "/proc/self/task/%s/stat", task->d_name);
+        file = fopen(path, "r");
+        if (file && fscanf(file, "%*d (%63[^)]) %c", name, &state) == 2 && strcmp(name, "bhr-kernels") == 0)
+            count += state == 'R';
+        if (file)
+            fclose(file);
+    }
+    if (tasks)
+        closedir(tasks);
+    return count;
 }
 
 /* Registered before bhr has loaded a driver, so that it runs after bhr's
  * handler. Threads may take a moment to come to their next call of a driver. */
 static void look(void) {
-  const struct timespec grace = {0, 300000000}, moment = {0, 10000000};
-  int busy = 0;
-  nanosleep(&grace, NULL);
-  for (int i = 0; i < 10; i++) {
-    nanosleep(&moment, NULL);
-    busy += at_work();
-  }
-  if (busy > 1)
-    _exit(AT_WORK);
+    const struct timespec grace = {0, 300000000}, moment = {0, 10000000};
+    int                   busy = 0;
+    nanosleep(&grace, NULL);
+    for (int i = 0; i < 10; i++) {
+        nanosleep(&moment, NULL);
+        busy += at_work();
+    }
+    if (busy > 1)
+        _exit(AT_WORK);
 }
 
 static void begin_jobs(void) {
-  for (int i = 0; i < JOBS; i++) {
-    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT,
-                                    pixels[i], sizeof pixels[i]);
-    if (bhr_render_image_async(context, &image, &jobs[i]) < 0)
-      _exit(5);
-  }
+    for (int i = 0; i < JOBS; i++) {
+        const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels[i], sizeof pixels[i]);
+        if (bhr_render_image_async(context, &image, &jobs[i]) < 0)
+            _exit(5);
+    }
 }
 
 static void destroy(void) {
-  BhrStatus status = bhr_set_mass(context, 2);
-  if (status != (backend == BHR_BACKEND_CPU ? BHR_OK : BHR_ERROR_INVALID_STATE))
-    _exit(7);
-  for (int i = 0; i < JOBS; i++)
-    bhr_job_cancel(jobs[i]);
-  bhr_context_destroy(context);
-  for (int i = 0; i < JOBS; i++)
-    bhr_job_destroy(jobs[i]);
+    BhrStatus status = bhr_set_mass(context, 2);
+    if (status != (backend == BHR_BACKEND_CPU ? BHR_OK : BHR_ERROR_INVALID_STATE))
+        _exit(7);
+    for (int i = 0; i < JOBS; i++)
+        bhr_job_cancel(jobs[i]);
+    bhr_context_destroy(context);
+    for (int i = 0; i < JOBS; i++)
+        bhr_job_destroy(jobs[i]);
 }
 
 static void *ending(void *unused) {
-  (void)unused;
-  exit(STATUS);
+    (void)unused;
+    exit(STATUS);
 }
 
 /* What hosts do, each in a process of its own. */
 static void right_after_a_context(void) {
-  atexit(look);
-  context = check_context(backend);
-  exit(STATUS);
+    atexit(look);
+    context = check_context(backend);
+    exit(STATUS);
 }
 
 static void with_jobs(void) {
-  atexit(look);
-  context = check_context(backend);
-  begin_jobs();
-  exit(STATUS);
+    atexit(look);
+    context = check_context(backend);
+    begin_jobs();
+    exit(STATUS);
 }
 
 static void from_another_thread(void) {
-  pthread_t thread;
-  const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT,
-                                  pixels[0], sizeof pixels[0]);
-  atexit(look);
-  context = check_context(backend);
-  if (bhr_render_image(context, &image) < 0 ||
-      pthread_create(&thread, NULL, ending, NULL) != 0)
-    _exit(5);
-  while (bhr_render_image(context, &image) >= 0) {
-  }
-  if (bhr_render_image(context, &image) != BHR_ERROR_INVALID_STATE)
-    _exit(5);
-  for (;;)
-    pause();
+    pthread_t      thread;
+    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels[0], sizeof pixels[0]);
+    atexit(look);
+    context = check_context(backend);
+    if (bhr_render_image(context, &image) < 0 || pthread_create(&thread, NULL, ending, NULL) != 0)
+        _exit(5);
+    while (bhr_render_image(context, &image) >= 0) {
+    }
+    if (bhr_render_image(context, &image) != BHR_ERROR_INVALID_STATE)
+        _exit(5);
+    for (;;)
+        pause();
 }
 
 static void with_a_handler_that_destroys(void) {
-  atexit(destroy);
-  context = check_context(backend);
-  begin_jobs();
-  exit(STATUS);
+    atexit(destroy);
+    context = check_context(backend);
+    begin_jobs();
+    exit(STATUS);
 }
 
 static void in_a_forked_child(void) {
-  int status = 0;
-  double begun;
-  context = check_context(backend);
-  begin_jobs();
-  begun = now();
-  pid_t child = fork();
-  if (child == 0)
-    exit(STATUS);
-  if (waitpid(child, &status, 0) != child || !WIFEXITED(status))
-    _exit(5);
-  if (now() - begun > 8)
-    _exit(6);
-  for (int i = 0; i < JOBS; i++)
-    bhr_job_destroy(jobs[i]);
-  bhr_context_destroy(context);
-  exit(WEXITSTATUS(status));
+    int    status = 0;
+    double begun;
+    context = check_context(backend);
+    begin_jobs();
+    begun = now();
+    pid_t child = fork();
+    if (child == 0)
+        exit(STATUS);
+    if (waitpid(child, &status, 0) != child || !WIFEXITED(status))
+        _exit(5);
+    if (now() - begun > 8)
+        _exit(6);
+    for (int i = 0; i < JOBS; i++)
+        bhr_job_destroy(jobs[i]);
+    bhr_context_destroy(context);
+    exit(WEXITSTATUS(status));
 }
 
 static void in_process(const char *name, void (*body)(void)) {
-  int status = 0;
-  double begun = now(), took;
-  pid_t child = fork();
-  if (child == 0) {
-    body();
-    _exit(5);
-  }
-  if (child < 0 || waitpid(child, &status, 0) != child) {
-    CHECK(0, "%s: no process", name);
-    return;
-  }
-  took = now() - begun;
-  CHECK(WIFEXITED(status), "%s: killed by signal %d", name, WTERMSIG(status));
-  CHECK(WIFEXITED(status) && WEXITSTATUS(status) == STATUS, "%s: status %d",
-        name, WEXITSTATUS(status));
-  CHECK(took < 120, "%s: it took %.1f s", name, took);
+    int    status = 0;
+    double begun = now(), took;
+    pid_t  child = fork();
+    if (child == 0) {
+        body();
+        _exit(5);
+    }
+    if (child < 0 || waitpid(child, &status, 0) != child) {
+        CHECK(0, "%s: no process", name);
+        return;
+    }
+    took = now() - begun;
+    CHECK(WIFEXITED(status), "%s: killed by signal %d", name, WTERMSIG(status));
+    CHECK(WIFEXITED(status) && WEXITSTATUS(status) == STATUS, "%s: status %d", name, WEXITSTATUS(status));
+    CHECK(took < 120, "%s: it took %.1f s", name, took);
 }
 
 int main(int argc, char **argv) {
-  backend = check_begin(argc, argv);
-  in_process("exit right after a context", right_after_a_context);
-  in_process("exit with jobs", with_jobs);
-  in_process("exit from another thread", from_another_thread);
-  in_process("exit with a handler that destroys the context",
-             with_a_handler_that_destroys);
-  in_process("exit in a forked child", in_a_forked_child);
-  return check_end();
+    backend = check_begin(argc, argv);
+    in_process("exit right after a context", right_after_a_context);
+    in_process("exit with jobs", with_jobs);
+    in_process("exit from another thread", from_another_thread);
+    in_process("exit with a handler that destroys the context", with_a_handler_that_destroys);
+    in_process("exit in a forked child", in_a_forked_child);
+    return check_end();
 }
