@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
 /* timing.c -- frames of 3840 x 2160 in RGBA16F by hand on a GPU, for tests/gpu/interop.sh: how long bhr_render_target
- * holds its thread, how long until its signal, and how long bhr_render_image takes; bytes equal; another device that
- * waits for bhr's timeline on the GPU and signals its own; LIGHT alone against LIGHT, DEPTH and SKY in one frame; then
- * many frames, with descriptors and memory counted. Arguments: vulkan [frames]; with 0 frames only the cost of outputs.
- */
+ * holds its thread, how long until its signal, both as a job too, and how long bhr_render_image takes; bytes equal;
+ * another device that waits for bhr's timeline on the GPU and signals its own; LIGHT alone against LIGHT, DEPTH and SKY
+ * in one frame; then many frames, with descriptors and memory counted. Arguments: vulkan [frames]; with 0 frames only
+ * the cost of outputs. */
 #include "share.h"
 
 #include <stdio.h>
@@ -44,7 +44,7 @@ static long resident(void) {
 
 static void timed(double spin) {
     static unsigned char *host_pixels, *seen;
-    double                call[TIMED], signal[TIMED], memory[TIMED];
+    double                call[TIMED], signal[TIMED], memory[TIMED], job_call[TIMED], job_signal[TIMED];
     int                   fds[2] = {-1, -1};
     host_pixels = host_pixels ? host_pixels : malloc(BYTES);
     seen = seen ? seen : malloc(BYTES);
@@ -66,6 +66,19 @@ static void timed(double spin) {
         if (i >= 0)
             call[i] = submitted - begin, signal[i] = now() - begin;
     }
+    for (int i = -5; i < TIMED; i++) {
+        BhrSemaphoreValue one = {done, ++value};
+        BhrSync           sync = {.struct_size = sizeof sync, .signal_count = 1, .signals = &one};
+        BhrJob           *job;
+        double            begin = now();
+        CHECK_OK(bhr_render_target_async(context, target, &sync, &job));
+        double begun = now();
+        CHECK_OK(bhr_semaphore_wait(done, value, UINT64_MAX));
+        if (i >= 0)
+            job_call[i] = begun - begin, job_signal[i] = now() - begin;
+        CHECK_OK(bhr_job_wait(job, UINT64_MAX, NULL));
+        bhr_job_destroy(job);
+    }
     for (int i = -2; i < TIMED; i++) {
         double begin = now();
         CHECK_OK(bhr_render_image(context, &image));
@@ -74,8 +87,8 @@ static void timed(double spin) {
     }
     vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
     CHECK(memcmp(seen, host_pixels, BYTES) == 0, "the bytes differ from those of bhr_render_image");
-    printf("spin %.1f: the call %.0f us, until its signal %.0f us; bhr_render_image %.0f us\n", spin, median(call),
-           median(signal), median(memory));
+    printf("spin %.1f: the call %.0f us, until its signal %.0f us; as a job %.0f and %.0f us; bhr_render_image %.0f us\n",
+           spin, median(call), median(signal), median(job_call), median(job_signal), median(memory));
     if (fds[0] >= 0) {
         /* The other device waits for bhr on the GPU, and bhr for it. */
         freed = share_timeline(&fds[1]);
