@@ -182,13 +182,17 @@ static void many(uint64_t frames) {
     BhrSemaphore    *done;
     BhrFrameStats    first = {.struct_size = sizeof first}, last = {.struct_size = sizeof last};
     CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
-    /* Programs for likely changes of the scene are still made in the background, which takes memory. */
+    /* Programs for likely changes of the scene are still made in the background, which takes memory: until none has come
+     * for 3 s, or for a minute. */
     uint64_t value = 0;
     long     kib = 0;
+    double   started = now();
     do {
+        double round = now();
         kib = resident();
-        run_frames(targets, done, &value, frames / 10 + 1);
-    } while (resident() > kib + 256 && value < 10 * frames);
+        while (now() < round + 3e6)
+            run_frames(targets, done, &value, 1);
+    } while (resident() > kib + 256 && now() < started + 60e6);
     int descriptors = open_descriptors();
     CHECK_OK(bhr_frame_stats(context, &first));
     kib = resident();
