@@ -231,6 +231,7 @@ int main(int argc, char **argv) {
     printf("%d frames put together by %s, %s; the last one is %s\n", frames, my_glGetString(GL_RENDERER),
            turns.rendered ? "with semaphores" : "waiting on the CPU", path);
 
+    keep_pace(&turns, NULL);
     bhr_target_destroy(light.target);
     bhr_target_destroy(lens.target);
     bhr_target_destroy(drawn.target);

@@ -59,6 +59,7 @@ int main(int argc, char **argv) {
     printf("%d frames as a texture of %s, %s; the last one is %s\n", frames, my_glGetString(GL_RENDERER),
            turns.rendered ? "with semaphores" : "waiting on the CPU", out);
 
+    keep_pace(&turns, NULL);
     bhr_target_destroy(picture.target);
     bhr_semaphore_destroy(turns.rendered);
     bhr_semaphore_destroy(turns.drawn);

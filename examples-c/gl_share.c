@@ -146,7 +146,7 @@ static void finish(BhrJob *job) {
 
 void keep_pace(const Turns *turns, BhrJob *job) {
     static BhrJob *before[2];
-    if (!turns->rendered) {
+    if (job && !turns->rendered) {
         finish(job);
         return;
     }
@@ -154,6 +154,8 @@ void keep_pace(const Turns *turns, BhrJob *job) {
         finish(before[0]);
     before[0] = before[1];
     before[1] = job;
+    if (!job && before[0])
+        keep_pace(turns, NULL);
 }
 
 void write_ppm(const char *path, const unsigned char *top_row, long stride) {

@@ -85,7 +85,8 @@ void give_turn(const Turns *turns, GLuint count, const GLuint *textures);
 void take_turn(const Turns *turns, GLuint count, const GLuint *textures);
 
 /* A frame of bhr's has been submitted: waits for it where there are no semaphores; else for the frame two before it, as
- * a program without a display could get ahead of the GPU by more frames than a context takes, 64. Destroys the jobs. */
+ * a program without a display could get ahead of the GPU by more frames than a context takes, 64. Destroys the job that
+ * it has waited for. With NULL, at the end: waits for all. */
 void keep_pace(const Turns *turns, BhrJob *job);
 
 /* Rows of WIDTH pixels of 4 bytes, `stride` bytes from one to the next below. */

@@ -395,11 +395,11 @@ size_t bhr_context_error_message(const BhrContext *context, char *buffer, size_t
  * begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
  * then says so.
  *
- * A process may end without it, by exit() or by returning from main, whatever is under way. Where a GPU was used, a
- * handler of bhr's (atexit) then waits until no call of a driver is under way, 10 s at most, because drivers unload
- * parts of themselves next. From then on no thread calls a driver for bhr: calls on contexts, in destructors of static
- * objects for example, return INVALID_STATE, and destroying what a driver has a part in does nothing. Calls that are
- * under way on other threads do not return. (Not on Windows, where other threads have ended by then.)
+ * A process may end without it, by exit() or by returning from main, whatever jobs are under way. Drivers unload parts
+ * of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads have come out
+ * of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static objects that run
+ * later, calls on contexts and jobs return INVALID_STATE, and destroying what uses a GPU frees nothing. Threads of the
+ * host's go on: end them before, if they call bhr. (Nothing of this on Windows, where other threads end first.)
  */
 void bhr_context_destroy(BhrContext *context);
 
@@ -1059,9 +1059,9 @@ BHR_NODISCARD BhrStatus bhr_get_hot_spots(const BhrContext *context,
 #define BHR_IMAGE_BOTTOM_UP 2u
 
 /**
- * BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: bent rays meet the things whose
- * distances these are, because the host has drawn them where light shows them (BhrProjectedPoint.apparent). Without it
- * the things lie on straight lines of sight. Since 0.2.0.
+ * BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: the host has drawn the things where bent
+ * light shows them (BhrProjectedPoint.apparent), so bhr compares their distances with those along bent rays. Without
+ * it the things lie on straight lines of sight. Since 0.2.0.
  */
 #define BHR_IMAGE_LENSED 4u
 

@@ -428,8 +428,8 @@ BHR_NODISCARD BhrStatus bhr_render_outputs_shared_async(BhrContext *context,
  *
  * Numbers on the GPU cannot be checked: NaN hides nothing, and what is below 0 everything. The target must stay as
  * long as it is set: after bhr_target_destroy or bhr_context_recover frames are SURFACE_LOST, until another occluder
- * or NULL is set. It cannot be a frame's target as well. Its sides are those of the frames' images, which are
- * INVALID_ARGUMENT else. A buffer may have any row_stride. Otherwise as bhr_set_occluder. Any thread, not inside
+ * or NULL is set. It cannot be a frame's target as well. It has the size of the frames' images; a frame of another
+ * size is INVALID_ARGUMENT. A buffer may have any row_stride. Otherwise as bhr_set_occluder. Any thread, not inside
  * callbacks. Errors: INVALID_ARGUMENT for a NULL context, another format, other flags, or a target of another context;
  * UNSUPPORTED for a side that is longer than the device's textures have (16384, or less), and for an image without
  * TRANSFER_SRC usage; SURFACE_LOST; DEVICE_LOST; the occluder then stays as it was. Since 0.2.0.
@@ -461,7 +461,7 @@ BHR_NODISCARD BhrStatus bhr_set_sky_target(BhrContext *context, BhrTarget *targe
  * -x, on the fourth +x. Frames make an equirectangular map of it, four faces wide and two high, with four places in
  * each texel, between texels of the cube and across its edges; detail finer than at the faces' middles is lost. At
  * most 2730 texels a side. Errors: those of bhr_set_sky_target; INVALID_ARGUMENT for another layout or shape;
- * UNSUPPORTED for rows too far apart for a kernel's six bindings of 128 MiB at least (packed ones fit). Since 0.2.0.
+ * UNSUPPORTED for rows so far apart that a kernel's six bindings, of 128 MiB at least, do not hold them. Since 0.2.0.
  */
 BHR_NODISCARD BhrStatus bhr_set_sky_target_as(BhrContext *context, BhrTarget *target, BhrProjection layout);
 

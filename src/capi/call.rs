@@ -25,14 +25,16 @@ pub(super) unsafe fn on_context<T: Success>(
 ) -> BhrStatus {
     // SAFETY: NULL or alive, by this function's contract.
     let context = unsafe { context.as_ref() };
-    // A thread that stands still because the process ends may have the context's lock.
-    if let Err(error) = refuse_in_callback().and_then(|()| refuse_at_the_end()) {
+    if let Err(error) = refuse_in_callback() {
         return keep(finish::<()>(function, Err(error)), context.map(|context| &*context.message));
     }
     let Some(context) = context else {
         return finish::<()>(function, Err(is_null("context")));
     };
     let _scope = log::Scope::enter(context.sink());
+    if let Err(error) = refuse_at_the_end() {
+        return keep(finish::<()>(function, Err(error)), Some(&context.message));
+    }
     let mut state = context.state.lock();
     let result = if context.broken.load(Ordering::Relaxed) {
         Err(Error::internal("this context failed internally before; only bhr_context_destroy is valid"))

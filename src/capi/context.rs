@@ -17,7 +17,7 @@ use super::version::BHR_ABI_VERSION;
 use super::versioned::{self, OutStruct, POINTER, Versioned};
 use super::window::{self, BhrWindow};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{self, HostVulkan, ReleaseGuard};
+use crate::gpu::{HostVulkan, ReleaseGuard, process_end};
 use crate::renderer::{Renderer, RendererOptions};
 use crate::scene::Region;
 use crate::tracer::Backend;
@@ -27,6 +27,7 @@ use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 /// A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
 /// wait for each other.
@@ -314,17 +315,20 @@ pub unsafe extern "C" fn bhr_context_error_message(
     unsafe { copy_last(context.as_ref().map(|context| &*context.message), buffer, size) }
 }
 
+/// How long a context waits for a call that is running when the process ends.
+const AT_THE_END: Duration = Duration::from_secs(3);
+
 /// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a
 /// second for pipelines that are being compiled, then frees it. Its surfaces end too, but both they and its jobs must
 /// still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
 /// begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
 /// then says so.
 ///
-/// A process may end without it, by exit() or by returning from main, whatever is under way. Where a GPU was used, a
-/// handler of bhr's (atexit) then waits until no call of a driver is under way, 10 s at most, because drivers unload
-/// parts of themselves next. From then on no thread calls a driver for bhr: calls on contexts, in destructors of static
-/// objects for example, return INVALID_STATE, and destroying what a driver has a part in does nothing. Calls that are
-/// under way on other threads do not return. (Not on Windows, where other threads have ended by then.)
+/// A process may end without it, by exit() or by returning from main, whatever jobs are under way. Drivers unload parts
+/// of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads have come out
+/// of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static objects that run
+/// later, calls on contexts and jobs return INVALID_STATE, and destroying what uses a GPU frees nothing. Threads of the
+/// host's go on: end them before, if they call bhr. (Nothing of this on Windows, where other threads end first.)
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";
@@ -341,22 +345,22 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     // SAFETY: bhr_context_create made it with Box::into_raw, and the host destroys it once.
     let context = unsafe { Box::from_raw(context) };
     let scope = log::Scope::enter(context.sink());
-    if gpu::process_ends() {
-        // The lock may be that of a thread which stands still.
-        let is_cpu = |state: &State| state.renderer.adapter().backend == Backend::Cpu;
-        if !context.state.try_lock().is_some_and(|state| is_cpu(&state)) {
-            std::mem::forget(context);
-            return;
-        }
+    // A running call holds the lock. In the end of the process it may wait for what does not come any more.
+    if process_end::is_here() && context.state.try_lock_for(AT_THE_END).is_none() {
+        return process_end::keep(context);
     }
-    // A running call holds the lock.
     drop(context.state.lock());
     let BhrContext { state, log, progress_gate, .. } = *context;
-    let result = guarded(|| {
-        drop(state);
-        Ok(())
-    });
-    finish(NAME, result);
+    let uses_driver = state.lock().renderer.adapter().backend != Backend::Cpu;
+    if uses_driver && process_end::is_here() {
+        process_end::keep(state);
+    } else {
+        let result = guarded(|| {
+            drop(state);
+            Ok(())
+        });
+        finish(NAME, result);
+    }
     progress_gate.close();
     drop(scope);
     drop(log);

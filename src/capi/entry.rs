@@ -7,7 +7,7 @@ use super::message::keep_message;
 use super::panic::guarded;
 use super::status::{self, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
-use crate::gpu;
+use crate::gpu::process_end;
 
 /// The value of a body that succeeds.
 pub(super) trait Success {
@@ -34,7 +34,7 @@ pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> Bhr
     finish(function, guarded(body))
 }
 
-/// A call without a context that reaches drivers or shared state: refused inside callbacks, and once the process ends.
+/// A call without a context that reaches drivers or shared state: refused inside callbacks, and in the end of the process.
 pub(super) fn outside_callbacks<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
     finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded(body)))
 }
@@ -60,18 +60,18 @@ pub(super) fn refuse_in_callback() -> Result<()> {
     Ok(())
 }
 
-/// Errors: INVALID_STATE once the process ends, if a driver was loaded.
+/// Errors: INVALID_STATE on the thread that ends the process, if a driver was loaded.
 pub(super) fn refuse_at_the_end() -> Result<()> {
-    if gpu::process_ends() {
+    if process_end::is_here() {
         return Err(Error::state("the process is ending, and with it the drivers that contexts use"));
     }
     Ok(())
 }
 
-/// Destroys what is a driver's; once the process ends it is left to the system, as the driver may be gone already.
-pub(super) fn give_back<T>(function: &str, owned: T, end: impl FnOnce(&T)) {
-    if gpu::process_ends() {
-        return std::mem::forget(owned);
+/// Destroys what is a driver's; in the end of the process it is left to the system, as the driver may be gone already.
+pub(super) fn give_back<T: 'static>(function: &str, owned: T, end: impl FnOnce(&T)) {
+    if process_end::is_here() {
+        return process_end::keep(owned);
     }
     let ended = guarded(|| {
         end(&owned);

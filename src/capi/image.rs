@@ -23,9 +23,9 @@ pub const BHR_IMAGE_TRANSPARENT: u32 = 1u32;
 /// 0.2.0.
 pub const BHR_IMAGE_BOTTOM_UP: u32 = 2u32;
 
-/// BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: bent rays meet the things whose
-/// distances these are, because the host has drawn them where light shows them (BhrProjectedPoint.apparent). Without it
-/// the things lie on straight lines of sight. Since 0.2.0.
+/// BhrImage.flags: for bhr_set_occluder, and flags of bhr_set_occluder_target: the host has drawn the things where bent
+/// light shows them (BhrProjectedPoint.apparent), so bhr compares their distances with those along bent rays. Without
+/// it the things lie on straight lines of sight. Since 0.2.0.
 pub const BHR_IMAGE_LENSED: u32 = 4u32;
 
 /// A pixel's bytes in memory order. A radiance of 1 is the luminance at rest of the ring

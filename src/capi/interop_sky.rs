@@ -34,7 +34,7 @@ pub unsafe extern "C" fn bhr_set_sky_target(context: *mut BhrContext, target: *m
 /// -x, on the fourth +x. Frames make an equirectangular map of it, four faces wide and two high, with four places in
 /// each texel, between texels of the cube and across its edges; detail finer than at the faces' middles is lost. At
 /// most 2730 texels a side. Errors: those of bhr_set_sky_target; INVALID_ARGUMENT for another layout or shape;
-/// UNSUPPORTED for rows too far apart for a kernel's six bindings of 128 MiB at least (packed ones fit). Since 0.2.0.
+/// UNSUPPORTED for rows so far apart that a kernel's six bindings, of 128 MiB at least, do not hold them. Since 0.2.0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_set_sky_target_as(
     context: *mut BhrContext,

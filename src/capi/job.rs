@@ -14,7 +14,7 @@ use super::pointer::{Out, is_null};
 use super::render::{Callback, Report};
 use super::status::{BHR_NOT_READY, BHR_OK, BhrStatus};
 use crate::error::{Error, Result};
-use crate::gpu;
+use crate::gpu::process_end;
 use crate::job::Job;
 use crate::tracer::Backend;
 use std::ffi::c_char;
@@ -173,7 +173,7 @@ pub unsafe extern "C" fn bhr_job_cancel(job: *mut BhrJob) {
 /// A job that is cancelled before its turn may be the last one that holds a tracer: that of a device which was
 /// lost.
 fn cancel(function: &str, job: &BhrJob) {
-    if job.uses_driver && gpu::process_ends() {
+    if job.uses_driver && process_end::is_here() {
         return;
     }
     let cancelled = guarded(|| {
@@ -199,10 +199,9 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     }
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
-    if job.uses_driver && gpu::process_ends() {
-        // Its thread stands still, and writes nothing any more.
-        std::mem::forget(job);
-        return;
+    if job.uses_driver && process_end::is_here() {
+        // Its thread stands still from here on, and writes nothing any more.
+        return process_end::keep(job);
     }
     if !job.writes_memory {
         job.job.leave_images();

@@ -26,7 +26,7 @@ pub use device::external::{
 pub(crate) use device::gl_thread::GlThread;
 pub(crate) use device::gl_thread::park;
 pub use device::pipeline::{Kernel, Loops, ProvenFinite};
-pub(crate) use device::process_end::has_begun as process_ends;
+pub(crate) use device::process_end;
 pub use device::readback::{MappedReadback, PendingReadback, Readback};
 pub use device::semaphores::{FrameSync, GpuSemaphore, SemaphoreUse};
 pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requirements};

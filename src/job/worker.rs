@@ -7,7 +7,7 @@
 use super::{Job, JobRequest, JobTarget, Shared, SharedFrame, SharedPlace, lock};
 use crate::allocate::{self, THREAD_ROOM};
 use crate::error::{Error, ErrorKind, Result};
-use crate::gpu::{BegunFrame, Device, FrameTarget, GpuTracer, Handed, OutputTo, Submission};
+use crate::gpu::{BegunFrame, Device, FrameTarget, GpuTracer, Handed, OutputTo, Submission, process_end};
 use crate::interop;
 use crate::thread_scope::{self, ThreadScope};
 use crate::tracer::{FrameStats, Tile};
@@ -135,6 +135,7 @@ impl Worker {
         let begins = begun.clone();
         let body = move || {
             begins.wait();
+            process_end::own_thread();
             let _scope = scope();
             // Unwind safe: after a panic nothing is taken any more, and what was taken ends as it is dropped.
             let result = catch_unwind(AssertUnwindSafe(|| work(&queue)));

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* process_end.c -- hosts that end by exit() while bhr works: right after a
- * context was made, for which kernels are being compiled; while jobs are on
- * their way, from another thread; with a handler that destroys the context; in
- * a forked child. Each ends with the status that it gave, soon, and, with a
- * driver, when no thread of bhr's is at work in it any more: drivers unload
- * parts of themselves then. Linux alone shows threads by name. */
+/* process_end.c -- hosts that end by exit() while bhr works: right after a context was made, for which kernels are being
+ * compiled; while jobs are on their way, also from another thread; with a handler that destroys the context, after which
+ * its log callback is not called; with one that joins a thread which has used bhr; in a forked child. Each ends with the
+ * status that it gave, soon, and, with a driver, when no thread of bhr's is at work in it any more, because drivers
+ * unload parts of themselves then. Linux alone shows threads by name. (NVIDIA's driver itself ends forked children by a
+ * signal.) */
 #define _GNU_SOURCE
 
 #include "check.h"
@@ -35,8 +35,7 @@ static double now(void) {
     return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
 }
 
-/* Threads of bhr's that run, and do not wait: those that compile kernels, as
- * others have more to do than call drivers. */
+/* Threads of bhr's that run, and do not wait: those that compile kernels, as others have more to do than call drivers. */
 static int at_work(void) {
     int            count = 0;
     DIR           *tasks = opendir("/proc/self/task");
@@ -56,8 +55,8 @@ static int at_work(void) {
     return count;
 }
 
-/* Registered before bhr has loaded a driver, so that it runs after bhr's
- * handler. Threads may take a moment to come to their next call of a driver. */
+/* Registered before bhr has loaded a driver, so that it runs after bhr's handler. Threads may take a moment to come to
+ * their next call of a driver. */
 static void look(void) {
     const struct timespec grace = {0, 300000000}, moment = {0, 10000000};
     int                   busy = 0;
@@ -78,15 +77,32 @@ static void begin_jobs(void) {
     }
 }
 
+/* A callback that the host has freed all of once the context is destroyed. */
+static int gone, late;
+
+static void hear(void *user, BhrLogLevel level, const char *message) {
+    (void)user, (void)level, (void)message;
+    late += gone;
+}
+
 static void destroy(void) {
-    BhrStatus status = bhr_set_mass(context, 2);
+    const struct timespec while_threads_go_on = {3, 0};
+    BhrStatus             status = bhr_set_mass(context, 2);
     if (status != (backend == BHR_BACKEND_CPU ? BHR_OK : BHR_ERROR_INVALID_STATE))
         _exit(7);
     for (int i = 0; i < JOBS; i++)
         bhr_job_cancel(jobs[i]);
     bhr_context_destroy(context);
+    gone = 1;
     for (int i = 0; i < JOBS; i++)
         bhr_job_destroy(jobs[i]);
+    memset(pixels, 7, sizeof pixels);
+    nanosleep(&while_threads_go_on, NULL);
+    for (size_t i = 0; i < sizeof pixels; i++)
+        if (((unsigned char *)pixels)[i] != 7)
+            _exit(8);
+    if (late > 0)
+        _exit(9);
 }
 
 static void *ending(void *unused) {
@@ -109,24 +125,63 @@ static void with_jobs(void) {
 }
 
 static void from_another_thread(void) {
-    pthread_t      thread;
-    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels[0], sizeof pixels[0]);
+    pthread_t thread;
     atexit(look);
     context = check_context(backend);
-    if (bhr_render_image(context, &image) < 0 || pthread_create(&thread, NULL, ending, NULL) != 0)
-        _exit(5);
-    while (bhr_render_image(context, &image) >= 0) {
-    }
-    if (bhr_render_image(context, &image) != BHR_ERROR_INVALID_STATE)
+    begin_jobs();
+    if (pthread_create(&thread, NULL, ending, NULL) != 0)
         _exit(5);
     for (;;)
         pause();
 }
 
 static void with_a_handler_that_destroys(void) {
+    BhrContextOptions options = check_options(backend);
+    options.log_fn = hear;
+    options.log_level = BHR_LOG_TRACE;
     atexit(destroy);
-    context = check_context(backend);
+    context = check_context_with(&options);
     begin_jobs();
+    exit(STATUS);
+}
+
+/* A pool's thread, which has used bhr, and waits for more to do. */
+static pthread_t       pool;
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_cond_t  changed = PTHREAD_COND_INITIALIZER;
+static int             has_rendered, ends;
+
+static void *render_and_wait(void *unused) {
+    const BhrImage image = image_of(BHR_FORMAT_RGBA8_SRGB, WIDTH, HEIGHT, pixels[0], sizeof pixels[0]);
+    (void)unused;
+    if (bhr_render_image(context, &image) < 0)
+        _exit(5);
+    pthread_mutex_lock(&lock);
+    has_rendered = 1;
+    pthread_cond_broadcast(&changed);
+    while (!ends)
+        pthread_cond_wait(&changed, &lock);
+    pthread_mutex_unlock(&lock);
+    return NULL;
+}
+
+static void join(void) {
+    pthread_mutex_lock(&lock);
+    ends = 1;
+    pthread_cond_broadcast(&changed);
+    pthread_mutex_unlock(&lock);
+    pthread_join(pool, NULL);
+}
+
+static void with_a_handler_that_joins(void) {
+    atexit(join);
+    context = check_context(backend);
+    if (pthread_create(&pool, NULL, render_and_wait, NULL) != 0)
+        _exit(5);
+    pthread_mutex_lock(&lock);
+    while (!has_rendered)
+        pthread_cond_wait(&changed, &lock);
+    pthread_mutex_unlock(&lock);
     exit(STATUS);
 }
 
@@ -173,6 +228,7 @@ int main(int argc, char **argv) {
     in_process("exit with jobs", with_jobs);
     in_process("exit from another thread", from_another_thread);
     in_process("exit with a handler that destroys the context", with_a_handler_that_destroys);
+    in_process("exit with a handler that joins a thread", with_a_handler_that_joins);
     in_process("exit in a forked child", in_a_forked_child);
     return check_end();
 }

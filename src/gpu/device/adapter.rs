@@ -3,7 +3,7 @@
 
 use super::external::{AdapterIds, HostDevice};
 use super::gl_thread::{DisplayAge, GlThread};
-use super::{driver_lock, loader};
+use super::{driver_lock, loader, process_end};
 use crate::error::{Error, Result};
 use crate::tracer::{AdapterInfo, Backend};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -300,6 +300,7 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool) -> DriverAdapters {
     let flags = if validation { wgpu::InstanceFlags::VALIDATION } else { wgpu::InstanceFlags::empty() };
     let descriptor =
         wgpu::InstanceDescriptor { backends, flags, ..wgpu::InstanceDescriptor::new_without_display_handle() };
+    process_end::watch();
     let _driver = driver_lock::lock();
     let ask = || {
         let instance = wgpu::Instance::new(descriptor);

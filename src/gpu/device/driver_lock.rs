@@ -16,7 +16,6 @@
 
 use crate::deferred::{Holding, hold};
 use parking_lot::{ReentrantMutex, ReentrantMutexGuard, const_reentrant_mutex};
-use std::time::Duration;
 
 /// Reentrant, as what is dropped under it may be the last to hold something that is dropped under it too.
 static DRIVER: ReentrantMutex<()> = const_reentrant_mutex(());
@@ -42,12 +41,7 @@ pub fn abandon() {
     }
 }
 
-/// Waits for it, no longer than that, and keeps it for good.
-pub fn keep(longest: Duration) {
-    std::mem::forget(DRIVER.try_lock_for(longest));
-}
-
-/// Whether this thread holds it.
+/// Whether this thread holds it: for tests.
 pub fn is_held() -> bool {
     DRIVER.is_owned_by_current_thread()
 }

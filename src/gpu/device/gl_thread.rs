@@ -10,6 +10,7 @@
 
 use super::driver_lock;
 use super::gl_guard::ContextGuard;
+use super::process_end;
 use crate::error::{Error, ErrorKind, Result, panic_text};
 use crate::thread_scope;
 use crate::tracer::Progress;
@@ -98,7 +99,10 @@ impl GlThread {
     /// Errors: OUT_OF_MEMORY when the system gives no thread.
     pub fn start() -> Result<Arc<Self>> {
         let (channel, work) = mpsc::channel::<Work<'static>>();
-        let run = move || work.into_iter().for_each(|work| work());
+        let run = move || {
+            process_end::own_thread();
+            work.into_iter().for_each(|work| work());
+        };
         let handle = thread::Builder::new().name("bhr-gl".into()).spawn(run);
         let handle =
             handle.map_err(|error| Error::new(ErrorKind::OutOfMemory, format!("no thread for GL: {error}")))?;

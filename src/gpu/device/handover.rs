@@ -2,6 +2,7 @@
 //! Submissions, and what goes with them where a host shares a target: the commands that take it over and give it back,
 //! and the semaphores of a frame. Knows no frames.
 
+use super::process_end;
 use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::sharing::GpuTarget;
 use super::turns::InUse;
@@ -163,6 +164,7 @@ impl Device {
             self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
         self.wait_for_waits()?;
         let submitted = {
+            let _inside = process_end::enter();
             let _turn = self.turns.take();
             self.stage(queue, waits, signals);
             let submitted = self.scoped("submitting work", |_| queue.submit(commands));
@@ -187,6 +189,7 @@ impl Device {
     /// Lets go of the semaphores, and of targets that were read, of submissions that have run.
     fn let_go_of_done(&self) {
         let mut done = Vec::new();
+        let _inside = process_end::enter();
         let mut in_use = self.turns.in_use();
         while let Some(first) = in_use.front()
             && self.is_done(&first.submission).unwrap_or(false)

@@ -14,7 +14,7 @@ pub(in crate::gpu) mod gl_thread;
 pub(in crate::gpu) mod handover;
 pub(in crate::gpu) mod loader;
 pub(in crate::gpu) mod pipeline;
-pub(in crate::gpu) mod process_end;
+pub(crate) mod process_end;
 pub(in crate::gpu) mod readback;
 pub(in crate::gpu) mod semaphores;
 pub(in crate::gpu) mod sharing;

@@ -1,32 +1,39 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-//! The end of the process while threads are within a driver. exit() runs the exit handlers of drivers, which unload
-//! parts of them: on an H100 (NVIDIA 580.159.04) a thread that was making a pipeline then ran into memory that was no
-//! longer there, and a process that would have ended well crashed. A host that ends by exit(), or by returning from
-//! main, need not have destroyed its contexts; so a handler of this library waits until no thread is within a driver
-//! any more, and from then on keeps them out. It is registered when a driver is loaded, and handlers run in the
-//! opposite order, so that it runs before the driver's. Knows no wgpu.
+//! The end of the process while threads of this library are within a driver. exit() runs the exit handlers of drivers,
+//! which unload parts of them: on an H100 (NVIDIA 580.159.04) a thread that was making a pipeline then ran into memory
+//! that was no longer there, and a process that would have ended well crashed. A host that ends by exit(), or by
+//! returning from main, need not have destroyed its contexts, and has no hand in these threads; so an exit handler
+//! waits until they have come out of the driver, and holds them up while the process ends. Knows no wgpu.
 //!
-//! Handlers and destructors that the host registered before that run after the drivers' own, when calling one may
-//! crash: so nothing is given back to drivers any more, and what belongs to them stays until the process is gone.
+//! They are held up for [`PAUSE`] only: after that the process still lives because somebody waits, perhaps for them.
+//! Threads of the host are never held up. What they do with a driver in exit() is for the host to see to.
+//!
+//! Exit handlers and destructors that the host registered earlier run after those of the drivers. A call into a driver
+//! may crash by then, so on that thread contexts refuse their calls, and what they have of the driver is left as it is.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Condvar, Mutex, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long the end of the process is held up at most, for the calls into drivers that have begun.
+/// How long the end of the process waits at most for the calls into drivers that have begun.
 const LONGEST: Duration = Duration::from_secs(10);
+/// How long threads are held up: handlers and destructors take less, unless they wait for something.
+const PAUSE: Duration = Duration::from_secs(2);
 
-/// The number of threads within a driver, and [`CLOSED`].
+/// The number of this library's threads within a driver, and [`CLOSED`].
 static STATE: AtomicUsize = AtomicUsize::new(0);
-/// The bit of `STATE` that says that no thread may enter.
+/// The bit of `STATE` that says that none of them may enter.
 const CLOSED: usize = 1 << (usize::BITS - 1);
 /// The thread that ends the process, as [`this_thread`]; 0 while there is none.
 static ENDING: AtomicUsize = AtomicUsize::new(0);
-/// With `STATE` as what is waited for.
-static CHANGES: (Mutex<()>, Condvar) = (Mutex::new(()), Condvar::new());
+/// When they may enter again: never, if there is no time. With `STATE` as what is waited for.
+static OPENS: Mutex<Option<Instant>> = Mutex::new(None);
+static CHANGED: Condvar = Condvar::new();
 
 thread_local! {
+    /// Whether this thread is one of this library's.
+    static OWN: Cell<bool> = const { Cell::new(false) };
     /// How many [`Inside`] this thread has.
     static DEPTH: Cell<u32> = const { Cell::new(0) };
 }
@@ -36,16 +43,13 @@ fn this_thread() -> Option<usize> {
     DEPTH.try_with(|depth| std::ptr::from_ref(depth).addr()).ok()
 }
 
-/// Waits until no more than `own` threads are within a driver, or until `deadline`.
-fn wait(deadline: Instant, own: usize) {
-    let mut lock = CHANGES.0.lock().unwrap_or_else(PoisonError::into_inner);
-    while STATE.load(Ordering::SeqCst) & !CLOSED > own {
-        let left = deadline.saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return;
-        }
-        lock = CHANGES.1.wait_timeout(lock, left).unwrap_or_else(PoisonError::into_inner).0;
-    }
+fn opens() -> MutexGuard<'static, Option<Instant>> {
+    OPENS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// To be called first by each thread of this library's that calls drivers.
+pub fn own_thread() {
+    OWN.set(true);
 }
 
 /// While it lives, its thread may call a driver.
@@ -55,67 +59,87 @@ pub struct Inside {
     _thread: std::marker::PhantomData<*const ()>,
 }
 
-/// To be called around each call into a driver. Once the process ends it does not return, but on the thread that ends
-/// it, or on one of which a driver's lock is `held` that other threads need.
-pub fn enter(held: impl FnOnce() -> bool) -> Inside {
-    let outermost = DEPTH.try_with(|depth| depth.replace(depth.get() + 1) == 0);
-    let counts = outermost.unwrap_or(false);
-    if counts && STATE.fetch_add(1, Ordering::SeqCst) & CLOSED != 0 && !is_ending() && !held() {
+/// To be called around calls into a driver, before a lock is taken that others need. On a thread of this library's it
+/// does not return while the process ends.
+pub fn enter() -> Inside {
+    let own = OWN.try_with(Cell::get).unwrap_or(false);
+    let outermost = own && DEPTH.try_with(|depth| depth.replace(depth.get() + 1) == 0).unwrap_or(false);
+    while outermost && STATE.fetch_add(1, Ordering::SeqCst) & CLOSED != 0 {
         leave();
         stand_still();
     }
-    Inside { counts, _thread: std::marker::PhantomData }
+    Inside { counts: outermost, _thread: std::marker::PhantomData }
 }
 
 fn leave() {
     if STATE.fetch_sub(1, Ordering::SeqCst) & CLOSED != 0 {
         // With the lock, so that who waits either sees the change or hears of it.
-        drop(CHANGES.0.lock().unwrap_or_else(PoisonError::into_inner));
-        CHANGES.1.notify_all();
+        drop(opens());
+        CHANGED.notify_all();
     }
 }
 
 impl Drop for Inside {
     fn drop(&mut self) {
-        let _ = DEPTH.try_with(|depth| depth.set(depth.get() - 1));
+        if OWN.try_with(Cell::get).unwrap_or(false) {
+            let _ = DEPTH.try_with(|depth| depth.set(depth.get() - 1));
+        }
         if self.counts {
             leave();
         }
     }
 }
 
-/// Whether the process ends: a thread must not call a driver any more, nor wait for one that would.
-pub fn has_begun() -> bool {
-    STATE.load(Ordering::SeqCst) & CLOSED != 0
-}
-
-/// Whether this thread ends the process.
-fn is_ending() -> bool {
-    this_thread() == Some(ENDING.load(Ordering::SeqCst))
-}
-
-/// Until the process is gone.
 fn stand_still() {
-    #[cfg(not(test))]
-    loop {
-        std::thread::park();
-    }
-    // Tests open the gate again.
-    #[cfg(test)]
-    while has_begun() {
-        std::thread::sleep(Duration::from_millis(1));
+    let mut opens = opens();
+    while STATE.load(Ordering::SeqCst) & CLOSED != 0 {
+        let left = opens.map(|opens| opens.saturating_duration_since(Instant::now()));
+        opens = match left {
+            Some(Duration::ZERO) => {
+                STATE.fetch_and(!CLOSED, Ordering::SeqCst);
+                return;
+            }
+            Some(left) => CHANGED.wait_timeout(opens, left).unwrap_or_else(PoisonError::into_inner).0,
+            None => CHANGED.wait(opens).unwrap_or_else(PoisonError::into_inner),
+        };
     }
 }
 
-/// Keeps threads out, and waits until those within a driver have left it, this one aside, or until `deadline`.
+/// Whether this is the thread that ends the process, and a driver was loaded: it must not call one any more.
+pub fn is_here() -> bool {
+    let ending = ENDING.load(Ordering::SeqCst);
+    ending != 0 && this_thread() == Some(ending)
+}
+
+/// Keeps what belongs to a driver as it is until the process is gone, reachable for leak checkers. The threads that use
+/// it are held up for good.
+pub fn keep<T: 'static>(owned: T) {
+    static KEPT: Mutex<Vec<usize>> = Mutex::new(Vec::new());
+    *opens() = None;
+    KEPT.lock().unwrap_or_else(PoisonError::into_inner).push(std::ptr::from_mut(Box::leak(Box::new(owned))).addr());
+}
+
+/// Holds the library's threads up for [`PAUSE`] after those within a driver have left it, or `deadline` has come.
 fn close(deadline: Instant) {
     ENDING.store(this_thread().unwrap_or(0), Ordering::SeqCst);
+    let mut opens = opens();
+    *opens = Some(deadline + PAUSE);
     STATE.fetch_or(CLOSED, Ordering::SeqCst);
+    // Where one of the library's threads ends the process, in a callback, it does not wait for itself.
     let own = usize::from(DEPTH.try_with(Cell::get).unwrap_or(0) > 0);
-    wait(deadline, own);
+    loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        if STATE.load(Ordering::SeqCst) & !CLOSED <= own || left.is_zero() {
+            break;
+        }
+        opens = CHANGED.wait_timeout(opens, left).unwrap_or_else(PoisonError::into_inner).0;
+    }
+    *opens = Some(Instant::now() + PAUSE);
+    CHANGED.notify_all();
 }
 
-/// To be called when a driver has been loaded: the end of the process waits for it.
+/// To be called before a driver is loaded, and when a device has its first pipeline, as drivers load their compilers
+/// late: exit handlers run in the opposite order of their registration, and this one is to run before the drivers'.
 pub fn watch() {
     #[cfg(unix)]
     handler::register();
@@ -124,11 +148,10 @@ pub fn watch() {
 #[cfg(unix)]
 mod handler {
     use super::*;
-    use crate::gpu::device::driver_lock;
     use std::sync::OnceLock;
     use std::sync::atomic::AtomicU32;
 
-    /// Registrations at most: each driver's handlers are to run after one of them, and a process has few drivers.
+    /// Registrations at most: a process has few drivers, but may open many devices.
     const MOST: u32 = 32;
 
     static COUNT: AtomicU32 = AtomicU32::new(0);
@@ -148,14 +171,10 @@ mod handler {
     extern "C" fn at_exit() {
         // SAFETY: a plain system call.
         let of_this_process = PROCESS.get() == Some(&unsafe { libc::getpid() });
-        // Several handlers are registered; and who comes here while the process ends already would wait for itself.
-        if !of_this_process || has_begun() {
-            return;
+        // Several handlers are registered; the first one that runs does it all.
+        if of_this_process && ENDING.load(Ordering::SeqCst) == 0 {
+            close(Instant::now() + LONGEST);
         }
-        let deadline = Instant::now() + LONGEST;
-        close(deadline);
-        // Threads that start or end a driver hold its lock meanwhile.
-        driver_lock::keep(deadline.saturating_duration_since(Instant::now()));
     }
 }
 
@@ -164,45 +183,42 @@ mod tests {
     use super::*;
     use std::sync::mpsc;
 
-    /// One test, as there is one gate: it is closed while a thread is within a driver, and while the closing one is.
+    fn own(work: impl FnOnce() + Send + 'static) -> std::thread::JoinHandle<()> {
+        std::thread::spawn(|| {
+            own_thread();
+            work();
+        })
+    }
+
+    /// One test, as there is one gate.
     #[test]
-    fn the_end_waits_for_those_within_and_keeps_others_out() {
+    fn the_end_waits_for_those_within_and_holds_others_up_for_a_while() {
         let (entered, has_entered) = mpsc::channel();
         let (leaves, may_leave) = mpsc::channel::<()>();
-        let within = std::thread::spawn(move || {
-            let inside = enter(|| false);
+        let within = own(move || {
+            let inside = enter();
             entered.send(()).unwrap();
             may_leave.recv().unwrap();
             // Further calls within one are let in: it has to get on.
-            drop(enter(|| false));
+            drop(enter());
             drop(inside);
         });
         has_entered.recv().unwrap();
-        let _own = enter(|| false);
+        let _hosts = enter();
         let begun = Instant::now();
         close(begun + Duration::from_millis(50));
-        assert!(begun.elapsed() >= Duration::from_millis(50), "it did not wait");
+        assert!(begun.elapsed() >= Duration::from_millis(50) && is_here(), "it did not wait");
+        assert!(!std::thread::spawn(is_here).join().unwrap());
 
-        let (entered, has_entered) = mpsc::channel();
-        let late = std::thread::spawn({
-            let entered = entered.clone();
-            move || {
-                drop(enter(|| false));
-                entered.send("late").unwrap();
-            }
-        });
-        std::thread::spawn(move || {
-            drop(enter(|| true));
-            entered.send("holder of a lock").unwrap();
-        });
-        assert_eq!(has_entered.recv_timeout(Duration::from_secs(10)), Ok("holder of a lock"));
         leaves.send(()).unwrap();
         within.join().unwrap();
         close(Instant::now() + Duration::from_secs(60));
-        assert!(has_entered.recv_timeout(Duration::from_millis(50)).is_err(), "a thread entered");
-        assert!(has_begun());
-        STATE.fetch_and(!CLOSED, Ordering::SeqCst);
-        assert_eq!(has_entered.recv_timeout(Duration::from_secs(60)), Ok("late"));
-        late.join().unwrap();
+        let closed = Instant::now();
+        // A thread of the host's is let in at once, one of the library's after the pause.
+        std::thread::spawn(|| drop(enter())).join().unwrap();
+        assert!(STATE.load(Ordering::SeqCst) & CLOSED != 0);
+        own(|| drop(enter())).join().unwrap();
+        assert!(closed.elapsed() >= PAUSE && STATE.load(Ordering::SeqCst) == 0);
+        ENDING.store(0, Ordering::SeqCst);
     }
 }

@@ -3,8 +3,8 @@
 //! is copied out while the next are being made. Knows nothing of pixels.
 
 use super::buffer::Buffer;
+use super::process_end;
 use super::wgpu_device::Device;
-use super::{driver_lock, process_end};
 use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::ops::Range;
@@ -132,6 +132,7 @@ impl PendingReadback {
         let (sender, outcome) = mpsc::sync_channel(1);
         let buffer = self.staging.buffer()?;
         let (mapped, size) = (&mut self.mapped, self.size);
+        let _inside = process_end::enter();
         // wgpu may submit what it has left to.
         let _turn = device.turns.take();
         device.scoped("mapping a buffer", |_| {
@@ -193,7 +194,7 @@ impl MappedReadback<'_> {
     pub fn part<T>(&self, range: Range<u64>, take: impl FnOnce(&[u8]) -> Result<T>) -> Result<T> {
         let buffer = self.copied.staging.buffer()?;
         // Once the process ends, nobody reads the driver's memory, nor writes the host's.
-        let _inside = process_end::enter(driver_lock::is_held);
+        let _inside = process_end::enter();
         let take = || {
             let part = self.view.get(range.start as usize..range.end as usize);
             take(part.ok_or_else(|| Error::internal("a part of a readback that it has not"))?)
@@ -205,6 +206,7 @@ impl MappedReadback<'_> {
 impl Drop for PendingReadback {
     fn drop(&mut self) {
         if let (Some(_), Ok(buffer)) = (&self.mapped, self.staging.buffer()) {
+            let _inside = process_end::enter();
             buffer.unmap();
         }
     }

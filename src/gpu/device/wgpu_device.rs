@@ -288,7 +288,7 @@ impl Device {
     fn in_error_scopes<T>(&self, work: impl FnOnce(&wgpu::Device) -> T) -> (T, Option<wgpu::Error>) {
         driver_lock::guard();
         let _holding = hold();
-        let _inside = process_end::enter(driver_lock::is_held);
+        let _inside = process_end::enter();
         let memory = self.raw.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let internal = self.raw.push_error_scope(wgpu::ErrorFilter::Internal);
         let validation = self.raw.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -413,7 +413,7 @@ impl Device {
         self.leave_what_is_gone();
         driver_lock::guard();
         let _holding = hold();
-        let _inside = process_end::enter(driver_lock::is_held);
+        let _inside = process_end::enter();
         catch_unwind(AssertUnwindSafe(call)).map_err(|panic| {
             self.health.lose(panic_text(&*panic));
             lost(panic_text(&*panic))

@@ -75,6 +75,9 @@ impl Rows {
         let even = reach.alignment.max(1) / common_divisor(reach.alignment.max(1), self.stride);
         // Behind the last row no other one follows.
         let held = 1 + reach.largest.checked_sub(self.row)? / self.stride.max(1);
+        if u64::from(self.count) <= held && most > 0 {
+            return Some((self.count, vec![self.window(0..self.count, reach)?]));
+        }
         let rows = (held / even * even).min(u64::from(self.count).next_multiple_of(even));
         let rows = u32::try_from(rows).ok().filter(|rows| *rows > 0)?;
         let count = self.count.div_ceil(rows);
@@ -174,6 +177,10 @@ mod tests {
                 assert!(part.size <= reach.largest && part.offset % 256 == 0);
             }
         }
+        // One part that has room for all, though no second one could begin where a binding may.
+        let all =
+            Rows { count: 2, stride: 65_532, row: 65_532 }.parts(6, &reach).map(|(rows, parts)| (rows, parts.len()));
+        assert_eq!(all, Some((2, 1)));
         assert!(Rows { count: 1000, stride: 1024, row: 1024 }.parts(6, &reach).is_none());
         // A row that is larger than a binding, and rows of which no second one begins where a binding may.
         assert!(Rows { count: 1, stride: 1 << 18, row: (1 << 17) + 4 }.parts(6, &reach).is_none());

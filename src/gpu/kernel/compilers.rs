@@ -6,6 +6,7 @@ use super::kernels::{Compiled, PipelineCache};
 use super::key::KernelKey;
 use crate::deferred::hold;
 use crate::error::Result;
+use crate::gpu::device::process_end;
 use crate::gpu::device::wgpu_device::Device;
 use crate::thread_scope;
 use std::collections::VecDeque;
@@ -115,6 +116,8 @@ fn compile_next(left: &Mutex<VecDeque<KernelKey>>, cache: &PipelineCache, device
 fn compile(cache: &PipelineCache, compile_it: impl FnOnce(&PipelineCache) -> Result<Compiled>) {
     // A host's callback hears of it once those who wait for the pipeline have it.
     let _holding = hold();
+    // Before this thread is the one that makes the pipeline, for which others wait.
+    let _inside = process_end::enter();
     // Unwind safe: the store settles a pipeline whose making panics.
     if !matches!(catch_unwind(AssertUnwindSafe(|| compile_it(cache))), Ok(Ok(_))) {
         log::debug!("a pipeline could not be made; the frame that needs it will tell why");
@@ -148,6 +151,7 @@ impl Compilers {
             let (left, cache, device, scope) = (left.clone(), cache.clone(), device.clone(), scope.clone());
             // A machine that has no more threads makes do with fewer.
             let work = move || {
+                process_end::own_thread();
                 let _scope = scope();
                 while compile_next(&left, &cache, &device) {}
             };
@@ -164,6 +168,7 @@ impl Compilers {
         }
         let scope = thread_scope::of_caller();
         let work = move || {
+            process_end::own_thread();
             let _scope = scope();
             lower_priority();
             if catch_unwind(AssertUnwindSafe(work)).is_err() {
@@ -189,6 +194,7 @@ impl Compilers {
             let (shared, cache, device) = (self.queue.clone(), cache.clone(), device.clone());
             let scope = thread_scope::of_caller();
             let work = move || {
+                process_end::own_thread();
                 let _scope = scope();
                 compile_in_background(&shared, &cache, &device);
             };

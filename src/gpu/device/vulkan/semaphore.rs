@@ -6,6 +6,7 @@ use super::failed;
 use super::parts::VulkanParts;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::external::{OPAQUE_FD, SemaphoreKind, SemaphoreOrigin};
+use crate::gpu::device::process_end;
 use ash::vk;
 use ash::vk::Handle;
 use std::collections::BTreeSet;
@@ -203,6 +204,7 @@ impl GpuSemaphore {
         let (semaphores, values) = ([self.raw], [value]);
         let info = vk::SemaphoreWaitInfo::default().semaphores(&semaphores).values(&values);
         let nanoseconds = time.as_nanos().try_into().unwrap_or(u64::MAX);
+        let _inside = process_end::enter();
         // SAFETY: a timeline of a device that lives.
         match unsafe { self.parts.device.wait_semaphores(&info, nanoseconds) } {
             Ok(()) => Ok(true),
