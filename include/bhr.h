@@ -395,11 +395,12 @@ size_t bhr_context_error_message(const BhrContext *context, char *buffer, size_t
  * begin a call on it any more. From inside a callback it does nothing, as the context is in use: bhr_error_message
  * then says so.
  *
- * A process may end without it, by exit() or by returning from main, whatever jobs are under way. Drivers unload parts
- * of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads have come out
- * of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static objects that run
- * later, calls on contexts and jobs return INVALID_STATE, and destroying what uses a GPU frees nothing. Threads of the
- * host's go on: end them before, if they call bhr. (Nothing of this on Windows, where other threads end first.)
+ * A process may end without it, by exit() or by returning from main, whatever jobs are under way. Drivers unload
+ * parts of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads
+ * have come out of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static
+ * objects that run later, calls on contexts and jobs return INVALID_STATE, and destroying what uses a GPU frees
+ * nothing. Threads of the host's go on: end them before, if they call bhr. (Nothing of this on Windows, where other
+ * threads end first.)
  */
 void bhr_context_destroy(BhrContext *context);
 

@@ -19,8 +19,9 @@
 #import shared/frame
 #import shared/not_inlined
 
-// Cells of even matter for each that the CPU tracer takes, whose cells end where matter bends: these reach across. That
-// is for views of matter, which are measured; pictures differ by 1 of 255 at most if they have as many as that tracer's.
+// Cells of even matter for each that the CPU tracer takes, whose cells end where matter bends: these reach across.
+// That is for views of matter, which are measured; pictures differ by 1 of 255 at most if they have as many as that
+// tracer's.
 const FINENESS: f32 = 1.7;
 
 // The angle about the hole that the ray has swept so far.

@@ -34,7 +34,8 @@ pub(super) fn anywhere(function: &str, body: impl FnOnce() -> Result<()>) -> Bhr
     finish(function, guarded(body))
 }
 
-/// A call without a context that reaches drivers or shared state: refused inside callbacks, and in the end of the process.
+/// A call without a context that reaches drivers or shared state: refused inside callbacks, and in the end of the
+/// process.
 pub(super) fn outside_callbacks<T: Success>(function: &str, body: impl FnOnce() -> Result<T>) -> BhrStatus {
     finish(function, refuse_in_callback().and_then(|()| refuse_at_the_end()).and_then(|()| guarded(body)))
 }

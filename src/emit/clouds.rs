@@ -32,9 +32,9 @@ const LEAST_RATE: f64 = 0.25;
 const JET_STRETCH: f64 = 3.0;
 /// Shear, -d Omega / d ln r, in Omega: that of Keplerian orbits, for all, since it only tells how fine structure is.
 pub(crate) const SHEAR: f64 = 1.5;
-/// The share of a footprint that a texel may be. Where structure is finer than a pixel it crawls in films: with 0.7 what
-/// changed unevenly was 1.66 times what it is with 16 rays a pixel, with 1 it is 1.47 times (`films_do_not_crawl` of
-/// tests/tracers/structure.rs).
+/// The share of a footprint that a texel may be. Where structure is finer than a pixel it crawls in films: with 0.7
+/// what changed unevenly was 1.66 times what it is with 16 rays a pixel, with 1 it is 1.47 times
+/// (`films_do_not_crawl` of tests/tracers/structure.rs).
 pub(crate) const CLOUD_SHARP: f64 = 1.0;
 /// The share of a spacing of samples that a texel may be.
 pub(crate) const CLOUD_SPACED: f64 = 0.7;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT OR Apache-2.0 */
-/* process_end.c -- hosts that end by exit() while bhr works: right after a context was made, for which kernels are being
- * compiled; while jobs are on their way, also from another thread; with a handler that destroys the context, after which
- * its log callback is not called; with one that joins a thread which has used bhr; in a forked child. Each ends with the
- * status that it gave, soon, and, with a driver, when no thread of bhr's is at work in it any more, because drivers
- * unload parts of themselves then. Linux alone shows threads by name. (NVIDIA's driver itself ends forked children by a
- * signal.) */
+/* process_end.c -- hosts that end by exit() while bhr works: right after a context was made, for which kernels are
+ * being compiled; while jobs are on their way, also from another thread; with a handler that destroys the context,
+ * after which its log callback is not called; with one that joins a thread which has used bhr; in a forked child.
+ * Each ends with the status that it gave, soon, and, with a driver, when no thread of bhr's is at work in it any
+ * more, because drivers unload parts of themselves then. Linux alone shows threads by name. (NVIDIA's driver itself
+ * ends forked children by a signal.) */
 #define _GNU_SOURCE
 
 #include "check.h"
@@ -35,7 +35,7 @@ static double now(void) {
     return (double)time.tv_sec + (double)time.tv_nsec * 1e-9;
 }
 
-/* Threads of bhr's that run, and do not wait: those that compile kernels, as others have more to do than call drivers. */
+/* Threads of bhr's that run, and do not wait: those that compile kernels, as others do more than call drivers. */
 static int at_work(void) {
     int            count = 0;
     DIR           *tasks = opendir("/proc/self/task");
@@ -110,7 +110,7 @@ static void *ending(void *unused) {
     exit(STATUS);
 }
 
-/* What hosts do, each in a process of its own. */
+/* Hosts, each in a process of its own. */
 static void right_after_a_context(void) {
     atexit(look);
     context = check_context(backend);

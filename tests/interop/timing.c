@@ -87,8 +87,9 @@ static void timed(double spin) {
     }
     vk_read(&host, &picture, VK_QUEUE_FAMILY_EXTERNAL, 8, BYTES, NULL, seen);
     CHECK(memcmp(seen, host_pixels, BYTES) == 0, "the bytes differ from those of bhr_render_image");
-    printf("spin %.1f: the call %.0f us, until its signal %.0f us; as a job %.0f and %.0f us; bhr_render_image %.0f us\n",
-           spin, median(call), median(signal), median(job_call), median(job_signal), median(memory));
+    printf("spin %.1f: the call %.0f us, until its signal %.0f us; as a job %.0f and %.0f us; ", spin, median(call),
+           median(signal), median(job_call), median(job_signal));
+    printf("bhr_render_image %.0f us\n", median(memory));
     if (fds[0] >= 0) {
         /* The other device waits for bhr on the GPU, and bhr for it. */
         freed = share_timeline(&fds[1]);
@@ -182,8 +183,8 @@ static void many(uint64_t frames) {
     BhrSemaphore    *done;
     BhrFrameStats    first = {.struct_size = sizeof first}, last = {.struct_size = sizeof last};
     CHECK_OK(bhr_semaphore_create(context, BHR_SEMAPHORE_TIMELINE, 0, &done));
-    /* Programs for likely changes of the scene are still made in the background, which takes memory: until none has come
-     * for 3 s, or for a minute. */
+    /* Programs for likely changes of the scene are still made in the background, which takes memory: until none has
+     * come for 3 s, or for a minute. */
     uint64_t value = 0;
     long     kib = 0;
     double   started = now();
