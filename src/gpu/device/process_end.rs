@@ -111,19 +111,25 @@ pub fn is_here() -> bool {
     ending != 0 && this_thread() == Some(ending)
 }
 
-/// Keeps what belongs to a driver as it is until the process is gone, reachable for leak checkers. The threads that use
-/// it are held up for good.
+/// Keeps what belongs to a driver as it is until the process is gone, reachable for leak checkers. From then on none of
+/// the library's threads uses it, nor what the host has lent it: they are held up for good.
 pub fn keep<T: 'static>(owned: T) {
     static KEPT: Mutex<Vec<usize>> = Mutex::new(Vec::new());
-    *opens() = None;
+    shut(Instant::now() + LONGEST, None);
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).push(std::ptr::from_mut(Box::leak(Box::new(owned))).addr());
 }
 
-/// Holds the library's threads up for [`PAUSE`] after those within a driver have left it, or `deadline` has come.
+/// The process ends on this thread.
 fn close(deadline: Instant) {
     ENDING.store(this_thread().unwrap_or(0), Ordering::SeqCst);
+    shut(deadline, Some(PAUSE));
+}
+
+/// Holds the library's threads up, for so long after those within a driver have left it or `deadline` has come, and
+/// without `pause` for good.
+fn shut(deadline: Instant, pause: Option<Duration>) {
     let mut opens = opens();
-    *opens = Some(deadline + PAUSE);
+    *opens = pause.map(|pause| deadline + pause);
     STATE.fetch_or(CLOSED, Ordering::SeqCst);
     // Where one of the library's threads ends the process, in a callback, it does not wait for itself.
     let own = usize::from(DEPTH.try_with(Cell::get).unwrap_or(0) > 0);
@@ -134,7 +140,7 @@ fn close(deadline: Instant) {
         }
         opens = CHANGED.wait_timeout(opens, left).unwrap_or_else(PoisonError::into_inner).0;
     }
-    *opens = Some(Instant::now() + PAUSE);
+    *opens = pause.map(|pause| Instant::now() + pause);
     CHANGED.notify_all();
 }
 
