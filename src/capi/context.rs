@@ -350,9 +350,8 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     if process_end::is_here() && context.state.try_lock_for(AT_THE_END).is_none() {
         return process_end::keep(context);
     }
-    drop(context.state.lock());
+    let uses_driver = context.state.lock().renderer.adapter().backend != Backend::Cpu;
     let BhrContext { state, log, progress_gate, .. } = *context;
-    let uses_driver = state.lock().renderer.adapter().backend != Backend::Cpu;
     if uses_driver && process_end::is_here() {
         process_end::keep(state);
     } else {

@@ -430,13 +430,14 @@ impl Device {
     pub(in crate::gpu) fn compiling<T>(&self, compile: impl FnOnce() -> T) -> T {
         let first = || !self.compiled.load(Ordering::Acquire);
         // Those who waited for the first one make theirs side by side.
-        let mut driver = first().then(driver_lock::lock).filter(|_| first());
+        let driver = first().then(driver_lock::lock).filter(|_| first());
         let made = compile();
         self.compiled.store(true, Ordering::Release);
-        if driver.take().is_some() {
+        if driver.is_some() {
             // By now the driver has loaded what it makes pipelines with.
             process_end::watch();
         }
+        drop(driver);
         made
     }
 
