@@ -29,15 +29,16 @@ pub(crate) const FILAMENT_HEIGHT: f64 = 5.0;
 pub(crate) const FILAMENT_LAST: usize = FILAMENT_SIDES[2].ilog2() as usize;
 pub(crate) const FILAMENT_LEVELS: usize = FILAMENT_LAST + 1;
 /// The variance of each level.
-pub(crate) const FILAMENT_VARIANCES: [f64; FILAMENT_LEVELS] = [0.9312, 0.7714, 0.5889, 0.4129, 0.2257, 0.0729, 0.0153];
+pub(crate) const FILAMENT_VARIANCES: [f64; FILAMENT_LEVELS] = [0.9588, 0.8577, 0.7187, 0.5436, 0.3137, 0.1052, 0.0230];
 
 /// ln of the mean of e^(x g) is x^2 (1 / 2 + c0 x + c1 x^2): right at x = 1 and 2.
-pub(crate) const FILAMENT_CUMULANTS: [f64; 2] = [-0.037_24, -0.004_25];
+pub(crate) const FILAMENT_CUMULANTS: [f64; 2] = [-0.033_56, -0.005_51];
 
 /// Cells of each octave in the block.
 const CELLS: [[usize; 3]; 5] = [[4, 2, 2], [8, 4, 4], [16, 8, 8], [32, 16, 16], [64, 32, 16]];
-/// The amplitude of an octave over that of the one before.
-const FAINTER: f32 = 0.9;
+/// The amplitude of an octave over that of the one before: 2^(-1/3), as that of what turbulence carries along (Obukhov
+/// 1949, Izv. Akad. Nauk SSSR, Ser. Geogr. Geofiz. 13, 58; Kolmogorov 1941, Dokl. Akad. Nauk SSSR 30, 301).
+const FAINTER: f32 = 0.79;
 /// How far noise is displaced along the radius and the height, in periods, at noise 1.
 const DISPLACED: [f32; 2] = [0.25, 0.25];
 /// The share of creases in the octaves that have them; the factor and the offset give |n| the variance and mean of n.
@@ -328,7 +329,7 @@ mod tests {
         for level in [0.5, 1.3, 2.5, 3.7, 4.5, 5.5, 6.5, 7.0, 90.0] {
             let seen = values(level);
             let [found, stated] = [mean(seen.iter().map(|g| g * g)), filament_variance(level)];
-            assert!((found - stated).abs() < 0.03, "at level {level}: {found}, not {stated}");
+            assert!((found - stated).abs() < 0.035, "at level {level}: {found}, not {stated}");
             let found = mean(seen.iter().map(|g| (1.3 * g).exp())).ln() - filament_log_mean(1.3 * stated.sqrt());
             assert!(found.abs() < 0.05, "at level {level}: {found}");
         }
@@ -341,7 +342,7 @@ mod tests {
         let shared = Filaments::shared().unwrap();
         assert!(again.texels == shared.texels);
         let sum = shared.texels.iter().zip(0_u32..).fold(0_u32, |sum, (g, i)| sum.wrapping_add(mix(i ^ *g as u32)));
-        assert_eq!(sum, 0x12ea_5e88, "{sum:#x}");
+        assert_eq!(sum, 0x61ef_821a, "{sum:#x}");
     }
 
     #[test]

@@ -2,11 +2,11 @@
 //! Frames with structured matter: its mean, its motion, and how well a pixel's one ray shows it. `emit::clouds` has the
 //! tests of the structure itself.
 
-use crate::frames::{cpu, floats, gpu, picture};
+use crate::frames::{both, cpu, floats, gpu, picture};
 use crate::random::runs_all;
 use bhr::image::PixelFormat;
 use bhr::renderer::Renderer;
-use bhr::scene::{Camera, Effects, FlowLaw, LensTables, Scene, Shape, Sky, View, Volume};
+use bhr::scene::{Camera, Effects, FlowLaw, LensTables, Ray, Region, Scene, Shape, Sky, Transfer, View, Volume};
 use glam::{DQuat, DVec3};
 
 const SIZE: [u32; 2] = [48, 27];
@@ -126,6 +126,32 @@ fn pixels_show_about_what_many_rays_find() {
         println!("{:?}: {difference} of {brightness}, {}", volume.shape, mean(&one));
         assert!(difference < 0.2 * brightness, "{:?}: {difference} {brightness}", volume.shape);
         assert!((mean(&one) / brightness - 1.0).abs() < 0.06, "{:?}: {} {brightness}", volume.shape, mean(&one));
+    }
+}
+
+/// Where structure is larger than pixels, layers are so thin that they leave no ripples along filaments: a picture is
+/// near to what rays find that are summed in fine cells.
+#[test]
+fn layers_leave_no_ripples() {
+    for (tracer, mut renderer) in both() {
+        for (x, y) in [(300, 700), (1100, 560), (500, 400)] {
+            let mut scene = alone(6.5, Volume::default());
+            scene.camera.forward = -scene.camera.position;
+            let region = Region { full_width: 1920, full_height: 1080, x, y };
+            let mut rays = vec![Ray::default(); (SIZE[0] * SIZE[1]) as usize];
+            scene.camera_rays(SIZE[0], SIZE[1], Some(region), &mut |i, ray| rays[i] = ray).unwrap();
+            renderer.scene = scene;
+            let pixels = floats(&picture(&mut renderer, PixelFormat::Rgba32F, SIZE, Some(region), false));
+            let mut found = vec![Transfer::default(); rays.len()];
+            renderer.transfer_rays(&rays, &mut found).unwrap();
+            let green = || pixels.iter().skip(1).step_by(4).map(|v| f64::from(*v));
+            let pairs = || green().zip(found.iter().map(|f| f.light[1]));
+            let brightness = pairs().map(|(_, exact)| exact).sum::<f64>() / found.len() as f64;
+            let off = pairs().map(|(seen, exact)| (seen - exact).powi(2)).sum::<f64>() / found.len() as f64;
+            let off = off.sqrt() / brightness;
+            println!("{tracer}, {x} {y}: off by {off:.4}");
+            assert!(off < 0.012 && brightness > 1e-3, "{tracer}, {x} {y}: {off} of {brightness}");
+        }
     }
 }
 
