@@ -6,7 +6,7 @@ use super::adapter::{self, BHR_BACKEND_AUTO, BhrAdapterInfo, BhrBackend};
 use super::call::on_context;
 use super::callback::in_callback;
 use super::entry::{anywhere, finish, outside_callbacks};
-use super::gate::Gate;
+use super::gate::{AT_THE_END, Gate};
 use super::log::{self, BHR_LOG_WARN, BhrLogFn, BhrLogLevel, Registered, Sink};
 use super::message::{LastMessage, copy_last};
 use super::panic::guarded;
@@ -27,7 +27,6 @@ use std::ffi::{c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
-use std::time::Duration;
 
 /// A scene and what traces it. Contexts are independent of each other. Any thread may call; calls on one context
 /// wait for each other.
@@ -315,9 +314,6 @@ pub unsafe extern "C" fn bhr_context_error_message(
     unsafe { copy_last(context.as_ref().map(|context| &*context.message), buffer, size) }
 }
 
-/// How long a context waits for a call that is running when the process ends.
-const AT_THE_END: Duration = Duration::from_secs(3);
-
 /// Ends a context: waits for a call that is running on it and for its jobs (bhr_job_cancel shortens that), and up to a
 /// second for pipelines that are being compiled, then frees it. Its surfaces end too, but both they and its jobs must
 /// still be destroyed, before or after. NULL is a no-op. No callback runs after it has returned. No other thread may
@@ -327,9 +323,9 @@ const AT_THE_END: Duration = Duration::from_secs(3);
 /// A process may end without it, by exit() or by returning from main, whatever jobs are under way. Drivers unload
 /// parts of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads
 /// have come out of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static
-/// objects that run later, calls on contexts and jobs return INVALID_STATE, and destroying what uses a GPU frees
-/// nothing. Threads of the host's go on: end them before, if they call bhr. (Nothing of this on Windows, where other
-/// threads end first.)
+/// objects that run later, calls on contexts and jobs return INVALID_STATE; destroying what uses a GPU frees nothing,
+/// and bhr's threads are held up for 10 s more. Threads of the host's go on, but wait if they wait for bhr's: end them
+/// before, if they call bhr. (Nothing of this on Windows, where other threads end first.)
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";
@@ -346,13 +342,16 @@ pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     // SAFETY: bhr_context_create made it with Box::into_raw, and the host destroys it once.
     let context = unsafe { Box::from_raw(context) };
     let scope = log::Scope::enter(context.sink());
+    let ending = process_end::is_here();
     // A running call holds the lock. In the end of the process it may wait for what does not come any more.
-    if process_end::is_here() && context.state.try_lock_for(AT_THE_END).is_none() {
+    let idle = if ending { context.state.try_lock_for(AT_THE_END) } else { Some(context.state.lock()) };
+    let Some(uses_driver) = idle.map(|state| state.renderer.adapter().backend != Backend::Cpu) else {
+        context.progress_gate.close();
+        context.log.iter().for_each(Registered::end);
         return process_end::keep(context);
-    }
-    let uses_driver = context.state.lock().renderer.adapter().backend != Backend::Cpu;
+    };
     let BhrContext { state, log, progress_gate, .. } = *context;
-    if uses_driver && process_end::is_here() {
+    if uses_driver && ending {
         process_end::keep(state);
     } else {
         let result = guarded(|| {

@@ -100,12 +100,17 @@ impl Registered {
     pub(super) fn sink(&self) -> Arc<Sink> {
         self.0.clone()
     }
+
+    /// Ends the callbacks.
+    pub(super) fn end(&self) {
+        change_sinks(|sinks| sinks.retain(|sink| !Arc::ptr_eq(sink, &self.0)));
+        self.0.gate.close();
+    }
 }
 
 impl Drop for Registered {
     fn drop(&mut self) {
-        change_sinks(|sinks| sinks.retain(|sink| !Arc::ptr_eq(sink, &self.0)));
-        self.0.gate.close();
+        self.end();
     }
 }
 

@@ -43,14 +43,14 @@ pub(crate) const CLOUD_SPACED: f64 = 0.7;
 pub(crate) const WOUND: f64 = 4.0;
 /// Smaller impact parameters are taken for it: rays that go round the hole have none.
 pub(crate) const LEAST_B: f64 = 2.0;
-/// The share of a footprint that samples may be coarser by: levels have structure of about a texel, of which the finest
-/// has none.
+/// The share of a footprint that samples lie apart where that is more than [`CLOUD_SPACING`]: coarse levels have
+/// structure of about a texel, of which the finest has none.
 pub(crate) const CLOUD_COARSE: f64 = 0.49;
 /// The power of `worth`, and the least share.
 pub(crate) const WORTH: f64 = 0.2;
 pub(crate) const LEAST_WORTH: f64 = 0.1;
 /// Texels that samples of a picture lie apart. With 1.4, and octaves of 0.9 of the one before, they showed as ripples
-/// along filaments: 1.5 of 255 (root mean square) in a picture 1920 wide, where it is 0.2 to 0.3 now.
+/// along filaments (docs/numerics.md).
 pub(crate) const CLOUD_SPACING: f64 = 1.0;
 
 /// Where and when matter is asked for.

@@ -128,7 +128,8 @@ impl Scene {
             Method::Adaptive => 60,
             _ => (6.0 / settings.step).ceil() as u64,
         };
-        // Each volume or spot costs as much as some sixty steps more, structure six times that (measured on an H200).
+        // Each volume or spot costs as much as some sixty steps more, structure six times that (measured on an H200,
+        // with layers of structure 1.4 times as thick as today).
         let structured = self.volumes.iter().filter(|volume| volume.turbulence > 0.0).count();
         let matter = 60 * (self.volumes.len() + self.hot_spots.len() + 5 * structured) as u64;
         let steps = steps.clamp(1, settings.max_steps.into());

@@ -307,7 +307,9 @@ fn ask_drivers(backends: wgpu::Backends, validation: bool) -> DriverAdapters {
         let list = pollster::block_on(instance.enumerate_adapters(backends));
         (Some(instance), list)
     };
-    let found = catch_unwind(AssertUnwindSafe(ask)).unwrap_or_else(|_| {
+    let found = catch_unwind(AssertUnwindSafe(ask));
+    process_end::watch();
+    let found = found.unwrap_or_else(|_| {
         log::warn!("the search for adapters of {backends:?} panicked");
         (None, Vec::new())
     });

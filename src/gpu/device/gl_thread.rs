@@ -79,6 +79,7 @@ pub fn park(text: &str) {
     let Some((caller, age)) = caller else { return };
     age.end();
     driver_lock::abandon();
+    process_end::abandon();
     let _ = caller.send(Report::Parked(text.to_owned()));
     loop {
         thread::park();

@@ -7,6 +7,7 @@ use super::semaphores::{GpuSemaphore, SemaphoreUse};
 use super::sharing::GpuTarget;
 use super::turns::InUse;
 use super::wgpu_device::{Device, Uploads, hangs_after};
+use crate::deferred::hold;
 use crate::error::{Error, Result};
 use std::sync::Arc;
 
@@ -164,6 +165,7 @@ impl Device {
             self.scoped("recording work", |_| encoders.map(wgpu::CommandEncoder::finish).collect::<Vec<_>>())?;
         self.wait_for_waits()?;
         let submitted = {
+            let _holding = hold();
             let _inside = process_end::enter();
             let _turn = self.turns.take();
             self.stage(queue, waits, signals);
@@ -189,6 +191,7 @@ impl Device {
     /// Lets go of the semaphores, and of targets that were read, of submissions that have run.
     fn let_go_of_done(&self) {
         let mut done = Vec::new();
+        let _holding = hold();
         let _inside = process_end::enter();
         let mut in_use = self.turns.in_use();
         while let Some(first) = in_use.front()

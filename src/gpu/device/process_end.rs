@@ -5,21 +5,25 @@
 //! returning from main, need not have destroyed its contexts, and has no hand in these threads; so an exit handler
 //! waits until they have come out of the driver, and holds them up while the process ends. Knows no wgpu.
 //!
-//! They are held up for [`PAUSE`] only: after that the process still lives because somebody waits, perhaps for them.
-//! Threads of the host are never held up. What they do with a driver in exit() is for the host to see to.
+//! They are held up for [`PAUSE`] only, or for [`KEPT_PAUSE`] where something of theirs was to be destroyed: after that
+//! the process still lives because somebody waits, perhaps for them. Threads of the host are never held up. What they
+//! do with a driver in exit() is for the host to see to.
 //!
 //! Exit handlers and destructors that the host registered earlier run after those of the drivers. A call into a driver
 //! may crash by then, so on that thread contexts refuse their calls, and what they have of the driver is left as it is.
 
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long the end of the process waits at most for the calls into drivers that have begun.
+/// How long the end of the process waits at most for the calls into drivers that have begun: once, however many things
+/// are destroyed.
 const LONGEST: Duration = Duration::from_secs(10);
 /// How long threads are held up: handlers and destructors take less, unless they wait for something.
 const PAUSE: Duration = Duration::from_secs(2);
+/// The same after something was to be destroyed, counted from the last one: what the host lent it may be gone.
+const KEPT_PAUSE: Duration = Duration::from_secs(10);
 
 /// The number of this library's threads within a driver, and [`CLOSED`].
 static STATE: AtomicUsize = AtomicUsize::new(0);
@@ -27,7 +31,7 @@ static STATE: AtomicUsize = AtomicUsize::new(0);
 const CLOSED: usize = 1 << (usize::BITS - 1);
 /// The thread that ends the process, as [`this_thread`]; 0 while there is none.
 static ENDING: AtomicUsize = AtomicUsize::new(0);
-/// When they may enter again: never, if there is no time. With `STATE` as what is waited for.
+/// When they may enter again, once `STATE` is closed.
 static OPENS: Mutex<Option<Instant>> = Mutex::new(None);
 static CHANGED: Condvar = Condvar::new();
 
@@ -93,15 +97,12 @@ impl Drop for Inside {
 fn stand_still() {
     let mut opens = opens();
     while STATE.load(Ordering::SeqCst) & CLOSED != 0 {
-        let left = opens.map(|opens| opens.saturating_duration_since(Instant::now()));
-        opens = match left {
-            Some(Duration::ZERO) => {
-                STATE.fetch_and(!CLOSED, Ordering::SeqCst);
-                return;
-            }
-            Some(left) => CHANGED.wait_timeout(opens, left).unwrap_or_else(PoisonError::into_inner).0,
-            None => CHANGED.wait(opens).unwrap_or_else(PoisonError::into_inner),
-        };
+        let left = opens.map_or(Duration::ZERO, |opens| opens.saturating_duration_since(Instant::now()));
+        if left.is_zero() {
+            STATE.fetch_and(!CLOSED, Ordering::SeqCst);
+            return;
+        }
+        opens = CHANGED.wait_timeout(opens, left).unwrap_or_else(PoisonError::into_inner).0;
     }
 }
 
@@ -111,25 +112,39 @@ pub fn is_here() -> bool {
     ending != 0 && this_thread() == Some(ending)
 }
 
-/// Keeps what belongs to a driver as it is until the process is gone, reachable for leak checkers. From then on none of
-/// the library's threads uses it, nor what the host has lent it: they are held up for good.
+/// Keeps what belongs to a driver as it is until the process is gone, reachable for leak checkers. For
+/// [`KEPT_PAUSE`] none of the library's threads uses it, nor what the host has lent it; held up for good, they could
+/// keep a thread of the host's that the host waits for.
 pub fn keep<T: 'static>(owned: T) {
     static KEPT: Mutex<Vec<usize>> = Mutex::new(Vec::new());
-    shut(Instant::now() + LONGEST, None);
+    shut(longest(), KEPT_PAUSE);
     KEPT.lock().unwrap_or_else(PoisonError::into_inner).push(std::ptr::from_mut(Box::leak(Box::new(owned))).addr());
+}
+
+/// When the end of the process waits no longer; it begins with the first call.
+fn longest() -> Instant {
+    static END: OnceLock<Instant> = OnceLock::new();
+    *END.get_or_init(|| Instant::now() + LONGEST)
+}
+
+/// This thread stands still for good, within a driver or not: nobody is to wait for it.
+pub fn abandon() {
+    if OWN.try_with(Cell::get).unwrap_or(false) && DEPTH.try_with(|depth| depth.replace(0)).unwrap_or(0) > 0 {
+        leave();
+    }
 }
 
 /// The process ends on this thread.
 fn close(deadline: Instant) {
     ENDING.store(this_thread().unwrap_or(0), Ordering::SeqCst);
-    shut(deadline, Some(PAUSE));
+    shut(deadline, PAUSE);
 }
 
-/// Holds the library's threads up, for so long after those within a driver have left it or `deadline` has come, and
-/// without `pause` for good.
-fn shut(deadline: Instant, pause: Option<Duration>) {
+/// Holds the library's threads up, for so long after those within a driver have left it or `deadline` has come.
+fn shut(deadline: Instant, pause: Duration) {
     let mut opens = opens();
-    *opens = pause.map(|pause| deadline + pause);
+    let began = Instant::now().max(deadline);
+    *opens = (*opens).max(Some(began + pause));
     STATE.fetch_or(CLOSED, Ordering::SeqCst);
     // Where one of the library's threads ends the process, in a callback, it does not wait for itself.
     let own = usize::from(DEPTH.try_with(Cell::get).unwrap_or(0) > 0);
@@ -140,12 +155,13 @@ fn shut(deadline: Instant, pause: Option<Duration>) {
         }
         opens = CHANGED.wait_timeout(opens, left).unwrap_or_else(PoisonError::into_inner).0;
     }
-    *opens = pause.map(|pause| Instant::now() + pause);
+    *opens = Some(Instant::now() + pause);
     CHANGED.notify_all();
 }
 
-/// To be called before a driver is loaded, and when a device has its first pipeline, as drivers load their compilers
-/// late: exit handlers run in the opposite order of their registration, and this one is to run before the drivers'.
+/// To be called before a driver is loaded, once it is, and when a device has its first pipeline, as drivers load their
+/// compilers late: exit handlers run in the opposite order of their registration, and one of these is to run before
+/// each of the drivers'.
 pub fn watch() {
     #[cfg(unix)]
     handler::register();
@@ -154,11 +170,10 @@ pub fn watch() {
 #[cfg(unix)]
 mod handler {
     use super::*;
-    use std::sync::OnceLock;
     use std::sync::atomic::AtomicU32;
 
     /// Registrations at most: a process has few drivers, but may open many devices.
-    const MOST: u32 = 32;
+    const MOST: u32 = 64;
 
     static COUNT: AtomicU32 = AtomicU32::new(0);
     /// The process whose threads are counted: a forked one has none of them.
@@ -179,7 +194,7 @@ mod handler {
         let of_this_process = PROCESS.get() == Some(&unsafe { libc::getpid() });
         // Several handlers are registered; the first one that runs does it all.
         if of_this_process && ENDING.load(Ordering::SeqCst) == 0 {
-            close(Instant::now() + LONGEST);
+            close(longest());
         }
     }
 }

@@ -132,6 +132,7 @@ impl PendingReadback {
         let (sender, outcome) = mpsc::sync_channel(1);
         let buffer = self.staging.buffer()?;
         let (mapped, size) = (&mut self.mapped, self.size);
+        let _holding = hold();
         let _inside = process_end::enter();
         // wgpu may submit what it has left to.
         let _turn = device.turns.take();
