@@ -324,8 +324,9 @@ pub unsafe extern "C" fn bhr_context_error_message(
 /// parts of themselves then; so, where a GPU was used, a handler of bhr's (atexit) waits until bhr's own threads
 /// have come out of their drivers, 10 s at most, and holds them up for 2 s. In handlers and destructors of static
 /// objects that run later, calls on contexts and jobs return INVALID_STATE; destroying what uses a GPU frees nothing,
-/// and bhr's threads are held up for 10 s more. Threads of the host's go on, but wait if they wait for bhr's: end them
-/// before, if they call bhr. (Nothing of this on Windows, where other threads end first.)
+/// bhr's threads are held up for 10 s more, and calls and callbacks that are running are waited for 3 s at most each.
+/// Threads of the host's go on, but wait if they wait for bhr's: end them before, if they call bhr. (Nothing of this on
+/// Windows, where other threads end first.)
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn bhr_context_destroy(context: *mut BhrContext) {
     const NAME: &str = "bhr_context_destroy";

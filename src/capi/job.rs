@@ -200,7 +200,7 @@ pub unsafe extern "C" fn bhr_job_destroy(job: *mut BhrJob) {
     // SAFETY: bhr_render_image_async made it with Box::into_raw, and the host destroys it once.
     let job = unsafe { Box::from_raw(job) };
     if job.uses_driver && process_end::is_here() {
-        // Its thread is held up from here on, and writes nothing.
+        // Its thread is held up, and writes nothing while the process ends within the time that `keep` states.
         return process_end::keep(job);
     }
     if !job.writes_memory {

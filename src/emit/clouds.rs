@@ -378,7 +378,7 @@ mod tests {
                 carried += (m.log(&CloudPlace { later, ..parcel }) - begin).abs();
                 standing += (m.log(&CloudPlace { later, ..at }) - begin).abs();
             }
-            // Along the radius a band goes as fast as its middle.
+            // Along the radius a band goes as fast as its middle, which matters most for jets.
             let limit = if volume.shape == Shape::Jet { 0.75 } else { 0.5 };
             assert!(carried < limit * standing, "{motion:?}: {carried} {standing}");
         }

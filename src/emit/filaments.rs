@@ -325,7 +325,7 @@ mod tests {
             let error = lost(k) - filament_log_mean(k * filament_variance(0.0).sqrt());
             assert!(error.abs() < 0.01 * k * k, "at {k}: {error}");
         }
-        // Between levels, and beyond the last one.
+        // Between levels, and beyond the last one. The variance there is an estimate (`filament_variance`).
         for level in [0.5, 1.3, 2.5, 3.7, 4.5, 5.5, 6.5, 7.0, 90.0] {
             let seen = values(level);
             let [found, stated] = [mean(seen.iter().map(|g| g * g)), filament_variance(level)];
