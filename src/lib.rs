@@ -15,7 +15,7 @@
 //!   process), `allocate` (memory that may be refused), `thread_scope` (what the library's threads take over from the
 //!   threads that they work for), [`error`].
 //!
-//! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms.rs holds it.
+//! Each imports from those below it only; `ARCHITECTURE.md` says more, and tests/rooms/imports.rs holds it.
 
 mod allocate;
 #[doc(hidden)]
