@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 // The structure of matter with depth. Mirrors src/emit/clouds.rs, where the reasons are; the struct is `CloudUniform`
-// of src/gpu/frame/clouds.rs. Knows no light and no ray.
+// of src/gpu/frame/uniforms/clouds.rs. Knows no light and no ray.
 //
 // A kernel declares `clouds`, a buffer with one `Cloud` for each volume of the scene, and `filament_texel` of
 // emit/filaments; emit/volumes calls what is here.

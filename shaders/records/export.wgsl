@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// Writes the ray records of a tile into a buffer, for tests: src/gpu/frame/export.rs reads them.
+// Writes the ray records of a tile into a buffer, for tests: src/gpu/frame/ray_records.rs reads them.
 
 #import constants
 #import records/record

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms.rs.
+// The scene as the kernels of a frame see it. Mirrors `FrameUniform` of src/gpu/frame/uniforms/frame.rs.
 
 #import constants
 #import shared/matter

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
-// A volume or a hot spot as the kernels of a frame see it. Mirrors `MatterUniform` of src/gpu/frame/matter.rs; what its
-// numbers mean stands in src/emit/volume.rs and src/emit/hot_spot.rs.
+// A volume or a hot spot as the kernels of a frame see it. Mirrors `MatterUniform` of
+// src/gpu/frame/uniforms/matter.rs; what its numbers mean stands in src/emit/volume.rs and src/emit/hot_spot.rs.
 
 struct Matter {
     // SHAPE_*, MOTION_*, 1 for a power law and 0 for a blackbody's light; 0.

@@ -8,7 +8,7 @@
 #requires fn sampled(map: texture_2d<f32>, place: vec2<f32>, level: f32) -> vec3<f32>
 
 // Whether maps have their levels as textures do, and a sampler filters them; else all levels lie in one
-// (src/gpu/frame/sky_maps.rs), and texels are read one by one.
+// (src/gpu/frame/resources/sky_maps.rs), and texels are read one by one.
 override MAP_SAMPLER: bool = false;
 
 // The line across a pixel's patch on which taps are to stand: its direction, sky axes; the patch's axes, rad.
@@ -100,7 +100,7 @@ fn straight_step(d: vec3<f32>, axis: vec3<f32>) -> vec2<f32> {
     return vec2<f32>((axis.x * d.y - axis.y * d.x) / (TAU * rho2), axis.z / (-PI * sqrt(rho2)));
 }
 
-// Where a level begins in the texture (level_place of src/gpu/frame/sky_maps.rs).
+// Where a level begins in the texture (level_place of src/gpu/frame/resources/sky_maps.rs).
 fn level_place(finest: vec2<u32>, level: u32) -> vec2<i32> {
     let below = vec2<u32>(finest.x - (finest.x >> (max(level, 1u) - 1u)), finest.y);
     return vec2<i32>(select(below, vec2<u32>(0u), level == 0u));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! Bloom: the glare that scattered light makes around bright things. This file says which share of a frame's light
-//! goes how far, makes the grids that spread it, and spreads it on the CPU; `shaders/bloom*.wgsl` and
-//! `src/gpu/frame/bloom.rs` do the same with these numbers. Works on exposed light
+//! goes how far, makes the grids that spread it, and spreads it on the CPU; `shaders/bloom` and
+//! `src/gpu/frame/passes/bloom.rs` do the same with these numbers. Works on exposed light
 //! ([`FilmParams::exposed_light`](super::FilmParams::exposed_light)); knows nothing of how that light was made, or of
 //! 8-bit pixels. A telescope's beam (bloom/beam.rs) spreads light by the same grids.
 //!

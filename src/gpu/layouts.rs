@@ -2,7 +2,10 @@
 //! Compiled for tests only: the structs which Rust writes for shaders, and reads from them, lie in memory as WGSL has
 //! them.
 
-use super::frame::{bloom, clouds, matter, occluder, outputs, rays, sky_target, uniforms};
+use super::frame::passes::bloom;
+use super::frame::resources::{occluder, sky_target};
+use super::frame::uniforms::{clouds, frame, matter};
+use super::frame::{host_rays, render_outputs};
 use super::kernel::layout::{Layout, layout};
 use super::kernel::wgsl::shader_sources;
 use super::lens::{kerr, schwarzschild};
@@ -13,16 +16,16 @@ use wgpu::naga::{AddressSpace, Module, TypeInner, front::wgsl};
 fn shared() -> Vec<Layout> {
     let film = layout!(crate::film::FilmParams as "FilmParams": exposure, tone_map, format, false_colour, view_low,
         view_scale, transparent, colour_map);
-    let [frame, pass] = uniforms::layouts();
-    let [given, start, end] = rays::layouts();
+    let [scene, pass] = frame::layouts();
+    let [given, start, end] = host_rays::layouts();
     let [level, beam] = bloom::layouts();
     let [cloud, clouds] = clouds::layouts();
     let (matter, kerr, schwarzschild) = (matter::layout(), kerr::layout(), schwarzschild::layout());
     vec![
         film,
-        frame,
+        scene,
         pass,
-        outputs::layout(),
+        render_outputs::layout(),
         sky_target::layout(),
         occluder::layout(),
         matter,

@@ -33,12 +33,12 @@ pub use device::sharing::{GpuTarget, TargetResource, host_adapter, vulkan_requir
 pub use device::texture::Texture;
 pub use device::timer::{GpuTimer, read_time};
 pub use device::wgpu_device::{Device, Loss, set_hangs_after};
-pub use frame::begun::{BegunFrame, ExtraCommands, Handed};
-pub use frame::beside::OutputTo;
-pub use frame::occluder::check_occluder;
-pub use frame::setup::FrameTarget;
-pub use frame::sky_target::check_sky;
-pub use frame::submission::Submission;
+pub use frame::passes::outputs_beside::OutputTo;
+pub use frame::plan::setup::FrameTarget;
+pub use frame::resources::occluder::check_occluder;
+pub use frame::resources::sky_target::check_sky;
+pub use frame::submission::begun_frame::{BegunFrame, ExtraCommands, Handed};
+pub use frame::submission::submit::Submission;
 pub use frame::tracer::GpuTracer;
 pub use gl_tracer::GlTracer;
 #[doc(hidden)]

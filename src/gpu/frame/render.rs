@@ -4,20 +4,20 @@
 //! has run, so that readback overlaps the work of the next steps and frames. Knows no host memory: finished tiles go
 //! to the sink.
 
-use super::begun::{BegunFrame, Delivery, ExtraCommands};
-use super::beside::{BesideSetup, PlacedOutput};
-use super::bloom::LIGHT_BYTES;
-use super::buffers::Size;
-use super::occluder::takes_rows;
-use super::refine::EdgeList;
-use super::setup::{FrameTarget, Setup};
-use super::sky_target::level_kernels;
-use super::steps::Steps;
-use super::submission::Submission;
-use super::tables::Tables;
-use super::tiles::{Budget, TilePlan};
 use super::tracer::GpuTracer;
 use crate::error::{Error, ErrorKind, Result};
+use crate::gpu::frame::passes::bloom::LIGHT_BYTES;
+use crate::gpu::frame::passes::outputs_beside::{BesideSetup, PlacedOutput};
+use crate::gpu::frame::passes::refine::EdgeList;
+use crate::gpu::frame::plan::setup::{FrameTarget, Setup};
+use crate::gpu::frame::plan::steps::Steps;
+use crate::gpu::frame::plan::tiles::{Budget, TilePlan};
+use crate::gpu::frame::resources::frame_buffers::Size;
+use crate::gpu::frame::resources::occluder::takes_rows;
+use crate::gpu::frame::resources::sky_target::level_kernels;
+use crate::gpu::frame::resources::tables::Tables;
+use crate::gpu::frame::submission::begun_frame::{BegunFrame, Delivery, ExtraCommands};
+use crate::gpu::frame::submission::submit::Submission;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
 use crate::scene::Scene;

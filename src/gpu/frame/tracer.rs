@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The GPU tracer itself: one device, and what frames and rays keep on it.
 
-use super::buffers::FrameBuffers;
-use super::outputs::OutputBuffers;
-use super::rays::RayBuffers;
-use super::tables::Tables;
+use super::host_rays::RayBuffers;
+use super::render_outputs::OutputBuffers;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::adapter::Adapter;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::resources::frame_buffers::FrameBuffers;
+use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::kernel::kernels::{KernelWaits, Kernels};
 use crate::gpu::kernel::key::KernelKey;
 use crate::tracer::Backend;

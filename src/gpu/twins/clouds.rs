@@ -13,7 +13,7 @@ use crate::emit::matter::{Accuracy, VolumeMatter};
 use crate::emit::shape::{Cloud, Stretch};
 use crate::emit::volume::{FlowLaw, Shape, Volume};
 use crate::emit::volumes::Volumes;
-use crate::gpu::frame::clouds::CloudsUniform;
+use crate::gpu::frame::uniforms::clouds::CloudsUniform;
 use crate::random::mix;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
@@ -321,7 +321,7 @@ pub fn group() -> Group {
 fn clouds_lie_in_memory_as_in_wgsl() {
     use wgpu::naga::TypeInner;
     let source = group().source();
-    for layout in crate::gpu::frame::clouds::layouts() {
+    for layout in crate::gpu::frame::uniforms::clouds::layouts() {
         let found = source.module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(layout.name));
         let Some((_, TypeInner::Struct { members, span })) = found.map(|(_, ty)| (0, ty.inner.clone())) else {
             panic!("no struct {}", layout.name);

@@ -4,8 +4,8 @@
 use super::inputs::{Inputs, Random};
 use super::run::Table;
 use super::sky;
-use crate::gpu::frame::settings::for_f32;
-use crate::gpu::frame::uniforms::FrameUniform;
+use crate::gpu::frame::plan::f32_settings::for_f32;
+use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::physics::metric::chart;
 use crate::physics::orbit::horizon_outer;
 use crate::scene::observer::Lens;

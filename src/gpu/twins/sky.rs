@@ -4,7 +4,7 @@
 use super::inputs::Inputs;
 use super::run::{Image, Table};
 use super::{Group, ROUNDING, SAME, twin};
-use crate::gpu::frame::sky_maps::{level_place, texture_height};
+use crate::gpu::frame::resources::sky_maps::{level_place, texture_height};
 use crate::gpu::kernel::slots::SKY_MAP;
 use crate::random::mix;
 use crate::sky::filter;

@@ -3,8 +3,8 @@
 //! (sky/pyramid.wgsl), level by level, in the place of the one that src/sky/map.rs makes; from a cube the finest level
 //! is made by looking its light up. Knows no frames.
 
-use super::bands::{Band, Reach, Rows, Window, bands};
-use super::buffers::CachedUniform;
+use super::binding_parts::{Band, Reach, Rows, Window, bands};
+use super::frame_buffers::CachedUniform;
 use super::sky_maps::{MapTexture, level_place, texture_height};
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::buffer::uniform_stride;
@@ -71,7 +71,7 @@ pub struct SkyTarget {
     /// The texels of even levels and of odd ones, in rows that a copy into a texture takes.
     words: [Arc<GpuTarget>; 2],
     uniforms: CachedUniform,
-    pub(super) map: MapTexture,
+    pub(in crate::gpu) map: MapTexture,
 }
 
 /// The dispatches that make a level.

@@ -3,18 +3,18 @@
 //! (shade/outputs.wgsl), tile by tile. They have buffers and lens tables of their own, because their records hold more
 //! than those of the picture, whose bytes stay what they are without outputs. Knows no host memory.
 
-use super::buffers::{CachedUniform, FrameBuffers, Size};
-use super::setup::Setup;
-use super::stages::RecordConsumer;
-use super::tables::Tables;
-use super::tiles::{Budget, TilePlan};
 use super::tracer::GpuTracer;
-use super::uniforms::pass_of;
 use crate::error::{Error, ErrorKind, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer::{self, GpuTimer};
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::passes::picture::RecordConsumer;
+use crate::gpu::frame::plan::setup::Setup;
+use crate::gpu::frame::plan::tiles::{Budget, TilePlan};
+use crate::gpu::frame::resources::frame_buffers::{CachedUniform, FrameBuffers, Size};
+use crate::gpu::frame::resources::tables::Tables;
+use crate::gpu::frame::uniforms::frame::pass_of;
 use crate::gpu::kernel::kernels::{Kernels, check_groups, pixel_groups};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{OutputPlaces, PixelTarget, RecordSource};
@@ -93,10 +93,10 @@ impl OutputsUniform {
 /// The buffers of outputs; they grow and stay.
 #[derive(Default)]
 pub struct OutputBuffers {
-    pub(super) frame: FrameBuffers,
-    pub(super) uniform: Option<CachedUniform>,
-    /// A tile's numbers for the host, of outputs beside a picture ([`super::beside`]).
-    pub(super) packed: Option<Buffer>,
+    pub(in crate::gpu) frame: FrameBuffers,
+    pub(in crate::gpu) uniform: Option<CachedUniform>,
+    /// A tile's numbers for the host, of outputs beside a picture ([`crate::gpu::frame::passes::outputs_beside`]).
+    pub(in crate::gpu) packed: Option<Buffer>,
 }
 
 /// A tile that has been submitted.
@@ -116,7 +116,7 @@ struct OutputStages {
 
 impl Setup {
     /// Every kernel of outputs.
-    pub(super) fn output_kernels(&self, places: OutputPlaces) -> Vec<KernelKey> {
+    pub(in crate::gpu) fn output_kernels(&self, places: OutputPlaces) -> Vec<KernelKey> {
         let mut keys = self.record_kernels();
         let source = self.record_setup.source;
         let deferred = self.record_setup.deferred_source();
@@ -212,7 +212,7 @@ impl OutputBuffers {
     }
 
     /// Makes room for so many bytes of a tile's numbers.
-    pub(super) fn make_room(&mut self, device: &Device, bytes: u64) -> Result<()> {
+    pub(in crate::gpu) fn make_room(&mut self, device: &Device, bytes: u64) -> Result<()> {
         if self.packed.as_ref().is_none_or(|packed| packed.size() < bytes) {
             // The old one goes first: both together need not fit.
             self.packed = None;
@@ -223,7 +223,7 @@ impl OutputBuffers {
     }
 
     /// The uniform of the outputs.
-    pub(super) fn uniform(&mut self, device: &Device) -> Result<&mut CachedUniform> {
+    pub(in crate::gpu) fn uniform(&mut self, device: &Device) -> Result<&mut CachedUniform> {
         match &mut self.uniform {
             Some(held) => Ok(held),
             empty => Ok(empty.insert(CachedUniform::new(device, "outputs", size_of::<OutputsUniform>() as u64)?)),

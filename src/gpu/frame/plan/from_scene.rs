@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The setup of a frame from its scene: which records, which shader variants, which film. Knows no buffers.
 
-use super::clouds::CloudsUniform;
-use super::matter::matter_variant;
-use super::settings::{for_f32, variant};
+use super::f32_settings::{for_f32, variant};
 use super::setup::{Setup, ShadingVariants};
-use super::tracer::GpuTracer;
-use super::uniforms::FrameUniform;
 use crate::emit::Emitters;
 use crate::error::Result;
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
+use crate::gpu::frame::tracer::GpuTracer;
+use crate::gpu::frame::uniforms::clouds::CloudsUniform;
+use crate::gpu::frame::uniforms::frame::FrameUniform;
+use crate::gpu::frame::uniforms::matter::matter_variant;
 use crate::gpu::kernel::variant::{FilmVariant, PixelTarget, RecordSource, ShadeVariant, TraceVariant};
 use crate::gpu::lens::kerr::KerrContents;
 use crate::gpu::lens::records::RecordSetup;

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! One submission of a frame, a step of it: recorded, sent, and read when it has run. Knows no scene.
 
-use super::begun::{BegunFrame, Delivery, ExtraCommands};
-use super::buffers::{FrameBuffers, MOST_PASSES, PIXELS};
-use super::outputs::OutputBuffers;
-use super::uniforms::{PassUniform, pass_of};
+use super::begun_frame::{BegunFrame, Delivery, ExtraCommands};
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::handover::Handover;
@@ -12,6 +9,9 @@ use crate::gpu::device::readback::PendingReadback;
 use crate::gpu::device::timer;
 use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::render_outputs::OutputBuffers;
+use crate::gpu::frame::resources::frame_buffers::{FrameBuffers, MOST_PASSES, PIXELS};
+use crate::gpu::frame::uniforms::frame::{PassUniform, pass_of};
 use crate::gpu::kernel::kernels::{check_groups, pixel_groups};
 use crate::gpu::kernel::variant::PixelTarget;
 use crate::gpu::lens::records::STEP_SUM;

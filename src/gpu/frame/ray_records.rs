@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The ray records of a frame, for tests: has records/export.wgsl write them, and reads them back.
 
-use super::buffers::Size;
-use super::stages::RecordConsumer;
-use super::tables::Tables;
 use super::tracer::GpuTracer;
-use super::uniforms::pass_of;
 use crate::allocate::collected;
 use crate::emit::medium::Media;
 use crate::emit::{Crossing, EmissionPoint};
 use crate::error::{Error, Result};
+use crate::gpu::frame::passes::picture::RecordConsumer;
+use crate::gpu::frame::resources::frame_buffers::Size;
+use crate::gpu::frame::resources::tables::Tables;
+use crate::gpu::frame::uniforms::frame::pass_of;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::sizes::EXPORT_VECTORS;

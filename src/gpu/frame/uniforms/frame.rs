@@ -127,7 +127,7 @@ fn range(u: Option<[f64; 2]>) -> [f32; 2] {
 }
 
 /// Bands as `bands.wgsl` has them; beyond the last one it goes on.
-pub(super) fn bands(bands: &Bands) -> [[u32; 4]; MOST_BANDS] {
+pub(in crate::gpu) fn bands(bands: &Bands) -> [[u32; 4]; MOST_BANDS] {
     std::array::from_fn(|i| {
         let band = bands.band(bands.first + i as i32);
         [(band.age as f32).to_bits(), (band.spacing as f32).to_bits(), band.generation, (band.drift as f32).to_bits()]

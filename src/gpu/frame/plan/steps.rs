@@ -172,8 +172,8 @@ fn under(cells: Tile, factor: u32, frame: [u32; 2]) -> Tile {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tiles::Budget;
     use super::*;
+    use crate::gpu::frame::plan::tiles::Budget;
     use crate::image::PixelFormat;
 
     fn request([width, height]: [u32; 2]) -> FrameRequest {

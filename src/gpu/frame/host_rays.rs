@@ -3,12 +3,12 @@
 //! in f32. Two kinds of rays the f64 tracer takes: those of observers so near to the horizon that f32 cannot tell them
 //! from it, and those that wind about the hole, along which the rounding of f32 grows too large.
 
-use super::settings::{ray_settings, variant};
 use super::tracer::GpuTracer;
 use crate::allocate::{collected, with_room};
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::Buffer;
 use crate::gpu::device::readback::Readback;
+use crate::gpu::frame::plan::f32_settings::{ray_settings, variant};
 use crate::gpu::kernel::key::KernelKey;
 use crate::physics::geodesic::{Constants, State, wrap_angle};
 use crate::physics::observer::LocalFrame;

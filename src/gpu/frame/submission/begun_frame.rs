@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! A frame whose steps are being submitted, and what is known of it meanwhile.
 
-use super::beside::Beside;
-use super::occluder::Fetch;
-use super::rows::FrameRows;
-use super::setup::FrameTarget;
-use super::sky_target::SkyFetch;
-use super::stages::Stages;
-use super::steps::{Step, Steps};
 use crate::error::Result;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::handover::Handover;
 use crate::gpu::device::semaphores::FrameSync;
 use crate::gpu::device::sharing::GpuTarget;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::passes::outputs_beside::Beside;
+use crate::gpu::frame::passes::picture::Stages;
+use crate::gpu::frame::plan::setup::FrameTarget;
+use crate::gpu::frame::plan::steps::{Step, Steps};
+use crate::gpu::frame::plan::target_rows::FrameRows;
+use crate::gpu::frame::resources::occluder::Fetch;
+use crate::gpu::frame::resources::sky_target::SkyFetch;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource};
 use crate::scene::Projection;
 use crate::tracer::{FrameRequest, FrameStats, Tile};

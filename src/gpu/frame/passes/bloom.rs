@@ -2,12 +2,12 @@
 //! Bloom on the GPU: the light of a frame, or of a tile of it, the grids that it spreads over, and the passes that
 //! spread it. What goes where, and why, is in src/film/bloom.rs. Knows light, not what makes it.
 
-use super::buffers::CachedUniform;
 use crate::error::{Error, Result};
 use crate::film::bloom::{BEAM_SHARES, Beam, Bloom, Level, MOST_LEVELS, TAIL};
 use crate::gpu::device::buffer::uniform_stride;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::resources::frame_buffers::CachedUniform;
 use crate::gpu::kernel::kernels::{Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::slots::{LIGHT, TextureKind};

@@ -3,7 +3,7 @@
 //! those that the host's next frames may need. tests/tracers/kernels.rs holds the list against what frames ask for.
 
 use super::setup::Setup;
-use super::tracer::GpuTracer;
+use crate::gpu::frame::tracer::GpuTracer;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{PixelTarget, RecordSource, RefineVariant};
 use crate::image::PixelFormat;
@@ -13,7 +13,7 @@ use crate::tracer::{Backend, FrameRequest};
 
 impl Setup {
     /// The kernels that make records, or the tables that they are looked up in.
-    pub(super) fn record_kernels(&self) -> Vec<KernelKey> {
+    pub(in crate::gpu) fn record_kernels(&self) -> Vec<KernelKey> {
         match self.record_setup.source {
             RecordSource::Traced => self.record_setup.trace_keys(),
             RecordSource::Schwarzschild { delay, .. } => {
@@ -46,7 +46,7 @@ impl Setup {
             keys.push(KernelKey::Develop(variants.film, None));
         }
         if let (Some(bloom), Some(developed)) = (&self.bloom, variants.developed) {
-            keys.extend(super::bloom::kernels(bloom));
+            keys.extend(crate::gpu::frame::passes::bloom::kernels(bloom));
             keys.push(KernelKey::Develop(developed, Some(bloom.factor)));
         }
         keys

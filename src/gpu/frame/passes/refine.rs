@@ -2,9 +2,9 @@
 //! The second look at pixels that edges run through: their list on the device, and the kernels that go over it
 //! (records/edges.wgsl, refine/refine.wgsl). Knows kernels and their groups, no records and no light.
 
-use super::tiles::MAX_BATCH;
 use crate::error::Result;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::plan::tiles::MAX_BATCH;
 use crate::gpu::kernel::kernels::{Kernels, Stage, list_groups};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{FilmVariant, RecordSource, RefineVariant, ShadeVariant, TraceVariant};

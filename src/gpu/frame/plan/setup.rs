@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The setup of a frame, made before its tiles run: how its records are made, its light shaded and its pixels written.
-//! Plain data; configure.rs fills it from a scene.
+//! Plain data; from_scene.rs fills it from a scene.
 
-use super::clouds::CloudsUniform;
-use super::rows::FrameRows;
-use super::uniforms::FrameUniform;
+use super::target_rows::FrameRows;
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::film::bloom::Bloom;
 use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::texture::Texture;
+use crate::gpu::frame::uniforms::clouds::CloudsUniform;
+use crate::gpu::frame::uniforms::frame::FrameUniform;
 use crate::gpu::kernel::variant::{FilmVariant, ShadeVariant, StoredFormat};
 use crate::gpu::lens::records::RecordSetup;
 

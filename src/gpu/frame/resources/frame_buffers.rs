@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT OR Apache-2.0
 //! The buffers that frames of one size share: made, grown, and written with what all tiles share. Knows no kernels.
 
-use super::bloom::BloomBuffers;
-use super::clouds::CloudsUniform;
-use super::refine::EdgeList;
-use super::setup::Setup;
-use super::tiles::MAX_BATCH;
-use super::uniforms::{FrameUniform, PassUniform};
 use crate::error::{Error, Result};
 use crate::film::FilmParams;
 use crate::gpu::device::buffer::{Buffer, uniform_stride};
@@ -14,6 +8,12 @@ use crate::gpu::device::readback::Readback;
 use crate::gpu::device::texture::Texture;
 use crate::gpu::device::timer::GpuTimer;
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::passes::bloom::BloomBuffers;
+use crate::gpu::frame::passes::refine::EdgeList;
+use crate::gpu::frame::plan::setup::Setup;
+use crate::gpu::frame::plan::tiles::MAX_BATCH;
+use crate::gpu::frame::uniforms::clouds::CloudsUniform;
+use crate::gpu::frame::uniforms::frame::{FrameUniform, PassUniform};
 use crate::gpu::kernel::slots::{RADIANCE, TextureKind};
 use crate::gpu::lens::records::{RecordStore, step_sum};
 use crate::tracer::PASSES;

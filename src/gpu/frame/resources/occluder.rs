@@ -2,8 +2,8 @@
 //! The distances of the host's things as a texture: made anew when the host gives others, and filled for each frame
 //! from a target that the host shares. Knows no frames.
 
-use super::bands::{Band, Reach, Rows, bands};
-use super::buffers::CachedUniform;
+use super::binding_parts::{Band, Reach, Rows, bands};
+use super::frame_buffers::CachedUniform;
 use crate::allocate::with_room;
 use crate::error::{Error, Result};
 use crate::gpu::device::buffer::uniform_stride;

@@ -4,16 +4,16 @@
 //! the picture's records and tables serve outputs as well, they read those; else rays are traced for them, or tables
 //! made. Knows no host memory.
 
-use super::buffers::FrameBuffers;
-use super::outputs::{OutputBuffers, OutputsUniform};
-use super::rows::FrameRows;
-use super::setup::Setup;
-use super::stages::RecordConsumer;
-use super::tables::Tables;
-use super::tracer::GpuTracer;
+use super::picture::RecordConsumer;
 use crate::error::{Error, Result};
 use crate::gpu::device::sharing::{GpuTarget, TargetResource};
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::plan::setup::Setup;
+use crate::gpu::frame::plan::target_rows::FrameRows;
+use crate::gpu::frame::render_outputs::{OutputBuffers, OutputsUniform};
+use crate::gpu::frame::resources::frame_buffers::FrameBuffers;
+use crate::gpu::frame::resources::tables::Tables;
+use crate::gpu::frame::tracer::GpuTracer;
 use crate::gpu::kernel::kernels::Kernels;
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::{OutputPlace, OutputPlaces, PixelTarget, RecordSource};
@@ -58,7 +58,7 @@ pub struct PackedOutput {
 }
 
 /// How the outputs of a frame are made, before its buffers are there.
-pub(super) struct BesideSetup {
+pub(in crate::gpu) struct BesideSetup {
     pub setup: Setup,
     uniform: OutputsUniform,
     kinds: OutputPlaces,
@@ -123,7 +123,7 @@ impl GpuTracer {
     /// The setup of `outputs`; `scene` is `Scene::for_outputs` of them. `picture`: that of the picture beside them;
     /// `None`: there is none, and the frame's records are those of the outputs. Errors: as `Renderer::render`;
     /// UNSUPPORTED for targets that kernels do not reach.
-    pub(super) fn set_up_beside(
+    pub(in crate::gpu) fn set_up_beside(
         &self,
         scene: &Scene,
         request: &FrameRequest,

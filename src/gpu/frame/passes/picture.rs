@@ -3,14 +3,14 @@
 //! them. Knows no submissions.
 
 use super::bloom::BloomStages;
-use super::buffers::{CachedUniform, FrameBuffers, PIXELS};
 use super::refine::RefineStage;
-use super::rows::{FrameRows, TilePlace};
-use super::setup::{FrameTarget, Setup};
-use super::steps::Step;
-use super::tables::Tables;
 use crate::error::{Error, Result};
 use crate::gpu::device::wgpu_device::Device;
+use crate::gpu::frame::plan::setup::{FrameTarget, Setup};
+use crate::gpu::frame::plan::steps::Step;
+use crate::gpu::frame::plan::target_rows::{FrameRows, TilePlace};
+use crate::gpu::frame::resources::frame_buffers::{CachedUniform, FrameBuffers, PIXELS};
+use crate::gpu::frame::resources::tables::Tables;
 use crate::gpu::kernel::kernels::{Compiled, Kernels, Stage};
 use crate::gpu::kernel::key::KernelKey;
 use crate::gpu::kernel::variant::RecordSource;

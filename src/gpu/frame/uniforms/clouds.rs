@@ -2,7 +2,7 @@
 //! The structure of matter with depth in the layout of the shaders' uniform: `Clouds` of emit/clouds.wgsl, field by
 //! field.
 
-use super::uniforms::bands;
+use super::frame::bands;
 use crate::emit::bands::MOST_BANDS;
 use crate::emit::filaments::{FILAMENT_LEVELS, level_variances};
 use crate::emit::shape::{Cloud, WIDEST};

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! The buffers and textures of frames, which grow and stay from frame to frame, and what is written to them. Knows no
+//! order of kernels.
+
+pub(in crate::gpu) mod binding_parts;
+pub(in crate::gpu) mod filaments;
+pub(in crate::gpu) mod frame_buffers;
+pub(in crate::gpu) mod occluder;
+pub(in crate::gpu) mod sky_maps;
+pub(in crate::gpu) mod sky_target;
+pub(in crate::gpu) mod streaks;
+pub(in crate::gpu) mod tables;

@@ -1,0 +1,5 @@
+// SPDX-License-Identifier: MIT OR Apache-2.0
+//! A frame's way through the device: its steps as commands, sent and read. Knows no scene.
+
+pub(in crate::gpu) mod begun_frame;
+pub(in crate::gpu) mod submit;
